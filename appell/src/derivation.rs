@@ -3,15 +3,18 @@
 use appell_codegen::compile::report;
 use appell_codegen::emit::{Options, emit};
 use appell_codegen::linearisation::{Linearisation, SteadyMotion};
+use appell_codegen::mechanics::assemble;
+use appell_codegen::mechanics::finding::Finding;
 use appell_codegen::program::FunctionKind;
 use appell_codegen::{Derived, derived};
 use appell_report::derivation::{self, Page};
-use appell_report::drawing::drawing;
+use appell_report::drawing::{Moment, drawing, drawing_at};
 use appell_spec::mechanism::Mechanism;
 
 pub use appell_report::derivation::Stage;
 
 use crate::conditions::conditions;
+use crate::setup::{Assignment, Setup};
 use crate::source::Source;
 use crate::{Error, Field};
 
@@ -95,12 +98,31 @@ impl Source {
 
     /// The mechanism at its initial state, as SVG.
     pub fn drawing(&self) -> Result<String, Error> {
+        self.drawing_at(&[], &[])
+    }
+
+    /// The mechanism at its initial state, with other values of some parameters and states.
+    pub fn drawing_at(&self, set: &[Assignment], initial: &[Assignment]) -> Result<String, Error> {
         let Derived {
             mechanism,
             derivation,
             ..
         } = derived(&self.file, &self.text)?;
-        drawing(&mechanism, derivation)
-            .map_err(|findings| report(&mechanism, &self.text, &findings).into())
+        let refused = |findings: Vec<Finding>| report(&mechanism, &self.text, &findings);
+        if set.is_empty() && initial.is_empty() {
+            return drawing(&mechanism, derivation).map_err(|findings| refused(findings).into());
+        }
+        let names = assemble::program(derivation.clone(), &mechanism, &[]).map_err(refused)?;
+        let mut setup = Setup::new(&self.file, &self.text, &names.info)?;
+        setup.set(set)?;
+        setup.start(initial)?;
+        let given = set.iter().chain(initial);
+        let given = given.map(|Assignment { name, value }| format!("{name} = {value}"));
+        let moment = Moment {
+            given: given.collect::<Vec<_>>().join(", "),
+            parameters: setup.parameters,
+            states: setup.initial,
+        };
+        drawing_at(&mechanism, derivation, &moment).map_err(|findings| refused(findings).into())
     }
 }

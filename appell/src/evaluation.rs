@@ -213,6 +213,7 @@ impl Evaluation<'_> {
         let info = self.info;
         let cases = self.values.iter().map(|values| values.to_json(info));
         json!({
+            "schema": "evaluation/1",
             "mechanism": info.name,
             "state_order": names(&info.states),
             "input_order": names(&info.inputs),

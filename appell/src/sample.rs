@@ -35,8 +35,10 @@ force    = "-0.3 [N]*sin(20 [1/m]*x)"
 /// The rig has dry friction and a rail with a grain; its spec has neither. It is the same rig every time.
 pub fn rig(folder: &Path) -> Result<Vec<&'static str>, Error> {
     let rig = Model::from_spec(&format!("{SPEC}{HIDDEN}"))?;
-    let mut written = vec![("my_rig.toml", SPEC.to_owned())];
-    written.push(("recording.toml", DESCRIPTION.to_owned()));
+    let mut written = vec![
+        ("my_rig.toml", SPEC.to_owned()),
+        ("recording.toml", DESCRIPTION.to_owned()),
+    ];
     let runs = [
         ("run1.csv", [3.0, 7.1]),
         ("run2.csv", [2.3, 8.3]),
@@ -45,17 +47,24 @@ pub fn rig(folder: &Path) -> Result<Vec<&'static str>, Error> {
     for (seed, (name, rates)) in (1..).zip(runs) {
         written.push((name, recording(&rig, rates, seed)?));
     }
+    write(folder, &written)?;
+    Ok(written.into_iter().map(|(name, _)| name).collect())
+}
+
+/// Writes files by their names to a folder that has none of them.
+pub fn write<S: AsRef<str>>(folder: &Path, texts: &[(S, String)]) -> Result<(), Error> {
     files::make_folder(folder)?;
-    for (name, _) in &written {
+    for (name, _) in texts {
+        let name = name.as_ref();
         if folder.join(name).exists() {
             let message = format!("`{name}` is there already: choose an empty folder");
             return Err(Error::data(folder.display(), message));
         }
     }
-    for (name, text) in &written {
-        files::write(&folder.join(name), text)?;
+    for (name, text) in texts {
+        files::write(&folder.join(name.as_ref()), text)?;
     }
-    Ok(written.into_iter().map(|(name, _)| name).collect())
+    Ok(())
 }
 
 /// A run under two sines of force, each value held for a row.

@@ -5,8 +5,8 @@ use std::borrow::Cow;
 use appell_runtime::model::ModelInfo;
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::{CoordinateId, InputId, ParameterId, SpeedId};
-use appell_spec::units;
 pub use appell_spec::units::Unit;
+use appell_spec::units::{self, UnitError};
 use appell_spec::{Mechanism, Scope, Snippet, did_you_mean, formula};
 
 use crate::formula::Workbench;
@@ -209,17 +209,22 @@ impl<'a> Setup<'a> {
 
     /// Sets an initial value, which must lie in its range if ranges are watched.
     pub(crate) fn place(&mut self, state: usize, value: f64) -> Result<(), String> {
-        let quantity = &self.info.states[state];
         if self.watch_ranges {
-            inside(
-                &quantity.name,
-                value,
-                quantity.range,
-                self.unit_of_state(state),
-            )?;
+            self.state_within(state, value)?;
         }
         self.initial[state] = value;
         Ok(())
+    }
+
+    /// Whether a value of a state lies in its range.
+    pub(crate) fn state_within(&self, state: usize, value: f64) -> Result<(), String> {
+        let quantity = &self.info.states[state];
+        inside(
+            &quantity.name,
+            value,
+            quantity.range,
+            self.unit_of_state(state),
+        )
     }
 }
 
@@ -228,10 +233,19 @@ pub(crate) fn bracketed(text: &str) -> Cow<'_, str> {
     let (number, rest) = text.split_at(number_length(text));
     let unit = rest.trim();
     let begins = |c: char| c.is_alphabetic() || c == '%';
-    if number.is_empty() || !unit.starts_with(begins) || units::parse(unit).is_err() {
+    if number.is_empty() || !unit.starts_with(begins) || !meant(unit) {
         return Cow::Borrowed(text);
     }
     Cow::Owned(format!("{number}[{unit}]"))
+}
+
+/// Whether a text is a unit, or the word for one: the error then names its symbol.
+fn meant(unit: &str) -> bool {
+    match units::parse(unit) {
+        Ok(_) => true,
+        Err(UnitError::Unknown { at, similar, .. }) => at == (0..unit.len()) && similar.is_some(),
+        Err(_) => false,
+    }
 }
 
 /// Length in bytes of the number with which a text begins. An `e` without digits begins a unit.
@@ -330,9 +344,17 @@ fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<
     if (low..=high).contains(&value) {
         return Ok(());
     }
+    // A number that fits as an angle in degrees was likely meant to be one.
+    let degrees = unit.from_si(value);
+    let fits = unit.text == "rad" && (low..=high).contains(&value.to_radians());
+    let instead = if fits {
+        format!("; `{degrees}deg` is inside them")
+    } else {
+        String::new()
+    };
     let [value, low, high] = [value, low, high].map(|si| unit.from_si(si));
     Err(format!(
-        "`{name}` = {value} {unit} is outside its limits {low} … {high} {unit}",
+        "`{name}` = {value} {unit} is outside its limits {low} … {high} {unit}{instead}",
         unit = unit.text
     ))
 }

@@ -13,6 +13,7 @@ mod identify;
 mod inverse;
 mod list;
 mod lsp;
+mod man;
 mod motion;
 mod new;
 mod recording;
@@ -64,6 +65,7 @@ pub(crate) enum Command {
     Watch(watch::Watch),
     Lsp(lsp::Lsp),
     Completions(completions::Completions),
+    Man(man::Man),
 }
 
 /// Runs a command.
@@ -92,5 +94,6 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Watch(command) => command.run(),
         Command::Lsp(lsp::Lsp {}) => lsp::run(),
         Command::Completions(command) => command.run(),
+        Command::Man(command) => command.run(),
     }
 }

@@ -3,7 +3,9 @@
 mod breaches;
 mod choice;
 mod commands;
+mod completion;
 mod design_report;
+mod destinations;
 mod diagnosed;
 mod engine;
 mod failure;
@@ -17,7 +19,8 @@ mod summary;
 
 use std::process::ExitCode;
 
-use clap::Parser as _;
+use clap::{ArgMatches, CommandFactory as _, FromArgMatches as _};
+use clap_complete::CompleteEnv;
 use mimalloc::MiMalloc;
 
 use commands::Arguments;
@@ -27,11 +30,21 @@ use commands::Arguments;
 static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
-    match commands::run(Arguments::parse().command) {
+    CompleteEnv::with_factory(completion::command).complete();
+    match run(&Arguments::command().get_matches()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure::print(&failure);
             ExitCode::from(failure::status(&failure))
         }
     }
+}
+
+fn run(given: &ArgMatches) -> Result<(), failure::Error> {
+    if let Some((_, command)) = given.subcommand() {
+        destinations::check(command)?;
+    }
+    // What was matched by these arguments is one of them.
+    let arguments = Arguments::from_arg_matches(given).unwrap_or_else(|error| error.exit());
+    commands::run(arguments.command)
 }

@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::destinations::extension;
 use crate::failure::Error;
 use appell::files;
 
@@ -16,10 +17,10 @@ enum Format {
 impl Format {
     /// By the extension; a name without one, and standard output, is SVG.
     fn of(path: &Path) -> Result<Self, Error> {
-        let Some(end) = path.extension() else {
+        let Some(end) = extension(path) else {
             return Ok(Self::Svg);
         };
-        match end.to_string_lossy().to_ascii_lowercase().as_str() {
+        match end.as_str() {
             "svg" => Ok(Self::Svg),
             "png" => Ok(Self::Png),
             "pdf" => Ok(Self::Pdf),

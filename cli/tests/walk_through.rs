@@ -53,3 +53,24 @@ fn every_command_of_the_walk_through_does_what_the_text_says_in_an_empty_folder(
         );
     }
 }
+
+#[test]
+fn a_captured_ride_becomes_a_height_in_an_empty_folder() {
+    let text = std::fs::read_to_string(repository("docs/motion-capture.md")).expect("the document");
+    let folder = Folder::new();
+    let mut told = Vec::new();
+    for line in blocks(&text, "sh")[0].lines() {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        told.push(folder.done(&words[1..]).stdout);
+    }
+    assert_eq!(told.len(), 3, "commands of the section");
+    let truth = (told[0].split("h = ").nth(1)).and_then(|rest| rest.split(' ').next());
+    let truth: f64 = truth.expect("the truth").parse().expect("a number");
+    let row = told[2].lines().find(|line| line.starts_with("  h "));
+    let row: Vec<&str> = row.expect("the height").split_whitespace().collect();
+    let [low, high]: [f64; 2] = [row[3], row[4]].map(|end| end.parse().expect("a number"));
+    assert!((low..=high).contains(&truth), "{}", told[2]);
+    assert!(folder.files().contains(&"torque.svg".to_owned()));
+    let refused = ["sample", "capture", "capture"];
+    folder.fails(3, &refused, &["is there already"]);
+}

@@ -2,9 +2,10 @@
 //!
 //! The files are the steps: [`placement`] writes positions of points and frames, [`scene`]
 //! evaluates them, [`solids`] gives bodies a shape, [`view`] chooses the projection, [`shapes`]
-//! makes strokes in space, [`sheet`] lays them out. [`home`] locates names. [`mod@film`] follows a
+//! makes strokes in space and [`arcs`] those of angles, [`sheet`] lays them out. [`home`] locates names. [`mod@film`] follows a
 //! motion with the same positions and shapes.
 
+mod arcs;
 pub mod film;
 mod home;
 pub mod link;
@@ -21,7 +22,16 @@ use appell_spec::mechanism::Mechanism;
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::finding::Outcome;
 use scene::Scene;
-use view::View;
+
+/// Values in place of those of the spec, in SI.
+pub struct Moment {
+    /// Parameters.
+    pub parameters: Vec<f64>,
+    /// The state.
+    pub states: Vec<f64>,
+    /// What was given, for the caption.
+    pub given: String,
+}
 
 /// The drawing of a mechanism, an SVG document. Points without a finite position are omitted and
 /// listed in the caption.
@@ -29,10 +39,19 @@ pub fn drawing(mechanism: &Mechanism, derivation: Derivation) -> Outcome<String>
     marked(mechanism, derivation, &[])
 }
 
+/// The drawing with other values than those of the spec.
+pub fn drawing_at(
+    mechanism: &Mechanism,
+    derivation: Derivation,
+    moment: &Moment,
+) -> Outcome<String> {
+    let scene = Scene::initial(mechanism, derivation, Some(moment))?;
+    Ok(sheet::svg(mechanism, &scene, &[], &moment.given))
+}
+
 /// The drawing with rings around the locations of some names: coordinates, bodies, inputs,
 /// parameters, constraints, points. A name without a location has no ring.
 pub fn marked(mechanism: &Mechanism, derivation: Derivation, names: &[&str]) -> Outcome<String> {
-    let scene = Scene::initial(mechanism, derivation)?;
-    let view = View::of(mechanism, scene.flat_across);
-    Ok(sheet::svg(mechanism, &scene, &view, names))
+    let scene = Scene::initial(mechanism, derivation, None)?;
+    Ok(sheet::svg(mechanism, &scene, names, ""))
 }

@@ -27,6 +27,7 @@ pub fn design(info: &ModelInfo, design: &Design) -> Value {
         })
         .collect();
     json!({
+        "schema": "control/1",
         "mechanism": info.name,
         "parameters": named(&info.parameters, &design.p),
         "state": named(&info.states, &design.x),
@@ -52,7 +53,7 @@ pub fn schedule(info: &ModelInfo, schedule: &Schedule) -> Value {
     let designs = schedule.designs.iter();
     let designs = designs
         .map(|(value, design)| json!({ "value": value, "design": self::design(info, design) }));
-    json!({ "over": schedule.over.name, "designs": designs.collect::<Vec<_>>() })
+    json!({ "schema": "control-schedule/1", "over": schedule.over.name, "designs": designs.collect::<Vec<_>>() })
 }
 
 fn reach_json(controllability: &Controllability) -> Value {

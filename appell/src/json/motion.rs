@@ -31,6 +31,7 @@ pub fn motion(trajectory: &Trajectory, failure: Option<&str>) -> Value {
         })
         .collect();
     json!({
+        "schema": "simulated/1",
         "mechanism": info.name,
         "parameters": named(&info.parameters, trajectory.parameters()),
         "t_end_s": trajectory.times().last(),

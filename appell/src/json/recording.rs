@@ -40,6 +40,7 @@ pub fn recording(set: &DataSet) -> Value {
         })
     });
     json!({
+        "schema": "recording/1",
         "mechanism": set.mechanism.name,
         "description": set.description,
         "runs": runs.collect::<Vec<_>>(),

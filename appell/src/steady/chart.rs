@@ -23,6 +23,7 @@ pub fn json(asked: &Resolved<'_>, chart: &Chart) -> Value {
     let place = |cells: &Vec<Cell>| json!(cells.iter().map(motion).collect::<Vec<_>>());
     let edge = |edge: &Edge| json!({ "requirement": edge.requirement, "points": edge.points });
     json!({
+        "schema": "stability-chart/1",
         "mechanism": info.name,
         "axes": chart.axes.iter().map(axis).collect::<Vec<_>>(),
         "unknowns": unknowns.collect::<Vec<_>>(),

@@ -21,6 +21,7 @@ pub fn json(asked: &Resolved<'_>, answer: &Answer) -> Value {
     };
     let structure = asked.problem.structure();
     let mut all = json!({
+        "schema": "steady/1",
         "mechanism": info.name,
         "essential": names(&structure.essential),
         "ignorable": names(&structure.ignorable),

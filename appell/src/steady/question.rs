@@ -5,7 +5,7 @@ use std::str::FromStr;
 use appell_analysis::{Point, Requirement, SteadyProblem, Term};
 use appell_runtime::model::Model;
 
-use super::{Resolved, term, value_of};
+use super::{Resolved, term, value_in_range, value_of};
 use crate::setup::{Assignment, Setup, unique};
 use crate::{Error, Field};
 
@@ -144,7 +144,7 @@ impl Question {
         unique(&self.fix, Field::Fix)?;
         for fixed in &self.fix {
             let term = term(setup, Field::Fix, &fixed.name)?;
-            problem.fix(term, value_of(setup, term, Field::Fix, fixed)?)?;
+            problem.fix(term, value_in_range(setup, term, Field::Fix, fixed)?)?;
         }
         let along = self.along.as_ref();
         let along = along.map(|span| span.resolve(setup, Field::Along));

@@ -16,6 +16,9 @@ use crate::output;
 /// within their tolerances. Effects that a spec cannot express, such as an actuator delay or a sensor
 /// bias, are listed with the place where they belong.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell apply rig/my_rig.toml --report report.json --out better.toml")]
 pub(crate) struct Apply {
     /// Name of a shipped mechanism or path of a spec, as diagnosed
     model: String,
@@ -27,7 +30,7 @@ pub(crate) struct Apply {
     hypothesis: Option<usize>,
     /// Output file, `-` is standard output [default: name of the mechanism with `_improved.toml`; an
     /// existing file is not overwritten]
-    #[arg(long, short = 'o', value_name = "FILE.toml")]
+    #[arg(long, short, value_name = "FILE.toml")]
     out: Option<PathBuf>,
 }
 

@@ -16,6 +16,10 @@ use crate::{output, progress};
 /// reported at once, each with its line and a remedy. An audit of the equations warns of what is valid
 /// but probably a mistake, and notes what is worth knowing.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell check my_pendulum.toml
+  appell check unicycle --thorough")]
 pub(crate) struct Check {
     /// Names of shipped mechanisms or paths of specs
     #[arg(required = true, value_name = "MODEL")]
@@ -56,7 +60,7 @@ impl Check {
             }
         }
         if let Some(path) = &self.json {
-            files::write_json(path, &json!({ "specs": found }))?;
+            files::write_json(path, &json!({ "schema": "check/1", "specs": found }))?;
         }
         if failed.is_empty() {
             Ok(())

@@ -1,15 +1,19 @@
 //! `appell completions`
 
-use clap::CommandFactory as _;
+use clap_complete::env::Shells;
 
-use super::Arguments;
 use crate::failure::Error;
-use crate::output;
+use crate::{completion, output};
 
-/// Writes shell completions to standard output.
+/// Writes shell completions to standard output: commands, flags, models.
 ///
-/// For bash: `appell completions bash > ~/.local/share/bash-completion/completions/appell`
+/// The shell asks `appell` while you type: write the lines anew after an update.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell completions bash > ~/.local/share/bash-completion/completions/appell
+  appell completions zsh > ~/.zfunc/_appell
+  appell completions fish > ~/.config/fish/completions/appell.fish")]
 pub(crate) struct Completions {
     /// The shell
     shell: clap_complete::Shell,
@@ -17,8 +21,23 @@ pub(crate) struct Completions {
 
 impl Completions {
     pub(super) fn run(&self) -> Result<(), Error> {
+        let name = self.shell.to_string();
+        let shells = Shells::builtins();
         let mut script = Vec::new();
-        clap_complete::generate(self.shell, &mut Arguments::command(), "appell", &mut script);
-        output::print(&String::from_utf8_lossy(&script))
+        let written = shells.completer(&name).map(|shell| {
+            shell.write_registration(
+                completion::VARIABLE,
+                "appell",
+                "appell",
+                "appell",
+                &mut script,
+            )
+        });
+        match written {
+            Some(Ok(())) => output::print(&String::from_utf8_lossy(&script)),
+            _ => Err(Error::Usage(format!(
+                "there are no completions for `{name}`"
+            ))),
+        }
     }
 }

@@ -16,6 +16,10 @@ use crate::{design_report, engine, output, picture, progress};
 /// so that it is steady. Without `--poles` or `--lqr` no law is designed. Gains, poles and weights are
 /// in SI.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell control cart_pole --poles -4
+  appell control unicycle --at \"omega_2=1[m/s]/R\" --outputs omega_1,theta,sigma,r --lqr Q=1,R=0.1 --write law.toml")]
 pub(crate) struct Control {
     /// Name of a shipped mechanism or path of a spec
     model: String,

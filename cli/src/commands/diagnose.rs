@@ -25,6 +25,9 @@ const REPORTS: &str = "gap-reports";
 /// Every effect of the library is tried at every admissible site of the mechanism. Test runs are used
 /// only in the final step. The exit status is 0 whatever the verdict.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell diagnose --data rig --json report.json --html gap.html")]
 pub(crate) struct Diagnose {
     /// Name of a shipped mechanism or path of a spec, instead of the one that the data set names
     model: Option<String>,

@@ -4,17 +4,28 @@ use std::path::PathBuf;
 
 use crate::failure::Error;
 use crate::{picture, progress};
+use appell::setup::Assignment;
 use appell::source::Source;
 
-/// Draws the mechanism at its initial state, as SVG.
+/// Draws the mechanism at its initial state, angles marked, as SVG, PNG or PDF.
 ///
 /// Mistakes in a spec, such as the sign of an angle, are often visible at once.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell draw unicycle
+  appell draw my_pendulum.toml --initial theta=60deg --out tilted.svg")]
 pub(crate) struct Draw {
     /// Name of a shipped mechanism or path of a spec
     model: String,
+    /// A parameter, such as R=0.3 or R=30cm
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    set: Vec<Assignment>,
+    /// An initial value; the others are those of the spec
+    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    initial: Vec<Assignment>,
     /// Output file, `-` is standard output [default: name of the mechanism with `.svg`]
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 
@@ -22,7 +33,7 @@ impl Draw {
     pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let spinner = progress::spinner("deriving the equations of motion");
-        let svg = source.drawing();
+        let svg = source.drawing_at(&self.set, &self.initial);
         spinner.finish_and_clear();
         let svg = svg?;
         let out = match &self.out {

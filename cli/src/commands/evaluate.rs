@@ -15,6 +15,10 @@ use appell::files;
 /// case reads {"state": {"theta": 0.1, …}, "inputs": {…}, "parameters": {…}, "t": 0}; only the state
 /// must be complete.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  echo '{\"cases\": [{\"state\": {\"v\": 0, \"omega\": 1, \"x\": 0.1, \"theta\": 0.2}}]}' > cases.json
+  appell evaluate my_pendulum.toml --cases cases.json --json values.json")]
 pub(crate) struct Evaluate {
     /// Name of a shipped mechanism or path of a spec
     model: String,

@@ -16,6 +16,9 @@ use appell_report::identification;
 /// tolerance in the data set are free, with the tolerance as prior; `--free` selects others. Levels of
 /// measurement and process noise are estimated too, so that model errors do not narrow the intervals.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell identify rig/my_rig.toml --data rig --plot predicted.svg")]
 pub(crate) struct Identify {
     /// Name of a shipped mechanism or path of a spec
     model: String,

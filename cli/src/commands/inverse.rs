@@ -16,6 +16,10 @@ use appell::files;
 /// the inputs were. They are weighted by the noise of the recordings, through splines and exact
 /// derivatives. All coordinates that enter the equations must be measured; inputs need not be.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell motion capture/skeleton.toml capture/ride_1.csv capture/ride_2.csv --out rides
+  appell inverse euc_3dof --data rides --free h --bias phi --plot torque.svg")]
 pub(crate) struct Inverse {
     /// Name of a shipped mechanism or path of a spec
     model: String,

@@ -12,6 +12,10 @@ use appell_report::text::table;
 
 /// Lists the shipped mechanisms.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell list
+  appell list --json mechanisms.json")]
 pub(crate) struct List {
     /// Write the list as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
@@ -22,7 +26,7 @@ impl List {
     pub(super) fn run(&self) -> Result<(), Error> {
         if let Some(path) = &self.json {
             let entries = ALL.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
-            files::write_json(path, &json!({ "mechanisms": entries }))?;
+            files::write_json(path, &json!({ "schema": "list/1", "mechanisms": entries }))?;
             if files::is_stdout(path) {
                 return Ok(());
             }

@@ -7,6 +7,9 @@ use crate::failure::Error;
 /// The editor starts it and speaks the language server protocol over standard input and output.
 /// `docs/editors.md` tells how VS Code, Neovim and Helix are set up.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell lsp")]
 pub(crate) struct Lsp {}
 
 pub(super) fn run() -> Result<(), Error> {

@@ -14,6 +14,9 @@ use crate::output;
 /// coordinates of the model. The data set contains these coordinates, for `appell inverse`, `identify`
 /// and `recording`, and all intermediate quantities.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell motion capture/skeleton.toml capture/ride_1.csv capture/ride_2.csv --out rides")]
 pub(crate) struct Motion {
     /// The skeleton file
     skeleton: PathBuf,
@@ -21,7 +24,7 @@ pub(crate) struct Motion {
     #[arg(required = true, value_name = "CSV")]
     captures: Vec<PathBuf>,
     /// Output folder of the data set
-    #[arg(long, value_name = "DIR", default_value = "recording")]
+    #[arg(long, short, value_name = "DIR", default_value = "recording")]
     out: PathBuf,
     /// Write a summary as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]

@@ -9,6 +9,9 @@ use crate::output;
 
 /// Writes a commented spec to start from.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell new my_pendulum")]
 pub(crate) struct New {
     /// Name of the mechanism: a letter, then letters, digits and `_`
     name: String,

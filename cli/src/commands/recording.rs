@@ -12,6 +12,9 @@ use appell_report::recording::text;
 /// A data set is a folder with a `recording.toml`. CSV files alone need `--model`, and columns with
 /// the names and units of the spec.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell recording rig")]
 pub(crate) struct Recording {
     /// Folder of a data set, or CSV files
     #[arg(required = true)]

@@ -17,6 +17,10 @@ use appell_papers::book::{self, Claim, Section, Tally};
 /// written too, as data sets for `appell diagnose`. The exit status is 4 if a comparison does not give
 /// its expected result.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell reproduce steering
+  appell reproduce euc --out euc")]
 pub(crate) struct Reproduce {
     /// The paper
     #[arg(value_enum, default_value_t = Paper::Steering)]
@@ -25,7 +29,7 @@ pub(crate) struct Reproduce {
     #[arg(long, value_name = "COUNT", default_value_t = 240, value_parser = clap::value_parser!(u16).range(20..=1000))]
     grid: u16,
     /// Output folder
-    #[arg(long, value_name = "DIR", default_value = "reproduced")]
+    #[arg(long, short, value_name = "DIR", default_value = "reproduced")]
     out: PathBuf,
     /// Write all statements with their comparison as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
@@ -63,6 +67,7 @@ impl Paper {
 /// The book as JSON.
 #[derive(Serialize)]
 struct Book<'a> {
+    schema: &'static str,
     paper: &'a str,
     /// Statements of the paper.
     statements: usize,
@@ -99,6 +104,7 @@ impl Reproduce {
         let count = |is: &dyn Fn(&Claim) -> bool| claims.iter().filter(|claim| is(claim)).count();
         let tally = Tally::of(&sections);
         let book = Book {
+            schema: "reproduced/1",
             paper: title,
             statements: tally.statements(),
             tally,

@@ -7,6 +7,10 @@ use crate::output;
 
 /// Writes a folder to try the other commands with.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell sample rig rig
+  appell sample capture capture")]
 pub(crate) struct Sample {
     #[command(subcommand)]
     what: What,
@@ -20,16 +24,38 @@ enum What {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,
     },
+    /// Motion capture of a simulated rider on an electric unicycle: two rides and the skeleton file
+    Capture {
+        /// The folder, which is made if it is not there; nothing is overwritten
+        folder: PathBuf,
+    },
 }
 
 impl Sample {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let What::Rig { folder } = &self.what;
-        let files = appell::sample::rig(folder)?;
-        let shown = folder.display();
-        output::print(&format!(
-            "wrote {} to {shown}; next:\n  appell recording {shown}\n  appell diagnose --data {shown} --html gap.html\n",
-            files.join(", ")
-        ))
+        let told = match &self.what {
+            What::Rig { folder } => {
+                let files = appell::sample::rig(folder)?.join(", ");
+                let at = folder.display();
+                format!(
+                    "wrote {files} to {at}; next:\n  appell recording {at}\n  appell diagnose --data {at} --html gap.html\n"
+                )
+            }
+            What::Capture { folder } => {
+                let written = appell_papers::book::euc::sample::capture(folder)?;
+                let at = folder.display();
+                let rides: Vec<String> = (written.files[1..].iter())
+                    .map(|ride| format!("{at}/{ride}"))
+                    .collect();
+                format!(
+                    "wrote {} to {at}; next:\n  appell motion {at}/skeleton.toml {} --out rides\n  \
+                     appell inverse euc_3dof --data rides --free h --bias phi\nthe truth: h = {:.3} m\n",
+                    written.files.join(", "),
+                    rides.join(" "),
+                    written.height,
+                )
+            }
+        };
+        output::print(&told)
     }
 }

@@ -10,9 +10,12 @@ use appell::files;
 /// Name the file in the first line of a spec, `#:schema ./appell.schema.json`, and an editor with
 /// Taplo (in VS Code the extension Even Better TOML) completes keys and marks errors.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell schema --out appell.schema.json")]
 pub(crate) struct Schema {
     /// Write to a file instead of standard output
-    #[arg(long, value_name = "FILE")]
+    #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
 }
 

@@ -23,6 +23,11 @@ use crate::{output, picture, progress, summary};
 /// checked. Expressions for inputs may contain `t`, states and parameters; a plain coefficient of a
 /// state, as in `-3*x - v`, is a gain in SI. Inputs and feedback are added.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell simulate my_pendulum.toml --initial theta=60deg --plot motion.svg
+  appell simulate my_pendulum.toml --set l=30cm --input \"F=5*sin(2*t)\" --csv motion.csv
+  appell simulate rolling_wheel --initial theta=20deg --html wheel.html")]
 pub(crate) struct Simulate {
     /// Name of a shipped mechanism or path of a spec
     model: String,

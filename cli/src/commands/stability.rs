@@ -20,6 +20,10 @@ use appell_report::text::table;
 /// motions are counted and ignored in the verdict. With `--along` critical values are exact to
 /// rounding: they are zeros of smooth functions of the characteristic polynomial.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell stability bicycle --along speed=0.5..10 --plot eigenvalues.svg
+  appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=0.5..8 --grid 40x40 --plot chart.svg")]
 pub(crate) struct StabilityCommand {
     #[command(flatten)]
     question: Question,

@@ -18,6 +18,10 @@ use appell::steady::{Answer, Resolved, export};
 /// `--along` the motions are continued through folds and crossings. Values are in the unit of the
 /// spec, or carry their own, as in `theta=10deg`.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell steady unicycle --fix theta=10deg --fix psi_dot=2
+  appell steady bicycle --along speed=0.5..10 --csv steady.csv")]
 pub(crate) struct Steady {
     #[command(flatten)]
     question: Question,

@@ -12,6 +12,9 @@ use crate::output;
 /// The page is served on the loopback address alone, to whoever knows the secret in its address, until
 /// Ctrl-C. Sliders set parameters, the initial state and inputs; the spec is read and never written.
 #[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell watch my_pendulum.toml")]
 pub(crate) struct Watch {
     /// Path of a spec
     spec: PathBuf,

@@ -77,6 +77,10 @@ pub(super) fn tokens<'a>(source: &Source<'a>) -> Result<Vec<Located<'a>>, Diagno
                 at += length + 1;
                 Token::Unit(&text[start + 1..at - 1])
             }
+            '°' => {
+                at += c.len_utf8();
+                Token::Unit(&text[start..at])
+            }
             '<' | '>' => {
                 at += 1;
                 let or_equal = text[at..].starts_with('=');

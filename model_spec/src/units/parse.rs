@@ -298,6 +298,8 @@ fn lookup(symbol: &str) -> Option<Product> {
 
 /// A symbol, whole or with a prefix: its unit, and the power of ten before it.
 fn entry(symbol: &str) -> Option<(&'static UnitEntry, i32)> {
+    // The sign of the degree is read, and written as `deg`.
+    let symbol = if symbol == "°" { "deg" } else { symbol };
     let whole = UNITS.iter().find(|unit| unit.symbol == symbol);
     if let Some(unit) = whole {
         return Some((unit, 0));
@@ -329,7 +331,8 @@ fn similar(symbol: &str) -> Option<String> {
         .map(|u| u.symbol.to_owned());
     let common = match symbol {
         "sec" | "S" => Some("s"),
-        "degrees" | "degree" | "°" => Some("deg"),
+        "meter" | "meters" => Some("m"),
+        "degrees" | "degree" => Some("deg"),
         "radians" => Some("rad"),
         "Kg" | "KG" | "kilogram" => Some("kg"),
         "degC" | "celsius" => Some("K"),
@@ -434,7 +437,7 @@ mod tests {
             ("sec", "s"),
             ("metre", "m"),
             ("dge", "deg"),
-            ("°", "deg"),
+            ("degrees", "deg"),
         ] {
             let Err(UnitError::Unknown { similar, .. }) = parse(text) else {
                 panic!("{text} is a unit");

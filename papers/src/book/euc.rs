@@ -7,6 +7,7 @@
 //! | `rider.rs` | the spatial unicycle with a rider, four manoeuvres |
 //! | `capture.rs`, `random.rs` | captured rigid bodies; noise |
 //! | `recorded.rs` | the rides as data sets, for `appell diagnose` |
+//! | `sample.rs` | two of them to try commands with |
 //! | `laboratory.rs` | all rides, captured and smoothed |
 //! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
 //! | `figure_3.rs`, `figure_6.rs`, `figure_8.rs` | figures 3 and 4, 6 and 7, 8 |
@@ -22,6 +23,7 @@ mod laboratory;
 mod random;
 mod recorded;
 mod rider;
+pub mod sample;
 mod tables;
 mod torque;
 

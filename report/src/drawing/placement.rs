@@ -21,6 +21,8 @@ pub(super) struct Placement {
     points: List<PointId, Vec3>,
     /// By frame: its three axes.
     frames: List<FrameId, [Vec3; 3]>,
+    /// By frame: the angles of its turns.
+    turns: List<FrameId, Vec<Expr>>,
     /// By body: mass and, of rigid bodies, inertia.
     bodies: List<BodyId, (Expr, Option<Tensor>)>,
 }
@@ -60,6 +62,15 @@ impl Placement {
             symbols,
             rates: &symbols.rates,
         };
+        let mut turns = List::default();
+        for (id, frame) in mechanism.frames.entries() {
+            let angles = frame
+                .turns
+                .iter()
+                .map(|turn| lowering.lower(graph, &turn.angle));
+            let angles = angles.collect::<Result<Vec<_>, _>>();
+            turns.push(angles.map_err(|_| vec![division_by_zero(Item::Frame(id))])?);
+        }
         let mut bodies = List::default();
         for (index, body) in mechanism.bodies.entries() {
             let divides = |_| vec![division_by_zero(Item::Body(index))];
@@ -79,6 +90,7 @@ impl Placement {
         Ok(Self {
             points,
             frames,
+            turns,
             bodies,
         })
     }
@@ -105,6 +117,12 @@ impl Placement {
         let axes = self.frames.as_flattened().as_flattened();
         let numbers = evaluate(graph, values, axes);
         numbers.chunks_exact(9).map(matrix).collect()
+    }
+
+    /// Values by frame: the angles of its turns.
+    pub(super) fn turns_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Vec<f64>> {
+        let angles = self.turns.iter();
+        angles.map(|turns| evaluate(graph, values, turns)).collect()
     }
 
     /// Values by body: mass and inertia, with these axes of frames.

@@ -3,6 +3,7 @@
 use appell_runtime::positions::{Moving, Positions};
 use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
 
+use super::Moment;
 use super::placement::{Inertia, Placement};
 use super::space::{Matrix, Vector};
 use appell_codegen::interpreted::InterpretedModel;
@@ -19,6 +20,8 @@ pub(super) struct Scene {
     pub(super) points: List<PointId, Option<Vector>>,
     /// By frame: its three axes; `None` where an angle is not finite.
     pub(super) frames: List<FrameId, Option<Matrix>>,
+    /// By frame: the angles of its turns.
+    pub(super) turns: List<FrameId, Vec<f64>>,
     /// By body: mass and, of rigid bodies, inertia with the axes of its components.
     pub(super) bodies: List<BodyId, (f64, Option<Inertia>)>,
     /// The axis of the ground normal to the plane of motion, if the motion is planar.
@@ -28,8 +31,12 @@ pub(super) struct Scene {
 }
 
 impl Scene {
-    /// At the start of a simulation.
-    pub(super) fn initial(mechanism: &Mechanism, mut derivation: Derivation) -> Outcome<Self> {
+    /// At the start of a simulation, with the values of the spec or others.
+    pub(super) fn initial(
+        mechanism: &Mechanism,
+        mut derivation: Derivation,
+        moment: Option<&Moment>,
+    ) -> Outcome<Self> {
         let symbols = derivation.symbols.clone();
         let placement = {
             let (algebra, kinematics) = (&mut derivation.algebra, &derivation.kinematics);
@@ -41,6 +48,14 @@ impl Scene {
         let graph = program.graph.clone();
         let state = InitialState::new(&graph, mechanism, &symbols);
         let mut values = state.values().to_vec();
+        if let Some(moment) = moment {
+            let arguments = &program.arguments;
+            let states = arguments.states.iter().zip(&moment.states);
+            for (symbol, value) in states.chain(arguments.parameters.iter().zip(&moment.parameters))
+            {
+                values[index(*symbol)] = *value;
+            }
+        }
         let consistent = close(program, &mut values);
         let scene = Self::at(&placement, &graph, &values, flat_across);
         Ok(Self {
@@ -59,6 +74,7 @@ impl Scene {
         let frames = placement.frames_at(graph, values);
         Self {
             points: placement.points_at(graph, values),
+            turns: placement.turns_at(graph, values),
             bodies: placement.bodies_at(graph, values, &frames),
             frames,
             flat_across,

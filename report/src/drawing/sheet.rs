@@ -6,6 +6,7 @@ use crate::figure::STYLE;
 use crate::svg::{self, Document, Element};
 use appell_spec::mechanism::Mechanism;
 
+use super::arcs::{self, Arc};
 use super::home::home;
 use super::scene::Scene;
 use super::shapes::{self, Axes, Stroke};
@@ -29,6 +30,8 @@ const CLOSE: f64 = 7.0;
 const SMALLEST: f64 = 1e-100;
 /// Colours of the three axes.
 const AXIS_COLOURS: [&str; 3] = ["c1", "c2", "c0"];
+/// Room of the name of an angle.
+const NAME_SIZE: [f64; 2] = [70.0, 13.0];
 /// Radius of a marking ring.
 const RING: f64 = 17.0;
 /// Length of the arrow of the weight.
@@ -63,10 +66,11 @@ path{fill:none;stroke-linecap:round;stroke-linejoin:round}.axis{stroke-width:2}
 .link{stroke:#555;stroke-width:3}.way{stroke:#999;stroke-dasharray:2 5}.spring{stroke:#cc79a7;stroke-width:2}
 .wheel{stroke:#222;stroke-width:2;fill:#56b4e9;fill-opacity:.16}.body{stroke:#999;fill:#e69f00;fill-opacity:.14}
 .point{fill:#fff;stroke:#222;stroke-width:1.4}.mass{fill:#222}.arrow{stroke:#222;stroke-width:2}
+.angle{stroke:#cc79a7;stroke-width:1.6}.angle-name{fill:#a0457a}.from{stroke:#999;stroke-width:1;stroke-dasharray:3 3}
 .halo{paint-order:stroke;stroke:#fff;stroke-width:3px}.name{font-weight:600}.small{font-size:11px}.soft{fill:#666}
 @media(prefers-color-scheme:dark){
 .link{stroke:#b5b5b5}.wheel,.point,.arrow{stroke:#e6e6e6}.point{fill:#16181c}.mass{fill:#e6e6e6}
-.halo{stroke:#16181c}.soft{fill:#a5a5a5}
+.angle-name{fill:#e29cc4}.halo{stroke:#16181c}.soft{fill:#a5a5a5}
 }
 ";
 
@@ -81,7 +85,8 @@ struct Sheet<'a> {
 }
 
 /// The drawing of a scene.
-pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&str]) -> String {
+pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, marked: &[&str], given: &str) -> String {
+    let view = &View::of(mechanism, scene.flat_across);
     let mut strokes = shapes::links(mechanism, scene);
     let points = || scene.points.iter().flatten().copied();
     let frame_size = size(points());
@@ -131,13 +136,17 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
         [EDGE, CAPTION_LINE],
         "small soft",
         "start",
-        &caption(mechanism, scene),
+        &caption(mechanism, scene, given),
     );
     for stroke in ground.iter().chain(&strokes) {
         sheet.stroke(stroke);
     }
     for axes in &axes {
         sheet.axes(axes, extent);
+    }
+    let mut names = Vec::new();
+    for arc in arcs::arcs(mechanism, scene, extent) {
+        sheet.arc(&arc, &mut names);
     }
     sheet.rings(mechanism, scene, marked);
     sheet.points(mechanism, scene);
@@ -147,8 +156,11 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, view: &View, marked: &[&
 }
 
 /// Notes on the drawing.
-fn caption(mechanism: &Mechanism, scene: &Scene) -> String {
+fn caption(mechanism: &Mechanism, scene: &Scene, given: &str) -> String {
     let mut text = "at the initial state".to_owned();
+    if !given.is_empty() {
+        let _ = write!(text, ", with {given}");
+    }
     if !scene.consistent {
         text.push_str("; it does not satisfy the position constraints");
     }
@@ -243,6 +255,34 @@ impl Sheet<'_> {
             let beyond = if y > from[1] { 13.0 } else { -5.0 };
             self.text([x, y + beyond], "small soft halo", "middle", &axes.names);
         }
+    }
+
+    /// A marked angle. Its name stands where it begins, on the side away from the arc, below a name that
+    /// is there already.
+    fn arc(&mut self, arc: &Arc, names: &mut Vec<[f64; 2]>) {
+        let corners: Vec<[f64; 2]> = arc.corners.iter().map(|&c| self.place(c)).collect();
+        let from = arc.from.map(|end| self.place(end));
+        self.path("from", &from, "");
+        self.path("angle", &corners, &arc.name);
+        let [x, mut y] = from[1];
+        let last = corners.last().map_or(x, |[x, _]| *x);
+        let (anchor, side) = if last > x {
+            ("end", -5.0)
+        } else {
+            ("start", 5.0)
+        };
+        while names.iter().any(|[other, line]| {
+            (other - x).abs() < NAME_SIZE[0] && (line - y).abs() < NAME_SIZE[1]
+        }) {
+            y += NAME_SIZE[1];
+        }
+        names.push([x, y]);
+        self.text(
+            [x + side, y + 4.0],
+            "small halo angle-name",
+            anchor,
+            &arc.name,
+        );
     }
 
     /// Points and their names, with those of the bodies whose centres they are.

@@ -11,6 +11,7 @@ mod bad_input;
 mod bad_recordings;
 mod commands;
 mod control;
+mod definitions;
 mod destinations;
 mod diagnose;
 mod evaluate;

@@ -135,6 +135,7 @@ fn in_expression(document: &Document, string: &Part, before: &str) -> Vec<Comple
         ("pseudo_velocities", "pseudo-velocity"),
         ("inputs", "input"),
         ("signals", "signal"),
+        ("definitions", "definition"),
     ] {
         let items = defined(document, section, word);
         // All of a kind are allowed, or none.

@@ -56,6 +56,8 @@ pub struct Mechanism {
     pub loads: List<LoadId, Load>,
     /// Named quantities of interest.
     pub outputs: List<OutputId, Output>,
+    /// Named expressions; what uses one holds its expression.
+    pub definitions: Vec<Definition>,
 }
 
 /// What every named quantity carries.
@@ -95,6 +97,15 @@ pub struct Coordinate {
     pub range: Option<[f64; 2]>,
     /// Initial value in SI.
     pub initial: f64,
+}
+
+/// A named expression.
+#[derive(Debug, Clone)]
+pub struct Definition {
+    /// Name, sentence and unit.
+    pub label: Label,
+    /// What it stands for.
+    pub value: Expr,
 }
 
 /// An input.

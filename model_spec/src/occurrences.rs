@@ -9,7 +9,7 @@ use crate::outline::{Outline, unquoted};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 #[expect(missing_docs, reason = "each variant is the kind of its name")]
 pub enum Namespace {
-    /// Parameters, coordinates, inputs, signals, pseudo-velocities and outputs.
+    /// Parameters, coordinates, inputs, signals, definitions, pseudo-velocities and outputs.
     Quantity,
     Frame,
     Point,
@@ -50,8 +50,8 @@ impl Namespace {
     /// What the items of a section are called by.
     pub fn of_section(section: &str) -> Option<Self> {
         Some(match section {
-            "parameters" | "coordinates" | "inputs" | "signals" | "pseudo_velocities"
-            | "outputs" => Self::Quantity,
+            "parameters" | "coordinates" | "inputs" | "signals" | "definitions"
+            | "pseudo_velocities" | "outputs" => Self::Quantity,
             "frames" => Self::Frame,
             "points" => Self::Point,
             "bodies" => Self::Body,

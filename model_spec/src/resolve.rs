@@ -3,6 +3,7 @@
 mod arithmetic;
 mod bodies;
 mod constraints;
+mod definitions;
 mod degrees;
 mod dimensions;
 mod expression;
@@ -41,6 +42,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     let signals = resolver.signals();
     resolver.announce("pseudo_velocities");
     resolver.announce("outputs");
+    resolver.announce_definitions();
     resolver.derivative_names(&signals);
     let pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     let frames = resolver.frames();
@@ -49,6 +51,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     let constraints = resolver.constraints(&bodies);
     let loads = resolver.loads(&bodies);
     let outputs = resolver.outputs();
+    let definitions = resolver.definitions(&coordinates);
     let mut mechanism = Mechanism {
         name,
         title,
@@ -66,6 +69,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
         pseudo_velocities: pseudo_velocities.into(),
         loads: loads.into(),
         outputs: outputs.into(),
+        definitions,
     };
     resolver.initial(&mut mechanism);
     resolver.physical(&mechanism);
@@ -116,6 +120,7 @@ impl Resolver<'_> {
         let coordinates = mechanism.coordinates.iter().map(|c: &Coordinate| &c.label);
         let inputs = mechanism.inputs.iter().map(|i| &i.label);
         let signals = mechanism.signals.iter().map(|s| &s.label);
+        let definitions = mechanism.definitions.iter().map(|d| &d.label);
         for (what, used, labels) in [
             (
                 "parameter",
@@ -125,6 +130,7 @@ impl Resolver<'_> {
             ("coordinate", &self.used.coordinates, coordinates.collect()),
             ("input", &self.used.inputs, inputs.collect()),
             ("signal", &self.used.signals, signals.collect()),
+            ("definition", &self.reading.used, definitions.collect()),
         ] {
             for (id, label) in labels.into_iter().enumerate() {
                 if !used.contains(&id) {

@@ -85,7 +85,7 @@ impl Check {
             }
         }
         if !checked.warnings().diagnostics().is_empty() {
-            tell(&shown(checked.warnings()));
+            tell(&(shown(checked.warnings()).trim_end().to_owned() + "\n"));
         }
         let mut entry = appell::json::check(&checked);
         let Some(thorough) = thorough else {

@@ -123,6 +123,9 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     spinner.finish_and_clear();
     let report = report?;
     let about = "what it lacks, and how far that closes the gap";
-    files::write(&written.place("gap.html", about), &appell_report::gap::page(&set, &report))?;
+    files::write(
+        &written.place("gap.html", about),
+        &appell_report::gap::page(&set, &report),
+    )?;
     Ok(diagnosed::text(&report, None))
 }

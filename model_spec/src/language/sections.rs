@@ -184,6 +184,19 @@ pub static SECTIONS: &[Section] = &[
         ),
     },
     Section {
+        name: "definitions",
+        about: "Named expressions, for use in others.",
+        required: false,
+        shape: Shape::Items(
+            &[
+                key("value", Form::Expression, Need::Always, "Value."),
+                UNIT_CHECKED,
+                ABOUT,
+            ],
+            Some("value"),
+        ),
+    },
+    Section {
         name: "frames",
         about: "Frames, each rotated from its parent.",
         required: false,

@@ -19,6 +19,16 @@ use super::resolver::Resolver;
 impl Resolver<'_> {
     /// Resolves and checks one expression.
     pub(super) fn elaborate(&mut self, ast: &ExprAst, place: &Place) -> Typed {
+        let typed = if self.enter(&ast.span) {
+            self.elaborated(ast, place)
+        } else {
+            Typed::poisoned(ast.span.clone())
+        };
+        self.leave();
+        typed
+    }
+
+    fn elaborated(&mut self, ast: &ExprAst, place: &Place) -> Typed {
         let span = ast.span.clone();
         match &ast.kind {
             ExprAstKind::Broken => Typed::poisoned(span),
@@ -104,6 +114,7 @@ impl Resolver<'_> {
         let dimension = named.dimension;
         match named.meaning {
             Meaning::Quantity(quantity) => self.quantity(quantity, dimension, name, span, place),
+            Meaning::Definition(id) => self.defined(id, name, span, place),
             Meaning::Output => {
                 self.tell(
                     Diagnostic::error(
@@ -165,7 +176,7 @@ impl Resolver<'_> {
                     Meaning::Quantity(Quantity::PseudoVelocity(_)) => {
                         "accelerations are results and cannot be used in expressions"
                     }
-                    Meaning::Quantity(_) | Meaning::Output => {
+                    Meaning::Quantity(_) | Meaning::Definition(_) | Meaning::Output => {
                         "define its rate as a separate quantity"
                     }
                 };

@@ -75,6 +75,7 @@ pub fn formula(
     resolver.signals();
     resolver.announce("pseudo_velocities");
     resolver.announce("outputs");
+    resolver.announce_definitions();
     resolver.pseudo_velocities(&coordinates);
     resolver.findings.clear();
 
@@ -89,6 +90,7 @@ pub fn formula(
     let gains = scope != Scope::Constant && numbers && !any(&ast, &has_unit);
     let ast = if plain { times(ast, unit) } else { ast };
     let expr = resolver.expression(&ast, &place, Dim::Known(unit.dimension));
+    resolver.settle();
     let mut findings = resolver.findings;
     if gains && (plain || unit.is_si()) {
         findings.retain(|finding| finding.code != Code::UnitMismatch);

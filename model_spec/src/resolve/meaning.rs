@@ -17,6 +17,8 @@ pub(super) struct Named {
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Meaning {
     Quantity(Quantity),
+    /// A named expression, by its index.
+    Definition(usize),
     /// Outputs share the names, but expressions cannot use them.
     Output,
 }
@@ -46,7 +48,7 @@ pub(super) enum Shape {
 }
 
 /// Places of what occurs in expressions.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Used {
     pub(super) parameters: BTreeSet<usize>,
     pub(super) coordinates: BTreeSet<usize>,

@@ -96,6 +96,8 @@ impl Place {
 
     /// A quantity of interest.
     pub(super) const OUTPUT: Self = Self::new("an output", u8::MAX, Smooth::Any);
+    /// A named expression.
+    pub(super) const DEFINITION: Self = Self::new("a definition", u8::MAX, Smooth::Any);
     /// Definition of a pseudo-velocity.
     pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
     /// Velocity along which a force acts.

@@ -265,12 +265,12 @@ impl<'a> Resolver<'a> {
         outputs
     }
 
-    fn value_of(&mut self, item: &ItemAst, place: &Place) -> Option<Typed> {
+    pub(super) fn value_of(&mut self, item: &ItemAst, place: &Place) -> Option<Typed> {
         item.expression("value").map(|e| self.elaborate(e, place))
     }
 
     /// The unit of a value: the one that is written, if it fits, or else one that does.
-    fn checked_unit(
+    pub(super) fn checked_unit(
         &mut self,
         item: &ItemAst,
         typed: Option<Typed>,

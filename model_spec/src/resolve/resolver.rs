@@ -8,6 +8,7 @@ use crate::expr::{Expr, Span};
 use crate::mechanism::Interpolation;
 use crate::parse::zero;
 
+use super::definitions::Reading;
 use super::dimensions::Dim;
 use super::meaning::{Acting, Named, Used};
 use super::place::Place;
@@ -40,6 +41,8 @@ pub(super) struct Resolver<'a> {
     pub(super) interpolation: Vec<(Interpolation, &'a str)>,
     /// What occurs in some expression.
     pub(super) used: Used,
+    /// The definitions that are being read.
+    pub(super) reading: Reading,
 }
 
 impl<'a> Resolver<'a> {
@@ -63,6 +66,7 @@ impl<'a> Resolver<'a> {
             told: BTreeMap::new(),
             interpolation: Vec::new(),
             used: Used::default(),
+            reading: Reading::default(),
         }
     }
 

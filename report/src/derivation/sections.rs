@@ -23,13 +23,14 @@ use appell_codegen::mechanics::finding;
 
 /// The sections up to a stage.
 pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec<Section>> {
-    let mut sections = vec![
-        quantities::section(w),
+    let mut sections = vec![quantities::section(w)];
+    sections.extend(quantities::definitions(w));
+    sections.extend([
         placement::section(w),
         constraints::section(w),
         velocities::section(w),
         accelerations::section(w),
-    ];
+    ]);
     // The handout needs M and b where they solve the equations in letters.
     let in_letters = stage != Stage::Equations || !equations::are_written_out(w);
     if stage >= Stage::Energy {

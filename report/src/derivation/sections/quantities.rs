@@ -1,5 +1,6 @@
 //! Meaning of the letters: parameters, coordinates, inputs, signals, outputs.
 
+use appell_spec::expr::Expr;
 use appell_spec::mechanism::Label;
 
 use super::super::units::{range, unit, value};
@@ -68,29 +69,48 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     headed("Quantities", blocks)
 }
 
+/// The named expressions of the spec.
+pub(super) fn definitions(w: &mut Writer<'_>) -> Option<Section> {
+    let mechanism = w.mechanism;
+    let named = mechanism.definitions.iter();
+    let named = named.map(|definition| (&definition.label, &definition.value));
+    equalities(w, "Definitions", named)
+}
+
 /// The outputs of the spec.
 pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
     let mechanism = w.mechanism;
+    let named = mechanism.outputs.iter();
+    let named = named.map(|output| (&output.label, &output.value));
+    equalities(w, "Outputs", named)
+}
+
+/// Names with their expressions, units and sentences.
+fn equalities<'m>(
+    w: &mut Writer<'_>,
+    title: &str,
+    named: impl Iterator<Item = (&'m Label, &'m Expr)>,
+) -> Option<Section> {
     let mut rows = Vec::new();
-    for output in &mechanism.outputs {
+    for (label, value) in named {
         let derivation = &mut *w.derivation;
         let lowering = Lowering {
             symbols: &derivation.symbols,
             rates: &derivation.symbols.rates,
         };
-        let Ok(expr) = lowering.lower(&mut derivation.algebra.graph, &output.value) else {
+        let Ok(expr) = lowering.lower(&mut derivation.algebra.graph, value) else {
             continue;
         };
         let right = w.set(expr);
-        let left = Math::Letter(Letter::of(&output.label.name));
+        let left = Math::Letter(Letter::of(&label.name));
         let cells = vec![
             vec![equality(left, right)],
-            vec![words(&unit(&output.label))],
-            vec![words(&output.label.about)],
+            vec![words(&unit(label))],
+            vec![words(&label.about)],
         ];
         rows.push(Row {
             cells,
-            line: output.label.line,
+            line: label.line,
         });
     }
     if rows.is_empty() {
@@ -101,5 +121,5 @@ pub(super) fn outputs(w: &mut Writer<'_>) -> Option<Section> {
         title: String::new(),
         rows,
     }));
-    Some(headed("Outputs", blocks))
+    Some(headed(title, blocks))
 }

@@ -79,7 +79,7 @@ impl Motion {
             t_end,
             interval: None,
             method: Method::Dop853,
-            options: Options::with_tolerances(1e-9, 1e-9),
+            options: Options::default(),
             parameters: Vec::new(),
             initial: Vec::new(),
             inputs: Vec::new(),

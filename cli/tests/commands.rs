@@ -286,6 +286,6 @@ fn completions_exist_for_shells() {
         folder
             .done(&["completions", "bash"])
             .stdout
-            .contains("simulate")
+            .contains("COMPLETE")
     );
 }

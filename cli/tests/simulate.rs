@@ -624,3 +624,41 @@ fn a_motion_written_with_everything_can_be_fed_back() {
     let refused = [&run[..], &["--inputs", "b.csv"]].concat();
     folder.fails(3, &refused, &["no input `reaction_of_nothing`"]);
 }
+
+#[test]
+fn the_default_tolerance_is_that_of_the_library() {
+    let folder = Folder::new();
+    let tolerance = appell_runtime::integrate::Options::default();
+    let help = folder.done(&["simulate", "--help"]).stdout;
+    for value in [tolerance.rtol, tolerance.atol] {
+        assert!(help.contains(&format!("[default: {value:e}]")), "{help}");
+    }
+    // What the motion of a wobbling disc loses to the default in 20 s: 6e-8 with 1e-9.
+    let spun = |tolerance: &[&str], name: &str| {
+        let motion = [
+            "simulate",
+            "rolling_wheel",
+            "--initial",
+            "theta=0.3",
+            "--initial",
+            "omega_2=10",
+            "--t-end-s",
+            "20",
+            "--csv",
+            name,
+        ];
+        folder.done(&[&motion[..], tolerance].concat());
+        let text = folder.read(name);
+        let last = text.lines().last().expect("a row").split(',');
+        last.map(|value| value.parse().expect("a number"))
+            .collect::<Vec<f64>>()
+    };
+    let own = spun(&[], "own.csv");
+    let exact = spun(&["--rtol", "1e-13", "--atol", "1e-13"], "exact.csv");
+    for (own, exact) in own.iter().zip(&exact) {
+        assert!(
+            (own - exact).abs() < 5e-9 * exact.abs().max(1.0),
+            "{own}, {exact}"
+        );
+    }
+}

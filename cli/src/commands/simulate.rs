@@ -27,7 +27,7 @@ use crate::{output, picture, progress, summary};
 Examples:
   appell simulate my_pendulum.toml --initial theta=60deg --plot motion.svg
   appell simulate my_pendulum.toml --set l=30cm --input \"F=5*sin(2*t)\" --csv motion.csv
-  appell simulate rolling_wheel --initial theta=20deg --html wheel.html")]
+  appell simulate rolling_wheel --initial theta=20deg --initial omega_2=10 --html wheel.html")]
 pub(crate) struct Simulate {
     /// Name of a shipped mechanism or path of a spec
     model: String,
@@ -46,10 +46,10 @@ pub(crate) struct Simulate {
     #[arg(long, value_enum, default_value_t = Integrator::Dop853)]
     method: Integrator,
     /// Relative error tolerance
-    #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]
     rtol: f64,
     /// Absolute error tolerance, in SI
-    #[arg(long, default_value = "1e-9", allow_negative_numbers = true)]
+    #[arg(long, default_value = "1e-11", allow_negative_numbers = true)]
     atol: f64,
     /// Maximum number of steps, rejected ones included
     #[arg(long, value_name = "N", default_value_t = Options::default().max_steps)]

@@ -18,11 +18,12 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// Nine digits, a million steps.
+    /// Eleven digits a step, a million steps. At order 8 an error of a sixtieth takes two thirds more
+    /// evaluations: on a rattleback 5e-8 after 20 s, with 1e-9 it is 3e-6.
     fn default() -> Self {
         Self {
-            rtol: 1e-9,
-            atol: 1e-9,
+            rtol: 1e-11,
+            atol: 1e-11,
             first_step: None,
             max_step: f64::INFINITY,
             max_steps: 1_000_000,

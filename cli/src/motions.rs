@@ -30,8 +30,8 @@ pub(crate) struct Question {
     /// Continue the motions along a quantity, such as speed=0.5..10 or theta=-30deg..30deg
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     pub(crate) along: Option<Span>,
-    /// Lower bound for feasible motions, such as z>=0
-    #[arg(long, value_name = "NAME>=VALUE", allow_hyphen_values = true)]
+    /// Lower bound for feasible motions, in quotes: 'z>=0'
+    #[arg(long, value_name = "BOUND", allow_hyphen_values = true)]
     require: Vec<Least>,
     /// Number of starting points of the search
     #[arg(long, value_name = "N", default_value_t = STARTS)]
@@ -57,7 +57,7 @@ impl FromStr for Least {
     fn from_str(text: &str) -> Result<Self, String> {
         let (name, value) = text
             .split_once(">=")
-            .ok_or("write NAME>=VALUE, such as z>=0")?;
+            .ok_or("write NAME>=VALUE in quotes, such as 'z>=0'")?;
         let assignment = Assignment::from_str(&format!("{name}={value}"))?;
         Ok(Self(assignment))
     }

@@ -1,8 +1,6 @@
 //! The examples that `--help` shows, run as they stand in one folder, by a shell.
 
-use std::path::Path;
-use std::process::Command;
-
+use crate::documents::shell;
 use crate::support::Folder;
 
 /// Commands that others of the list need, in the order of their needs; then the rest.
@@ -61,18 +59,7 @@ fn the_examples_of_every_command_run_as_they_stand() {
             .iter()
             .filter(|line| !line.contains('~') && !line.contains("man -l"))
         {
-            let program = Path::new(env!("CARGO_BIN_EXE_appell"))
-                .parent()
-                .expect("a folder");
-            let paths = std::env::var("PATH").unwrap_or_default();
-            let told = Command::new("sh")
-                .args(["-c", line])
-                .current_dir(folder.path("."))
-                .env("PATH", format!("{}:{paths}", program.display()))
-                .output()
-                .expect("a shell");
-            let errors = String::from_utf8_lossy(&told.stderr);
-            assert!(told.status.success(), "{line}\n{errors}");
+            shell(&folder, line);
         }
     }
 }

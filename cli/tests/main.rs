@@ -14,6 +14,7 @@ mod control;
 mod definitions;
 mod destinations;
 mod diagnose;
+mod documents;
 mod evaluate;
 mod events;
 mod examples;

@@ -1,6 +1,6 @@
 //! `appell control`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Error;
 use appell::control::Request;
@@ -108,7 +108,7 @@ impl Control {
     fn designed(&self, model: &Model) -> Result<(String, Value), Error> {
         let design = model.control(&self.request())?;
         if let Some(path) = &self.write {
-            files::write(path, &model.law(&design)?)?;
+            files::write(path, &in_file(&model.law(&design)?, path))?;
         }
         let mut text = design_report::text(&design, model.info());
         let mut json = appell::json::design(model.info(), &design);
@@ -134,7 +134,7 @@ impl Control {
     fn scheduled(&self, model: &Model, range: &Assignment) -> Result<(String, Value), Error> {
         let schedule = model.schedule(&self.request(), range)?;
         if let Some(path) = &self.write {
-            files::write(path, &model.scheduled_law(&schedule)?)?;
+            files::write(path, &in_file(&model.scheduled_law(&schedule)?, path))?;
         }
         Ok((
             design_report::schedule_text(&schedule, model.info()),
@@ -180,4 +180,9 @@ impl Control {
             delay_ms: self.delay_ms,
         }
     }
+}
+
+/// A law whose command to try it names its own file.
+fn in_file(law: &str, path: &Path) -> String {
+    law.replacen("FILE.toml", &path.display().to_string(), 1)
 }

@@ -99,3 +99,29 @@ fn the_commands_of_the_documents_run_as_they_stand() {
         assert!(ran > 4, "{}: {ran}", document.path);
     }
 }
+
+/// The pictures of the README are those that the commands above them make; `UPDATE_DRAWINGS=1` writes them anew.
+#[test]
+fn the_pictures_of_the_readme_are_made_by_its_commands() {
+    let text = fs::read_to_string(repository("README.md")).expect("the document");
+    let folder = Folder::new();
+    let lines = blocks(&text, "sh").into_iter().flat_map(str::lines);
+    lines
+        .filter(|line| line.starts_with("appell "))
+        .for_each(|line| shell(&folder, line));
+    let shown = text.split("src=\"docs/pictures/").skip(1);
+    let names: Vec<&str> = shown.filter_map(|rest| rest.split('"').next()).collect();
+    assert!(names.len() > 3, "{names:?}");
+    for name in names {
+        let path = repository(&format!("docs/pictures/{name}"));
+        let made = folder.read(name);
+        if std::env::var_os("UPDATE_DRAWINGS").is_some() {
+            fs::write(&path, &made).expect("the picture");
+        }
+        let kept = fs::read_to_string(&path).unwrap_or_default();
+        assert!(
+            made == kept,
+            "{name} is another one: UPDATE_DRAWINGS=1 writes it anew"
+        );
+    }
+}

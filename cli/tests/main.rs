@@ -30,6 +30,7 @@ mod language_server;
 mod late;
 mod law;
 mod motion;
+mod newcomer;
 mod other_mechanisms;
 mod picture;
 mod planted;

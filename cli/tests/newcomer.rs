@@ -1,0 +1,146 @@
+//! What newcomers tripped over, each with what they are told now.
+
+use crate::support::{Folder, repository};
+
+const SLEIGH: &str = r#"
+[mechanism]
+name  = "sleigh"
+title = "Sleigh whose speed is measured along the ground"
+[parameters]
+m = { value = 1, unit = "kg" }
+I = { value = 0.05, unit = "kg*m^2" }
+[coordinates]
+x   = { unit = "m" }
+y   = { unit = "m" }
+psi = { unit = "deg", initial = 90 }
+[frames]
+s = { parent = "ground", about_axis = "z", by = "psi" }
+[points]
+C = { from = "O", in = "ground", at = ["x", "y", 0] }
+[bodies]
+sleigh = { frame = "s", centre = "C", mass = "m", inertia = { in = "s", diagonal = ["I", "I", "I"] } }
+[constraints]
+blade = { kind = "velocity", zero = "-dot(x)*sin(psi) + dot(y)*cos(psi)" }
+[pseudo_velocities]
+v = { value = "dot(x)", initial = 1 }
+w = { value = "dot(psi)", initial = 2 }
+"#;
+
+#[test]
+fn a_start_that_the_pseudo_velocities_do_not_determine_ends_there() {
+    let folder = Folder::new();
+    folder.write("sleigh.toml", SLEIGH);
+    let said = ["at the start", "do not determine", "psi = 90.000000 deg"];
+    folder.fails(2, &["simulate", "sleigh.toml"], &said);
+    let check = folder.done(&["check", "sleigh.toml"]).stderr;
+    assert!(
+        check.contains("do not determine `dot(y)` at the initial state"),
+        "{check}"
+    );
+    // Notes end with a line.
+    assert!(check.ends_with('\n'));
+}
+
+#[test]
+fn an_unstable_design_is_told() {
+    let folder = Folder::new();
+    let told = folder.done(&["control", "cart_pole", "--poles", "8", "--json", "law.json"]);
+    assert!(
+        told.stdout
+            .contains("the closed loop is unstable: 4 of 4 poles"),
+        "{}",
+        told.stdout
+    );
+    let stable = &folder.json("law.json")["law"]["stable"];
+    assert_eq!(*stable, false, "{}", folder.read("law.json"));
+}
+
+#[test]
+fn a_degree_is_a_degree_and_words_are_told_their_sign() {
+    let folder = Folder::new();
+    let start = |angle: &str| {
+        let motion = [
+            "simulate",
+            "unicycle",
+            "--t-end-s",
+            "0.01",
+            "--initial",
+            angle,
+            "--csv",
+            "-",
+        ];
+        folder.done(&motion).stdout
+    };
+    assert_eq!(start("theta=20°"), start("theta=20deg"));
+    let words = ["simulate", "unicycle", "--initial", "theta=20degrees"];
+    folder.fails(2, &words, &["unknown unit `degrees`", "did you mean `deg`"]);
+    let words = ["simulate", "unicycle", "--set", "R=0.3 meters"];
+    folder.fails(2, &words, &["did you mean `m`"]);
+}
+
+#[test]
+fn a_prescribed_state_lies_in_its_range() {
+    let folder = Folder::new();
+    let said = [
+        "`theta` = 10 rad is outside its limits",
+        "`10deg` is inside them",
+    ];
+    folder.fails(2, &["steady", "unicycle", "--fix", "theta=10"], &said);
+    folder.fails(2, &["stability", "unicycle", "--fix", "theta=10"], &said);
+}
+
+#[test]
+fn a_drawing_shows_another_start_and_its_angles() {
+    let folder = Folder::new();
+    let tilted = ["draw", "unicycle", "--initial", "theta=20deg", "--out", "-"];
+    let drawn = folder.done(&tilted).stdout;
+    for says in ["theta = 20°", "with theta = 20deg", "class=\"angle\""] {
+        assert!(drawn.contains(says), "{drawn}");
+    }
+    let upright = folder.done(&["draw", "unicycle", "--out", "-"]).stdout;
+    assert!(!upright.contains("class=\"angle\""));
+    let refused = ["draw", "unicycle", "--initial", "theta=20"];
+    folder.fails(2, &refused, &["outside its limits"]);
+}
+
+#[test]
+fn the_list_fits_a_terminal() {
+    let told = Folder::new().done(&["list"]).stdout;
+    assert!(
+        told.lines().all(|line| line.chars().count() <= 80),
+        "{told}"
+    );
+}
+
+#[cfg(feature = "png")]
+#[test]
+fn a_figure_is_what_its_name_says() {
+    let folder = Folder::new();
+    for (name, begins) in [
+        ("a.svg", &b"<svg"[..]),
+        ("a.png", b"\x89PNG"),
+        ("a.pdf", b"%PDF"),
+    ] {
+        folder.done(&["draw", "pendulum", "--out", name]);
+        let bytes = std::fs::read(folder.path(name)).expect("a figure");
+        assert!(bytes.starts_with(begins), "{name}");
+    }
+    folder.fails(
+        2,
+        &["draw", "pendulum", "--out", "a.gif"],
+        &["`.gif`", ".svg, .png or .pdf"],
+    );
+}
+
+#[test]
+fn no_folder_is_made_by_a_mistyped_path() {
+    let folder = Folder::new();
+    let spec = repository("generated/mechanisms/pendulum.toml");
+    folder.fails(
+        3,
+        &["draw", &spec, "--out", "pitcures/a.svg"],
+        &["no folder `pitcures`"],
+    );
+    folder.fails(2, &["recording", "nodir"], &["nodir"]);
+    assert!(folder.files().is_empty());
+}

@@ -12,9 +12,6 @@ use clap_complete::engine::{
 
 use crate::commands::Arguments;
 
-/// The variable by which a shell asks; its value is the shell's name.
-pub(crate) const VARIABLE: &str = "COMPLETE";
-
 /// The commands; models complete to names and specs.
 pub(crate) fn command() -> Command {
     with_models(Arguments::command())

@@ -21,17 +21,8 @@ use appell_spec::mechanism::Mechanism;
 
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::finding::Outcome;
+pub use scene::Moment;
 use scene::Scene;
-
-/// Values in place of those of the spec, in SI.
-pub struct Moment {
-    /// Parameters.
-    pub parameters: Vec<f64>,
-    /// The state.
-    pub states: Vec<f64>,
-    /// What was given, for the caption.
-    pub given: String,
-}
 
 /// The drawing of a mechanism, an SVG document. Points without a finite position are omitted and
 /// listed in the caption.

@@ -3,7 +3,10 @@
 use clap_complete::env::Shells;
 
 use crate::failure::Error;
-use crate::{completion, output};
+use crate::output;
+
+/// The variable by which a shell asks; its value is the shell's name.
+const VARIABLE: &str = "COMPLETE";
 
 /// Writes shell completions to standard output: commands, flags, models.
 ///
@@ -25,13 +28,7 @@ impl Completions {
         let shells = Shells::builtins();
         let mut script = Vec::new();
         let written = shells.completer(&name).map(|shell| {
-            shell.write_registration(
-                completion::VARIABLE,
-                "appell",
-                "appell",
-                "appell",
-                &mut script,
-            )
+            shell.write_registration(VARIABLE, "appell", "appell", "appell", &mut script)
         });
         match written {
             Some(Ok(())) => output::print(&String::from_utf8_lossy(&script)),

@@ -4,8 +4,6 @@
 //! coordinates cannot. Hence the expression is elaborated at the place of its use, and by itself only once, to
 //! report what is wrong wherever it is used.
 
-use std::collections::BTreeSet;
-
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
@@ -24,25 +22,6 @@ const BY_PLACE: &[Code] = &[
     Code::NotLinear,
     Code::SignalTooRough,
 ];
-
-/// The definitions whose expressions are being read, and what they have added.
-#[derive(Debug, Default)]
-pub(super) struct Reading {
-    /// By index, the innermost last.
-    open: Vec<usize>,
-    /// Nested operations around the next expression.
-    depth: usize,
-    /// Terms that stand for names, in all.
-    count: usize,
-    /// Whether they are too many or too deep.
-    exceeded: bool,
-    /// Definitions that occur somewhere.
-    pub(super) used: BTreeSet<usize>,
-    /// Definitions that lead back to themselves.
-    circular: BTreeSet<usize>,
-    /// What is wrong with definitions wherever they are used.
-    findings: Vec<Diagnostic>,
-}
 
 impl Resolver<'_> {
     /// Gives the definitions their names, before anything uses them.

@@ -1,7 +1,8 @@
-//! What names in expressions mean, and which quantities occur there.
+//! What names in expressions mean, which quantities occur there, and the definitions on the way.
 
 use std::collections::BTreeSet;
 
+use crate::diagnostic::Diagnostic;
 use crate::expr::{Quantity, Span};
 use crate::units::Dimension;
 
@@ -70,4 +71,23 @@ impl Used {
             | Quantity::Pi => false,
         };
     }
+}
+
+/// The definitions whose expressions are being read, and what they have added.
+#[derive(Debug, Default)]
+pub(super) struct Reading {
+    /// By index, the innermost last.
+    pub(super) open: Vec<usize>,
+    /// Nested operations around the next expression.
+    pub(super) depth: usize,
+    /// Terms that stand for names, in all.
+    pub(super) count: usize,
+    /// Whether they are too many or too deep.
+    pub(super) exceeded: bool,
+    /// Definitions that occur somewhere.
+    pub(super) used: BTreeSet<usize>,
+    /// Definitions that lead back to themselves.
+    pub(super) circular: BTreeSet<usize>,
+    /// What is wrong with definitions wherever they are used.
+    pub(super) findings: Vec<Diagnostic>,
 }

@@ -8,9 +8,8 @@ use crate::expr::{Expr, Span};
 use crate::mechanism::Interpolation;
 use crate::parse::zero;
 
-use super::definitions::Reading;
 use super::dimensions::Dim;
-use super::meaning::{Acting, Named, Used};
+use super::meaning::{Acting, Named, Reading, Used};
 use super::place::Place;
 
 /// Maximum number of diagnostics collected.

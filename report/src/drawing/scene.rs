@@ -3,7 +3,6 @@
 use appell_runtime::positions::{Moving, Positions};
 use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
 
-use super::Moment;
 use super::placement::{Inertia, Placement};
 use super::space::{Matrix, Vector};
 use appell_codegen::interpreted::InterpretedModel;
@@ -13,6 +12,16 @@ use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::initial::InitialState;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::symbolic::{Graph, SymbolId};
+
+/// Values in place of those of the spec, in SI.
+pub struct Moment {
+    /// Parameters.
+    pub parameters: Vec<f64>,
+    /// The state.
+    pub states: Vec<f64>,
+    /// What was given, for the caption.
+    pub given: String,
+}
 
 /// A mechanism at one state, in the ground and in SI.
 pub(super) struct Scene {

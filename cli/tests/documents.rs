@@ -58,7 +58,7 @@ const DOCUMENTS: &[Document] = &[
 ];
 
 /// The blocks of a language.
-fn blocks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
+pub(crate) fn blocks<'t>(text: &'t str, language: &str) -> Vec<&'t str> {
     let fence = format!("```{language}\n");
     let blocks = text.split(fence.as_str()).skip(1);
     blocks.filter_map(|rest| rest.split("```").next()).collect()

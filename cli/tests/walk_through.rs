@@ -1,6 +1,7 @@
 //! A newcomer follows docs/gap-diagnosis.md from own recordings to an own improved spec: every file and
 //! every command of that section, as written.
 
+use crate::documents::blocks;
 use crate::support::{Folder, repository};
 
 const SECTION: &str = "## From your recordings to your improved spec\n";
@@ -11,13 +12,6 @@ fn section() -> String {
     let (_, rest) = text.split_once(SECTION).expect("the section");
     let (section, _) = rest.split_once("\n## ").expect("another section");
     section.to_owned()
-}
-
-/// The blocks of a language.
-fn blocks<'s>(section: &'s str, language: &str) -> Vec<&'s str> {
-    let fence = format!("```{language}\n");
-    let blocks = section.split(fence.as_str()).skip(1);
-    blocks.filter_map(|rest| rest.split("```").next()).collect()
 }
 
 #[test]

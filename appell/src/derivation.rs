@@ -6,6 +6,7 @@ use appell_codegen::linearisation::{Linearisation, SteadyMotion};
 use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Finding;
 use appell_codegen::program::FunctionKind;
+use appell_codegen::python;
 use appell_codegen::{Derived, derived};
 use appell_report::derivation::{self, Page};
 use appell_report::drawing::{Moment, drawing, drawing_at};
@@ -94,6 +95,12 @@ impl Source {
         };
         let emitted = emit(&program, &options).map_err(Error::computation)?;
         Ok(emitted.source)
+    }
+
+    /// A module of Python functions over an array namespace: NumPy, JAX, CasADi or SymPy.
+    pub fn python(&self) -> Result<String, Error> {
+        let program = appell_codegen::compile(&self.file, &self.text, &FunctionKind::STANDARD)?;
+        Ok(python::module(&program, &FunctionKind::STANDARD))
     }
 
     /// The mechanism at its initial state, as SVG.

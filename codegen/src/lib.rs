@@ -5,12 +5,14 @@ pub mod build;
 pub mod compile;
 pub mod emit;
 pub mod formulations;
+mod infix;
 pub mod interpreted;
 #[cfg(feature = "jit")]
 pub mod jit;
 pub mod linearisation;
 pub mod mechanics;
 pub mod program;
+pub mod python;
 pub mod schedule;
 pub mod symbolic;
 

@@ -42,6 +42,7 @@ pub(crate) struct Derive {
 enum Output {
     Page(Format),
     Rust,
+    Python,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +51,7 @@ enum Extent {
     Linear,
 }
 
-const FORMATS: [Choice<Output>; 4] = [
+const FORMATS: [Choice<Output>; 5] = [
     (
         "text",
         "Unicode, for a terminal",
@@ -62,6 +63,11 @@ const FORMATS: [Choice<Output>; 4] = [
         "rust",
         "The module that a build script includes",
         Output::Rust,
+    ),
+    (
+        "python",
+        "Functions for NumPy, JAX, CasADi and SymPy alike",
+        Output::Python,
     ),
 ];
 
@@ -120,6 +126,7 @@ impl Derive {
         let spinner = progress::spinner("deriving the equations of motion");
         let text = match (format, self.stage) {
             (Output::Rust, _) => source.rust(),
+            (Output::Python, _) => source.python(),
             (Output::Page(format), Extent::Through(stage)) => source.derivation(stage, format),
             (Output::Page(format), Extent::Linear) => source.linear_equations(&self.about, format),
         };

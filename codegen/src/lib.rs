@@ -2,6 +2,7 @@
 
 pub mod audit;
 pub mod build;
+pub mod c;
 pub mod compile;
 pub mod emit;
 pub mod formulations;

@@ -1,0 +1,506 @@
+//! Equations as C99: one header and one source, without allocation, with the names and units of the spec.
+//!
+//! Operations and their order are those of the schedule, hence of the emitted Rust: compiled without contraction,
+//! the results are the same bits.
+
+mod types;
+
+use std::fmt::Write as _;
+
+use crate::infix::{Dialect, Infix, harmless, shape};
+use crate::program::{Array, Function, FunctionKind, Layout, Program};
+use crate::schedule::pi::parts_of_pi;
+use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
+use crate::symbolic::{self, Rational, Relation};
+
+use types::Types;
+
+/// The type of all numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Real {
+    /// 64 bits.
+    #[default]
+    Double,
+    /// 32 bits, with the functions of `math.h` that end in `f`.
+    Float,
+}
+
+/// What to emit.
+#[derive(Debug, Clone)]
+pub struct Options {
+    /// The functions; those that the program lacks are left out.
+    pub functions: Vec<FunctionKind>,
+    /// The type of all numbers.
+    pub real: Real,
+    /// Whether to emit a step of the classical Runge-Kutta method, which needs [`FunctionKind::Rates`].
+    pub integrator: bool,
+}
+
+/// Emitted text.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Emitted {
+    /// Name of both files, without extension.
+    pub name: String,
+    /// `NAME.h`.
+    pub header: String,
+    /// `NAME.c`.
+    pub source: String,
+}
+
+/// Words that are no names in C, and names of `math.h` that are macros or objects somewhere.
+const KEYWORDS: &[&str] = &[
+    "auto",
+    "break",
+    "case",
+    "char",
+    "const",
+    "continue",
+    "default",
+    "do",
+    "double",
+    "else",
+    "enum",
+    "extern",
+    "float",
+    "for",
+    "goto",
+    "if",
+    "inline",
+    "int",
+    "long",
+    "register",
+    "restrict",
+    "return",
+    "short",
+    "signed",
+    "sizeof",
+    "static",
+    "struct",
+    "switch",
+    "typedef",
+    "union",
+    "unsigned",
+    "void",
+    "volatile",
+    "while",
+    "asm",
+    "bool",
+    "true",
+    "false",
+    "NULL",
+    "NAN",
+    "INFINITY",
+    "HUGE_VAL",
+    "errno",
+    "alignas",
+    "alignof",
+    "class",
+    "constexpr",
+    "delete",
+    "new",
+    "nullptr",
+    "operator",
+    "private",
+    "protected",
+    "public",
+    "template",
+    "this",
+    "throw",
+    "try",
+    "catch",
+    "typeof",
+    "using",
+    "virtual",
+    "namespace",
+    "friend",
+    "mutable",
+    "explicit",
+    "export",
+    "typename",
+    "and",
+    "or",
+    "not",
+    "xor",
+    "linux",
+    "unix",
+    "signgam",
+];
+
+impl Dialect for Real {
+    fn name(&self, name: &str) -> String {
+        if KEYWORDS.contains(&name) {
+            format!("{name}_")
+        } else {
+            name.to_owned()
+        }
+    }
+
+    fn function(&self, function: symbolic::Function, of: &str) -> String {
+        use symbolic::Function as F;
+        let name = match function {
+            F::Sin => "sin",
+            F::Cos => "cos",
+            F::Asin => "asin",
+            F::Acos => "acos",
+            F::Atan => "atan",
+            F::Sinh => "sinh",
+            F::Cosh => "cosh",
+            F::Tanh => "tanh",
+            F::Exp => "exp",
+            F::Ln => "log",
+            F::Sqrt => "sqrt",
+            F::Abs => "fabs",
+            F::Sign => return format!("sign_of({of})"),
+        };
+        format!("{name}{}({of})", self.suffix())
+    }
+
+    fn atan2(&self, y: &str, x: &str) -> String {
+        format!("atan2{}({y}, {x})", self.suffix())
+    }
+
+    fn power(&self, base: &str, exponent: &str) -> String {
+        format!("pow{}({base}, {exponent})", self.suffix())
+    }
+
+    fn choice(&self, relation: Relation, [a, b, then, otherwise]: [String; 4]) -> String {
+        let sign = match relation {
+            Relation::Less => "<",
+            Relation::LessOrEqual => "<=",
+        };
+        format!("({a} {sign} {b} ? {then} : {otherwise})")
+    }
+}
+
+impl Real {
+    const fn suffix(self) -> &'static str {
+        match self {
+            Self::Double => "",
+            Self::Float => "f",
+        }
+    }
+
+    const fn name(self) -> &'static str {
+        match self {
+            Self::Double => "double",
+            Self::Float => "float",
+        }
+    }
+
+    /// A number as the emitted Rust computes it: as a quotient of doubles, rounded once.
+    fn number(self, value: &Rational) -> String {
+        if let Some((1, 1)) = parts_of_pi(value) {
+            return self.literal(std::f64::consts::PI);
+        }
+        self.literal(value.to_f64())
+    }
+
+    fn literal(self, value: f64) -> String {
+        match self {
+            Self::Double => format!("{value:?}"),
+            Self::Float => format!("(float){value:?}"),
+        }
+    }
+}
+
+/// Emits the functions of a program.
+pub fn emit(program: &Program, options: &Options) -> Emitted {
+    let types = Types::new(program, options.real);
+    let functions: Vec<&Function> = (program.functions.iter())
+        .filter(|function| options.functions.contains(&function.kind))
+        .filter(|function| {
+            !function
+                .results
+                .iter()
+                .all(|array| is_empty(program, array))
+        })
+        .collect();
+    let schedules: Vec<Schedule> = functions
+        .iter()
+        .map(|function| schedule(program, function))
+        .collect();
+    let bodies: String = (functions.iter().zip(&schedules))
+        .map(|(function, schedule)| definition(&types, function, schedule))
+        .collect();
+    let mut source = format!(
+        "/* {} */\n\n#include \"{}.h\"\n\n#include <math.h>\n",
+        heading(program),
+        types.prefix
+    );
+    if options.integrator {
+        source.push_str("#include <string.h>\n");
+    }
+    source.push('\n');
+    source.push_str(&types.values());
+    source.push_str(&helpers(options.real, &bodies));
+    source.push_str(&bodies);
+    let prototypes: String = functions
+        .iter()
+        .map(|function| {
+            format!(
+                "{}{};\n\n",
+                comment(program, function),
+                types.signature(function)
+            )
+        })
+        .collect();
+    let mut header = types.header(&heading(program), &prototypes, options.integrator);
+    if options.integrator {
+        source.push_str(&types.integrator());
+    }
+    header.push('\n');
+    Emitted {
+        name: types.prefix.clone(),
+        header,
+        source,
+    }
+}
+
+fn heading(program: &Program) -> String {
+    format!(
+        "{}. Equations of motion by the Gibbs-Appell method, emitted from {}.",
+        harmless(&program.info.title),
+        harmless(&program.file)
+    )
+}
+
+/// An array without entries is no object in C.
+fn is_empty(program: &Program, array: &Array) -> bool {
+    shape(program, array.layout).contains(&0)
+}
+
+/// What a function computes, and its results.
+fn comment(program: &Program, function: &Function) -> String {
+    let about = harmless(&function.kind.about().replace(['[', ']', '`'], ""));
+    let mut text = format!("/* {about}\n");
+    for array in &function.results {
+        if !is_empty(program, array) {
+            let _ = writeln!(text, " * {}: {}", array.name, harmless(&array.about));
+        }
+    }
+    text + " */\n"
+}
+
+/// Static functions that bodies call.
+fn helpers(real: Real, bodies: &str) -> String {
+    let number = real.name();
+    let mut text = String::new();
+    if bodies.contains("sign_of(") {
+        let _ = write!(
+            text,
+            "static {number} sign_of({number} x) {{\n    return x > 0 ? 1 : (x < 0 ? -1 : x);\n}}\n\n"
+        );
+    }
+    if bodies.contains("lu_factor(") {
+        text.push_str(
+            &LU.replace("REAL", number)
+                .replace("FABS", if real == Real::Float { "fabsf" } else { "fabs" }),
+        );
+    }
+    text
+}
+
+/// The operations of `appell_runtime::dense` in their order.
+const LU: &str = "\
+/* P A = L U with partial pivoting, n by n, row by row. */
+static void lu_factor(int n, REAL *a, unsigned char *exchanged) {
+    int i, j, k;
+    for (k = 0; k < n; k++) {
+        for (i = k + 1; i < n; i++) {
+            unsigned char exchange = FABS(a[k * n + k]) < FABS(a[i * n + k]);
+            exchanged[i * n + k] = exchange;
+            for (j = 0; exchange && j < n; j++) {
+                REAL upper = a[k * n + j];
+                a[k * n + j] = a[i * n + j];
+                a[i * n + j] = upper;
+            }
+        }
+        for (i = k + 1; i < n; i++) {
+            a[i * n + k] = a[i * n + k] / a[k * n + k];
+            for (j = k + 1; j < n; j++) {
+                a[i * n + j] = a[i * n + j] - a[i * n + k] * a[k * n + j];
+            }
+        }
+    }
+}
+
+/* A x = right, given the factors of A; x replaces the right side. */
+static void lu_solve(int n, const REAL *a, const unsigned char *exchanged, REAL *x) {
+    int i, k;
+    for (k = 0; k < n; k++) {
+        for (i = k + 1; i < n; i++) {
+            if (exchanged[i * n + k]) {
+                REAL upper = x[k];
+                x[k] = x[i];
+                x[i] = upper;
+            }
+        }
+    }
+    for (i = 1; i < n; i++) {
+        for (k = 0; k < i; k++) {
+            x[i] = x[i] - a[i * n + k] * x[k];
+        }
+    }
+    for (i = n - 1; i >= 0; i--) {
+        for (k = i + 1; k < n; k++) {
+            x[i] = x[i] - a[i * n + k] * x[k];
+        }
+        x[i] = x[i] / a[i * n + i];
+    }
+}
+
+";
+
+fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> String {
+    let infix = Infix {
+        dialect: &types.real,
+        schedule,
+        names: &types.names,
+    };
+    let real = types.real.name();
+    let mut text = format!("{} {{\n", types.signature(function));
+    let groups = types.groups(function.kind);
+    for &argument in &schedule.arguments {
+        let name = types.local(argument);
+        let _ = match argument {
+            Argument::Time => continue,
+            Argument::State(_) => {
+                writeln!(text, "    const {real} {name} = {}->{name};", groups.state)
+            }
+            Argument::Input(_) => {
+                writeln!(text, "    const {real} {name} = {}->{name};", groups.inputs)
+            }
+            Argument::Parameter(_) => {
+                writeln!(
+                    text,
+                    "    const {real} {name} = {}->{name};",
+                    groups.parameters
+                )
+            }
+            Argument::Weight(i) | Argument::OutputWeight(i) => {
+                writeln!(text, "    const {real} {name} = {}[{i}];", groups.weights)
+            }
+        };
+    }
+    for value in infix.constants() {
+        let name = types.real_name(&types.names.constant(&value));
+        let _ = writeln!(
+            text,
+            "    const {real} {name} = {};",
+            types.real.number(&value)
+        );
+    }
+    for step in &schedule.steps {
+        statement(&mut text, &infix, real, step);
+    }
+    for unused in types.unused(function.kind, schedule) {
+        let _ = writeln!(text, "    (void){unused};");
+    }
+    text.push('\n');
+    for (array, result) in function.results.iter().zip(&schedule.results) {
+        if !is_empty(types.program, array) {
+            results(&mut text, types, &infix, function, array, &result.entries);
+        }
+    }
+    text + "}\n\n"
+}
+
+fn statement(text: &mut String, infix: &Infix<'_, Real>, real: &str, step: &Step) {
+    let _ = match step {
+        Step::Let { value, tree } => {
+            writeln!(
+                text,
+                "    const {real} {} = {};",
+                infix.value(*value),
+                infix.tree(tree)
+            )
+        }
+        Step::SinCos { sin, cos, angle } => {
+            let angle = infix.tree(angle);
+            let call = |f| infix.dialect.function(f, &angle);
+            let (sine, cosine) = (call(symbolic::Function::Sin), call(symbolic::Function::Cos));
+            let _ = writeln!(text, "    const {real} {} = {sine};", infix.value(*sin));
+            writeln!(text, "    const {real} {} = {cosine};", infix.value(*cos))
+        }
+        Step::Factor {
+            factorisation: f,
+            size,
+            matrix,
+        } => {
+            let (lu, moved) = (
+                infix.free(&format!("lu_{f}")),
+                infix.free(&format!("moved_{f}")),
+            );
+            let entries = infix.list(matrix);
+            let count = size * size;
+            let _ = writeln!(text, "    {real} {lu}[{count}] = {{{entries}}};");
+            let _ = writeln!(text, "    unsigned char {moved}[{count}];");
+            writeln!(text, "    lu_factor({size}, {lu}, {moved});")
+        }
+        Step::Solve {
+            factorisation: f,
+            values,
+            right,
+        } => {
+            let (lu, moved) = (
+                infix.free(&format!("lu_{f}")),
+                infix.free(&format!("moved_{f}")),
+            );
+            let size = values.len();
+            // The first unknown names the list, as each is defined once.
+            let first = values
+                .first()
+                .map(|value| infix.value(*value))
+                .unwrap_or_default();
+            let list = infix.free(&format!("solved_{first}"));
+            let _ = writeln!(
+                text,
+                "    {real} {list}[{size}] = {{{}}};",
+                infix.list(right)
+            );
+            let _ = writeln!(text, "    lu_solve({size}, {lu}, {moved}, {list});");
+            let used = infix.used();
+            for (index, value) in values
+                .iter()
+                .enumerate()
+                .filter(|(_, value)| used.contains(value))
+            {
+                let _ = writeln!(
+                    text,
+                    "    const {real} {} = {list}[{index}];",
+                    infix.value(*value)
+                );
+            }
+            Ok(())
+        }
+        Step::Paragraph { title } if title.is_empty() => writeln!(text),
+        Step::Paragraph { title } => writeln!(text, "\n    /* {} */", harmless(title)),
+    };
+}
+
+/// Stores the entries of an array.
+fn results(
+    text: &mut String,
+    types: &Types<'_>,
+    infix: &Infix<'_, Real>,
+    function: &Function,
+    array: &Array,
+    entries: &[Tree],
+) {
+    let to = types.result(function, array);
+    let columns = shape(types.program, array.layout)
+        .get(1)
+        .copied()
+        .unwrap_or(1);
+    for (index, entry) in entries.iter().enumerate() {
+        let place = match array.layout {
+            Layout::Scalar => format!("*{to}"),
+            Layout::Vector(space) => format!("{to}->{}", types.fields(space)[index]),
+            Layout::List(_) => format!("{to}[{index}]"),
+            Layout::Rows(..) | Layout::Jacobian(..) | Layout::Matrix(..) => {
+                format!("{to}[{}][{}]", index / columns, index % columns)
+            }
+        };
+        let _ = writeln!(text, "    {place} = {};", infix.tree(entry));
+    }
+}

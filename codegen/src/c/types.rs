@@ -1,0 +1,383 @@
+//! The structs of a model in C, and the signatures of its functions.
+
+use std::fmt::Write as _;
+
+use appell_runtime::model::Quantity;
+
+use super::{Real, is_empty};
+use crate::infix::{Dialect, harmless, shape};
+use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
+use crate::schedule::names::{ArgumentNames, identifier};
+use crate::schedule::{Argument, Schedule};
+
+/// Names of types, fields and arguments.
+pub(super) struct Types<'a> {
+    pub(super) program: &'a Program,
+    pub(super) real: Real,
+    pub(super) names: ArgumentNames,
+    /// What every name of the header begins with.
+    pub(super) prefix: String,
+    /// The same for types.
+    type_prefix: String,
+}
+
+/// Names of the arguments of a function.
+pub(super) struct Groups {
+    pub(super) time: String,
+    pub(super) parameters: String,
+    pub(super) state: String,
+    pub(super) inputs: String,
+    pub(super) weights: String,
+}
+
+impl<'a> Types<'a> {
+    pub(super) fn new(program: &'a Program, real: Real) -> Self {
+        let prefix = identifier(&program.info.name).to_ascii_lowercase();
+        let words = prefix.split('_').filter(|word| !word.is_empty());
+        let type_prefix = words
+            .map(|word| word[..1].to_ascii_uppercase() + &word[1..])
+            .collect();
+        Self {
+            program,
+            real,
+            names: ArgumentNames::of(program),
+            prefix,
+            type_prefix,
+        }
+    }
+
+    pub(super) fn real_name(&self, name: &str) -> String {
+        Dialect::name(&self.real, name)
+    }
+
+    /// The local of an argument, which is also its field.
+    pub(super) fn local(&self, argument: Argument) -> String {
+        self.real_name(self.names.get(argument))
+    }
+
+    /// Arguments of functions, none of them called like a quantity.
+    pub(super) fn groups(&self, _kind: FunctionKind) -> Groups {
+        let free = |name: &str| {
+            let mut name = name.to_owned();
+            while self.names.iter().any(|other| *other == name) {
+                name.push('_');
+            }
+            name
+        };
+        Groups {
+            time: self.local(Argument::Time),
+            parameters: free("parameters"),
+            state: free("state"),
+            inputs: free("inputs"),
+            weights: free("weights"),
+        }
+    }
+
+    fn type_name(&self, space: Space) -> String {
+        let name = match space {
+            Space::Parameters => "Parameters",
+            Space::State => "State",
+            Space::Inputs => "Inputs",
+            Space::Outputs => "Outputs",
+            Space::Rates => "Rates",
+            Space::Accelerations => "Accelerations",
+            Space::CoordinateRates => "CoordinateRates",
+            Space::GeneralizedForces => "GeneralizedForces",
+            Space::ConstraintRows => "ConstraintResidual",
+            Space::Reactions => "Reactions",
+        };
+        format!("{}{name}", self.type_prefix)
+    }
+
+    /// Fields of a vector.
+    pub(super) fn fields(&self, space: Space) -> Vec<String> {
+        let info = &self.program.info;
+        let names = &self.names;
+        let speeds = info.speeds.min(names.states.len());
+        let own = |list: &[String]| list.iter().map(|name| self.real_name(name)).collect();
+        let rate = |list: &[String]| list.iter().map(|name| format!("{name}_dot")).collect();
+        let distinct = |texts: Vec<String>| {
+            let mut taken = crate::schedule::names::Names::default();
+            texts
+                .iter()
+                .map(|text| self.real_name(&taken.fresh(text)))
+                .collect()
+        };
+        match space {
+            Space::Parameters => own(&names.parameters),
+            Space::State => own(&names.states),
+            Space::Inputs => own(&names.inputs),
+            Space::Rates => rate(&names.states),
+            Space::Accelerations => rate(&names.states[..speeds]),
+            Space::CoordinateRates => rate(&names.states[speeds..]),
+            Space::GeneralizedForces => own(&names.states[..speeds]),
+            Space::Outputs => distinct(
+                info.outputs
+                    .iter()
+                    .map(|output| output.name.to_string())
+                    .collect(),
+            ),
+            Space::ConstraintRows => distinct(
+                info.constraint_rows
+                    .iter()
+                    .map(ToString::to_string)
+                    .collect(),
+            ),
+            Space::Reactions => distinct(
+                info.reactions
+                    .iter()
+                    .map(|reaction| reaction.name.to_string())
+                    .collect(),
+            ),
+        }
+    }
+
+    fn structure(&self, space: Space, about: &str) -> String {
+        let name = self.type_name(space);
+        let quantities = space.quantities(&self.program.info);
+        let mut text = format!("/* {about} */\ntypedef struct {{\n");
+        let fields = self.fields(space);
+        if fields.is_empty() {
+            text.push_str("    char none; /* a struct needs a member */\n");
+        }
+        for (index, field) in fields.iter().enumerate() {
+            let told = quantities.get(index).map(|quantity| told(quantity, space));
+            let _ = writeln!(
+                text,
+                "    {} {field};{}",
+                self.real.name(),
+                told.unwrap_or_default()
+            );
+        }
+        let _ = write!(text, "}} {name};\n\n");
+        text
+    }
+
+    /// How a function is called.
+    pub(super) fn signature(&self, function: &Function) -> String {
+        let groups = self.groups(function.kind);
+        let real = self.real.name();
+        let mut arguments = vec![
+            format!("{real} {}", groups.time),
+            format!(
+                "const {} *{}",
+                self.type_name(Space::Parameters),
+                groups.parameters
+            ),
+            format!("const {} *{}", self.type_name(Space::State), groups.state),
+            format!("const {} *{}", self.type_name(Space::Inputs), groups.inputs),
+        ];
+        if is_adjoint(function.kind) {
+            arguments.push(format!("const {real} *{}", groups.weights));
+        }
+        for array in &function.results {
+            if is_empty(self.program, array) {
+                continue;
+            }
+            let to = self.result(function, array);
+            let shape = shape(self.program, array.layout);
+            arguments.push(match (array.layout, shape.as_slice()) {
+                (Layout::Vector(space), _) => format!("{} *{to}", self.type_name(space)),
+                (_, [_, columns]) => format!("{real} {to}[][{columns}]"),
+                (_, [count]) => format!("{real} {to}[{count}]"),
+                _ => format!("{real} *{to}"),
+            });
+        }
+        format!(
+            "void {}_{}(\n    {}\n)",
+            self.prefix,
+            function.kind.name(),
+            arguments.join(",\n    ")
+        )
+    }
+
+    /// The argument that takes an array.
+    pub(super) fn result(&self, function: &Function, array: &Array) -> String {
+        let mut name = format!("to_{}", identifier(&array.name));
+        let others = function
+            .results
+            .iter()
+            .filter(|other| other.name != array.name);
+        let others: Vec<String> = others
+            .map(|other| format!("to_{}", identifier(&other.name)))
+            .collect();
+        while self.names.iter().any(|other| *other == name) || others.contains(&name) {
+            name.push('_');
+        }
+        name
+    }
+
+    /// Arguments that a function does not use.
+    pub(super) fn unused(&self, kind: FunctionKind, schedule: &Schedule) -> Vec<String> {
+        let groups = self.groups(kind);
+        let uses = |is: fn(&Argument) -> bool| schedule.arguments.iter().any(is);
+        let all = [
+            (
+                groups.time,
+                uses(|argument| matches!(argument, Argument::Time)),
+            ),
+            (
+                groups.parameters,
+                uses(|argument| matches!(argument, Argument::Parameter(_))),
+            ),
+            (
+                groups.state,
+                uses(|argument| matches!(argument, Argument::State(_))),
+            ),
+            (
+                groups.inputs,
+                uses(|argument| matches!(argument, Argument::Input(_))),
+            ),
+        ];
+        let unused = all.into_iter().filter(|(_, used)| !used);
+        unused.map(|(name, _)| name).collect()
+    }
+
+    /// Values of the spec.
+    pub(super) fn values(&self) -> String {
+        let info = &self.program.info;
+        let lists = [
+            (
+                Space::Parameters,
+                "default_parameters",
+                info.default_parameters(),
+            ),
+            (Space::State, "initial_state", info.initial_state()),
+        ];
+        let mut text = String::new();
+        for (space, name, values) in lists {
+            let _ = writeln!(
+                text,
+                "const {} {}_{name} = {{",
+                self.type_name(space),
+                self.prefix
+            );
+            for (field, value) in self.fields(space).iter().zip(values) {
+                let _ = writeln!(text, "    {}, /* {field} */", self.real.literal(value));
+            }
+            if self.fields(space).is_empty() {
+                text.push_str("    0,\n");
+            }
+            text.push_str("};\n\n");
+        }
+        text
+    }
+
+    /// The header around the prototypes.
+    pub(super) fn header(&self, heading: &str, prototypes: &str, integrator: bool) -> String {
+        let guard = format!("{}_H", self.prefix.to_ascii_uppercase());
+        let mut text = format!(
+            "/* {heading}\n *\n * All quantities are in SI; units in brackets are those of the spec.\n */\n\
+             #ifndef {guard}\n#define {guard}\n\n#ifdef __cplusplus\nextern \"C\" {{\n#endif\n\n"
+        );
+        for (space, about) in [
+            (Space::Parameters, "Parameters p."),
+            (
+                Space::State,
+                "State x: pseudo-velocities, then coordinates.",
+            ),
+            (Space::Inputs, "Inputs u."),
+            (
+                Space::Rates,
+                "Rates of the state: pseudo-accelerations, then generalised velocities.",
+            ),
+            (Space::Accelerations, "Pseudo-accelerations."),
+            (Space::CoordinateRates, "Generalised velocities."),
+            (
+                Space::GeneralizedForces,
+                "Pseudo-forces: power per pseudo-velocity.",
+            ),
+            (
+                Space::ConstraintRows,
+                "What the constraint rows are off by.",
+            ),
+            (Space::Outputs, "Outputs y."),
+        ] {
+            text.push_str(&self.structure(space, about));
+        }
+        let _ = write!(
+            text,
+            "/* The values of the spec. */\nextern const {} {p}_default_parameters;\n\
+             extern const {} {p}_initial_state;\n\n",
+            self.type_name(Space::Parameters),
+            self.type_name(Space::State),
+            p = self.prefix
+        );
+        text.push_str(prototypes);
+        if integrator {
+            let _ = write!(
+                text,
+                "/* A step of length dt of the classical Runge-Kutta method, with constant inputs. */\n{};\n\n",
+                self.step()
+            );
+        }
+        text + "#ifdef __cplusplus\n}\n#endif\n\n#endif\n"
+    }
+
+    fn step(&self) -> String {
+        format!(
+            "void {}_step(\n    {real} t,\n    {real} dt,\n    const {} *p,\n    {} *x,\n    const {} *u\n)",
+            self.prefix,
+            self.type_name(Space::Parameters),
+            self.type_name(Space::State),
+            self.type_name(Space::Inputs),
+            real = self.real.name()
+        )
+    }
+
+    /// The Runge-Kutta step.
+    pub(super) fn integrator(&self) -> String {
+        STEP.replace("SIGNATURE", &self.step())
+            .replace("COUNT", &self.names.states.len().to_string())
+            .replace("PREFIX", &self.prefix)
+            .replace("STATE", &self.type_name(Space::State))
+            .replace("RATES", &self.type_name(Space::Rates))
+            .replace("REAL", self.real.name())
+    }
+}
+
+/// States and rates are structs of as many numbers.
+const STEP: &str = "\
+SIGNATURE {
+    static const REAL part[4] = {0, (REAL)0.5, (REAL)0.5, 1};
+    static const REAL weight[4] = {1, 2, 2, 1};
+    REAL start[COUNT], at[COUNT], k[COUNT], sum[COUNT];
+    STATE state;
+    RATES rates;
+    int stage, i;
+    memcpy(start, x, sizeof start);
+    memset(sum, 0, sizeof sum);
+    memset(k, 0, sizeof k);
+    for (stage = 0; stage < 4; stage++) {
+        for (i = 0; i < COUNT; i++) {
+            at[i] = start[i] + part[stage] * dt * k[i];
+        }
+        memcpy(&state, at, sizeof state);
+        PREFIX_rates(t + part[stage] * dt, p, &state, u, &rates);
+        memcpy(k, &rates, sizeof k);
+        for (i = 0; i < COUNT; i++) {
+            sum[i] += weight[stage] * k[i];
+        }
+    }
+    for (i = 0; i < COUNT; i++) {
+        at[i] = start[i] + dt / 6 * sum[i];
+    }
+    memcpy(x, at, sizeof at);
+}
+";
+
+fn is_adjoint(kind: FunctionKind) -> bool {
+    matches!(kind, FunctionKind::Adjoint | FunctionKind::OutputAdjoint)
+}
+
+/// What a field means, and the unit of the spec.
+fn told(quantity: &Quantity, space: Space) -> String {
+    let about = match space {
+        Space::Rates | Space::Accelerations | Space::CoordinateRates => {
+            format!("rate of {}", quantity.name)
+        }
+        Space::GeneralizedForces => format!("for {}", quantity.name),
+        _ => format!("{} [{}]", quantity.about, quantity.unit),
+    };
+    format!(" /* {} */", harmless(&about))
+}

@@ -214,7 +214,7 @@ fn a_unit_that_the_motion_contradicts_is_told_and_refused_until_it_is_vouched_fo
     let folder = Folder::new();
     folder.write("a.csv", &fall(600, 2.0));
     folder.write("b.csv", &fall(400, 1.5));
-    assert_eq!(doubted(&folder, FALL), []);
+    assert!(doubted(&folder, FALL).is_empty());
     // Angle and rate disagree, and the equations tell which of them is wrong.
     for (right, wrong) in [("\"rad\"", "\"deg\""), ("\"rad/s\"", "\"deg/s\"")] {
         let description = FALL.replace(right, wrong);
@@ -233,12 +233,6 @@ fn a_unit_that_the_motion_contradicts_is_told_and_refused_until_it_is_vouched_fo
             folder.fails(3, &command, &[&place, "unit_checked = true"]);
         }
         let checked = format!("{wrong}, unit_checked = true");
-        assert_eq!(doubted(&folder, &FALL.replace(right, &checked)), []);
+        assert!(doubted(&folder, &FALL.replace(right, &checked)).is_empty());
     }
-    let both = FALL.replace("\"rad", "\"deg");
-    let columns: Vec<String> = doubted(&folder, &both)
-        .into_iter()
-        .map(|one| one.0)
-        .collect();
-    assert_eq!(columns, ["omega", "theta"]);
 }

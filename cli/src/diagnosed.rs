@@ -8,7 +8,7 @@ use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
     before_sentence, divided, doubts, hinted, imperfections, joined, law_sentence, left_out,
-    percent, sentence, short,
+    percent, refit_sentence, sentence, short,
 };
 use appell_report::text::{number, with_unit};
 
@@ -17,8 +17,16 @@ const WIDEST: usize = 60;
 /// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
+/// How what was found comes into the spec.
+pub(crate) struct Apply {
+    /// The command that writes the report, where none was written.
+    pub(crate) before: Option<String>,
+    /// The command that reads it.
+    pub(crate) command: String,
+}
+
 /// The summary, about ten lines.
-pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
+pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}: {}", report.mechanism, sentence(report));
@@ -89,6 +97,25 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
     }
+    match report.verdict {
+        GapVerdict::Ambiguous => {
+            let motion = match report.experiment {
+                Some(_) => "that experiment",
+                None => "other motions",
+            };
+            let command = &apply.command;
+            let _ = writeln!(
+                text,
+                "  then      record {motion}, and diagnose again with the recording before anything is applied: \
+                 {command}"
+            );
+        }
+        GapVerdict::Explained => next_steps(&mut text, "", apply),
+        GapVerdict::NoGap if refit_sentence(report).is_some() => {
+            next_steps(&mut text, "take the parameters over: ", apply);
+        }
+        GapVerdict::NoGap | GapVerdict::Unexplained => {}
+    }
     if let Some(rows) = left_out(report) {
         let _ = writeln!(text, "  rows      {rows}");
     }
@@ -106,6 +133,17 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         );
     }
     text
+}
+
+/// The commands that write what was found into the spec.
+fn next_steps(text: &mut String, why: &str, apply: &Apply) {
+    let mut what = "next";
+    // Writing to a string cannot fail.
+    for command in apply.before.iter().chain([&apply.command]) {
+        let why = if what == "next" { why } else { "" };
+        let _ = writeln!(text, "  {what:9} {why}{command}");
+        what = "";
+    }
 }
 
 /// The table of several rigs.
@@ -208,7 +246,10 @@ fn how_far(report: &Report) -> String {
         let _ = writeln!(text, "  budget    {parts}");
     }
     if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
-        text.push_str("            no significant improvement on held-out runs\n");
+        text.push_str(
+            "            no significant improvement on held-out runs: the interval leaves it open whether anything \
+             closes\n",
+        );
     }
     text
 }

@@ -15,6 +15,8 @@ pub enum FindingKind {
     CutOff,
     /// Rows so far apart that times are probably not in seconds.
     SlowClock,
+    /// A unit that the motion contradicts.
+    Unit,
     /// A step much longer than the others.
     Gap,
     /// Measurements that are missing.
@@ -52,6 +54,7 @@ impl FindingKind {
             Self::MissingTime => "missing-time",
             Self::CutOff => "cut-off",
             Self::SlowClock => "slow-clock",
+            Self::Unit => "unit",
             Self::Gap => "gap",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
@@ -74,6 +77,7 @@ impl FindingKind {
             Self::BackwardTime
             | Self::MissingTime
             | Self::SlowClock
+            | Self::Unit
             | Self::Constant
             | Self::HeldInput
             | Self::NoiseDisagrees

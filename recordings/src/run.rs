@@ -1,5 +1,7 @@
 //! A run from its table: values in SI, inputs held, angles unwrapped.
 
+use std::f64::consts::TAU;
+
 use appell_estimate::smoothing::angle::unwrap;
 
 use crate::channel::{Channel, Role};
@@ -7,6 +9,9 @@ use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
 use crate::set::{Part, Run};
 use crate::table::Table;
+
+/// Range in turns beyond which an angle is not wrapped.
+const MOST_TURNS: f64 = 3.0;
 
 /// A run from its table, with dropouts reported, inputs held and angles unwrapped.
 pub(crate) fn read(
@@ -36,7 +41,7 @@ pub(crate) fn read(
                 tell(FindingKind::Dropouts, format!("{rows} of {all} missing"));
             }
         }
-        if channel.is_angle() {
+        if channel.is_angle() && may_be_wrapped(values) {
             let steps = unwrap(values);
             if steps > 0 {
                 let steps = counted(steps, "time");
@@ -52,6 +57,16 @@ pub(crate) fn read(
         values,
         sampling,
     }
+}
+
+/// Whether an angle may start anew after a turn: one that goes far beyond is counted on already.
+fn may_be_wrapped(values: &[f64]) -> bool {
+    let present = || values.iter().copied().filter(|value| !value.is_nan());
+    let [low, high] = [
+        present().fold(f64::INFINITY, f64::min),
+        present().fold(f64::NEG_INFINITY, f64::max),
+    ];
+    high - low < MOST_TURNS * TAU
 }
 
 /// Replaces missing values by the previous one; at the beginning by the first one present.

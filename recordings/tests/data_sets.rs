@@ -488,3 +488,21 @@ fn times_are_in_the_unit_that_the_description_states() {
         assert!(error.contains(told), "{error}");
     }
 }
+
+#[test]
+fn an_angle_far_beyond_a_turn_is_not_unwrapped() {
+    let folder = Folder::new();
+    // Four degrees a row, which were taken for radians.
+    let rows = (0..60).map(|row| format!("{},{},0", 0.01 * f64::from(row), 4 * row));
+    let rows: Vec<String> = rows.collect();
+    folder.write("run.csv", format!("t,theta,tau\n{}\n", rows.join("\n")));
+    folder.write("recording.toml", pendulum(SWING, &["run.csv"], &[]));
+    let set = folder.read().unwrap();
+    let last = set.runs[0].values[0].last().copied();
+    assert_eq!(last, Some(236.0));
+    assert!(
+        set.findings
+            .iter()
+            .all(|finding| finding.kind != FindingKind::Unwrapped)
+    );
+}

@@ -17,6 +17,8 @@ pub use doubt::doubts;
 pub use law::law_sentence;
 pub use numbers::percent;
 pub use page::page;
-pub use words::{before_sentence, hinted, imperfections, joined, left_out, sentence};
+pub use words::{
+    before_sentence, hinted, imperfections, joined, left_out, refit_sentence, sentence,
+};
 
 pub use crate::text::short;

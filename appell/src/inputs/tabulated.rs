@@ -72,7 +72,7 @@ fn described(text: &str) -> Option<(&str, &str)> {
 /// The inputs of a run of a data set.
 fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Error> {
     let mut set = recording::read(&[description.into()], Some(mechanism))?;
-    recording::check_time_unit(&set)?;
+    recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
         let missing = if run.is_empty() {

@@ -11,7 +11,10 @@ use super::elements::{bar, capital, code, figure, separated, table};
 use super::law::{law, predicts};
 use super::numbers::{measured, percent};
 use super::plots;
-use super::words::{alternatives, hinted, imperfections, joined, left_out, percent_of, statement};
+use super::words::{
+    alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, refit_sentence,
+    statement,
+};
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
 use crate::text::{horizon, short, with_unit};
@@ -75,6 +78,7 @@ fn reading(report: &Report) -> Markup {
             }
             @if let Some((probability, same, rivals)) = alternatives(report) {
                 li { "Probability " (percent_of(probability)) "."
+                @if let Some(next) = next_best(report).filter(|_| report.verdict == GapVerdict::Explained) { " Next: " (next) "." }
                 @if !same.is_empty() { " The same in every motion: " (separated(&same, |one| code(one), &html! { ", " })) "." }
                 @if !rivals.is_empty() { " Not ruled out: " (separated(&rivals, |one| code(one), &html! { ", " })) "." } }
             }
@@ -95,6 +99,9 @@ fn worth(far: &HowFar) -> String {
         percent(far.closed_ci95[1]),
         percent(far.closed_vs_refitted),
     );
+    if far.closed_ci95[0] <= 0.0 {
+        text += " The interval includes zero: these runs leave it open whether it closes anything.";
+    }
     if far.is_worse {
         text += " Predictions become worse with it: the fit does not generalise to these runs.";
     } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
@@ -436,6 +443,12 @@ fn is_alternative(hypothesis: &Hypothesis) -> bool {
 /// Recommended actions.
 fn next(set: &DataSet, report: &Report) -> Markup {
     let advice = match report.verdict {
+        GapVerdict::NoGap if refit_sentence(report).is_some() => html! {
+            p {
+                "Take the parameters over: " code { "appell apply" } " writes those of the report that "
+                code { "appell diagnose" } " writes as JSON into the spec."
+            }
+        },
         GapVerdict::NoGap => html! {
             p {
                 "Nothing has to be added to the model. The table below tells how small an effect these \
@@ -445,7 +458,14 @@ fn next(set: &DataSet, report: &Report) -> Markup {
         _ if is_alternative(&report.which[0]) => html! {
             p { "Adopt the alternative model and repeat the diagnosis with it." }
         },
-        GapVerdict::Explained | GapVerdict::Ambiguous => html! {
+        GapVerdict::Ambiguous => html! {
+            p {
+                "Tell the tied hypotheses apart before one of them is written into the spec: record "
+                @if report.experiment.is_some() { "the experiment below" } @else { "other motions" }
+                ", diagnose again with the recording, and then use " code { "appell apply" } "."
+            }
+        },
+        GapVerdict::Explained => html! {
             p {
                 "Write the effect into the spec: " code { "appell apply" } " reads the report that "
                 code { "appell diagnose" } " writes as JSON."

@@ -78,7 +78,8 @@ fn a_ring_marks_a_motor_in_the_joint_where_it_acts() {
         let mut rings = svg.lines().filter(|line| line.contains("class=\"ring"));
         let ring = rings.next().unwrap();
         let at: [f64; 2] = ["cx", "cy"].map(|name| attribute(ring, name)[0].parse().unwrap());
-        assert_eq!(at, place, "{name}: {input}");
+        let away = (at[0] - place[0]).hypot(at[1] - place[1]);
+        assert!(away < DIGIT, "{name}: {input}");
         assert_eq!(rings.count(), 0, "{name}: {input}");
     }
 }

@@ -11,7 +11,7 @@ use serde_json::Value;
 
 use crate::diagnosed::{self, Apply};
 use crate::failure::Error;
-use crate::output;
+use crate::output::{self, shell};
 use crate::progress;
 use appell::files;
 use appell::source::Source;
@@ -261,7 +261,11 @@ impl Diagnose {
             None if is_shipped => &set.mechanism.name,
             None => &set.spec.file,
         };
-        let apply = |report: &Path| format!("appell apply {model} --report {}", report.display());
+        let model = shell(model);
+        let apply = |report: &Path| {
+            let report = shell(&report.to_string_lossy());
+            format!("appell apply {model} --report {report}")
+        };
         let written = self.json.as_deref();
         if let Some(report) = written.filter(|path| !files::is_stdout(path)) {
             return Apply {
@@ -269,9 +273,12 @@ impl Diagnose {
                 command: apply(report),
             };
         }
-        let data = self.data.iter().map(|path| path.display().to_string());
+        let data = self.data.iter().map(|path| shell(&path.to_string_lossy()));
         let data = data.collect::<Vec<_>>().join(" ");
-        let given = self.model.as_ref().map(|model| format!("{model} "));
+        let given = self
+            .model
+            .as_ref()
+            .map(|model| format!("{} ", shell(model)));
         let given = given.unwrap_or_default();
         Apply {
             before: Some(format!(

@@ -19,6 +19,11 @@ const SINGULAR: f64 = 1e-6;
 /// Distance from a declared range, in its width, that is far outside.
 const FAR: f64 = 2.0;
 
+/// Measured values and their first two derivatives.
+type Derivatives = [DVector<f64>; 3];
+/// ω and ω̇, where something tells them.
+type Speeds = Option<[DVector<f64>; 2]>;
+
 /// Recordings and equations.
 pub(super) struct Balance<'a> {
     set: &'a DataSet,
@@ -113,7 +118,7 @@ impl<'a> Balance<'a> {
                     let values = run.values[*index][..rows].iter();
                     let mut values: Vec<f64> =
                         values.map(|value| value * factors[*index]).collect();
-                    if factors[*index] != 1.0 && self.set.channels[*index].is_angle() {
+                    if rescaled(factors[*index]) && self.set.channels[*index].is_angle() {
                         unwrap(&mut values);
                     }
                     bridge(&run.times[..rows], &mut values);
@@ -142,136 +147,127 @@ impl<'a> Balance<'a> {
         self.inputs.iter().map(mean).collect()
     }
 
-    /// Adds what a motion misses.
-    fn add(&self, misses: &mut [Miss], t: f64, derivatives: &[DVector<f64>; 3], u: &[f64]) {
-        let info = self.model.info();
-        let (n, speeds) = (info.state_len(), info.speeds);
-        let mut x = info.initial_state();
-        for (row, (_, measured)) in self.measured.iter().enumerate() {
-            match measured {
-                Measured::Coordinate(i) => x[speeds + i] = derivatives[0][row],
-                Measured::PseudoVelocity(i) => x[*i] = derivatives[0][row],
-                Measured::Output(_) => {}
-            }
+    /// Rates at a state.
+    fn rates(&self, t: f64, q: &[f64], w: &DVector<f64>, u: &[f64]) -> Vec<f64> {
+        let x = [w.as_slice(), q].concat();
+        let mut rates = vec![0.0; x.len()];
+        let p = &self.p;
+        self.model.rates(At { t, x: &x, u, p }, &mut rates);
+        rates
+    }
+
+    /// Measured coordinates: the row of each and its index.
+    fn coordinates(&self) -> Vec<(usize, usize)> {
+        let rows = self.measured.iter().enumerate();
+        rows.filter_map(|(row, (_, measured))| match measured {
+            Measured::Coordinate(i) => Some((row, *i)),
+            _ => None,
+        })
+        .collect()
+    }
+
+    /// ω and ω̇ from q̇ = T ω + τ and its derivative, in the rows of measured coordinates.
+    fn by_coordinates(&self, t: f64, q: &[f64], u: &[f64], derivatives: &Derivatives) -> Speeds {
+        let speeds = self.model.info().speeds;
+        let coordinates = self.coordinates();
+        if speeds == 0 || coordinates.len() < speeds {
+            return None;
         }
-        let rates = |x: &[f64]| {
-            let mut rates = vec![0.0; n];
-            self.model.rates(
-                At {
-                    t,
-                    x,
-                    u,
-                    p: &self.p,
-                },
-                &mut rates,
-            );
-            rates
+        let q_dot = |w: &DVector<f64>| {
+            let rates = self.rates(t, q, w, u);
+            let rows = coordinates.iter().map(|(_, i)| rates[speeds + i]);
+            DVector::from_iterator(coordinates.len(), rows)
         };
-        let with = |q: &[f64], w: &DVector<f64>| [w.as_slice(), q].concat();
-        let q = x[speeds..].to_vec();
-        // q̇ = T ω + τ in the rows of measured coordinates.
-        let resting = rates(&with(&q, &DVector::zeros(speeds)));
-        let coordinates: Vec<(usize, usize)> = (self.measured.iter().enumerate())
-            .filter_map(|(row, (_, measured))| match measured {
-                Measured::Coordinate(i) => Some((row, speeds + i)),
-                _ => None,
-            })
-            .collect();
-        let columns: Vec<Vec<f64>> = (0..speeds)
+        let tau = q_dot(&DVector::zeros(speeds));
+        let columns: Vec<DVector<f64>> = (0..speeds)
             .map(|j| {
-                let mut unit = DVector::zeros(speeds);
-                unit[j] = 1.0;
-                rates(&with(&q, &unit))
+                let unit = DVector::from_fn(speeds, |i, _| f64::from(u8::from(i == j)));
+                q_dot(&unit) - &tau
             })
             .collect();
-        let slopes = DMatrix::from_fn(coordinates.len(), speeds, |i, j| {
-            columns[j][coordinates[i].1] - resting[coordinates[i].1]
-        });
-        let own = (0..speeds).map(|j| {
+        let svd = DMatrix::from_columns(&columns).svd(true, true);
+        let sizes = &svd.singular_values;
+        let is_finite = sizes.iter().all(|size| size.is_finite());
+        if !is_finite || sizes.min() <= SINGULAR * sizes.max() {
+            return None;
+        }
+        let solve = |order: usize, less: &DVector<f64>| {
+            let known = coordinates.iter().map(|(row, _)| derivatives[order][*row]);
+            let known = DVector::from_iterator(coordinates.len(), known) - less;
+            svd.solve(&known, 0.0).ok()
+        };
+        let w = solve(1, &tau)?;
+        // d/dt (T ω + τ) with ω held.
+        let flow = self.rates(t, q, &w, u).split_off(speeds);
+        let size = flow
+            .iter()
+            .fold(1.0, |most: f64, rate| most.max(rate.abs()));
+        let along = |side: f64| {
+            let moved = q
+                .iter()
+                .zip(&flow)
+                .map(|(q, rate)| q + side * STEP * rate / size);
+            let moved: Vec<f64> = moved.collect();
+            let rates = self.rates(t, &moved, &w, u);
+            DVector::from_iterator(
+                coordinates.len(),
+                coordinates.iter().map(|(_, i)| rates[speeds + i]),
+            )
+        };
+        let carried = (along(1.0) - along(-1.0)) * (size / (2.0 * STEP));
+        let w_dot = solve(2, &carried)?;
+        Some([w, w_dot])
+    }
+
+    /// ω and ω̇ where all pseudo-velocities are measured.
+    fn as_measured(&self, derivatives: &Derivatives) -> Speeds {
+        let own = (0..self.model.info().speeds).map(|j| {
             let mut measured = self.measured.iter();
             measured.position(|(_, own)| *own == Measured::PseudoVelocity(j))
         });
-        let own: Option<Vec<usize>> = own.collect();
-        let by_coordinates = (coordinates.len() >= speeds)
-            .then(|| slopes.svd(true, true))
-            .filter(|svd| {
-                let sizes = &svd.singular_values;
-                sizes.iter().all(|size| size.is_finite()) && sizes.min() > SINGULAR * sizes.max()
-            });
-        let (w, w_dot) = if let Some(svd) = &by_coordinates {
-            let solve = |order: usize, less: &[f64]| {
-                let known = coordinates.iter();
-                let known = known.map(|(row, i)| derivatives[order][*row] - less[*i]);
-                let known = DVector::from_iterator(coordinates.len(), known);
-                svd.solve(&known, 0.0).ok()
-            };
-            let Some(w) = solve(1, &resting) else { return };
-            // d/dt(T ω + τ) with ω held.
-            let held = with(&q, &w);
-            let flow = rates(&held);
-            let size = flow[speeds..]
-                .iter()
-                .fold(1.0, |most: f64, rate| most.max(rate.abs()));
-            let along = |side: f64| {
-                let moved = q.iter().zip(&flow[speeds..]);
-                let moved: Vec<f64> = moved
-                    .map(|(q, rate)| q + side * STEP * rate / size)
-                    .collect();
-                rates(&with(&moved, &w))
-            };
-            let (ahead, behind) = (along(1.0), along(-1.0));
-            let carried: Vec<f64> = (ahead.iter().zip(&behind))
-                .map(|(a, b)| (a - b) * size / (2.0 * STEP))
-                .collect();
-            let Some(w_dot) = solve(2, &carried) else {
-                return;
-            };
-            (w, w_dot)
-        } else if let Some(own) = own {
-            let read = |order: usize| {
-                let values = own.iter().map(|row| derivatives[order][*row]);
-                DVector::from_iterator(speeds, values)
-            };
-            (read(0), read(1))
-        } else {
+        let own: Vec<usize> = own.collect::<Option<_>>()?;
+        let read = |order: usize| {
+            let values = own.iter().map(|row| derivatives[order][*row]);
+            DVector::from_iterator(own.len(), values)
+        };
+        Some([read(0), read(1)])
+    }
+
+    /// Adds what a motion misses.
+    fn add(&self, misses: &mut [Miss], t: f64, derivatives: &Derivatives, u: &[f64]) {
+        let info = self.model.info();
+        let speeds = info.speeds;
+        let mut q = info.initial_state().split_off(speeds);
+        for (row, i) in self.coordinates() {
+            q[i] = derivatives[0][row];
+        }
+        let by_coordinates = self.by_coordinates(t, &q, u, derivatives);
+        let is_told = by_coordinates.is_some();
+        let Some([w, w_dot]) = by_coordinates.or_else(|| self.as_measured(derivatives)) else {
             return;
         };
-        let x = with(&q, &w);
-        let expected = rates(&x);
+        let expected = self.rates(t, &q, &w, u);
+        let x = [w.as_slice(), &q].concat();
         let mut outputs = vec![0.0; info.output_len()];
-        self.model.outputs(
-            At {
-                t,
-                x: &x,
-                u,
-                p: &self.p,
-            },
-            &mut outputs,
-        );
-        if expected
-            .iter()
-            .chain(&outputs)
-            .chain(&w_dot)
-            .any(|value| !value.is_finite())
-        {
+        let p = &self.p;
+        self.model.outputs(At { t, x: &x, u, p }, &mut outputs);
+        let mut all = expected.iter().chain(&outputs).chain(&w_dot);
+        if all.any(|value| !value.is_finite()) {
             return;
         }
         for i in 0..speeds {
             misses[i].add(w_dot[i], expected[i]);
         }
-        // More coordinates than speeds: constraints tie their rates.
-        if by_coordinates.is_some() && coordinates.len() > speeds {
-            for (row, i) in coordinates {
-                misses[speeds + self.measured.len() + row].add(derivatives[1][row], expected[i]);
-            }
-        }
+        let (of_values, of_rates) = (speeds, speeds + self.measured.len());
         for (row, (_, measured)) in self.measured.iter().enumerate() {
             let value = derivatives[0][row];
             match measured {
-                Measured::PseudoVelocity(i) if by_coordinates.is_some() => {
-                    misses[speeds + row].add(value, w[*i])
+                Measured::PseudoVelocity(i) if is_told => misses[of_values + row].add(value, w[*i]),
+                Measured::Output(i) => misses[of_values + row].add(value, outputs[*i]),
+                // More coordinates than speeds: constraints tie their rates.
+                Measured::Coordinate(i) if is_told && self.coordinates().len() > speeds => {
+                    misses[of_rates + row].add(derivatives[1][row], expected[speeds + i]);
                 }
-                Measured::Output(i) => misses[speeds + row].add(value, outputs[*i]),
                 _ => {}
             }
         }
@@ -303,6 +299,11 @@ impl<'a> Balance<'a> {
             },
         )
     }
+}
+
+/// Whether a channel is read in another unit than its own.
+fn rescaled(factor: f64) -> bool {
+    (factor - 1.0).abs() > f64::EPSILON
 }
 
 /// Fills missing values on straight lines.

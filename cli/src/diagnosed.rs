@@ -97,25 +97,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
     }
-    match report.verdict {
-        GapVerdict::Ambiguous => {
-            let motion = match report.experiment {
-                Some(_) => "that experiment",
-                None => "other motions",
-            };
-            let command = &apply.command;
-            let _ = writeln!(
-                text,
-                "  then      record {motion}, and diagnose again with the recording before anything is applied: \
-                 {command}"
-            );
-        }
-        GapVerdict::Explained => next_steps(&mut text, "", apply),
-        GapVerdict::NoGap if refit_sentence(report).is_some() => {
-            next_steps(&mut text, "take the parameters over: ", apply);
-        }
-        GapVerdict::NoGap | GapVerdict::Unexplained => {}
-    }
+    what_next(&mut text, report, apply);
     if let Some(rows) = left_out(report) {
         let _ = writeln!(text, "  rows      {rows}");
     }
@@ -133,6 +115,30 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
         );
     }
     text
+}
+
+/// What the verdict asks for.
+fn what_next(text: &mut String, report: &Report, apply: &Apply) {
+    match report.verdict {
+        GapVerdict::Ambiguous => {
+            let motion = match report.experiment {
+                Some(_) => "that experiment",
+                None => "other motions",
+            };
+            let command = &apply.command;
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "  then      record {motion}, and diagnose again with the recording before anything is applied: \
+                 {command}"
+            );
+        }
+        GapVerdict::Explained => next_steps(text, "", apply),
+        GapVerdict::NoGap if refit_sentence(report).is_some() => {
+            next_steps(text, "take the parameters over: ", apply);
+        }
+        GapVerdict::NoGap | GapVerdict::Unexplained => {}
+    }
 }
 
 /// The commands that write what was found into the spec.

@@ -72,8 +72,27 @@ fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
     Ok(set)
 }
 
-/// Refuses times that are hardly in seconds, and channels whose unit the motion contradicts.
+/// Refuses recordings of a mechanism at rest, times that are hardly in seconds, and channels whose unit the
+/// motion contradicts.
 pub fn check_units(set: &DataSet) -> Result<(), Error> {
+    let is_constant = |channel: &Channel| {
+        let of_channel = |finding: &Finding| finding.channel.as_ref() == Some(&channel.column);
+        let mut findings = set.findings.iter();
+        findings.any(|finding| finding.kind == FindingKind::Constant && of_channel(finding))
+    };
+    let mut measured = (set.channels.iter())
+        .filter(|channel| matches!(channel.role, Role::Measures(_)))
+        .peekable();
+    if let Some(first) = measured.peek().copied()
+        && measured.all(is_constant)
+    {
+        let message = format!(
+            "`{}` never changes, and nothing else is measured: recordings of a motion are needed",
+            first.column
+        );
+        let run = set.runs.first().map_or("", |run| &run.name);
+        return Err(Error::data(run, message));
+    }
     let doubted = |finding: &&Finding| finding.kind == FindingKind::Unit;
     let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
     let Some(first) = set.findings.iter().find(slow) else {

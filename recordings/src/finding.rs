@@ -19,6 +19,8 @@ pub enum FindingKind {
     Unit,
     /// A step much longer than the others.
     Gap,
+    /// A run with gaps; cut there.
+    Cut,
     /// Measurements that are missing.
     Dropouts,
     /// Missing inputs; the previous value is held.
@@ -56,6 +58,7 @@ impl FindingKind {
             Self::SlowClock => "slow-clock",
             Self::Unit => "unit",
             Self::Gap => "gap",
+            Self::Cut => "cut",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
             Self::Unwrapped => "unwrapped",
@@ -87,6 +90,7 @@ impl FindingKind {
             Self::RepeatedTime
             | Self::CutOff
             | Self::Gap
+            | Self::Cut
             | Self::Dropouts
             | Self::Unwrapped
             | Self::UnknownColumn

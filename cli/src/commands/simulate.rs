@@ -6,6 +6,7 @@ use crate::failure::Error;
 use appell::setup::Assignment;
 use appell::{Law, Model, Motion, Simulated, files};
 use appell_report::figure::Figure;
+use appell_report::text::number;
 use appell_runtime::Trajectory;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::ModelInfo;
@@ -165,8 +166,15 @@ impl Simulate {
             trajectory,
             failure,
             undriven,
+            held_from,
         } = simulated(&model, &motion)?;
 
+        if let Some(from) = held_from {
+            note(&format!(
+                "the recorded inputs end at {} s; their last values are held from there on",
+                number(from)
+            ));
+        }
         for [wanted, name] in trajectory.renamed() {
             note(&format!(
                 "the spec uses the name `{wanted}`; the computed column is `{name}`"

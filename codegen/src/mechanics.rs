@@ -10,6 +10,7 @@ pub mod constraints;
 pub mod contact_rows;
 pub mod contacts;
 pub mod contributions;
+pub mod cramer;
 pub mod creep;
 pub mod dependent;
 pub mod divisors;

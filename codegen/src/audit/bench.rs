@@ -138,15 +138,6 @@ pub(super) fn unconstrained(
     Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain).ok()
 }
 
-/// An expression that only its zeros matter of.
-pub(super) fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
-    if algebra.test.is_zero(&algebra.graph, expr) {
-        Graph::ZERO
-    } else {
-        expr
-    }
-}
-
 pub(super) fn shown(graph: &Graph, expr: Expr) -> String {
     let mut setter = Setter::new(Spelled).with_definitions_inline();
     text(&setter.set(graph, expr).math)

@@ -7,7 +7,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Mechanism, Normal, PointId};
 
-use super::bench::{listed, shown, unconstrained, zero_or};
+use super::bench::{listed, shown, unconstrained};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
@@ -188,7 +188,7 @@ impl Geometry<'_> {
             .map(|velocity| {
                 let coefficients = rates.iter().map(|&rate| {
                     let coefficient = self.algebra.derivative(velocity, rate);
-                    zero_or(self.algebra, coefficient)
+                    self.algebra.unless_zero(coefficient)
                 });
                 LinearRow::homogeneous(coefficients.collect())
             })

@@ -72,6 +72,16 @@ impl Algebra {
         self.derivatives[place].1.of(&mut self.graph, expr)
     }
 
+    /// The expression, or the number zero if that is its value everywhere: what depends on nothing
+    /// must not seem to by rounding.
+    pub fn unless_zero(&mut self, expr: Expr) -> Expr {
+        if self.test.is_zero(&self.graph, expr) {
+            Graph::ZERO
+        } else {
+            expr
+        }
+    }
+
     /// The same value in the fewest operations that the tools here find.
     ///
     /// A coordinate that provably does not matter is set to zero: the velocity of a wheel in its

@@ -16,7 +16,7 @@ use crate::mechanics::kinematics::Kinematics;
 use crate::mechanics::rank::{LinearRow, Standing, standings};
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
-use crate::symbolic::Expr;
+use crate::symbolic::{Expr, Graph};
 
 /// At most one finding per rolling contact.
 pub(super) fn findings(
@@ -98,8 +98,12 @@ impl Geometry<'_> {
             ));
         }
         let material = self.material_velocity(body, contact);
-        if self.independent_of_positions(&material) == 3 {
+        let open = self.independent_of_positions(&material);
+        if open == 3 && !self.stays_level(contact) {
             return Some(self.leaves_the_ground(contact));
+        }
+        if open == 3 || open == 2 && self.spans_the_arm(body, contact, &material) {
+            return Some(self.is_not_tangent(body, contact));
         }
         self.is_overhead(body, contact).then(|| {
             (
@@ -127,6 +131,12 @@ impl Geometry<'_> {
         let v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
         let point = &mechanism.points[contact].name;
         if self.independent_of_positions(&[v[k]]) > 0 {
+            let graph = &mut self.algebra.graph;
+            let of_point = self.kinematics.velocity(contact);
+            let of_point = self.kinematics.frames.express(graph, of_point, frame);
+            if self.independent_of_positions(&[of_point[k]]) == 0 {
+                return Some(self.is_not_tangent(body, contact));
+            }
             return Some((
                 format!(
                     "the coordinates allow the contact `{point}` to move along the normal of its surface"
@@ -176,25 +186,81 @@ impl Geometry<'_> {
         self.vanishes(&passing)
     }
 
+    /// Whether a point keeps its height, once the coordinates satisfy the position constraints.
+    fn stays_level(&mut self, point: PointId) -> bool {
+        let Some(down) = self.mechanism.down() else {
+            return false;
+        };
+        let graph = &mut self.algebra.graph;
+        let v = self.kinematics.velocity(point);
+        let v = self.kinematics.frames.express(graph, v, GROUND);
+        let down = down.map(|c| graph.integer(c.into()));
+        let falls = graph.dot(down, v);
+        self.independent_of_positions(&[falls]) == 0
+    }
+
+    /// Whether the arm from the contact to the centre lies in the plane of the velocities that the
+    /// constraint removes: then that plane is not tangent to a body around its centre.
+    fn spans_the_arm(&mut self, body: BodyId, contact: PointId, velocity: &[Expr; 3]) -> bool {
+        let centre = self.mechanism.bodies[body].centre;
+        let graph = &mut self.algebra.graph;
+        let arm = self
+            .kinematics
+            .between(graph, self.mechanism, contact, centre, GROUND);
+        let before = self.velocities_of_positions();
+        let positions = before.len();
+        let mut rows: Vec<LinearRow> = before
+            .into_iter()
+            .map(|v| self.row_of(v, Graph::ZERO))
+            .collect();
+        rows.extend(velocity.iter().zip(arm).map(|(&v, a)| self.row_of(v, a)));
+        self.independent_after(positions, &rows) == 2
+    }
+
+    fn is_not_tangent(&self, body: BodyId, contact: PointId) -> (String, String) {
+        let body = &self.mechanism.bodies[body];
+        let point = &self.mechanism.points[contact].name;
+        let (name, centre) = (&body.name, &self.mechanism.points[body.centre].name);
+        (
+            format!(
+                "`{name}` does not touch the ground at `{point}`: as it turns, its material there \
+                 moves towards the ground or away from it, so its surface is not tangent to the \
+                 ground, and the constraint removes a velocity too many"
+            ),
+            format!(
+                "check the position of `{point}` relative to the centre `{centre}`, its signs too: the \
+                 normal of the surface at `{point}` is that of the ground; a round wheel touches \
+                 straight below its centre"
+            ),
+        )
+    }
+
     /// How many of some velocities the coordinates leave open, once they satisfy the position
     /// constraints.
     fn independent_of_positions(&mut self, wanted: &[Expr]) -> usize {
         let mut velocities = self.velocities_of_positions();
-        let before = velocities.len();
+        let positions = velocities.len();
         velocities.extend(wanted);
-        let rates = &self.symbols.rates;
-        let rows: Vec<LinearRow> = velocities
-            .into_iter()
-            .map(|velocity| {
-                let coefficients = rates.iter().map(|&rate| {
-                    let coefficient = self.algebra.derivative(velocity, rate);
-                    self.algebra.unless_zero(coefficient)
-                });
-                LinearRow::homogeneous(coefficients.collect())
-            })
-            .collect();
-        let standings = standings(self.algebra, &rows);
-        let open = standings[before..].iter();
+        let rows = velocities.into_iter().map(|v| self.row_of(v, Graph::ZERO));
+        let rows: Vec<LinearRow> = rows.collect();
+        self.independent_after(positions, &rows)
+    }
+
+    /// The coefficients of the rates in a velocity, and one entry more.
+    fn row_of(&mut self, velocity: Expr, further: Expr) -> LinearRow {
+        let mut row = Vec::with_capacity(self.symbols.rates.len() + 1);
+        for &rate in &self.symbols.rates {
+            let coefficient = self.algebra.derivative(velocity, rate);
+            row.push(self.algebra.unless_zero(coefficient));
+        }
+        row.push(self.algebra.unless_zero(further));
+        LinearRow::homogeneous(row)
+    }
+
+    /// How many rows from the given one on do not follow from those before them.
+    fn independent_after(&mut self, first: usize, rows: &[LinearRow]) -> usize {
+        let standings = standings(self.algebra, rows);
+        let open = standings[first..].iter();
         open.filter(|standing| **standing == Standing::Independent)
             .count()
     }

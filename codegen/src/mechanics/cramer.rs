@@ -60,8 +60,26 @@ pub fn solve(
     held: &[SymbolId],
     intervals: &mut Intervals,
 ) -> Option<Vec<Expr>> {
+    let (cofactors, determinant) = adjugate(algebra, rows)?;
+    if algebra.graph.mentions(determinant, held)
+        || !intervals.cannot_vanish(&algebra.graph, determinant)
+    {
+        return None;
+    }
     let n = rows.len();
-    if !(2..=MOST_UNKNOWNS).contains(&n) || rows.iter().any(|row| row.len() != n) {
+    let unknowns = (0..n).map(|j| {
+        let column: Vec<Expr> = cofactors.iter().map(|row| row[j]).collect();
+        let numerator = along(algebra, right, &column);
+        algebra.graph.div(numerator, determinant)
+    });
+    Some(unknowns.collect())
+}
+
+/// Cofactors, row by row, and determinant of a square matrix. `None` where it is larger than a turn in
+/// space.
+pub fn adjugate(algebra: &mut Algebra, rows: &[Vec<Expr>]) -> Option<(Vec<Vec<Expr>>, Expr)> {
+    let n = rows.len();
+    if !(1..=MOST_UNKNOWNS).contains(&n) || rows.iter().any(|row| row.len() != n) {
         return None;
     }
     let mut cofactors = Vec::with_capacity(n);
@@ -70,17 +88,7 @@ pub fn solve(
         cofactors.push(row);
     }
     let determinant = along(algebra, &rows[0], &cofactors[0]);
-    if algebra.graph.mentions(determinant, held)
-        || !intervals.cannot_vanish(&algebra.graph, determinant)
-    {
-        return None;
-    }
-    let unknowns = (0..n).map(|j| {
-        let column: Vec<Expr> = cofactors.iter().map(|row| row[j]).collect();
-        let numerator = along(algebra, right, &column);
-        algebra.graph.div(numerator, determinant)
-    });
-    Some(unknowns.collect())
+    Some((cofactors, determinant))
 }
 
 /// The minor without row i and column j, with its sign. In a turn it is an entry again.
@@ -91,6 +99,7 @@ fn cofactor(algebra: &mut Algebra, rows: &[Vec<Expr>], i: usize, j: usize) -> Ex
         .collect();
     let graph = &mut algebra.graph;
     let minor = match rest[..] {
+        [] => Graph::ONE,
         [only] => only,
         [a, b, c, d] => {
             let (ad, bc) = (graph.mul(a, d), graph.mul(b, c));
@@ -103,7 +112,7 @@ fn cofactor(algebra: &mut Algebra, rows: &[Vec<Expr>], i: usize, j: usize) -> Ex
     } else {
         graph.neg(minor)
     };
-    if rest.len() == 1 {
+    if rest.len() < 4 {
         return signed;
     }
     let mut best = algebra.shortest(signed);

@@ -11,6 +11,7 @@ mod determination;
 mod idle;
 mod integrability;
 mod passivity;
+mod ranges;
 mod reaction;
 mod samples;
 mod start;
@@ -33,6 +34,7 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     let Some(mut bench) = Bench::new(mechanism, derivation) else {
         return Audit::default();
     };
+    bench.proposals = ranges::proposals(&mut bench);
     let mut told = Audit::default();
     let contacts = contact::findings(&mut bench.algebra, mechanism, &derivation.symbols);
     let is_told = |item| contacts.iter().any(|finding| finding.item == item);
@@ -41,6 +43,7 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     told.warnings = contacts;
     for question in [
         determination::audit,
+        ranges::audit,
         idle::audit,
         work::audit,
         passivity::audit,

@@ -98,11 +98,19 @@ impl Geometry<'_> {
             ));
         }
         let material = self.material_velocity(body, contact);
-        let open = self.independent_of_positions(&material);
-        if open == 3 && !self.stays_level(contact) {
+        let centre = mechanism.bodies[body].centre;
+        let graph = &mut self.algebra.graph;
+        let arm = self
+            .kinematics
+            .between(graph, mechanism, contact, centre, GROUND);
+        let standings = self.after_positions(&material, &arm);
+        let count = |wanted| standings.iter().filter(|&s| *s == wanted).count();
+        let removed = count(Standing::Independent);
+        if removed == 3 && !self.stays_level(contact) {
             return Some(self.leaves_the_ground(contact));
         }
-        if open == 3 || open == 2 && self.spans_the_arm(body, contact, &material) {
+        // With two velocities in the plane of the arm, that plane is not tangent to the body.
+        if removed == 3 || removed == 2 && count(Standing::Inconsistent) == 0 {
             return Some(self.is_not_tangent(body, contact));
         }
         self.is_overhead(body, contact).then(|| {
@@ -199,24 +207,6 @@ impl Geometry<'_> {
         self.independent_of_positions(&[falls]) == 0
     }
 
-    /// Whether the arm from the contact to the centre lies in the plane of the velocities that the
-    /// constraint removes: then that plane is not tangent to a body around its centre.
-    fn spans_the_arm(&mut self, body: BodyId, contact: PointId, velocity: &[Expr; 3]) -> bool {
-        let centre = self.mechanism.bodies[body].centre;
-        let graph = &mut self.algebra.graph;
-        let arm = self
-            .kinematics
-            .between(graph, self.mechanism, contact, centre, GROUND);
-        let before = self.velocities_of_positions();
-        let positions = before.len();
-        let mut rows: Vec<LinearRow> = before
-            .into_iter()
-            .map(|v| self.row_of(v, Graph::ZERO))
-            .collect();
-        rows.extend(velocity.iter().zip(arm).map(|(&v, a)| self.row_of(v, a)));
-        self.independent_after(positions, &rows) == 2
-    }
-
     fn is_not_tangent(&self, body: BodyId, contact: PointId) -> (String, String) {
         let body = &self.mechanism.bodies[body];
         let point = &self.mechanism.points[contact].name;
@@ -238,31 +228,34 @@ impl Geometry<'_> {
     /// How many of some velocities the coordinates leave open, once they satisfy the position
     /// constraints.
     fn independent_of_positions(&mut self, wanted: &[Expr]) -> usize {
-        let mut velocities = self.velocities_of_positions();
-        let positions = velocities.len();
-        velocities.extend(wanted);
-        let rows = velocities.into_iter().map(|v| self.row_of(v, Graph::ZERO));
-        let rows: Vec<LinearRow> = rows.collect();
-        self.independent_after(positions, &rows)
-    }
-
-    /// The coefficients of the rates in a velocity, and one entry more.
-    fn row_of(&mut self, velocity: Expr, further: Expr) -> LinearRow {
-        let mut row = Vec::with_capacity(self.symbols.rates.len() + 1);
-        for &rate in &self.symbols.rates {
-            let coefficient = self.algebra.derivative(velocity, rate);
-            row.push(self.algebra.unless_zero(coefficient));
-        }
-        row.push(self.algebra.unless_zero(further));
-        LinearRow::homogeneous(row)
-    }
-
-    /// How many rows from the given one on do not follow from those before them.
-    fn independent_after(&mut self, first: usize, rows: &[LinearRow]) -> usize {
-        let standings = standings(self.algebra, rows);
-        let open = standings[first..].iter();
+        let standings = self.after_positions(wanted, &vec![Graph::ZERO; wanted.len()]);
+        let open = standings.iter();
         open.filter(|standing| **standing == Standing::Independent)
             .count()
+    }
+
+    /// How some velocities, each with a rest, stand to those before them and to the position
+    /// constraints.
+    fn after_positions(&mut self, wanted: &[Expr], rests: &[Expr]) -> Vec<Standing> {
+        let of_positions = self.velocities_of_positions();
+        let positions = of_positions.len();
+        let velocities = of_positions.into_iter().map(|v| (v, Graph::ZERO));
+        let wanted = wanted.iter().copied().zip(rests.iter().copied());
+        let rates = &self.symbols.rates;
+        let rows: Vec<LinearRow> = velocities
+            .chain(wanted)
+            .map(|(velocity, rest)| {
+                let coefficients = rates.iter().map(|&rate| {
+                    let coefficient = self.algebra.derivative(velocity, rate);
+                    self.algebra.unless_zero(coefficient)
+                });
+                LinearRow {
+                    coefficients: coefficients.collect(),
+                    rest,
+                }
+            })
+            .collect();
+        standings(self.algebra, &rows).split_off(positions)
     }
 
     /// Time derivatives of the position constraints.

@@ -570,3 +570,51 @@ fn essential_and_ignorable_states_are_the_same_in_formulas_and_in_numbers() {
         assert_eq!(formulas.essential, numbers.essential, "{}", mechanism.name);
     }
 }
+
+/// A top about a fixed point by z-x-z angles, which have a pole where it stands upright.
+const TOP: &str = "[mechanism]\nname = 'top'\ntitle = 'Top'\n\
+    [parameters]\nm = { value = 1, unit = 'kg' }\nl = { value = 0.1, unit = 'm' }\n\
+    A = { value = 0.002, unit = 'kg*m^2' }\nC = { value = 0.001, unit = 'kg*m^2' }\n\
+    g = { value = 9.81, unit = 'm/s^2' }\n\
+    [coordinates]\npsi = { unit = 'rad' }\ntheta = { unit = 'rad' }\nphi = { unit = 'rad' }\n\
+    [frames]\ntop = { parent = 'ground', turns = [{ about_axis = 'z', by = 'psi' }, \
+    { about_axis = 'x', by = 'theta' }, { about_axis = 'z', by = 'phi' }] }\n\
+    [points]\nG = { from = 'O', in = 'top', at = [0, 0, 'l'] }\n\
+    [bodies]\ntop = { frame = 'top', centre = 'G', mass = 'm', \
+    inertia = { in = 'top', diagonal = ['A', 'A', 'C'] } }\n\
+    [pseudo_velocities]\n\
+    w1 = { value = 'dot(psi)*sin(theta)*sin(phi) + dot(theta)*cos(phi)' }\n\
+    w2 = { value = 'dot(psi)*sin(theta)*cos(phi) - dot(theta)*sin(phi)' }\n\
+    w3 = { value = 'dot(psi)*cos(theta) + dot(phi)' }\n\
+    [loads]\nweight = { kind = 'gravity', down = '-z', acceleration = 'g' }\n";
+
+#[test]
+fn energies_and_accelerations_are_finite_at_the_pole_of_the_angles() {
+    let top = shipped::read("top", TOP);
+    assert!(solved_numerically(&top) > 0);
+    assert_sound(&top);
+    let model = interpreter(&top);
+    let mut point = Point::random(model.info(), &mut Random::of("pole"));
+    point.x = vec![0.3, -0.2, 30.0, 0.0, 0.0, 0.0];
+    let energies = model.energies(point.at());
+    let p = &point.p;
+    let (m, l, a, c, g) = (p[0], p[1], p[2], p[3], p[4]);
+    let across = (a + m * l * l) * (0.3_f64.powi(2) + 0.2_f64.powi(2));
+    let kinetic = 0.5 * (across + c * 30.0 * 30.0);
+    assert_close(
+        "kinetic energy",
+        &[energies.kinetic],
+        &[kinetic],
+        PIVOTED,
+        1.0,
+    );
+    assert_close(
+        "potential energy",
+        &[energies.potential],
+        &[m * g * l],
+        PIVOTED,
+        1.0,
+    );
+    let rates = Evaluation::of(&model, point.at()).rates;
+    assert!(rates[..3].iter().all(|rate| rate.is_finite()), "{rates:?}");
+}

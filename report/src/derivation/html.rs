@@ -107,7 +107,7 @@ fn spans(spans: &[Span]) -> Markup {
 
 fn table(table: &Table, purpose: Use) -> Markup {
     markup! {
-        table {
+        div class="table" { table {
             @if !table.title.is_empty() {
                 caption { (clean(&table.title)) }
             }
@@ -119,7 +119,7 @@ fn table(table: &Table, purpose: Use) -> Markup {
                     td class="line" { (row.line) }
                 }
             }
-        }
+        } }
     }
 }
 

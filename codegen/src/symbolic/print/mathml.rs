@@ -91,7 +91,7 @@ pub fn mathml(math: &Math) -> String {
                 ],
                 vec![mathml(otherwise), "<mtext>otherwise</mtext>".to_owned()],
             ];
-            format!("<mrow><mo>{{</mo>{}</mrow>", grid(&rows))
+            format!("<mrow><mo>{{</mo>{}</mrow>", table("<mtable>", &rows))
         }
     }
 }
@@ -133,7 +133,11 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
 
 /// Rows in brackets, which the style sheet draws as high as they are: fonts often have none that grow.
 fn grid(rows: &[Vec<String>]) -> String {
-    let mut out = String::from("<mtable class=\"matrix\">");
+    table("<mtable class=\"matrix\">", rows)
+}
+
+fn table(tag: &str, rows: &[Vec<String>]) -> String {
+    let mut out = String::from(tag);
     for row in rows {
         out.push_str("<mtr>");
         for cell in row {

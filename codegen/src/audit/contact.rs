@@ -16,6 +16,7 @@ use crate::mechanics::kinematics::Kinematics;
 use crate::mechanics::rank::{LinearRow, Standing, standings};
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
+use crate::symbolic::vector;
 use crate::symbolic::{Expr, Graph};
 
 /// At most one finding per rolling contact.
@@ -99,10 +100,15 @@ impl Geometry<'_> {
         }
         let material = self.material_velocity(body, contact);
         let centre = mechanism.bodies[body].centre;
+        let is_bound = !self.velocities_of_positions().is_empty();
         let graph = &mut self.algebra.graph;
-        let arm = self
-            .kinematics
-            .between(graph, mechanism, contact, centre, GROUND);
+        // Position constraints turn the plane of the velocities: the arm is asked without them.
+        let arm = if is_bound {
+            vector::ZERO
+        } else {
+            self.kinematics
+                .between(graph, mechanism, contact, centre, GROUND)
+        };
         let standings = self.after_positions(&material, &arm);
         let count = |wanted| standings.iter().filter(|&s| *s == wanted).count();
         let removed = count(Standing::Independent);
@@ -110,7 +116,7 @@ impl Geometry<'_> {
             return Some(self.leaves_the_ground(contact));
         }
         // With two velocities in the plane of the arm, that plane is not tangent to the body.
-        if removed == 3 || removed == 2 && count(Standing::Inconsistent) == 0 {
+        if removed == 3 || removed == 2 && !is_bound && count(Standing::Inconsistent) == 0 {
             return Some(self.is_not_tangent(body, contact));
         }
         self.is_overhead(body, contact).then(|| {

@@ -26,7 +26,7 @@ impl Proposal {
         let Coordinate { label, initial, .. } = &mechanism.coordinates[self.coordinate];
         let scale = label.unit.scale;
         let ends = self.range.map(|end| {
-            if scale == 1.0 {
+            if label.unit.is_si() {
                 end
             } else {
                 (end / scale).round()

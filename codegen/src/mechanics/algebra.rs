@@ -157,7 +157,8 @@ impl Algebra {
     /// An expression `c s + rest` without the unknowns, `c C⁻¹ r + rest`, where that takes no division and
     /// no more operations.
     fn related(&mut self, expr: Expr, relation: &Relation) -> Option<Expr> {
-        if !self.graph.mentions(expr, &relation.symbols) {
+        let is_long = self.graph.operations(&[expr]) > MOST_TERMS;
+        if is_long || !self.graph.mentions(expr, &relation.symbols) {
             return None;
         }
         let mut slopes = Vec::with_capacity(relation.unknowns.len());

@@ -107,7 +107,7 @@ fn cofactor(algebra: &mut Algebra, rows: &[Vec<Expr>], i: usize, j: usize) -> Ex
         }
         _ => return Graph::ZERO,
     };
-    let signed = if (i + j) % 2 == 0 {
+    let signed = if (i + j).is_multiple_of(2) {
         minor
     } else {
         graph.neg(minor)

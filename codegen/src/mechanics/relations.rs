@@ -8,6 +8,9 @@ use super::elimination::OpenSystem;
 use super::symbols::ids;
 use crate::symbolic::Expr;
 
+/// Systems with more operations tell nothing short.
+const MOST_OPERATIONS: usize = 24;
+
 /// The blocks of an open system that are small enough for Cramer's rule.
 pub fn relations(algebra: &mut Algebra, system: &OpenSystem) -> Vec<Relation> {
     let n = system.unknowns.len();
@@ -24,6 +27,9 @@ pub fn relations(algebra: &mut Algebra, system: &OpenSystem) -> Vec<Relation> {
     {
         let row = |&i: &usize| unknowns.iter().map(|&k| matrix[i][k]).collect();
         let rows: Vec<Vec<Expr>> = equations.iter().map(row).collect();
+        if algebra.graph.operations(&rows.concat()) > MOST_OPERATIONS {
+            continue;
+        }
         let Some((cofactors, determinant)) = cramer::adjugate(algebra, &rows) else {
             continue;
         };

@@ -77,7 +77,7 @@ impl<V: Vocabulary> Setter<V> {
     /// The letters of parts and of unknowns of linear systems: none that a symbol has.
     pub fn bases(&mut self, graph: &Graph) -> [&'static str; 2] {
         *self.bases.get_or_insert_with(|| {
-            let symbols = (0..graph.symbol_count() as u32).map(SymbolId);
+            let symbols = (0u32..).take(graph.symbol_count()).map(SymbolId);
             let taken: Vec<String> = symbols
                 .map(|symbol| Letter::of(graph.symbol_name(symbol)).base)
                 .collect();

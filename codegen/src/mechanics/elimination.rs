@@ -5,11 +5,12 @@ use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
+use super::cramer::{self, Block};
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::rank::{LinearRow, Standing, standings};
-use super::symbols::Symbols;
-use crate::symbolic::{Expr, Graph, Intervals, Substitution};
+use super::symbols::{Symbols, ids};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution, SymbolId};
 
 /// The generalised velocities in terms of the pseudo-velocities.
 #[derive(Debug, Clone)]
@@ -119,7 +120,7 @@ pub fn eliminate(
         .iter()
         .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
     let given: Vec<LinearRow> = given.collect();
-    let solved = solve(algebra, equations, &symbols.rates, intervals);
+    let solved = solve(algebra, equations, symbols, intervals);
     let Some((violating, violated)) = solved else {
         let (speeds, rows) = given.split_at(mechanism.pseudo_velocities.len());
         let names = constraints.rows.iter().filter(|row| row.is_active());
@@ -318,11 +319,11 @@ struct Solved {
 fn solve(
     algebra: &mut Algebra,
     mut equations: Vec<Equation>,
-    symbols: &[Expr],
+    symbols: &Symbols,
     intervals: &mut Intervals,
 ) -> Option<(Vec<Expr>, OpenSystem)> {
-    let unknowns = equations.len();
-    let mut open: Vec<usize> = (0..unknowns).collect();
+    let count = equations.len();
+    let mut open: Vec<usize> = (0..count).collect();
     let mut solved: Vec<Solved> = Vec::new();
     while let Some((row, column)) = safest_pivot(algebra, &equations, &open, intervals) {
         let Equation {
@@ -366,20 +367,37 @@ fn solve(
         return None;
     }
 
-    let mut rates = vec![Graph::ZERO; unknowns];
-    if let Some(pair) = pair_by_formula(algebra, &equations, &open, intervals) {
-        for (&column, rate) in open.iter().zip(pair) {
-            rates[column] = rate;
+    let mut rates = vec![Graph::ZERO; count];
+    let positions = ids(&algebra.graph, &symbols.coordinates);
+    let mut kept: Vec<usize> = Vec::new();
+    let matrix: Vec<&[Expr]> = equations.iter().map(|e| &*e.coefficients).collect();
+    for Block {
+        equations: places,
+        unknowns,
+    } in cramer::blocks(&matrix, &open)
+    {
+        let row = |&place: &usize| unknowns.iter().map(|&q| matrix[place][q]).collect();
+        let rows: Vec<Vec<Expr>> = places.iter().map(row).collect();
+        let right: Vec<Expr> = places.iter().map(|&place| equations[place].right).collect();
+        let held: &[SymbolId] = if open.len() == 2 { &[] } else { &positions };
+        match cramer::solve(algebra, &rows, &right, held, intervals) {
+            Some(values) => {
+                for (&column, value) in unknowns.iter().zip(values) {
+                    rates[column] = value;
+                }
+                open.retain(|column| !unknowns.contains(column));
+            }
+            None => kept.extend(places),
         }
-        open.clear();
     }
+    kept.sort_unstable();
     let mut system = OpenSystem::default();
     if !open.is_empty() {
-        system.unknowns = open.iter().map(|&column| symbols[column]).collect();
+        system.unknowns = open.iter().map(|&column| symbols.rates[column]).collect();
         for &column in &open {
-            rates[column] = symbols[column];
+            rates[column] = symbols.rates[column];
         }
-        for equation in &equations {
+        for equation in kept.iter().map(|&place| &equations[place]) {
             let row = open.iter().map(|&c| equation.coefficients[c]);
             system.matrix.extend(row);
             system.right.push(equation.right);
@@ -402,35 +420,6 @@ fn solve(
     }
     system.coordinates = open;
     Some((rates, system))
-}
-
-/// Two unknowns whose determinant cannot vanish although every entry can, as in a turn by an angle.
-fn pair_by_formula(
-    algebra: &mut Algebra,
-    equations: &[Equation],
-    open: &[usize],
-    intervals: &mut Intervals,
-) -> Option<[Expr; 2]> {
-    let ([first, second], &[i, j]) = (equations, open) else {
-        return None;
-    };
-    let mut minor = |[a, b, c, d]: [Expr; 4]| {
-        let (ad, bc) = (algebra.graph.mul(a, d), algebra.graph.mul(b, c));
-        let difference = algebra.graph.sub(ad, bc);
-        algebra.shortest(difference)
-    };
-    let ([a, b], [c, d]) = (
-        [first.coefficients[i], first.coefficients[j]],
-        [second.coefficients[i], second.coefficients[j]],
-    );
-    let determinant = minor([a, b, c, d]);
-    let numerators = [
-        minor([first.right, b, second.right, d]),
-        minor([a, first.right, c, second.right]),
-    ];
-    intervals
-        .cannot_vanish(&algebra.graph, determinant)
-        .then(|| numerators.map(|n| algebra.graph.div(n, determinant)))
 }
 
 /// The pivot that fills in least, among those that cannot vanish.

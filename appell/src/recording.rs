@@ -72,9 +72,8 @@ fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
     Ok(set)
 }
 
-/// Refuses recordings of a mechanism at rest, times that are hardly in seconds, and channels whose unit the
-/// motion contradicts.
-pub fn check_units(set: &DataSet) -> Result<(), Error> {
+/// Refuses recordings that nothing can be fitted to: those of a mechanism at rest, and those in doubtful units.
+pub fn check(set: &DataSet) -> Result<(), Error> {
     let is_constant = |channel: &Channel| {
         let of_channel = |finding: &Finding| finding.channel.as_ref() == Some(&channel.column);
         let mut findings = set.findings.iter();
@@ -93,6 +92,11 @@ pub fn check_units(set: &DataSet) -> Result<(), Error> {
         let run = set.runs.first().map_or("", |run| &run.name);
         return Err(Error::data(run, message));
     }
+    check_units(set)
+}
+
+/// Refuses times that are hardly in seconds, and channels whose unit the motion contradicts.
+pub fn check_units(set: &DataSet) -> Result<(), Error> {
     let doubted = |finding: &&Finding| finding.kind == FindingKind::Unit;
     let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
     let Some(first) = set.findings.iter().find(slow) else {

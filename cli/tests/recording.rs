@@ -232,7 +232,7 @@ fn a_unit_that_the_motion_contradicts_is_told_and_refused_until_it_is_vouched_fo
             let command = [command, &["--data", "."]].concat();
             folder.fails(3, &command, &[&place, "unit_checked = true"]);
         }
-        let checked = format!("{wrong}, unit_checked = true");
-        assert!(doubted(&folder, &FALL.replace(right, &checked)).is_empty());
+        let checked = description.replace(", noise_std", ", unit_checked = true, noise_std");
+        assert!(doubted(&folder, &checked).is_empty());
     }
 }

@@ -289,14 +289,19 @@ fn gaps_extra_columns_and_angles_that_start_anew_are_told() {
         writeln!(text, "{t:.3};{theta:.9};\"0\";x").unwrap();
     }
     let set = one_run(&text).read().unwrap();
-    let run = &set.runs[0];
-    for (t, theta) in run.times.iter().zip(&run.values[0]) {
-        assert!((theta - 5.0 * t - 3.0).abs() < 1e-6);
+    // What the input was in the gap is not known.
+    let names: Vec<&str> = set.runs.iter().map(|run| run.name.as_str()).collect();
+    assert_eq!(names, ["run.csv#1", "run.csv#2"]);
+    for run in &set.runs {
+        for (t, theta) in run.times.iter().zip(&run.values[0]) {
+            assert!((theta - 5.0 * t - 3.0).abs() < 1e-6);
+        }
+        assert_eq!((run.times.len(), run.sampling.gaps.len()), (150, 0));
     }
-    assert_eq!(run.sampling.gaps.len(), 1);
     let kinds: Vec<FindingKind> = set.findings.iter().map(|f| f.kind).collect();
     for kind in [
         FindingKind::Gap,
+        FindingKind::Cut,
         FindingKind::UnknownColumn,
         FindingKind::Unwrapped,
         FindingKind::Constant,

@@ -120,7 +120,7 @@ impl Diagnose {
             return self.fleet();
         }
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
-        appell::recording::check_units(&set)?;
+        appell::recording::check(&set)?;
         let before = match self.against.as_slice() {
             [] => None,
             paths => Some(appell::recording::read(paths, self.model.as_deref())?),

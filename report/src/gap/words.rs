@@ -299,9 +299,13 @@ fn names_effects(report: &Report) -> bool {
         .is_some_and(|first| !first.parameters.is_empty())
 }
 
-/// A probability in whole percent.
+/// A probability in whole percent, none of them certain.
 pub(super) fn percent_of(probability: f64) -> String {
-    format!("{:.0} %", 100.0 * probability)
+    match 100.0 * probability {
+        percent if percent > 99.0 => "over 99 %".to_owned(),
+        percent if percent < 1.0 => "under 1 %".to_owned(),
+        percent => format!("{percent:.0} %"),
+    }
 }
 
 /// The most probable hypothesis of the library.

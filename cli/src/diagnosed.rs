@@ -7,8 +7,8 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    before_sentence, divided, doubts, hinted, imperfections, joined, law_sentence, left_out,
-    percent, refit_sentence, sentence, short,
+    before_sentence, divided, doubts, hinted, imperfections, is_determined, joined, law_sentence,
+    left_out, percent, refit_sentence, said, sentence, short,
 };
 use appell_report::text::{number, with_unit};
 
@@ -49,7 +49,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
         );
     }
     for hypothesis in report.which.iter().take(LISTED) {
-        let _ = writeln!(text, "  which     {}", line(hypothesis));
+        let _ = writeln!(text, "  which     {}", line(report, hypothesis));
     }
     for doubt in doubts(report) {
         let _ = writeln!(text, "  unit?     {doubt}");
@@ -219,7 +219,7 @@ fn how_far(report: &Report) -> String {
     let mut text = format!(
         "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative to the \
          noise)\n",
-        far.horizon_s,
+        number(far.horizon_s),
         number(far.nominal),
         number(far.refitted),
         number(far.with_effect),
@@ -234,20 +234,25 @@ fn how_far(report: &Report) -> String {
         let _ = writeln!(
             text,
             "            {} s ahead: nominal {}, re-fitted {}, with effect {}",
-            ahead.horizon,
+            number(ahead.horizon),
             number(ahead.nominal),
             number(ahead.refitted),
             number(ahead.with_effect),
         );
     }
-    let _ = writeln!(
-        text,
-        "            closed {} [{}, {}], against the re-fitted model {}",
-        percent(far.closed),
-        percent(far.closed_ci95[0]),
-        percent(far.closed_ci95[1]),
-        percent(far.closed_vs_refitted),
-    );
+    let [low, high] = far.closed_ci95.map(percent);
+    let _ = if is_determined(far.closed, far.closed_ci95) {
+        let (closed, refitted) = (percent(far.closed), percent(far.closed_vs_refitted));
+        writeln!(
+            text,
+            "            closed {closed} [{low}, {high}], against the re-fitted model {refitted}"
+        )
+    } else {
+        writeln!(
+            text,
+            "            what is closed is not determined: the held-out runs leave it between {low} and {high}"
+        )
+    };
     if let Some(parts) = divided(report) {
         let _ = writeln!(text, "  budget    {parts}");
     }
@@ -260,7 +265,7 @@ fn how_far(report: &Report) -> String {
     text
 }
 
-fn line(hypothesis: &Hypothesis) -> String {
+fn line(report: &Report, hypothesis: &Hypothesis) -> String {
     let values: Vec<String> = hypothesis
         .parameters
         .iter()
@@ -279,7 +284,7 @@ fn line(hypothesis: &Hypothesis) -> String {
     };
     format!(
         "{probability}  {}  {}",
-        joined(&hypothesis.effects),
+        said(report, hypothesis),
         values.join(", ")
     )
 }

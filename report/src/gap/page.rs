@@ -9,11 +9,11 @@ use super::budget::budget;
 use super::doubt::doubts;
 use super::elements::{bar, capital, code, figure, separated, table};
 use super::law::{law, predicts};
-use super::numbers::{measured, percent};
+use super::numbers::{is_determined, measured, percent};
 use super::plots;
 use super::words::{
     alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, refit_sentence,
-    statement,
+    said, statement,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
@@ -91,12 +91,16 @@ fn reading(report: &Report) -> Markup {
 
 /// What the leading hypothesis is worth on held-out runs.
 fn worth(far: &HowFar) -> String {
+    let [low, high] = far.closed_ci95.map(percent);
+    if !is_determined(far.closed, far.closed_ci95) {
+        return format!(
+            "What it closes is not determined: the held-out runs leave it between {low} and {high}."
+        );
+    }
     let mut text = format!(
-        "On held-out runs it closes {} [{}, {}] of the gap, and {} of the gap that remains after re-fitting the \
+        "On held-out runs it closes {} [{low}, {high}] of the gap, and {} of the gap that remains after re-fitting the \
          parameters.",
         percent(far.closed),
-        percent(far.closed_ci95[0]),
-        percent(far.closed_ci95[1]),
         percent(far.closed_vs_refitted),
     );
     if far.closed_ci95[0] <= 0.0 {
@@ -278,11 +282,15 @@ fn windows(place: &Where) -> Markup {
     }
 }
 
-fn hypotheses(list: &[&Hypothesis]) -> Markup {
+fn hypotheses(report: &Report, list: &[&Hypothesis]) -> Markup {
     let rows = list.iter().map(|hypothesis| {
         let name = match hypothesis.effects.first().map(String::as_str) {
             None => html! { "no effect: the model with its parameters within tolerance" },
-            Some("unknown") => html! { "none of the library" },
+            Some("unknown") => {
+                let beside = said(report, hypothesis);
+                let beside = beside.split_once(" beside ").map(|(_, effects)| code(effects));
+                html! { "none of the library" @if let Some(effects) = beside { ", beside " (effects) } }
+            }
             Some(_) => code(&joined(&hypothesis.effects)),
         };
         let sizes = hypothesis
@@ -316,11 +324,11 @@ fn which(report: &Report) -> Markup {
         report.which.iter().partition(is_told);
     html! {
         h2 { "Which" }
-        (hypotheses(&told))
+        (hypotheses(report, &told))
         @if !others.is_empty() {
             details {
                 summary { (others.len()) " of less than " (percent(TOLD)) }
-                (hypotheses(&others))
+                (hypotheses(report, &others))
             }
         }
         @for doubt in doubts(report) {
@@ -422,15 +430,20 @@ fn how_far(report: &Report) -> Markup {
 }
 
 fn closed(far: &HowFar) -> Markup {
-    let [low, high] = far.closed_ci95;
+    let [low, high] = far.closed_ci95.map(percent);
     html! {
         p {
-            (far.horizon_s) " s ahead the RMS prediction error, in units of the noise, falls from "
+            (short(far.horizon_s)) " s ahead the RMS prediction error, in units of the noise, falls from "
             (short(far.nominal)) " to " (short(far.with_effect)) " (noise floor "
-            (short(far.noise_floor)) "). The gap closes by " b { (percent(far.closed)) }
-            ", with 95 % between " (percent(low)) " and " (percent(high))
-            "; against the model with re-fitted parameters by "
-            b { (percent(far.closed_vs_refitted)) } ". Runs: " (far.runs.join(", ")) "."
+            (short(far.noise_floor)) "). "
+            @if is_determined(far.closed, far.closed_ci95) {
+                "The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (low) " and " (high)
+                "; against the model with re-fitted parameters by "
+                b { (percent(far.closed_vs_refitted)) } ". "
+            } @else {
+                "The held-out runs leave it open what closes: between " (low) " and " (high) ". "
+            }
+            "Runs: " (far.runs.join(", ")) "."
         }
     }
 }

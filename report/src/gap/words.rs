@@ -381,6 +381,22 @@ pub fn imperfections(report: &Report) -> Option<String> {
     })
 }
 
+/// What a hypothesis says. Beside what the library lacks stand the effects that close a part of the gap.
+pub fn said(report: &Report, hypothesis: &Hypothesis) -> String {
+    let named = joined(&hypothesis.effects);
+    if !hypothesis.is_unknown() {
+        return named;
+    }
+    let budget = report.how_far.iter().flat_map(|far| &far.budget);
+    let beside = budget.filter(|part| part.is_effect() && part.is_material);
+    let beside: Vec<&str> = beside.map(|part| part.name.as_str()).collect();
+    if beside.is_empty() {
+        named
+    } else {
+        format!("{named} beside {}", beside.join(" + "))
+    }
+}
+
 /// `a + b`
 pub fn joined(effects: &[String]) -> String {
     if effects.is_empty() {

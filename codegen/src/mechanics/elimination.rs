@@ -310,11 +310,12 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
         } else if needed == 0 {
             format!("{remark}remove constraints: they leave no degree of freedom")
         } else if missing > 0 {
-            let constraints = count(missing, "missing constraint", "missing constraints");
-            format!(
-                "{remark}define exactly {}, or add the {constraints}",
-                velocities(needed)
-            )
+            let constraints = match missing {
+                1 => "the missing constraint".to_owned(),
+                more => format!("the {more} missing constraints"),
+            };
+            let needed = velocities(needed);
+            format!("{remark}define exactly {needed}, or add {constraints}")
         } else {
             format!("{remark}define exactly {}", velocities(needed))
         },

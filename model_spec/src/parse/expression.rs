@@ -82,7 +82,7 @@ impl<'a> Parser<'_, 'a> {
         match found.token {
             Token::Number(_) | Token::Name(_) | Token::Symbol('(') => self
                 .error(found, format!("expected an operator before {words}"))
-                .help(help.unwrap_or_else(|| "a product is written with `*`".to_owned())),
+                .maybe_help(help),
             Token::Relation(_) => self
                 .error(found, format!("{words} is allowed only inside `if(…)`"))
                 .help("write `if(a < b, x, y)`"),
@@ -105,14 +105,17 @@ impl<'a> Parser<'_, 'a> {
             {
                 Some(format!("write `{function}({argument})`"))
             }
-            (Token::Number(number), Token::Name(unit), _) if units::parse(unit).is_ok() => {
-                Some(format!(
-                    "a unit is written in brackets, `{number} [{unit}]`, and a product with `*`"
-                ))
-            }
+            (Token::Number(number), Token::Name(unit), _) if units::parse(unit).is_ok() => Some(
+                format!("a product is written with `*`, a unit in brackets: `{number} [{unit}]`"),
+            ),
             (Token::Number(whole), Token::Symbol(','), Some(Token::Number(part))) => {
                 Some(format!("write the decimal point, `{whole}.{part}`"))
             }
+            (
+                Token::Number(_) | Token::Name(_) | Token::Symbol(')'),
+                Token::Number(_) | Token::Name(_) | Token::Symbol('('),
+                _,
+            ) => Some("a product is written with `*`".to_owned()),
             _ => None,
         }
     }

@@ -78,7 +78,8 @@ impl Resolver<'_> {
         }
         let note = |(sum, of): (&ExprAst, &str)| {
             let (angle, span) = large_term(sum)?;
-            Some(in_degrees(&format!("a number in {of}"), angle, span))
+            let note = in_degrees(&format!("a number in {of}"), angle, span);
+            Some(note.help(format!("if it is in degrees, write `{angle} [deg]`")))
         };
         sums.into_iter().filter_map(note).collect()
     }

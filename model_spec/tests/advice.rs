@@ -1,6 +1,6 @@
 //! What a finding says to write instead.
 
-use appell_spec::load;
+use appell_spec::{Report, load};
 
 const SPEC: &str = r#"
 [mechanism]
@@ -34,13 +34,9 @@ held = { value = "reaction(along)", unit = "N" }
 /// What is told of the spec with one text in place of another.
 fn told(from: &str, to: &str) -> String {
     assert!(SPEC.contains(from), "{from}");
-    match load("rod.toml", &SPEC.replace(from, to)) {
-        Ok(checked) => {
-            let codes = checked.warnings.iter();
-            codes
-                .map(|finding| format!("{}\n{}\n", finding.code.text(), finding.message))
-                .collect()
-        }
+    let text = SPEC.replace(from, to);
+    match load("rod.toml", &text) {
+        Ok(checked) => Report::new("rod.toml", text, checked.warnings).plain(),
         Err(report) => report.plain(),
     }
 }

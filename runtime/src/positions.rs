@@ -88,7 +88,8 @@ impl Positions {
             let at = At { t, x, u, p };
             model.position_constraints(at, &mut self.residual, &mut self.jacobian);
             let size = largest(&self.residual);
-            worst = (self.residual.iter().position(|r| r.abs() == size)).unwrap_or(0);
+            let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
+            worst = (self.residual.iter().enumerate().max_by(by_size)).map_or(0, |(row, _)| row);
             let scale = largest(&x[speeds..]).max(1.0);
             // Below rounding, or as small as rounding lets it become.
             if size <= ROUNDING * scale || (size >= last && size <= 1e3 * ROUNDING * scale) {

@@ -284,16 +284,19 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
     let (counted, left_out) = (named(&Row::is_active), named(&|row| row.redundant));
     let (rows, speeds) = (counted.len(), mechanism.pseudo_velocities.len());
     let needed = coordinates.saturating_sub(rows);
-    let mut remark = String::new();
-    if !counted.is_empty() {
-        remark = format!("counted are {}; ", counted.join(", "));
-    }
-    if let [one] = &left_out[..] {
-        remark += &format!("{one} is not counted, because it follows from the others; ");
-    } else if !left_out.is_empty() {
-        let all = left_out.join(", ");
-        remark += &format!("{all} are not counted, because they follow from the others; ");
-    }
+    let kept = match counted.join(", ") {
+        none if none.is_empty() => none,
+        names => format!("counted are {names}; "),
+    };
+    let dropped = match &left_out[..] {
+        [] => String::new(),
+        [one] => format!("{one} is not counted, because it follows from the others; "),
+        more => format!(
+            "{} are not counted, because they follow from the others; ",
+            more.join(", ")
+        ),
+    };
+    let remark = kept + &dropped;
     let velocities = |n| count(n, "pseudo-velocity", "pseudo-velocities");
     let missing = speeds.saturating_sub(needed);
     Err(vec![Finding {

@@ -265,3 +265,101 @@ fn printed_commands_survive_a_shell() {
         crate::documents::shell(&folder, command);
     }
 }
+
+#[test]
+fn a_closed_loop_is_assembled_before_it_is_linearised() {
+    let folder = Folder::new();
+    let at = ["control", "four_bar", "--at", "theta1=1.44162"];
+    let design = ["--outputs", "theta1,omega", "--poles", "-20"];
+    let told = folder.done(&[&at[..], &design[..]].concat()).stdout;
+    for part in [
+        "theta2 = 0.521199 rad",
+        "theta3 = 1.67881 rad",
+        "poles in 1/s: -20.0000, -20.0000",
+    ] {
+        assert!(told.contains(part), "{part} in {told}");
+    }
+    // The choice of outputs is closed by itself.
+    let told = folder
+        .done(&["control", "four_bar", "--poles", "-20"])
+        .stdout;
+    assert!(
+        told.contains("outputs omega, theta1: a closed subsystem"),
+        "{told}"
+    );
+    for outputs in [&[][..], &["--outputs", "theta1,omega"]] {
+        let turning = ["control", "four_bar", "--at", "omega=1"];
+        let said = ["not steady: `theta1` changes by 1.00000 rad per second"];
+        folder.fails(2, &[&turning[..], outputs].concat(), &said);
+    }
+}
+
+#[test]
+fn a_loop_that_cannot_be_assembled_is_told_with_a_remedy() {
+    let folder = Folder::new();
+    let said = ["no value of `theta", "in SI units", "correct the lengths"];
+    for command in ["simulate", "control"] {
+        folder.fails(2, &[command, "four_bar", "--set", "b=2m"], &said);
+    }
+}
+
+#[test]
+fn a_constraint_that_is_stated_twice_is_left_out() {
+    let folder = Folder::new();
+    let spec = text_of("generated/mechanisms/four_bar.toml");
+    let again = "[pseudo_velocities]";
+    let twice = "again = { kind = \"position\", zero = \"c*sin(theta3) - a*sin(theta1) - b*sin(theta2)\" }\n";
+    folder.write(
+        "twice.toml",
+        &spec.replace(again, &format!("{twice}{again}")),
+    );
+    let told = folder.done(&["check", "twice.toml"]).stderr;
+    assert!(
+        told.contains("`again` follows from `upwards` and is left out"),
+        "{told}"
+    );
+    assert!(!told.contains("initial-state"), "{told}");
+    let motion = |model: &str| {
+        let motion = [
+            "simulate",
+            model,
+            "--t-end-s",
+            "0.5",
+            "--engine",
+            "jit",
+            "--json",
+            "-",
+        ];
+        folder.done(&motion).stdout
+    };
+    let last = |text: &str| -> f64 {
+        let value: serde_json::Value = serde_json::from_str(text).expect("JSON");
+        value["final_state"]["theta1"].as_f64().expect("a number")
+    };
+    let (once, twice) = (last(&motion("four_bar")), last(&motion("twice.toml")));
+    assert!((once - twice).abs() < 1e-9, "{once}, {twice}");
+}
+
+#[test]
+fn a_start_that_was_tried_is_not_proposed_again() {
+    let folder = Folder::new();
+    let rest = ["simulate", "rolling_ball", "--t-end-s", "1"];
+    let first = folder.done(&rest).stdout;
+    let proposed = first.split("try `--initial ").nth(1).expect("a hint");
+    let proposed = proposed.split('`').next().expect("a name");
+    let again = folder
+        .done(&[&rest[..], &["--initial", proposed]].concat())
+        .stdout;
+    assert!(again.contains("nothing moves"), "{again}");
+    assert!(!again.contains(proposed), "{again}");
+    let speed = again.split("try `--initial ").nth(1).expect("a hint");
+    let speed = speed.split('`').next().expect("a name");
+    let moved = folder
+        .done(&[&rest[..], &["--initial", speed]].concat())
+        .stdout;
+    assert!(!moved.contains("nothing moves"), "{moved}");
+}
+
+fn text_of(path: &str) -> String {
+    std::fs::read_to_string(repository(path)).expect("a shipped spec")
+}

@@ -183,7 +183,7 @@ v = { value = 'dot(x)', unit = 'm/s' }
         assert!(shown.contains("missing-pseudo-velocities"), "{shown}");
         assert!(shown.contains("free.toml:13:2"), "{shown}");
         assert!(
-            shown.contains("2 coordinates under 0 velocity constraints need 2"),
+            shown.contains("2 coordinates under 0 constraint rows need 2"),
             "{shown}"
         );
     }

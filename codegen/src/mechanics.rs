@@ -228,7 +228,8 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let explicit = dependent.values.is_empty();
     let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, explicit)?;
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
-    let mut warnings = [constraints.warnings.clone(), not_judged].concat();
+    let repeated = positions.warnings.clone();
+    let mut warnings = [constraints.warnings.clone(), repeated, not_judged].concat();
     warnings.extend(initially_singular(
         &mut algebra,
         mechanism,

@@ -195,7 +195,7 @@ impl Simulate {
         }
         let mut text = summary::text(&trajectory);
         if undriven && failure.is_none() && summary::rests(&trajectory) {
-            text += &hint(model.info());
+            text += &hint(model.info(), &self.initial);
         }
         output::print_beside(&text, &[&self.csv, &self.plot, &self.html, &self.json])?;
         match failure {
@@ -238,9 +238,18 @@ impl Simulate {
     }
 }
 
-fn hint(info: &ModelInfo) -> String {
-    let first = info.coordinate_quantities().last();
-    let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
+/// Proposes a coordinate, or a pseudo-velocity where a coordinate did not set anything in motion.
+fn hint(info: &ModelInfo, tried: &[Assignment]) -> String {
+    let is_coordinate = |given: &Assignment| {
+        let state = info.state_index(&given.name);
+        state.is_some_and(|state| state >= info.speeds)
+    };
+    let proposed = if tried.iter().any(is_coordinate) {
+        info.states.first()
+    } else {
+        info.coordinate_quantities().last()
+    };
+    let name = proposed.map_or("NAME", |quantity| quantity.name.as_ref());
     format!(
         "  nothing moves: the mechanism starts in equilibrium and has no input; try `--initial \
          {name}=0.1`\n"

@@ -343,17 +343,32 @@ impl<'a> SteadyProblem<'a> {
     /// The same, all of which must be isolated.
     pub fn solve_isolated(&self, starts: usize) -> Result<Vec<SteadyMotion>, SteadyError> {
         let all = self.solve_all(starts)?;
-        let dimension = all.iter().map(|motion| motion.family).min().unwrap_or(0);
-        if dimension == 0 {
+        if all.iter().any(|motion| motion.family == 0) {
             return Ok(all
                 .into_iter()
                 .filter(|motion| motion.family == 0)
                 .collect());
         }
-        let open = self.open(&all[0]);
+        let (dimension, open) = self.generic_family(&all[0], starts);
         let info = self.model.info();
         let open = open.iter().map(|term| term.name(info)).collect();
         Err(SteadyError::Family { dimension, open })
+    }
+
+    /// Dimension of the family of a motion where it is least, and what varies there: families meet in motions
+    /// such as rest, and the tangents of all of them count there.
+    fn generic_family(&self, motion: &SteadyMotion, starts: usize) -> (usize, Vec<Term>) {
+        let equations = self.equations();
+        let mut spread = Spread::new(equations.unknowns.len());
+        let others = (1..starts).filter_map(|_| {
+            let zero = newton::solve(&equations, &self.start(&equations, &spread.next())).ok()?;
+            let other = self.motion(&equations, &zero);
+            self.in_range(&other.point).then_some(other)
+        });
+        let least = std::iter::once(motion.clone()).chain(others);
+        let least = least.min_by_key(|motion| motion.family);
+        let least = least.unwrap_or_else(|| motion.clone());
+        (least.family, self.open(&least))
     }
 
     /// Quantities that vary within the family of a steady motion and may be prescribed in addition.

@@ -93,7 +93,7 @@ impl Library {
         options: &Options,
         stage: impl FnMut(&'static str),
     ) -> Result<Report, Error> {
-        recording::check_time_unit(set)?;
+        recording::check(set)?;
         Ok(diagnose::diagnose(set, &self.effects, options, stage)?)
     }
 }
@@ -107,8 +107,8 @@ impl Library {
         options: &Options,
         stage: impl FnMut(&'static str),
     ) -> Result<Report, Error> {
-        recording::check_time_unit(before)?;
-        recording::check_time_unit(now)?;
+        recording::check(before)?;
+        recording::check(now)?;
         let effects = &self.effects;
         Ok(diagnose::against(before, now, effects, options, stage)?)
     }

@@ -11,7 +11,7 @@ impl Model {
     /// Computes the inputs of recorded motions, and estimates parameters from the combinations of the
     /// equations that hold whatever the inputs were.
     pub fn inverse(&self, set: &DataSet, options: &Options) -> Result<Answer, Error> {
-        recording::check_time_unit(set)?;
+        recording::check(set)?;
         self.estimating(|equations| Ok(inverse::find(set, equations, options)?))
     }
 }

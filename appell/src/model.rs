@@ -317,7 +317,7 @@ impl Model {
         options: &identify::Options,
         stage: impl FnMut(&'static str),
     ) -> Result<identify::Answer, Error> {
-        recording::check_time_unit(set)?;
+        recording::check(set)?;
         self.estimating(|equations| Ok(identify::identify(set, equations, options, stage)?))
     }
 }

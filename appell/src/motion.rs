@@ -70,6 +70,8 @@ pub struct Simulated {
     pub failure: Option<String>,
     /// Whether neither inputs nor feedback drive the mechanism.
     pub undriven: bool,
+    /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
+    pub held_from: Option<f64>,
 }
 
 impl Motion {
@@ -162,6 +164,9 @@ impl Motion {
         setup.set(&self.parameters)?;
         let plan = self.plan(model, &mut setup, name)?;
         let undriven = plan.is_empty();
+        let held_from = plan
+            .recorded_until()
+            .filter(|until| until + interval < self.t_end);
         let controller = plan.controller(&setup, self.t_end)?;
         let simulation = Simulation {
             parameters: setup.parameters,
@@ -196,6 +201,7 @@ impl Motion {
             trajectory,
             failure,
             undriven,
+            held_from,
         })
     }
 
@@ -215,8 +221,10 @@ impl Motion {
             plan.expression(assignment, setup)?;
         }
         if let Some(file) = &self.recorded {
-            let (table, inputs) = tabulated::read(file, name, setup, model)?;
-            plan.recording(table, &inputs, setup)?;
+            plan.recording(
+                tabulated::read(file, name, setup, model, self.t_end)?,
+                setup,
+            )?;
         }
         Ok(plan)
     }

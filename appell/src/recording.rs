@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use appell_gap::units;
 use appell_models::ALL;
 use appell_recordings::MANIFEST;
 pub use appell_recordings::{
@@ -11,6 +12,7 @@ use appell_report::recording::sentence;
 use appell_report::text::number;
 use appell_spec::Severity;
 
+use crate::engine::Equations;
 use crate::source::Source;
 use crate::{Error, Field};
 
@@ -41,13 +43,13 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
                 (shipped.name, Spec { file, text })
             });
             let library: Vec<(&str, Spec)> = shipped.collect();
-            Ok(appell_recordings::read(folder, &library, spec)?)
+            with_doubts(appell_recordings::read(folder, &library, spec)?)
         }
         (paths, _) if paths.iter().any(described) => Err(Error::request(
             Field::Recordings,
             "give one data set, or CSV files and their mechanism",
         )),
-        (paths, Some(spec)) => Ok(appell_recordings::read_bare(spec, paths)?),
+        (paths, Some(spec)) => with_doubts(appell_recordings::read_bare(spec, paths)?),
         (_, None) => Err(Error::request(
             Field::Recordings,
             "CSV files need the mechanism whose names their columns have; name a shipped one or a spec",
@@ -55,11 +57,53 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
     }
 }
 
-/// Refuses times that are hardly in seconds.
-pub fn check_time_unit(set: &DataSet) -> Result<(), Error> {
+/// The data set with warnings about units.
+fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
+    let mut shipped = ALL.iter();
+    let source = Source {
+        file: set.spec.file.clone(),
+        text: set.spec.text.clone(),
+        shipped: shipped.find(|shipped| shipped.spec == set.spec.text),
+    };
+    let equations = Equations::at_hand(&source)?;
+    for doubt in units::doubts(&set, equations.model()) {
+        set.doubt_unit(&doubt.column, doubt.message);
+    }
+    Ok(set)
+}
+
+/// Refuses recordings that nothing can be fitted to: those of a mechanism at rest, and those in doubtful units.
+pub fn check(set: &DataSet) -> Result<(), Error> {
+    let is_constant = |channel: &Channel| {
+        let of_channel = |finding: &Finding| finding.channel.as_ref() == Some(&channel.column);
+        let mut findings = set.findings.iter();
+        findings.any(|finding| finding.kind == FindingKind::Constant && of_channel(finding))
+    };
+    let mut measured = (set.channels.iter())
+        .filter(|channel| matches!(channel.role, Role::Measures(_)))
+        .peekable();
+    if let Some(first) = measured.peek().copied()
+        && measured.all(is_constant)
+    {
+        let message = format!(
+            "`{}` never changes, and nothing else is measured: recordings of a motion are needed",
+            first.column
+        );
+        let run = set.runs.first().map_or("", |run| &run.name);
+        return Err(Error::data(run, message));
+    }
+    check_units(set)
+}
+
+/// Refuses times that are hardly in seconds, and channels whose unit the motion contradicts.
+pub fn check_units(set: &DataSet) -> Result<(), Error> {
+    let doubted = |finding: &&Finding| finding.kind == FindingKind::Unit;
     let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
     let Some(first) = set.findings.iter().find(slow) else {
-        return Ok(());
+        return match set.findings.iter().find(doubted) {
+            Some(finding) => Err(doubt(set, finding)),
+            None => Ok(()),
+        };
     };
     let mut runs = set.runs.iter();
     let run = runs.find(|run| first.run.as_ref() == Some(&run.name));
@@ -74,6 +118,20 @@ pub fn check_time_unit(set: &DataSet) -> Result<(), Error> {
         first.run.as_deref().unwrap_or_default(),
         message,
     ))
+}
+
+/// The doubt at the place where the unit is stated.
+fn doubt(set: &DataSet, finding: &Finding) -> Error {
+    let column = finding.channel.as_deref().unwrap_or_default();
+    let mut channels = set.channels.iter();
+    let channel = channels.find(|channel| channel.column == column);
+    let place = channel.and_then(|channel| channel.unit_at.as_ref());
+    let place = match (place, set.runs.first()) {
+        (Some((file, line, at)), _) => format!("{file}:{line}:{at}"),
+        (None, Some(run)) => run.name.clone(),
+        (None, None) => String::new(),
+    };
+    Error::data(&place, format!("{column}: {}", finding.message))
 }
 
 /// Warnings about the data that may affect the conclusions, one sentence each.

@@ -7,8 +7,8 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    before_sentence, divided, doubts, hinted, imperfections, joined, law_sentence, left_out,
-    percent, sentence, short,
+    before_sentence, divided, doubts, hinted, imperfections, is_determined, joined, law_sentence,
+    left_out, percent, refit_sentence, said, sentence, short,
 };
 use appell_report::text::{number, with_unit};
 
@@ -17,8 +17,16 @@ const WIDEST: usize = 60;
 /// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
+/// How what was found comes into the spec.
+pub(crate) struct Apply {
+    /// The command that writes the report, where none was written.
+    pub(crate) before: Option<String>,
+    /// The command that reads it.
+    pub(crate) command: String,
+}
+
 /// The summary, about ten lines.
-pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
+pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> String {
     let mut text = String::new();
     // Writing to a string cannot fail.
     let _ = writeln!(text, "{}: {}", report.mechanism, sentence(report));
@@ -41,7 +49,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         );
     }
     for hypothesis in report.which.iter().take(LISTED) {
-        let _ = writeln!(text, "  which     {}", line(hypothesis));
+        let _ = writeln!(text, "  which     {}", line(report, hypothesis));
     }
     for doubt in doubts(report) {
         let _ = writeln!(text, "  unit?     {doubt}");
@@ -89,6 +97,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
     }
+    what_next(&mut text, report, apply);
     if let Some(rows) = left_out(report) {
         let _ = writeln!(text, "  rows      {rows}");
     }
@@ -106,6 +115,41 @@ pub(crate) fn text(report: &Report, next: Option<&Path>) -> String {
         );
     }
     text
+}
+
+/// What the verdict asks for.
+fn what_next(text: &mut String, report: &Report, apply: &Apply) {
+    match report.verdict {
+        GapVerdict::Ambiguous => {
+            let motion = match report.experiment {
+                Some(_) => "that experiment",
+                None => "other motions",
+            };
+            let command = &apply.command;
+            // Writing to a string cannot fail.
+            let _ = writeln!(
+                text,
+                "  then      record {motion}, and diagnose again with the recording before anything is applied: \
+                 {command}"
+            );
+        }
+        GapVerdict::Explained => next_steps(text, "", apply),
+        GapVerdict::NoGap if refit_sentence(report).is_some() => {
+            next_steps(text, "take the parameters over: ", apply);
+        }
+        GapVerdict::NoGap | GapVerdict::Unexplained => {}
+    }
+}
+
+/// The commands that write what was found into the spec.
+fn next_steps(text: &mut String, why: &str, apply: &Apply) {
+    let mut what = "next";
+    // Writing to a string cannot fail.
+    for command in apply.before.iter().chain([&apply.command]) {
+        let why = if what == "next" { why } else { "" };
+        let _ = writeln!(text, "  {what:9} {why}{command}");
+        what = "";
+    }
 }
 
 /// The table of several rigs.
@@ -175,7 +219,7 @@ fn how_far(report: &Report) -> String {
     let mut text = format!(
         "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative to the \
          noise)\n",
-        far.horizon_s,
+        number(far.horizon_s),
         number(far.nominal),
         number(far.refitted),
         number(far.with_effect),
@@ -190,30 +234,38 @@ fn how_far(report: &Report) -> String {
         let _ = writeln!(
             text,
             "            {} s ahead: nominal {}, re-fitted {}, with effect {}",
-            ahead.horizon,
+            number(ahead.horizon),
             number(ahead.nominal),
             number(ahead.refitted),
             number(ahead.with_effect),
         );
     }
-    let _ = writeln!(
-        text,
-        "            closed {} [{}, {}], against the re-fitted model {}",
-        percent(far.closed),
-        percent(far.closed_ci95[0]),
-        percent(far.closed_ci95[1]),
-        percent(far.closed_vs_refitted),
-    );
+    let [low, high] = far.closed_ci95.map(percent);
+    let _ = if is_determined(far.closed, far.closed_ci95) {
+        let (closed, refitted) = (percent(far.closed), percent(far.closed_vs_refitted));
+        writeln!(
+            text,
+            "            closed {closed} [{low}, {high}], against the re-fitted model {refitted}"
+        )
+    } else {
+        writeln!(
+            text,
+            "            what is closed is not determined: the held-out runs leave it between {low} and {high}"
+        )
+    };
     if let Some(parts) = divided(report) {
         let _ = writeln!(text, "  budget    {parts}");
     }
     if report.verdict != GapVerdict::NoGap && far.closed_ci95[0] <= 0.0 {
-        text.push_str("            no significant improvement on held-out runs\n");
+        text.push_str(
+            "            no significant improvement on held-out runs: the interval leaves it open whether anything \
+             closes\n",
+        );
     }
     text
 }
 
-fn line(hypothesis: &Hypothesis) -> String {
+fn line(report: &Report, hypothesis: &Hypothesis) -> String {
     let values: Vec<String> = hypothesis
         .parameters
         .iter()
@@ -232,7 +284,7 @@ fn line(hypothesis: &Hypothesis) -> String {
     };
     format!(
         "{probability}  {}  {}",
-        joined(&hypothesis.effects),
+        said(report, hypothesis),
         values.join(", ")
     )
 }

@@ -21,3 +21,12 @@ pub(crate) fn print_beside(text: &str, files: &[&Option<PathBuf>]) -> Result<(),
     }
     print(text)
 }
+
+/// A word of a command, in quotes where a shell would take it apart or expand it.
+pub(crate) fn shell(word: &str) -> String {
+    let is_plain = |c: char| c.is_alphanumeric() || "_-./,:=+@%".contains(c);
+    if !word.is_empty() && word.chars().all(is_plain) {
+        return word.to_owned();
+    }
+    format!("'{}'", word.replace('\'', "'\\''"))
+}

@@ -222,7 +222,7 @@ fn derive_writes_the_linear_equations_about_a_steady_motion() {
     // The names of pseudo-velocities, of rates and of coordinates say the same.
     let straight = about("theta=0, r=0, dot(psi)=0, u=0");
     assert!(straight.contains("A₁,₅ = 4 g/(5 R)"), "{straight}");
-    assert!(straight.contains("χ = λ² (λ⁴ + c₂ λ² + c₄)"), "{straight}");
+    assert!(straight.contains("χ = λ² (λ⁴ + χ₂ λ² + χ₄)"), "{straight}");
     let again = about("omega_1=0, sigma=0, omega_3=0, r=0[m], theta=0, u=0");
     assert_eq!(straight, again);
     let rest = about("omega_2 = 0, theta=0, r=0, psi_dot=0, u=0");

@@ -38,6 +38,42 @@ fn nothing_is_found_where_nothing_is_missing() {
 }
 
 #[test]
+fn the_headline_has_the_probability_and_the_next_command_the_files() {
+    let told = viscous(0.4).done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let headline = told.stdout.lines().next().expect("a headline");
+    let (sure, next) = ("(probability over 99 %", "; next: ");
+    assert!(
+        headline.contains(sure) && headline.contains(next),
+        "{headline}"
+    );
+    let next = "  next      appell apply carriage --report report.json\n";
+    assert!(told.stdout.contains(next), "{}", told.stdout);
+    // Without a report, the command that writes one comes first.
+    let told = viscous(0.4).done(&["diagnose", "--data", "."]).stdout;
+    let next = "  next      appell diagnose --data . --json gap.json\n            appell apply carriage --report \
+                gap.json\n";
+    assert!(told.contains(next), "{told}");
+}
+
+#[test]
+fn a_parameter_that_is_all_that_is_wrong_is_named_with_both_values() {
+    let folder = viscous(0.0);
+    let description = folder.read("recording.toml");
+    let wrong = "m = { value = 1.1, unit = \"kg\", std = 0.1 }";
+    let right = "m = { value = 1.0, unit = \"kg\", std = 0.02 }";
+    folder.write("recording.toml", &description.replace(right, wrong));
+    let told = folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    assert_eq!(folder.json("report.json")["verdict"], "no_gap");
+    for says in [
+        "once parameters are re-fitted: m = ",
+        " kg (stated 1.1 kg)\n",
+        "take the parameters over: appell apply carriage --report report.json\n",
+    ] {
+        assert!(told.stdout.contains(says), "{}", told.stdout);
+    }
+}
+
+#[test]
 fn a_library_without_the_cause_does_not_name_another_one() {
     let folder = dry(0.3);
     let without = [
@@ -270,7 +306,14 @@ fn a_gain_near_a_factor_between_units_is_doubted_and_has_no_unit() {
         folder.write(name, &(lines.collect::<Vec<_>>().join("\n") + "\n"));
     }
     let description = folder.read("recording.toml");
-    folder.write("recording.toml", &description.replace("1e-3 }", "1 }"));
+    let description = description.replace("1e-3 }", "1 }");
+    // Units are doubted before a fit, unless somebody vouches for them.
+    let asked = ["diagnose", "--data", "."];
+    folder.write("recording.toml", &description);
+    folder.fails(3, &asked, &["write unit = \"mm\"", "unit_checked = true"]);
+    let vouched = description.replace("unit = \"m\"", "unit = \"m\", unit_checked = true");
+    let vouched = vouched.replace("unit = \"N\"", "unit = \"N\", unit_checked = true");
+    folder.write("recording.toml", &vouched);
     let told = folder.done(&["diagnose", "--data", ".", "--html", "page.html"]);
     let gain = "actuator_gain@F  gain = ";
     let line = told.stdout.lines().find(|line| line.contains(gain));

@@ -15,9 +15,17 @@ fn a_tie_is_separated_by_the_experiment_that_was_proposed() {
         &LIMITS[..],
     ]
     .concat();
-    rig.folder.done(&asked);
+    let told = rig.folder.done(&asked).stdout;
     let report = rig.folder.json("report.json");
     assert_eq!(report["verdict"], "ambiguous", "{report:#}");
+    // Every tied hypothesis has its value, and the experiment comes before `apply`.
+    let headline = told.lines().next().expect("a headline");
+    assert!(headline.matches(" = ").count() >= 2, "{headline}");
+    let next = told.find("  next      ").expect("an experiment");
+    let then = told
+        .find("  then      record that experiment")
+        .expect("an order");
+    assert!(next < then, "{told}");
     let experiment = &report["experiment"];
     assert_eq!(experiment["file"], "experiment.csv");
     let (now, then) = (

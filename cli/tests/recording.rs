@@ -165,3 +165,74 @@ fn a_recorded_run_drives_a_simulation_by_the_names_and_units_of_its_description(
         folder.fails(2, &asked, &["append one of a.csv, b.csv"]);
     }
 }
+
+/// A pendulum that falls from two radians, 100 Hz.
+fn fall(rows: usize, start: f64) -> String {
+    let (mut theta, mut omega) = (start, 0.0);
+    let mut text = "t,theta,omega\n".to_owned();
+    for i in 0..rows {
+        let _ = writeln!(text, "{},{theta:.6},{omega:.6}", i as f64 / 100.0);
+        for _ in 0..100 {
+            // I + m l² = 4/3 m l² of the shipped rod.
+            omega -= 1e-4 * 9.81 * 0.25 / (0.25 * 0.25 * 4.0 / 3.0) * f64::sin(theta);
+            theta += 1e-4 * omega;
+        }
+    }
+    text
+}
+
+const FALL: &str = r#"
+mechanism   = "pendulum"
+[parameters]
+m = { value = 1, unit = "kg", std = 0.02 }
+l = { value = 0.25, unit = "m", std = 0 }
+I = { value = 0.0208333333, unit = "kg m^2", std = 0 }
+g = { value = 9.81, unit = "m/s^2", std = 0 }
+[channels]
+theta = { measures = "theta", unit = "rad", noise_std = 1e-4 }
+omega = { measures = "omega", unit = "rad/s", noise_std = 1e-4 }
+[runs]
+fit  = ["a.csv"]
+test = ["b.csv"]
+"#;
+
+/// The unit finding of a description.
+fn doubted(folder: &Folder, description: &str) -> Vec<(String, String)> {
+    folder.write("recording.toml", description);
+    folder.done(&["recording", ".", "--json", "summary.json"]);
+    let json = folder.json("summary.json");
+    let findings = json["findings"].as_array().expect("findings").clone();
+    let units = findings.iter().filter(|finding| finding["kind"] == "unit");
+    let text = |value: &serde_json::Value| value.as_str().expect("a text").to_owned();
+    units
+        .map(|finding| (text(&finding["channel"]), text(&finding["message"])))
+        .collect()
+}
+
+#[test]
+fn a_unit_that_the_motion_contradicts_is_told_and_refused_until_it_is_vouched_for() {
+    let folder = Folder::new();
+    folder.write("a.csv", &fall(600, 2.0));
+    folder.write("b.csv", &fall(400, 1.5));
+    assert!(doubted(&folder, FALL).is_empty());
+    // Angle and rate disagree, and the equations tell which of them is wrong.
+    for (right, wrong) in [("\"rad\"", "\"deg\""), ("\"rad/s\"", "\"deg/s\"")] {
+        let description = FALL.replace(right, wrong);
+        let units = doubted(&folder, &description);
+        assert_eq!(units.len(), 1, "{units:?}");
+        let place = if wrong.contains("/s") {
+            "10:38"
+        } else {
+            "9:38"
+        };
+        let write = format!("write unit = {right} at ./recording.toml:{place}");
+        assert!(units[0].1.contains(&write), "{units:?}");
+        let place = format!("recording.toml:{place}: ");
+        for command in [&["diagnose"][..], &["identify", "pendulum"][..]] {
+            let command = [command, &["--data", "."]].concat();
+            folder.fails(3, &command, &[&place, "unit_checked = true"]);
+        }
+        let checked = description.replace(", noise_std", ", unit_checked = true, noise_std");
+        assert!(doubted(&folder, &checked).is_empty());
+    }
+}

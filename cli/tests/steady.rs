@@ -170,3 +170,10 @@ fn a_chart_has_cells_and_a_boundary_that_turns_back() {
         Some(600)
     );
 }
+
+#[test]
+fn zero_eigenvalues_are_told_only_where_there_are_some() {
+    let told = Folder::new().done(&["stability", "pendulum"]).stdout;
+    assert!(told.contains("eigenvalues"), "{told}");
+    assert!(!told.contains("zero eigenvalue"), "{told}");
+}

@@ -11,6 +11,7 @@ mod determination;
 mod idle;
 mod integrability;
 mod passivity;
+mod ranges;
 mod reaction;
 mod samples;
 mod start;
@@ -33,6 +34,7 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     let Some(mut bench) = Bench::new(mechanism, derivation) else {
         return Audit::default();
     };
+    bench.proposals = ranges::proposals(&mut bench);
     let mut told = Audit::default();
     let contacts = contact::findings(&mut bench.algebra, mechanism, &derivation.symbols);
     let is_told = |item| contacts.iter().any(|finding| finding.item == item);
@@ -41,6 +43,7 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     told.warnings = contacts;
     for question in [
         determination::audit,
+        ranges::audit,
         idle::audit,
         work::audit,
         passivity::audit,
@@ -55,20 +58,22 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
 /// What may be the reason why a mechanism has no equations of motion: contacts that take a velocity
 /// more than their author thought.
 pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
-    let counted = [
-        Code::MissingPseudoVelocities,
-        Code::SingularPseudoVelocities,
-        Code::DependentConstraints,
-        Code::RedundantConstraint,
-    ];
-    if !refused
-        .iter()
-        .any(|finding| counted.contains(&finding.code))
-    {
+    if !refused.iter().any(|f| counts_velocities(f.code)) {
         return Vec::new();
     }
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
     contact::findings(&mut algebra, mechanism, &symbols)
+}
+
+/// Whether a refusal comes of how many velocities the constraints leave.
+pub fn counts_velocities(code: Code) -> bool {
+    matches!(
+        code,
+        Code::MissingPseudoVelocities
+            | Code::SingularPseudoVelocities
+            | Code::DependentConstraints
+            | Code::RedundantConstraint
+    )
 }

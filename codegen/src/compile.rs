@@ -3,7 +3,7 @@
 use appell_spec::mechanism::Mechanism;
 use appell_spec::{Code, Diagnostic, Report, Severity};
 
-use crate::audit::{Audit, audit, reasons};
+use crate::audit::{Audit, audit, counts_velocities, reasons};
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::{Derivation, assemble, derive};
 use crate::program::{FunctionKind, Program};
@@ -90,8 +90,15 @@ pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program
 
 /// Report on a refused mechanism: the errors, and possible causes as warnings.
 fn refused(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
-    let errors = findings.iter().map(|finding| (finding, Severity::Error));
     let reasons = reasons(mechanism, findings);
+    let mut findings = findings.to_vec();
+    if let Some(Item::Constraint(first)) = reasons.first().map(|reason| reason.item) {
+        let name = &mechanism.constraints[first].name;
+        for finding in findings.iter_mut().filter(|f| counts_velocities(f.code)) {
+            finding.help = format!("correct `{name}` first: it may be the cause");
+        }
+    }
+    let errors = findings.iter().map(|finding| (finding, Severity::Error));
     let reasons = reasons.iter().map(|reason| (reason, Severity::Warning));
     let diagnostics = errors.chain(reasons);
     let diagnostics = diagnostics
@@ -176,7 +183,7 @@ v = { value = 'dot(x)', unit = 'm/s' }
         assert!(shown.contains("missing-pseudo-velocities"), "{shown}");
         assert!(shown.contains("free.toml:13:2"), "{shown}");
         assert!(
-            shown.contains("2 coordinates under 0 velocity constraints need 2"),
+            shown.contains("2 coordinates under 0 constraint rows need 2"),
             "{shown}"
         );
     }

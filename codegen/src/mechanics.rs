@@ -10,6 +10,7 @@ pub mod constraints;
 pub mod contact_rows;
 pub mod contacts;
 pub mod contributions;
+pub mod cramer;
 pub mod creep;
 pub mod dependent;
 pub mod divisors;
@@ -38,6 +39,7 @@ pub mod rank;
 mod reacting_loads;
 pub mod reactions;
 pub mod redundancy;
+pub mod relations;
 pub mod responses;
 pub mod row;
 pub mod switches;
@@ -179,6 +181,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let rates = &elimination.rates;
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
     let rolling = rolling_contacts(mechanism, &constraints, &elimination);
+    algebra.relations = relations::relations(&mut algebra, &elimination.open);
     let mut kinematics = Kinematics::new(
         &mut algebra,
         mechanism,
@@ -195,6 +198,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         rates,
         &directions,
     )?;
+    algebra.relations.clear();
     algebra.check_size()?;
     let unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
@@ -224,7 +228,8 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let explicit = dependent.values.is_empty();
     let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, explicit)?;
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
-    let mut warnings = [constraints.warnings.clone(), not_judged].concat();
+    let repeated = positions.warnings.clone();
+    let mut warnings = [constraints.warnings.clone(), repeated, not_judged].concat();
     warnings.extend(initially_singular(
         &mut algebra,
         mechanism,

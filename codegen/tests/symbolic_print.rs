@@ -257,5 +257,5 @@ fn unknowns_of_systems_have_two_indices() {
     let sum = g.add(a, b);
     let unknowns = g.solve_numerically(vec![sum, b, Graph::ZERO, Graph::ONE], vec![u, a]);
     let scaled = g.mul(u, unknowns[1]);
-    assert_eq!(text(&g, scaled), "u z₁,₂");
+    assert_eq!(text(&g, scaled), "u s₁,₂");
 }

@@ -2,7 +2,7 @@
 //!
 //! [`identify`] estimates parameters from recordings, [`inverse`] from motions with unknown inputs.
 //! [`effects`] is the library of effects that a model may lack, and [`diagnose`] finds those that it
-//! does. [`experiment`] has inputs that excite a mechanism.
+//! does. [`experiment`] has inputs that excite a mechanism. [`units`] are checked before.
 
 pub mod diagnose;
 pub mod effects;
@@ -11,3 +11,4 @@ mod held_out;
 pub mod identify;
 pub mod inverse;
 mod slope;
+pub mod units;

@@ -1,5 +1,6 @@
 //! The mechanism language, from the outside.
 
+mod advice;
 mod bad_specs;
 mod expressions;
 mod fuzz;

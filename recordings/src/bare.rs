@@ -7,6 +7,7 @@ use appell_spec::Mechanism;
 use crate::channel::{Channel, Measured, Role};
 use crate::clock::Sampling;
 use crate::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
+use crate::stretches;
 use crate::{
     DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, format, noise, run,
 };
@@ -68,6 +69,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
     } else {
         split(&mut runs, &mut findings);
     }
+    let runs = stretches::uninterrupted(runs, &channels, &mut findings);
     let own = mechanism.parameters.iter();
     let parameters = own.map(|parameter| Parameter {
         value: parameter.value,

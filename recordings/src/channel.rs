@@ -15,6 +15,10 @@ pub struct Channel {
     pub role: Role,
     /// Unit in the files.
     pub unit: Unit,
+    /// File, line and column where the description states the unit.
+    pub unit_at: Option<(String, usize, usize)>,
+    /// Whether the description vouches for the unit.
+    pub unit_checked: bool,
     /// Noise level as stated, in SI.
     pub stated_noise: Option<f64>,
     /// Noise level that is used; `None` for inputs, for unused columns, and if unknown.
@@ -99,6 +103,8 @@ impl Channel {
             column: column.to_owned(),
             role,
             unit,
+            unit_at: None,
+            unit_checked: false,
             stated_noise,
             noise: None,
         }
@@ -110,7 +116,7 @@ impl Channel {
     }
 
     /// Whether it measures an angle, which may be wrapped.
-    pub(crate) fn is_angle(&self) -> bool {
+    pub fn is_angle(&self) -> bool {
         self.unit.is_angle() && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
     }
 }

@@ -125,6 +125,25 @@ impl<'t> Fields<'t> {
         finite
     }
 
+    /// A truth value; false where it is absent.
+    pub fn flag(&mut self, table: &DeTable<'_>, key: &str) -> bool {
+        let Some(value) = table.get(key) else {
+            return false;
+        };
+        let flag = value.get_ref().as_bool();
+        if flag.is_none() {
+            self.wrong_type(value, "true or false");
+        }
+        flag.unwrap_or(false)
+    }
+
+    /// File, line and column of a place.
+    pub fn place(&self, at: Span) -> (String, usize, usize) {
+        let report = Report::new(self.file, self.text, Vec::new());
+        let (line, column) = report.line_column(at.start);
+        (self.file.to_owned(), line, column)
+    }
+
     /// A number that may be absent and is not negative.
     pub fn deviation(&mut self, table: &DeTable<'_>, key: &str) -> Option<f64> {
         let value = table.get(key)?;

@@ -15,8 +15,12 @@ pub enum FindingKind {
     CutOff,
     /// Rows so far apart that times are probably not in seconds.
     SlowClock,
+    /// A unit that the motion contradicts.
+    Unit,
     /// A step much longer than the others.
     Gap,
+    /// A run with gaps; cut there.
+    Cut,
     /// Measurements that are missing.
     Dropouts,
     /// Missing inputs; the previous value is held.
@@ -52,7 +56,9 @@ impl FindingKind {
             Self::MissingTime => "missing-time",
             Self::CutOff => "cut-off",
             Self::SlowClock => "slow-clock",
+            Self::Unit => "unit",
             Self::Gap => "gap",
+            Self::Cut => "cut",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
             Self::Unwrapped => "unwrapped",
@@ -74,6 +80,7 @@ impl FindingKind {
             Self::BackwardTime
             | Self::MissingTime
             | Self::SlowClock
+            | Self::Unit
             | Self::Constant
             | Self::HeldInput
             | Self::NoiseDisagrees
@@ -83,6 +90,7 @@ impl FindingKind {
             Self::RepeatedTime
             | Self::CutOff
             | Self::Gap
+            | Self::Cut
             | Self::Dropouts
             | Self::Unwrapped
             | Self::UnknownColumn

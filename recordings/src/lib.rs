@@ -126,13 +126,14 @@ pub fn read(
     if !errors.is_empty() {
         return Err(DataError::several(errors));
     }
+    let runs = stretches::uninterrupted(read_runs, &channels, &mut findings);
     let mut set = DataSet {
         spec,
         mechanism,
         description,
         parameters,
         channels,
-        runs: read_runs,
+        runs,
         findings,
     };
     noise::find(&mut set);

@@ -11,6 +11,7 @@
 //! theta = { measures = "theta", unit = "deg", noise_std = 0.05 }
 //! tau   = { input = "tau", unit = "N m" }
 //! room  = { unit = "K" }                   # recorded, and in no model
+//! omega = { measures = "omega", unit = "rpm", unit_checked = true }   # never doubted
 //! t     = { unit = "ms" }                  # the unit of the times, where that is not s
 //!
 //! [runs]
@@ -278,7 +279,10 @@ fn channel(
         fields.wrong_type(value, wanted);
         return None;
     };
-    fields.only(table, &["measures", "input", "unit", "noise_std"]);
+    fields.only(
+        table,
+        &["measures", "input", "unit", "unit_checked", "noise_std"],
+    );
     let measures = fields.string(table, "measures");
     let input = fields.string(table, "input");
     let role = match (measures, input) {
@@ -305,12 +309,14 @@ fn channel(
         None if table.get("unit").is_none() => Unit::si(Dimension::NONE),
         None => return None,
     };
-    Some(Channel::new(
-        column,
-        role,
-        unit.clone(),
-        stated.map(|std| std * unit.scale),
-    ))
+    let unit_checked = fields.flag(table, "unit_checked");
+    let place = table.get("unit").map_or(at, toml::Spanned::span);
+    let stated_noise = stated.map(|std| std * unit.scale);
+    Some(Channel {
+        unit_at: Some(fields.place(place)),
+        unit_checked,
+        ..Channel::new(column, role, unit, stated_noise)
+    })
 }
 
 fn measured(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism) -> Option<Role> {

@@ -80,6 +80,13 @@ impl Run {
 }
 
 impl DataSet {
+    /// Adds a warning that the motion contradicts the unit of a channel.
+    pub fn doubt_unit(&mut self, column: &str, message: String) {
+        let finding = Finding::new(FindingKind::Unit, message);
+        self.findings.push(finding.of_channel(column));
+        self.findings.sort_by_key(Finding::order);
+    }
+
     /// Inputs without a column, and parameters without a tolerance.
     pub(crate) fn tell_what_lacks(&mut self) {
         for (index, input) in self.mechanism.inputs.iter().enumerate() {

@@ -2,10 +2,15 @@
 
 use std::ops::Range;
 
+use crate::channel::{Channel, Role};
+use crate::clock::Sampling;
+use crate::finding::{Finding, FindingKind, counted};
 use crate::{DataSet, Run};
 
 /// Least number of rows of a stretch, as its initial state is unknown.
 const LENGTH: usize = 1000;
+/// Least number of rows of a piece of an interrupted run.
+const SHORTEST: usize = 10;
 
 impl DataSet {
     /// Number of rows of all runs.
@@ -72,7 +77,7 @@ impl DataSet {
                 let held = &values[row..values.len().min(row + every)];
                 held.iter().sum::<f64>() / held.len() as f64
             };
-            let is_held = matches!(channel.role, crate::Role::Input(_));
+            let is_held = matches!(channel.role, Role::Input(_));
             let value = |row: usize| if is_held { mean(row) } else { values[row] };
             kept.clone().map(value).collect()
         });
@@ -82,6 +87,55 @@ impl DataSet {
             ..run.clone()
         }
     }
+}
+
+/// Runs cut where they were interrupted, if there are inputs: what these were in between is not known. Pieces
+/// too short for a motion are left out; each cut is told.
+pub(crate) fn uninterrupted(
+    runs: Vec<Run>,
+    channels: &[Channel],
+    findings: &mut Vec<Finding>,
+) -> Vec<Run> {
+    let is_input = |channel: &Channel| matches!(channel.role, Role::Input(_));
+    if !channels.iter().any(is_input) {
+        return runs;
+    }
+    let mut pieces = Vec::new();
+    for run in runs {
+        if run.sampling.gaps.is_empty() {
+            pieces.push(run);
+            continue;
+        }
+        let starts = run
+            .sampling
+            .gaps
+            .iter()
+            .map(|[_, end]| run.times.partition_point(|t| t < end));
+        let ends: Vec<usize> = starts.chain([run.times.len()]).collect();
+        let mut from = 0;
+        let mut kept = 0;
+        for to in ends {
+            if to - from >= SHORTEST {
+                kept += 1;
+                let mut piece = cut(&run, from..to);
+                piece.name = format!("{}#{kept}", run.name);
+                piece.sampling = Sampling::of(&piece.times);
+                pieces.push(piece);
+            }
+            from = to;
+        }
+        let message = format!(
+            "cut at its {} into {}, as nobody recorded the inputs in between",
+            if run.sampling.gaps.len() == 1 {
+                "gap"
+            } else {
+                "gaps"
+            },
+            counted(kept, "run")
+        );
+        findings.push(Finding::new(FindingKind::Cut, message).in_run(&run.name));
+    }
+    pieces
 }
 
 /// Stretches of `kept` rows together, each in the middle of its part of the run.

@@ -289,14 +289,19 @@ fn gaps_extra_columns_and_angles_that_start_anew_are_told() {
         writeln!(text, "{t:.3};{theta:.9};\"0\";x").unwrap();
     }
     let set = one_run(&text).read().unwrap();
-    let run = &set.runs[0];
-    for (t, theta) in run.times.iter().zip(&run.values[0]) {
-        assert!((theta - 5.0 * t - 3.0).abs() < 1e-6);
+    // What the input was in the gap is not known.
+    let names: Vec<&str> = set.runs.iter().map(|run| run.name.as_str()).collect();
+    assert_eq!(names, ["run.csv#1", "run.csv#2"]);
+    for run in &set.runs {
+        for (t, theta) in run.times.iter().zip(&run.values[0]) {
+            assert!((theta - 5.0 * t - 3.0).abs() < 1e-6);
+        }
+        assert_eq!((run.times.len(), run.sampling.gaps.len()), (150, 0));
     }
-    assert_eq!(run.sampling.gaps.len(), 1);
     let kinds: Vec<FindingKind> = set.findings.iter().map(|f| f.kind).collect();
     for kind in [
         FindingKind::Gap,
+        FindingKind::Cut,
         FindingKind::UnknownColumn,
         FindingKind::Unwrapped,
         FindingKind::Constant,
@@ -487,4 +492,22 @@ fn times_are_in_the_unit_that_the_description_states() {
         let error = read(line).unwrap_err().to_string();
         assert!(error.contains(told), "{error}");
     }
+}
+
+#[test]
+fn an_angle_far_beyond_a_turn_is_not_unwrapped() {
+    let folder = Folder::new();
+    // Four degrees a row, which were taken for radians.
+    let rows = (0..60).map(|row| format!("{},{},0", 0.01 * f64::from(row), 4 * row));
+    let rows: Vec<String> = rows.collect();
+    folder.write("run.csv", format!("t,theta,tau\n{}\n", rows.join("\n")));
+    folder.write("recording.toml", pendulum(SWING, &["run.csv"], &[]));
+    let set = folder.read().unwrap();
+    let last = set.runs[0].values[0].last().copied();
+    assert_eq!(last, Some(236.0));
+    assert!(
+        set.findings
+            .iter()
+            .all(|finding| finding.kind != FindingKind::Unwrapped)
+    );
 }

@@ -13,6 +13,7 @@ mod display;
 mod html;
 mod latex;
 mod lexicon;
+mod renumber;
 mod sections;
 mod sources;
 mod text;
@@ -47,31 +48,30 @@ pub fn page(
 ) -> finding::Outcome<Page> {
     let mut writer = Writer::new(mechanism, derivation);
     let sections = sections::sections(&mut writer, stage)?;
-    Ok(Page {
-        title: mechanism.title.clone(),
-        source: mechanism.source.clone(),
-        sections,
-    })
+    Ok(written(mechanism, &mut writer, sections))
 }
 
 /// Writes what the derivation of a mechanism ends with: the equations of motion alone. Quantities that
 /// a [`page`] has defined before have their letters.
 pub fn equations_of_motion(mechanism: &Mechanism, derivation: &mut Derivation) -> Page {
     let mut writer = Writer::new(mechanism, derivation);
-    Page {
-        title: mechanism.title.clone(),
-        source: mechanism.source.clone(),
-        sections: sections::equations_of_motion(&mut writer),
-    }
+    let sections = sections::equations_of_motion(&mut writer);
+    written(mechanism, &mut writer, sections)
 }
 
 /// Writes the linear equations about a steady motion of a mechanism, with their characteristic
 /// polynomial; see [`Linearisation::about`].
 pub fn linear(mechanism: &Mechanism, derivation: &mut Derivation, linear: &Linearisation) -> Page {
     let mut writer = Writer::new(mechanism, derivation);
+    let sections = sections::linear(&mut writer, linear);
+    written(mechanism, &mut writer, sections)
+}
+
+fn written(mechanism: &Mechanism, writer: &mut Writer<'_>, mut sections: Vec<Section>) -> Page {
+    renumber::by_definition(&mut sections, writer.bases());
     Page {
         title: mechanism.title.clone(),
         source: mechanism.source.clone(),
-        sections: sections::linear(&mut writer, linear),
+        sections,
     }
 }

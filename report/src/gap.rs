@@ -15,8 +15,10 @@ mod words;
 pub use budget::divided;
 pub use doubt::doubts;
 pub use law::law_sentence;
-pub use numbers::percent;
+pub use numbers::{is_determined, percent};
 pub use page::page;
-pub use words::{before_sentence, hinted, imperfections, joined, left_out, sentence};
+pub use words::{
+    before_sentence, hinted, imperfections, joined, left_out, refit_sentence, said, sentence,
+};
 
 pub use crate::text::short;

@@ -1,6 +1,6 @@
 //! The derivation as a page: what it looks like, and that it is true.
 
-use appell_report::derivation::{self, Page, Stage};
+use appell_report::derivation::{self, Block, Math, Page, Stage};
 use appell_spec::mechanism::{
     BodyId, CoordinateId, FrameId, LoadId, OutputId, ParameterId, PointId,
 };
@@ -240,4 +240,43 @@ fn what_the_page_says_is_true() {
         let by_system = derivation::text(page).contains("solved with pivoting");
         assert!(checked > 0 || by_system, "{name}: nothing was checked");
     }
+}
+
+#[test]
+fn parts_and_unknowns_are_numbered_as_they_are_defined() {
+    let mut counted = 0;
+    for name in ["four_bar", "bicycle", "unicycle_linkage_rider"] {
+        let page = page_of(name, Stage::All);
+        let mut last = 0;
+        for block in page.sections.iter().flat_map(|section| &section.blocks) {
+            let Block::Equations(equations) = block else {
+                continue;
+            };
+            for equation in equations {
+                let Math::Letter(letter) = &equation.left else {
+                    continue;
+                };
+                if letter.base == "c" && letter.below.len() == 1 && letter.dots == 0 {
+                    let Ok(number) = letter.below[0].parse::<usize>() else {
+                        continue;
+                    };
+                    assert_eq!(number, last + 1, "{name}");
+                    last = number;
+                    counted += 1;
+                }
+            }
+        }
+        // z is the forward elimination; unknowns of systems have a letter of their own.
+        let shown = derivation::text(&page);
+        assert!(!shown.contains("z₁,₁"), "{name}");
+    }
+    assert!(counted > 0);
+}
+
+#[test]
+fn brackets_are_as_high_as_matrices_and_descriptions_have_room() {
+    let html = derivation::html(&page_of("bicycle", Stage::All));
+    assert!(html.contains("<mtable class=\"matrix\">"));
+    assert!(!html.contains("<mo>[</mo>"));
+    assert!(html.contains("<td colspan=\"2\">"));
 }

@@ -6,7 +6,7 @@
 //! the way back is no longer than the error.
 
 use crate::dense::solved_in_place;
-use crate::model::{At, Model};
+use crate::model::{At, Model, ModelInfo};
 
 /// Newton steps before giving up.
 const MOST_STEPS: usize = 20;
@@ -24,10 +24,26 @@ pub enum Moving {
 
 /// No configuration that satisfies the position constraints was found.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
-#[error("no configuration satisfies the position constraints near this one: off by {residual:.1e}")]
+#[error(
+    "no configuration near this one satisfies the position constraints: off by {residual:.1e} in SI"
+)]
 pub struct Inconsistent {
     /// Largest residual where the search ended, in SI.
     pub residual: f64,
+    /// The coordinate, among the states, that follows by the constraint which has it.
+    pub state: usize,
+}
+
+impl Inconsistent {
+    /// What is wrong and what to do, in the names of a model.
+    pub fn describe(&self, info: &ModelInfo) -> String {
+        format!(
+            "no value of `{}` near its initial one satisfies the position constraint that determines it (off by \
+             {:.2} in SI units): the mechanism cannot be assembled there; correct the lengths, or the initial \
+             values of the other coordinates",
+            info.states[self.state].name, self.residual
+        )
+    }
 }
 
 /// The position constraints of a model, with work arrays.
@@ -67,22 +83,27 @@ impl Positions {
     ) -> Result<(), Inconsistent> {
         let speeds = model.info().speeds;
         let mut last = f64::INFINITY;
+        let mut worst = 0;
         for _ in 0..MOST_STEPS {
             let at = At { t, x, u, p };
             model.position_constraints(at, &mut self.residual, &mut self.jacobian);
             let size = largest(&self.residual);
+            let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
+            worst = (self.residual.iter().enumerate().max_by(by_size)).map_or(0, |(row, _)| row);
             let scale = largest(&x[speeds..]).max(1.0);
             // Below rounding, or as small as rounding lets it become.
             if size <= ROUNDING * scale || (size >= last && size <= 1e3 * ROUNDING * scale) {
                 return Ok(());
             }
+            last = size;
             if !size.is_finite() || !self.step(model, &mut x[speeds..], moving) {
                 break;
             }
-            last = size;
         }
-        let residual = largest(&self.residual);
-        Err(Inconsistent { residual })
+        Err(Inconsistent {
+            residual: last,
+            state: speeds + model.dependent_coordinates()[worst],
+        })
     }
 
     /// One Newton step; false where the Jacobian is singular.

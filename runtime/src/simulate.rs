@@ -107,8 +107,13 @@ pub enum SimulationError {
         found: usize,
     },
     /// The initial state contradicts the position constraints.
-    #[error(transparent)]
-    Inconsistent(#[from] Inconsistent),
+    #[error("{message}")]
+    Inconsistent {
+        /// How far off.
+        source: Inconsistent,
+        /// The same in the names of the mechanism, and what to do.
+        message: String,
+    },
     /// The pseudo-velocities do not determine the motion at the start.
     #[error(
         "at the start the pseudo-velocities do not determine the generalised velocities (condition number \
@@ -253,7 +258,11 @@ impl<'a> Simulation<'a> {
             let mut u = vec![0.0; model.info().input_len()];
             inputs.fill(t, &x, &mut u);
             let p = &self.parameters;
-            positions.restore(model, t, &mut x, &u, p, Moving::Dependent)?;
+            let restored = positions.restore(model, t, &mut x, &u, p, Moving::Dependent);
+            restored.map_err(|source| SimulationError::Inconsistent {
+                source,
+                message: source.describe(model.info()),
+            })?;
         }
         Ok(x)
     }

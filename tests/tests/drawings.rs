@@ -63,6 +63,27 @@ fn rings_mark_joints_bodies_and_points_of_attack() {
     assert_eq!(rings(&["gravity", "nobody"]), Vec::<[f64; 2]>::new());
 }
 
+#[test]
+fn a_ring_marks_a_motor_in_the_joint_where_it_acts() {
+    for (name, input, joint) in [
+        ("pendulum", "tau", "O"),
+        ("double_pendulum", "tau1", "O"),
+        ("double_pendulum", "tau2", "E"),
+        ("euc_3dof", "M_d", "C"),
+        ("euc_3dof", "M_h", "A"),
+    ] {
+        let mechanism = shipped::mechanism(name);
+        let [place] = places(mechanism, &drawn(mechanism), [joint]);
+        let svg = marked(mechanism, shipped::derive(mechanism), &[input]).unwrap();
+        let mut rings = svg.lines().filter(|line| line.contains("class=\"ring"));
+        let ring = rings.next().unwrap();
+        let at: [f64; 2] = ["cx", "cy"].map(|name| attribute(ring, name)[0].parse().unwrap());
+        let away = (at[0] - place[0]).hypot(at[1] - place[1]);
+        assert!(away < DIGIT, "{name}: {input}");
+        assert_eq!(rings.count(), 0, "{name}: {input}");
+    }
+}
+
 /// Half of the last digit of the coordinates, several times.
 const DIGIT: f64 = 0.3;
 /// The length of the bar is known to a digit, and so is the scale that follows from it.

@@ -3,6 +3,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+use appell_codegen::linearisation::Structure;
 use appell_runtime::condition::Conditions;
 use appell_runtime::model::Model;
 use appell_spec::Mechanism;
@@ -10,6 +11,7 @@ use appell_test_kit::Random;
 use appell_tests::engine::{Evaluation, assert_close, assert_schedules, in_process, interpreter};
 use appell_tests::formulations::assert_one_answer;
 use appell_tests::point::Point;
+use appell_tests::steady::problem;
 use appell_tests::{dual, shipped};
 use nalgebra::{DMatrix, DVector};
 
@@ -476,4 +478,143 @@ o = { value = "min(x, l)*max(a, b)", unit = "m" }
 #[test]
 fn smooth_and_broken_functions_in_frames_points_and_loads() {
     assert_sound(&shipped::read("mixed", MIXED));
+}
+
+/// A board steered in front; `speed` is the definition of its pseudo-velocity v.
+fn steered(speed: &str) -> Mechanism {
+    let text = format!(
+        "[mechanism]\nname = 'steered'\ntitle = 'Steered board'\n\
+         [parameters]\nm = {{ value = 7, unit = 'kg' }}\nI = {{ value = 2, unit = 'kg*m^2' }}\n\
+         l = {{ value = 0.4, unit = 'm' }}\n\
+         [coordinates]\nx = {{ unit = 'm' }}\ny = {{ unit = 'm' }}\npsi = {{ unit = 'rad' }}\n\
+         delta = {{ unit = 'rad', initial = 0.1 }}\n\
+         [frames]\nboard = {{ parent = 'ground', about_axis = 'z', by = 'psi' }}\n\
+         fork = {{ parent = 'board', about_axis = 'z', by = 'delta' }}\n\
+         [points]\nR = {{ from = 'O', in = 'ground', at = ['x', 'y', 0] }}\n\
+         F = {{ from = 'R', in = 'board', at = ['2*l', 0, 0] }}\n\
+         [bodies]\nboard = {{ frame = 'board', centre = 'F', mass = 'm', \
+         inertia = {{ in = 'board', diagonal = ['I', 'I', 'I'] }} }}\n\
+         fork = {{ frame = 'fork', centre = 'F', mass = 'm', \
+         inertia = {{ in = 'fork', diagonal = ['I', 'I', 'I'] }} }}\n\
+         [constraints]\n\
+         front = {{ kind = 'fixed_velocity', point = 'F', in = 'fork', direction = [0, 1, 0] }}\n\
+         rear = {{ kind = 'fixed_velocity', point = 'R', in = 'board', direction = [0, 1, 0] }}\n\
+         [pseudo_velocities]\nv = {{ value = '{speed}', initial = 1 }}\nw = {{ value = 'dot(delta)' }}\n"
+    );
+    shipped::read("steered", &text)
+}
+
+/// Velocity of the front along the fork: the determinant is ±2 l.
+const ALONG_FORK: &str =
+    "dot(x)*cos(psi + delta) + dot(y)*sin(psi + delta) + 2*l*dot(psi)*sin(delta)";
+/// Velocity of the rear along the board: the determinant vanishes where the fork stands across.
+const ALONG_BOARD: &str = "dot(x)*cos(psi) + dot(y)*sin(psi)";
+
+#[test]
+fn a_determinant_that_is_a_positive_parameter_needs_no_pivoting() {
+    let steered = steered(ALONG_FORK);
+    assert_eq!(solved_numerically(&steered), 0);
+    assert_sound(&steered);
+}
+
+/// A body in the air; its velocity is given along its own axes.
+const FLYING: &str = "[mechanism]\nname = 'flying'\ntitle = 'Flying body'\n\
+    [parameters]\nm = { value = 3, unit = 'kg' }\nI = { value = 2, unit = 'kg*m^2' }\n\
+    g = { value = 9.81, unit = 'm/s^2' }\n\
+    [coordinates]\nx = { unit = 'm' }\ny = { unit = 'm' }\nz = { unit = 'm' }\n\
+    psi = { unit = 'rad' }\nth = { unit = 'rad', range = [-1.5, 1.5] }\nphi = { unit = 'rad' }\n\
+    [frames]\nB = { parent = 'ground', turns = [{ about_axis = 'z', by = 'psi' }, \
+    { about_axis = 'y', by = 'th' }, { about_axis = 'x', by = 'phi' }] }\n\
+    [points]\nC = { from = 'O', in = 'ground', at = ['x', 'y', 'z'] }\n\
+    [bodies]\nB = { frame = 'B', centre = 'C', mass = 'm', \
+    inertia = { in = 'B', diagonal = ['I', '1.5*I', '2*I'] } }\n\
+    [pseudo_velocities]\n\
+    u = { value = 'cos(th)*(cos(psi)*dot(x) + sin(psi)*dot(y)) - sin(th)*dot(z)' }\n\
+    v = { value = '(sin(phi)*sin(th)*cos(psi) - cos(phi)*sin(psi))*dot(x) + \
+    (sin(phi)*sin(th)*sin(psi) + cos(phi)*cos(psi))*dot(y) + sin(phi)*cos(th)*dot(z)' }\n\
+    w = { value = '(cos(phi)*sin(th)*cos(psi) + sin(phi)*sin(psi))*dot(x) + \
+    (cos(phi)*sin(th)*sin(psi) - sin(phi)*cos(psi))*dot(y) + cos(phi)*cos(th)*dot(z)' }\n\
+    p = { value = 'dot(phi) - dot(psi)*sin(th)' }\n\
+    q = { value = 'dot(th)*cos(phi) + dot(psi)*cos(th)*sin(phi)' }\n\
+    r = { value = 'dot(psi)*cos(th)*cos(phi) - dot(th)*sin(phi)' }\n\
+    [loads]\nweight = { kind = 'gravity', down = '-z', acceleration = 'g' }\n";
+
+#[test]
+fn a_turn_in_space_is_solved_by_its_own_entries() {
+    let flying = shipped::read("flying", FLYING);
+    let derivation = shipped::derive(&flying);
+    assert!(derivation.velocities.solved_numerically.is_empty());
+    // Its columns, and the turn of the rates of the angles.
+    let operations = derivation
+        .algebra
+        .graph
+        .operations(&derivation.velocities.rates);
+    assert!(operations <= 60, "{operations} operations");
+    assert_sound(&flying);
+}
+
+#[test]
+fn essential_and_ignorable_states_are_the_same_in_formulas_and_in_numbers() {
+    let mechanisms = [
+        steered(ALONG_FORK),
+        steered(ALONG_BOARD),
+        shipped::read("flying", FLYING),
+        changed("rolling_wheel", &[NO_RANGE]),
+    ];
+    for mechanism in mechanisms {
+        let formulas = Structure::of(&mut shipped::derive(&mechanism));
+        let model = interpreter(&mechanism);
+        let numbers = problem(&model, &[]);
+        let numbers = numbers.structure();
+        assert_eq!(formulas.ignorable, numbers.ignorable, "{}", mechanism.name);
+        assert_eq!(formulas.essential, numbers.essential, "{}", mechanism.name);
+    }
+}
+
+/// A top about a fixed point by z-x-z angles, which have a pole where it stands upright.
+const TOP: &str = "[mechanism]\nname = 'top'\ntitle = 'Top'\n\
+    [parameters]\nm = { value = 1, unit = 'kg' }\nl = { value = 0.1, unit = 'm' }\n\
+    A = { value = 0.002, unit = 'kg*m^2' }\nC = { value = 0.001, unit = 'kg*m^2' }\n\
+    g = { value = 9.81, unit = 'm/s^2' }\n\
+    [coordinates]\npsi = { unit = 'rad' }\ntheta = { unit = 'rad' }\nphi = { unit = 'rad' }\n\
+    [frames]\ntop = { parent = 'ground', turns = [{ about_axis = 'z', by = 'psi' }, \
+    { about_axis = 'x', by = 'theta' }, { about_axis = 'z', by = 'phi' }] }\n\
+    [points]\nG = { from = 'O', in = 'top', at = [0, 0, 'l'] }\n\
+    [bodies]\ntop = { frame = 'top', centre = 'G', mass = 'm', \
+    inertia = { in = 'top', diagonal = ['A', 'A', 'C'] } }\n\
+    [pseudo_velocities]\n\
+    w1 = { value = 'dot(psi)*sin(theta)*sin(phi) + dot(theta)*cos(phi)' }\n\
+    w2 = { value = 'dot(psi)*sin(theta)*cos(phi) - dot(theta)*sin(phi)' }\n\
+    w3 = { value = 'dot(psi)*cos(theta) + dot(phi)' }\n\
+    [loads]\nweight = { kind = 'gravity', down = '-z', acceleration = 'g' }\n";
+
+#[test]
+fn energies_and_accelerations_are_finite_at_the_pole_of_the_angles() {
+    let top = shipped::read("top", TOP);
+    assert!(solved_numerically(&top) > 0);
+    assert_sound(&top);
+    let model = interpreter(&top);
+    let mut point = Point::random(model.info(), &mut Random::of("pole"));
+    point.x = vec![0.3, -0.2, 30.0, 0.0, 0.0, 0.0];
+    let energies = model.energies(point.at());
+    let p = &point.p;
+    let (m, l, a, c, g) = (p[0], p[1], p[2], p[3], p[4]);
+    let across = (a + m * l * l) * (0.3_f64.powi(2) + 0.2_f64.powi(2));
+    let kinetic = 0.5 * (across + c * 30.0 * 30.0);
+    assert_close(
+        "kinetic energy",
+        &[energies.kinetic],
+        &[kinetic],
+        PIVOTED,
+        1.0,
+    );
+    assert_close(
+        "potential energy",
+        &[energies.potential],
+        &[m * g * l],
+        PIVOTED,
+        1.0,
+    );
+    let rates = Evaluation::of(&model, point.at()).rates;
+    assert!(rates[..3].iter().all(|rate| rate.is_finite()), "{rates:?}");
 }

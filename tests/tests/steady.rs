@@ -144,6 +144,20 @@ fn too_few_conditions_name_what_may_be_given_further() {
     );
 }
 
+/// At rest families meet, whose tangents together span one dimension more than each of them has.
+#[test]
+fn no_more_conditions_are_asked_for_than_determine_a_motion() {
+    let model = shipped("wheelbot");
+    assert_eq!(problem(model, &[]).solve().unwrap().family, 3);
+    let Err(SteadyError::Family { dimension, open }) = problem(model, &[]).solve_isolated(40)
+    else {
+        panic!("a wheel may roll at any speed");
+    };
+    assert_eq!(dimension, 2, "of {open:?}");
+    let turning = problem(model, &[("speed", 1.0), ("psi_dot", 0.5)]);
+    assert!(turning.solve_isolated(40).is_ok());
+}
+
 #[test]
 fn contradictions_and_ignorable_quantities_are_reported() {
     let model = shipped("unicycle");

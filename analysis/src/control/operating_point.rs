@@ -6,7 +6,7 @@ use super::LinearSystem;
 use appell_runtime::inputs::{ModelInputs, ZeroInputs};
 use appell_runtime::linearise::{Linearisation, Undetermined};
 use appell_runtime::model::{At, Model};
-use appell_runtime::positions::{Moving, Positions};
+use appell_runtime::positions::{Inconsistent, Moving, Positions};
 use appell_runtime::signal::SignalError;
 use appell_spectra::singular::Singular;
 
@@ -81,6 +81,9 @@ pub enum OperatingPointError {
     /// The equations cannot be evaluated here.
     #[error("the equations have no finite value at this state")]
     NotFinite,
+    /// No dependent coordinates satisfy the position constraints.
+    #[error(transparent)]
+    Inconsistent(#[from] Inconsistent),
     /// The position constraints do not determine the dependent coordinates.
     #[error(transparent)]
     Undetermined(#[from] Undetermined),
@@ -111,6 +114,16 @@ impl<'a> OperatingPoint<'a> {
             u: vec![0.0; info.declared_inputs],
             p: info.default_parameters(),
         }
+    }
+
+    /// Sets the dependent coordinates so that the position constraints hold, from their present values as guesses.
+    pub fn assemble(&mut self) -> Result<(), OperatingPointError> {
+        self.check()?;
+        if let Some(mut positions) = Positions::of(self.model) {
+            let (u, moving) = (self.inputs_at(0.0)?, Moving::Dependent);
+            positions.restore(self.model, 0.0, &mut self.x, &u, &self.p, moving)?;
+        }
+        Ok(())
     }
 
     /// Sets the inputs so that the pseudo-accelerations become as small as possible, by Newton's

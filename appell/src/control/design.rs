@@ -1,15 +1,15 @@
 //! Controllability about a steady motion, and gains.
 
-use appell_analysis::Point;
 use appell_analysis::control::controllability::Controllability;
 use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
 use appell_analysis::control::reduction::{Subsystem, independent_states, reduce};
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::{lqr, robust_placement};
+use appell_analysis::{Point, Structure};
 use appell_runtime::model::Model;
 use nalgebra::{Complex, DMatrix};
 
-use super::errors::DesignError;
+use super::errors::{DesignError, OperatingPointError, ReductionError};
 use super::parse::GivenInputs;
 use super::remedies;
 use crate::setup::Setup;
@@ -125,11 +125,22 @@ pub fn design(
     }
     let open: Vec<usize> = (0..point.u.len()).filter(|input| !named(input)).collect();
     let unsteady = |error| remedies::operating_point(error, setup);
+    point.assemble().map_err(unsteady)?;
     point.hold(&open).map_err(unsteady)?;
     let equations = point.equations(&request.inputs).map_err(unsteady)?;
     let controllability = Controllability::of(&equations.system).map_err(DesignError::from)?;
-    let rates = rates(model, &point);
-    let outputs = outputs(setup, &equations, &rates, &request.outputs)?;
+    let at = place(model, &point);
+    let rates = at.rates(model);
+    let outputs = match &request.outputs[..] {
+        [] => closed_choice(setup, &equations, &rates)?,
+        asked => places(setup, &equations, asked)?,
+    };
+    if let Some(&varying) = outputs.iter().find(|at| equations.varying.contains(at)) {
+        let advancing = advancing(model, &at, &rates).map(unsteady);
+        let error =
+            advancing.map_or_else(|| varies(setup, &equations, varying, request), Error::from);
+        return Err(error);
+    }
     let subsystem = reduce(&equations.system, &outputs)
         .map_err(|error| remedies::reduction(error, &equations, setup))?;
     let law = law(&subsystem, request)?;
@@ -149,65 +160,86 @@ pub fn design(
     })
 }
 
-/// Rates of the states on the motion.
-fn rates(model: &dyn Model, point: &OperatingPoint<'_>) -> Vec<f64> {
+/// The motion as a point of the model.
+fn place(model: &dyn Model, point: &OperatingPoint<'_>) -> Point {
     let mut at = Point {
         x: point.x.clone(),
         p: point.p.clone(),
         ..Point::initial(model)
     };
     at.u[..point.u.len()].copy_from_slice(&point.u);
-    at.rates(model)
+    at
 }
 
-/// Indices of the outputs among the states of the equations: the requested ones, or a controllable set.
-fn outputs(
+/// A state on which accelerations depend and which advances: the motion is not steady.
+fn advancing(model: &dyn Model, at: &Point, rates: &[f64]) -> Option<OperatingPointError> {
+    let structure = Structure::of(model, at).ok()?;
+    let mut essential = structure.essential.into_iter();
+    let state = essential.find(|&state| rates[state].abs() > RUNS)?;
+    let rate = rates[state];
+    Some(OperatingPointError::Unsteady { state, rate })
+}
+
+/// A row that varies along a motion whose accelerations do not.
+fn varies(setup: &Setup<'_>, equations: &MotionEquations, place: usize, request: &Goal) -> Error {
+    let name = &setup.info.states[equations.states[place]].name;
+    let message = format!(
+        "the linearised equation of `{name}` varies along this motion, so that constant gains cannot be \
+         designed for it"
+    );
+    if request.outputs.is_empty() {
+        Error::request(Field::At, format!("{message}; prescribe another motion"))
+    } else {
+        Error::request(Field::Outputs, format!("{message}; remove it"))
+    }
+}
+
+/// A controllable set of states with closed equations, by their places among those of the equations.
+fn closed_choice(
     setup: &Setup<'_>,
     equations: &MotionEquations,
     rates: &[f64],
+) -> Result<Vec<usize>, Error> {
+    // Constant states before advancing ones; coordinates on which accelerations depend, other
+    // coordinates, pseudo-velocities.
+    let (states, a) = (&equations.states, &equations.system.a);
+    let is_speed = |place: usize| states[place] < setup.info.speeds;
+    let is_felt = |place: usize| {
+        let mut speeds = (0..states.len()).filter(|&row| is_speed(row));
+        speeds.any(|row| a[(row, place)] != 0.0)
+    };
+    let mut candidates: Vec<usize> = (0..states.len()).collect();
+    candidates.retain(|place| !equations.varying.contains(place));
+    let runs = |place: usize| rates[states[place]].abs() > RUNS;
+    candidates.sort_by_key(|&place| (runs(place), is_speed(place), !is_felt(place)));
+    let mut chosen = independent_states(&equations.system, &candidates);
+    if let Err(ReductionError::Open { missing, .. }) = reduce(&equations.system, &chosen) {
+        chosen.extend(missing);
+    }
+    chosen.sort_unstable();
+    if chosen.is_empty() {
+        let message = "the inputs affect no state at this operating point";
+        return Err(Error::request(Field::At, message));
+    }
+    Ok(chosen)
+}
+
+/// The requested outputs, by their places among the states of the equations.
+fn places(
+    setup: &Setup<'_>,
+    equations: &MotionEquations,
     asked: &[usize],
 ) -> Result<Vec<usize>, Error> {
-    let name = |state: usize| &setup.info.states[state].name;
-    if asked.is_empty() {
-        // Constant states before advancing ones; coordinates on which accelerations depend, other
-        // coordinates, pseudo-velocities.
-        let (states, a) = (&equations.states, &equations.system.a);
-        let is_speed = |place: usize| states[place] < setup.info.speeds;
-        let is_felt = |place: usize| {
-            let mut speeds = (0..states.len()).filter(|&row| is_speed(row));
-            speeds.any(|row| a[(row, place)] != 0.0)
-        };
-        let mut candidates: Vec<usize> = (0..states.len()).collect();
-        candidates.retain(|place| !equations.varying.contains(place));
-        let runs = |place: usize| rates[states[place]].abs() > RUNS;
-        candidates.sort_by_key(|&place| (runs(place), is_speed(place), !is_felt(place)));
-        let mut chosen = independent_states(&equations.system, &candidates);
-        chosen.sort_unstable();
-        if chosen.is_empty() {
-            let message = "the inputs affect no state at this operating point";
-            return Err(Error::request(Field::At, message));
-        }
-        return Ok(chosen);
-    }
     let place = |&state: &usize| {
         let place = equations.states.iter().position(|&other| other == state);
-        let place = place.ok_or_else(|| {
+        place.ok_or_else(|| {
             let message = format!(
                 "`{}` is determined by other coordinates through the position constraints; feed \
                  those back",
-                name(state)
+                setup.info.states[state].name
             );
             Error::request(Field::Outputs, message)
-        })?;
-        if equations.varying.contains(&place) {
-            let message = format!(
-                "the linearised equation of `{}` varies along this motion, so that constant gains \
-                 cannot be designed for it; remove it",
-                name(state)
-            );
-            return Err(Error::request(Field::Outputs, message));
-        }
-        Ok(place)
+        })
     };
     asked.iter().map(place).collect()
 }

@@ -12,8 +12,13 @@ use crate::setup::Setup;
 
 /// About the steady motion.
 pub(super) fn operating_point(error: OperatingPointError, setup: &Setup<'_>) -> DesignError {
-    let OperatingPointError::Unsteady { state, rate } = error else {
-        return DesignError::computation(error);
+    let (state, rate) = match error {
+        OperatingPointError::Unsteady { state, rate } => (state, rate),
+        OperatingPointError::Inconsistent(nowhere) => {
+            let message = nowhere.describe(setup.info);
+            return DesignError::request(Field::At, message, error);
+        }
+        _ => return DesignError::computation(error),
     };
     let quantity = &setup.info.states[state];
     let message = format!(

@@ -11,6 +11,7 @@ use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
 use crate::inputs::feedback::{Feedback, Gains, Sampled, SchedulingVariable};
+use crate::inputs::tabulated::Table;
 use crate::setup::{Assignment, Setup, bracketed};
 use crate::{Error, Field};
 
@@ -70,7 +71,7 @@ pub struct Plan {
     zero: Vec<Term>,
     sampled: Vec<(Sampled, Vec<usize>)>,
     scheduled: Vec<ScheduledLaw>,
-    recorded: Option<TabulatedInputs>,
+    recorded: Option<Table>,
     switching_times: Vec<f64>,
     /// Inputs set by an expression or a recording.
     set: Vec<usize>,
@@ -96,6 +97,11 @@ impl Plan {
     pub fn is_empty(&self) -> bool {
         let laws = self.zero.is_empty() && self.scheduled.is_empty();
         self.slots.is_empty() && laws && self.recorded.is_none()
+    }
+
+    /// The last time of a recording in s.
+    pub fn recorded_until(&self) -> Option<f64> {
+        self.recorded.as_ref().map(|table| table.until)
     }
 
     fn take(&mut self, field: Field, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
@@ -138,17 +144,12 @@ impl Plan {
     }
 
     /// Adds the inputs of a recording.
-    pub fn recording(
-        &mut self,
-        recorded: TabulatedInputs,
-        inputs: &[usize],
-        setup: &Setup<'_>,
-    ) -> Result<(), Error> {
-        for &input in inputs {
+    pub fn recording(&mut self, table: Table, setup: &Setup<'_>) -> Result<(), Error> {
+        for &input in &table.given {
             self.take(Field::Recorded, input, setup)?;
         }
-        self.switching_times.extend(recorded.switching_times());
-        self.recorded = Some(recorded);
+        self.switching_times.extend(table.values.switching_times());
+        self.recorded = Some(table);
         Ok(())
     }
 
@@ -230,7 +231,7 @@ impl Plan {
             function,
             slots,
             parameters: setup.parameters.clone(),
-            recorded: self.recorded,
+            recorded: self.recorded.map(|table| table.values),
             sampled,
             scheduled: self.scheduled,
             switching_times,

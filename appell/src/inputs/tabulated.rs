@@ -17,7 +17,17 @@ use appell_spec::{Code, shown};
 use crate::setup::{Setup, unknown};
 use crate::{Error, Field, files, recording};
 
-/// The inputs of a CSV file, with their indices.
+/// Inputs of a file.
+pub struct Table {
+    /// Values over time; inputs that are not given are zero.
+    pub values: TabulatedInputs,
+    /// Indices of those that are given.
+    pub given: Vec<usize>,
+    /// The last time in s, after which the last values are held.
+    pub until: f64,
+}
+
+/// The inputs of a CSV file, for a motion until a time in s.
 ///
 /// The header names `t` in s and inputs in the units of the spec; columns of the mechanism's other
 /// quantities are ignored, so that a written trajectory can be fed back. A `recording.toml` with the
@@ -27,12 +37,21 @@ pub fn read(
     mechanism: &str,
     setup: &Setup<'_>,
     model: &dyn Model,
-) -> Result<(TabulatedInputs, Vec<usize>), Error> {
+    until: f64,
+) -> Result<Table, Error> {
     let file = path.to_string_lossy();
     let columns = match described(&file) {
         Some((description, run)) => recorded(description, run, mechanism)?,
         None => tabulated(path, setup, model)?,
     };
+    let [from, to] =
+        [columns.times.first(), columns.times.last()].map(|end| end.copied().unwrap_or(0.0));
+    if from > until {
+        let message = format!(
+            "the inputs begin at {from} s, and the motion ends at {until} s: let the times of the file begin with the motion"
+        );
+        return Err(Error::data(file, message));
+    }
     let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
     let mut values: Vec<Option<Vec<f64>>> = vec![None; setup.mechanism.inputs.len()];
     for column in columns.inputs {
@@ -56,7 +75,11 @@ pub fn read(
         })?;
         signals.push(signal);
     }
-    Ok((TabulatedInputs::new(signals), given))
+    Ok(Table {
+        values: TabulatedInputs::new(signals),
+        given,
+        until: to,
+    })
 }
 
 /// The description and the run in `rig/recording.toml:run1.csv`.
@@ -72,7 +95,7 @@ fn described(text: &str) -> Option<(&str, &str)> {
 /// The inputs of a run of a data set.
 fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Error> {
     let mut set = recording::read(&[description.into()], Some(mechanism))?;
-    recording::check_time_unit(&set)?;
+    recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();
         let missing = if run.is_empty() {
@@ -101,7 +124,9 @@ fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Er
         let message = "no channel is an input; write `input = \"…\"` in `[channels]`";
         return Err(Error::data(description, message));
     }
-    let times = run.times;
+    // A motion begins with its run, whatever the clock of the logger said.
+    let start = run.times.first().copied().unwrap_or(0.0);
+    let times = run.times.iter().map(|t| t - start).collect();
     Ok(Columns { times, inputs })
 }
 

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use crate::failure::Error;
+use crate::output::shell;
 use appell::control::Request;
 use appell::setup::{Assignment, listed};
 use appell::{Model, files};
@@ -184,5 +185,5 @@ impl Control {
 
 /// A law whose command to try it names its own file.
 fn in_file(law: &str, path: &Path) -> String {
-    law.replacen("FILE.toml", &path.display().to_string(), 1)
+    law.replacen("FILE.toml", &shell(&path.to_string_lossy()), 1)
 }

@@ -11,7 +11,9 @@ use appell_report::figure::Figure;
 use appell_runtime::integrate::Options;
 
 use super::simulate::{simulated, write_csv};
-use crate::{diagnosed, engine, output, progress, summary};
+use crate::diagnosed::{self, Apply};
+use crate::output::shell;
+use crate::{engine, output, progress, summary};
 
 /// The lane change of the paper at 5 m/s.
 const LANE_CHANGE: &str = include_str!("../../../docs/examples/feedback/lane_change_5_m_s.toml");
@@ -127,5 +129,16 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
         &written.place("gap.html", about),
         &appell_report::gap::page(&set, &report),
     )?;
-    Ok(diagnosed::text(&report, None))
+    let about = "the same for programs, and for `appell apply`";
+    let json = written.place("gap.json", about);
+    files::write_json(&json, &appell::json::diagnosis(&report, None, &[]))?;
+    let spec = shell(&set.spec.file);
+    let apply = Apply {
+        before: None,
+        command: format!(
+            "appell apply {spec} --report {}",
+            shell(&json.to_string_lossy())
+        ),
+    };
+    Ok(diagnosed::text(&report, None, &apply))
 }

@@ -9,9 +9,10 @@ use appell_gap::diagnose::{Limit, Options};
 use appell_recordings::{DataSet, Spec};
 use serde_json::Value;
 
+use crate::diagnosed::{self, Apply};
 use crate::failure::Error;
-use crate::output;
-use crate::{diagnosed, progress};
+use crate::output::{self, shell};
+use crate::progress;
 use appell::files;
 use appell::source::Source;
 
@@ -119,7 +120,7 @@ impl Diagnose {
             return self.fleet();
         }
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
-        appell::recording::check_time_unit(&set)?;
+        appell::recording::check(&set)?;
         let before = match self.against.as_slice() {
             [] => None,
             paths => Some(appell::recording::read(paths, self.model.as_deref())?),
@@ -160,7 +161,7 @@ impl Diagnose {
             files::write(path, &appell_report::gap::page(&set, &report))?;
         }
         let outputs = [&self.json, &self.html, &next];
-        let mut text = diagnosed::text(&report, next.as_deref());
+        let mut text = diagnosed::text(&report, next.as_deref(), &self.apply(&set));
         text.extend(self.stepped_aside(next.as_deref()));
         for warning in replaced {
             text.extend(["  effects   ", warning, "\n"]);
@@ -249,6 +250,42 @@ impl Diagnose {
             path.symlink_metadata().is_err() || is_own(name, &path)
         });
         free.map(|name| report.with_file_name(name))
+    }
+
+    /// The command that writes what was found into the spec, after the one that writes the report.
+    fn apply(&self, set: &DataSet) -> Apply {
+        let mut shipped = appell_models::ALL.iter();
+        let is_shipped = shipped.any(|shipped| shipped.spec == set.spec.text);
+        let model = match &self.model {
+            Some(model) => model,
+            None if is_shipped => &set.mechanism.name,
+            None => &set.spec.file,
+        };
+        let model = shell(model);
+        let apply = |report: &Path| {
+            let report = shell(&report.to_string_lossy());
+            format!("appell apply {model} --report {report}")
+        };
+        let written = self.json.as_deref();
+        if let Some(report) = written.filter(|path| !files::is_stdout(path)) {
+            return Apply {
+                before: None,
+                command: apply(report),
+            };
+        }
+        let data = self.data.iter().map(|path| shell(&path.to_string_lossy()));
+        let data = data.collect::<Vec<_>>().join(" ");
+        let given = self
+            .model
+            .as_ref()
+            .map(|model| format!("{} ", shell(model)));
+        let given = given.unwrap_or_default();
+        Apply {
+            before: Some(format!(
+                "appell diagnose {given}--data {data} --json gap.json"
+            )),
+            command: apply(Path::new("gap.json")),
+        }
     }
 
     /// A note if an existing file was kept.

@@ -66,7 +66,7 @@ enum Start {
 impl Identify {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, Some(&self.model))?;
-        appell::recording::check_time_unit(&set)?;
+        appell::recording::check(&set)?;
         let model = engine::model_for_estimation(&self.model)?;
         let spinner = progress::spinner("reading");
         let options = Options {

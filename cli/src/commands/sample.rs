@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::failure::Error;
-use crate::output;
+use crate::output::{self, shell};
 
 /// Writes a folder to try the other commands with.
 #[derive(Debug, clap::Args)]
@@ -36,21 +36,22 @@ impl Sample {
         let told = match &self.what {
             What::Rig { folder } => {
                 let files = appell::sample::rig(folder)?.join(", ");
-                let at = folder.display();
+                let at = shell(&folder.to_string_lossy());
                 format!(
                     "wrote {files} to {at}; next:\n  appell recording {at}\n  appell diagnose --data {at} --html gap.html\n"
                 )
             }
             What::Capture { folder } => {
                 let written = appell_papers::book::euc::sample::capture(folder)?;
-                let at = folder.display();
+                let at = shell(&folder.to_string_lossy());
                 let rides: Vec<String> = (written.files[1..].iter())
-                    .map(|ride| format!("{at}/{ride}"))
+                    .map(|ride| shell(&folder.join(ride).to_string_lossy()))
                     .collect();
                 format!(
-                    "wrote {} to {at}; next:\n  appell motion {at}/skeleton.toml {} --out rides\n  \
+                    "wrote {} to {at}; next:\n  appell motion {} {} --out rides\n  \
                      appell inverse euc_3dof --data rides --free h --bias phi\nthe truth: h = {:.3} m\n",
                     written.files.join(", "),
+                    shell(&folder.join(&written.files[0]).to_string_lossy()),
                     rides.join(" "),
                     written.height,
                 )

@@ -6,6 +6,7 @@ use crate::failure::Error;
 use appell::setup::Assignment;
 use appell::{Law, Model, Motion, Simulated, files};
 use appell_report::figure::Figure;
+use appell_report::text::number;
 use appell_runtime::Trajectory;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::ModelInfo;
@@ -165,8 +166,15 @@ impl Simulate {
             trajectory,
             failure,
             undriven,
+            held_from,
         } = simulated(&model, &motion)?;
 
+        if let Some(from) = held_from {
+            note(&format!(
+                "the recorded inputs end at {} s; their last values are held from there on",
+                number(from)
+            ));
+        }
         for [wanted, name] in trajectory.renamed() {
             note(&format!(
                 "the spec uses the name `{wanted}`; the computed column is `{name}`"
@@ -187,7 +195,7 @@ impl Simulate {
         }
         let mut text = summary::text(&trajectory);
         if undriven && failure.is_none() && summary::rests(&trajectory) {
-            text += &hint(model.info());
+            text += &hint(model.info(), &self.initial);
         }
         output::print_beside(&text, &[&self.csv, &self.plot, &self.html, &self.json])?;
         match failure {
@@ -230,9 +238,18 @@ impl Simulate {
     }
 }
 
-fn hint(info: &ModelInfo) -> String {
-    let first = info.coordinate_quantities().last();
-    let name = first.map_or("NAME", |coordinate| coordinate.name.as_ref());
+/// Proposes a coordinate, or a pseudo-velocity where a coordinate did not set anything in motion.
+fn hint(info: &ModelInfo, tried: &[Assignment]) -> String {
+    let is_coordinate = |given: &Assignment| {
+        let state = info.state_index(&given.name);
+        state.is_some_and(|state| state >= info.speeds)
+    };
+    let proposed = if tried.iter().any(is_coordinate) {
+        info.states.first()
+    } else {
+        info.coordinate_quantities().last()
+    };
+    let name = proposed.map_or("NAME", |quantity| quantity.name.as_ref());
     format!(
         "  nothing moves: the mechanism starts in equilibrium and has no input; try `--initial \
          {name}=0.1`\n"

@@ -104,6 +104,9 @@ fn modes(asked: &Resolved<'_>, stability: &Stability) -> String {
         };
         rows.push(vec![value, "1/s".to_owned(), leading.join(", ")]);
     }
+    if stability.zeros == 0 {
+        return format!("eigenvalues\n{}", table(&rows, 0..1));
+    }
     let neutral = format!(
         "{} zero eigenvalue{} of {}: the family of neighbouring steady motions has {} dimension{}",
         stability.zeros,

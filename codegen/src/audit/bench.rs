@@ -2,6 +2,7 @@
 
 use appell_spec::mechanism::Mechanism;
 
+use super::ranges::Proposal;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::Finding;
@@ -37,6 +38,8 @@ pub(super) struct Bench<'a> {
     pub(super) unconstrained: Kinematics,
     /// Outputs in terms of coordinates and pseudo-velocities.
     pub(super) outputs: Vec<Expr>,
+    /// Ranges that would take the place of pivoting.
+    pub(super) proposals: Vec<Proposal>,
 }
 
 impl<'a> Bench<'a> {
@@ -55,6 +58,7 @@ impl<'a> Bench<'a> {
             algebra,
             unconstrained,
             outputs,
+            proposals: Vec::new(),
         })
     }
 
@@ -136,15 +140,6 @@ pub(super) fn unconstrained(
 ) -> Option<Kinematics> {
     let rates = &symbols.rates;
     Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain).ok()
-}
-
-/// An expression that only its zeros matter of.
-pub(super) fn zero_or(algebra: &mut Algebra, expr: Expr) -> Expr {
-    if algebra.test.is_zero(&algebra.graph, expr) {
-        Graph::ZERO
-    } else {
-        expr
-    }
 }
 
 pub(super) fn shown(graph: &Graph, expr: Expr) -> String {

@@ -7,7 +7,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Mechanism, Normal, PointId};
 
-use super::bench::{listed, shown, unconstrained, zero_or};
+use super::bench::{listed, shown, unconstrained};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
@@ -16,7 +16,8 @@ use crate::mechanics::kinematics::Kinematics;
 use crate::mechanics::rank::{LinearRow, Standing, standings};
 use crate::mechanics::symbols::Symbols;
 use crate::mechanics::time::TimeDerivative;
-use crate::symbolic::Expr;
+use crate::symbolic::vector;
+use crate::symbolic::{Expr, Graph};
 
 /// At most one finding per rolling contact.
 pub(super) fn findings(
@@ -98,8 +99,25 @@ impl Geometry<'_> {
             ));
         }
         let material = self.material_velocity(body, contact);
-        if self.independent_of_positions(&material) == 3 {
+        let centre = mechanism.bodies[body].centre;
+        let is_bound = !self.velocities_of_positions().is_empty();
+        let graph = &mut self.algebra.graph;
+        // Position constraints turn the plane of the velocities: the arm is asked without them.
+        let arm = if is_bound {
+            vector::ZERO
+        } else {
+            self.kinematics
+                .between(graph, mechanism, contact, centre, GROUND)
+        };
+        let standings = self.after_positions(&material, &arm);
+        let count = |wanted| standings.iter().filter(|&s| *s == wanted).count();
+        let removed = count(Standing::Independent);
+        if removed == 3 && !self.stays_level(contact) {
             return Some(self.leaves_the_ground(contact));
+        }
+        // With two velocities in the plane of the arm, that plane is not tangent to the body.
+        if removed == 3 || removed == 2 && !is_bound && count(Standing::Inconsistent) == 0 {
+            return Some(self.is_not_tangent(body, contact));
         }
         self.is_overhead(body, contact).then(|| {
             (
@@ -127,6 +145,12 @@ impl Geometry<'_> {
         let v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
         let point = &mechanism.points[contact].name;
         if self.independent_of_positions(&[v[k]]) > 0 {
+            let graph = &mut self.algebra.graph;
+            let of_point = self.kinematics.velocity(contact);
+            let of_point = self.kinematics.frames.express(graph, of_point, frame);
+            if self.independent_of_positions(&[of_point[k]]) == 0 {
+                return Some(self.is_not_tangent(body, contact));
+            }
             return Some((
                 format!(
                     "the coordinates allow the contact `{point}` to move along the normal of its surface"
@@ -176,27 +200,68 @@ impl Geometry<'_> {
         self.vanishes(&passing)
     }
 
+    /// Whether a point keeps its height, once the coordinates satisfy the position constraints.
+    fn stays_level(&mut self, point: PointId) -> bool {
+        let Some(down) = self.mechanism.down() else {
+            return false;
+        };
+        let graph = &mut self.algebra.graph;
+        let v = self.kinematics.velocity(point);
+        let v = self.kinematics.frames.express(graph, v, GROUND);
+        let down = down.map(|c| graph.integer(c.into()));
+        let falls = graph.dot(down, v);
+        self.independent_of_positions(&[falls]) == 0
+    }
+
+    fn is_not_tangent(&self, body: BodyId, contact: PointId) -> (String, String) {
+        let body = &self.mechanism.bodies[body];
+        let point = &self.mechanism.points[contact].name;
+        let (name, centre) = (&body.name, &self.mechanism.points[body.centre].name);
+        (
+            format!(
+                "`{name}` does not touch the ground at `{point}`: as it turns, its material there \
+                 moves towards the ground or away from it, so its surface is not tangent to the \
+                 ground, and the constraint removes a velocity too many"
+            ),
+            format!(
+                "check the position of `{point}` relative to the centre `{centre}`, its signs too: the \
+                 normal of the surface at `{point}` is that of the ground; a round wheel touches \
+                 straight below its centre"
+            ),
+        )
+    }
+
     /// How many of some velocities the coordinates leave open, once they satisfy the position
     /// constraints.
     fn independent_of_positions(&mut self, wanted: &[Expr]) -> usize {
-        let mut velocities = self.velocities_of_positions();
-        let before = velocities.len();
-        velocities.extend(wanted);
-        let rates = &self.symbols.rates;
-        let rows: Vec<LinearRow> = velocities
-            .into_iter()
-            .map(|velocity| {
-                let coefficients = rates.iter().map(|&rate| {
-                    let coefficient = self.algebra.derivative(velocity, rate);
-                    zero_or(self.algebra, coefficient)
-                });
-                LinearRow::homogeneous(coefficients.collect())
-            })
-            .collect();
-        let standings = standings(self.algebra, &rows);
-        let open = standings[before..].iter();
+        let standings = self.after_positions(wanted, &vec![Graph::ZERO; wanted.len()]);
+        let open = standings.iter();
         open.filter(|standing| **standing == Standing::Independent)
             .count()
+    }
+
+    /// How some velocities, each with a rest, stand to those before them and to the position
+    /// constraints.
+    fn after_positions(&mut self, wanted: &[Expr], rests: &[Expr]) -> Vec<Standing> {
+        let of_positions = self.velocities_of_positions();
+        let positions = of_positions.len();
+        let velocities = of_positions.into_iter().map(|v| (v, Graph::ZERO));
+        let wanted = wanted.iter().copied().zip(rests.iter().copied());
+        let rates = &self.symbols.rates;
+        let rows: Vec<LinearRow> = velocities
+            .chain(wanted)
+            .map(|(velocity, rest)| {
+                let coefficients = rates.iter().map(|&rate| {
+                    let coefficient = self.algebra.derivative(velocity, rate);
+                    self.algebra.unless_zero(coefficient)
+                });
+                LinearRow {
+                    coefficients: coefficients.collect(),
+                    rest,
+                }
+            })
+            .collect();
+        standings(self.algebra, &rows).split_off(positions)
     }
 
     /// Time derivatives of the position constraints.

@@ -65,10 +65,18 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
             }
             continue;
         }
-        let help = format!(
-            "declare a `range` of {names} that excludes it, or choose pseudo-velocities that \
-             are independent there"
-        );
+        let mut excluding = format!("a `range` of {names} that excludes it");
+        let is_of = |q| {
+            let name = bench.mechanism.coordinates[q].label.name.as_str();
+            positions.iter().all(|&(other, _)| other == name)
+        };
+        let mut proposals = bench.proposals.iter_mut();
+        if let Some(proposal) = proposals.find(|proposal| is_of(proposal.coordinate)) {
+            proposal.is_told = true;
+            excluding = format!("{}, which excludes it", proposal.written(bench.mechanism));
+        }
+        let help =
+            format!("declare {excluding}, or choose pseudo-velocities that are independent there");
         // Samples do not satisfy position constraints, which may keep away from it.
         if bench.derivation.positions.names.is_empty() && takes_both_signs(bench, factor) {
             let message =

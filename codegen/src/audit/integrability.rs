@@ -8,7 +8,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::CoordinateId;
 
-use super::bench::{Bench, listed, zero_or};
+use super::bench::{Bench, listed};
 use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
 use crate::symbolic::{Expr, Graph, Substitution};
@@ -132,7 +132,7 @@ fn bracket(bench: &mut Bench, a: &Field, b: &Field) -> Field {
         let along_a = derivative_along(bench, b.rates[k], a);
         let along_b = derivative_along(bench, a.rates[k], b);
         let difference = bench.algebra.graph.sub(along_a, along_b);
-        zero_or(&mut bench.algebra, difference)
+        bench.algebra.unless_zero(difference)
     });
     let rates = rates.collect();
     let in_time = false;
@@ -172,7 +172,7 @@ fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
                 .map(|(&c, &rate)| algebra.graph.mul(c, rate))
                 .collect();
             let velocity = algebra.graph.sum(&parts);
-            zero_or(algebra, velocity)
+            algebra.unless_zero(velocity)
         })
         .collect()
 }

@@ -2,7 +2,7 @@
 
 use appell_runtime::dense::lu_solve_in_place;
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId};
+use appell_spec::mechanism::CoordinateId;
 
 use super::bench::{Audit, Bench};
 use crate::mechanics::finding::{Finding, Item};
@@ -99,17 +99,6 @@ fn size(errors: &[f64]) -> f64 {
     errors.iter().map(|error| error * error).sum::<f64>().sqrt()
 }
 
-/// The item of a position constraint, by its number among them.
-fn constraint(bench: &Bench, index: usize) -> ConstraintId {
-    let of_positions = bench
-        .mechanism
-        .constraints
-        .entries()
-        .filter(|(_, constraint)| matches!(constraint.kind, ConstraintKind::Position { .. }))
-        .nth(index);
-    of_positions.map_or(ConstraintId::new(0), |(id, _)| id)
-}
-
 fn unsatisfied(bench: &Bench, index: usize) -> Finding {
     let positions = &bench.derivation.positions;
     let dependent = CoordinateId::new(positions.dependent[index]);
@@ -119,7 +108,7 @@ fn unsatisfied(bench: &Bench, index: usize) -> Finding {
             "no value of `{}` near the initial one satisfies `{}`: the mechanism cannot be assembled there",
             bench.mechanism.coordinates[dependent].label.name, positions.names[index],
         ),
-        item: Item::Constraint(constraint(bench, index)),
+        item: Item::Constraint(positions.constraints[index]),
         help: "correct the lengths, or the initial values of the other coordinates".to_owned(),
     }
 }
@@ -137,7 +126,7 @@ fn moved(bench: &Bench, index: usize, q: usize, start: f64) -> Finding {
             shown(coordinate.initial),
             bench.derivation.positions.names[index],
         ),
-        item: Item::Constraint(constraint(bench, index)),
+        item: Item::Constraint(bench.derivation.positions.constraints[index]),
         help: "no action is needed; a dependent coordinate needs an initial value only to choose between solutions"
             .to_owned(),
     }

@@ -16,6 +16,21 @@ const MOST_TERMS: usize = 200;
 /// Fractions whose numerators would have more terms than this are not joined.
 const MOST_JOINED_TERMS: usize = 12;
 
+/// A system `C s = r` that determines unknowns, by the cofactors and the determinant of C.
+#[derive(Debug, Clone)]
+pub struct Relation {
+    /// s.
+    pub unknowns: Vec<Expr>,
+    /// Their symbols.
+    pub symbols: Vec<SymbolId>,
+    /// Cofactors of C, row by row.
+    pub cofactors: Vec<Vec<Expr>>,
+    /// det C, which may vanish.
+    pub determinant: Expr,
+    /// r.
+    pub right: Vec<Expr>,
+}
+
 /// Graph, identity test and remembered derivatives.
 #[derive(Clone)]
 pub struct Algebra {
@@ -25,6 +40,8 @@ pub struct Algebra {
     pub test: IdentityTest,
     coordinates: Vec<SymbolId>,
     derivatives: Vec<(SymbolId, Derivatives)>,
+    /// What is known of unknowns that no formula gives; taken out while it serves.
+    pub(super) relations: Vec<Relation>,
 }
 
 impl Algebra {
@@ -40,6 +57,7 @@ impl Algebra {
             test,
             coordinates,
             derivatives: Vec::new(),
+            relations: Vec::new(),
         }
     }
 
@@ -70,6 +88,16 @@ impl Algebra {
             self.derivatives.len() - 1
         });
         self.derivatives[place].1.of(&mut self.graph, expr)
+    }
+
+    /// The expression, or the number zero if that is its value everywhere: what depends on nothing
+    /// must not seem to by rounding.
+    pub fn unless_zero(&mut self, expr: Expr) -> Expr {
+        if self.test.is_zero(&self.graph, expr) {
+            Graph::ZERO
+        } else {
+            expr
+        }
     }
 
     /// The same value in the fewest operations that the tools here find.
@@ -112,9 +140,58 @@ impl Algebra {
         forms.min_by_key(cost).unwrap_or(expr)
     }
 
-    /// [`Algebra::shortest`] of each component.
+    /// [`Algebra::shortest`] of each component, by way of the relations between unknowns.
     pub fn shortest3(&mut self, v: Vec3) -> Vec3 {
-        v.map(|component| self.shortest(component))
+        let v = v.map(|component| self.shortest(component));
+        let relations = std::mem::take(&mut self.relations);
+        let v = v.map(|component| {
+            let told = relations.iter();
+            told.fold(component, |e, relation| {
+                self.related(e, relation).unwrap_or(e)
+            })
+        });
+        self.relations = relations;
+        v
+    }
+
+    /// An expression `c s + rest` without the unknowns, `c C⁻¹ r + rest`, where that takes no division and
+    /// no more operations.
+    fn related(&mut self, expr: Expr, relation: &Relation) -> Option<Expr> {
+        let is_long = self.graph.operations(&[expr]) > MOST_TERMS;
+        if is_long || !self.graph.mentions(expr, &relation.symbols) {
+            return None;
+        }
+        let mut slopes = Vec::with_capacity(relation.unknowns.len());
+        let mut parts = vec![expr];
+        for &unknown in &relation.unknowns {
+            let slope = self.derivative(expr, unknown);
+            let slope = self.shortest(slope);
+            if self.graph.mentions(slope, &relation.symbols) {
+                return None;
+            }
+            let part = self.graph.mul(slope, unknown);
+            parts.push(self.graph.neg(part));
+            slopes.push(slope);
+        }
+        for (cofactors, &right) in relation.cofactors.iter().zip(&relation.right) {
+            let over = slopes.iter().zip(cofactors);
+            let over: Vec<Expr> = over
+                .map(|(&c, &cofactor)| self.graph.mul(c, cofactor))
+                .collect();
+            let over = self.graph.sum(&over);
+            let over = self.shortest(over);
+            let factor = self.graph.div(over, relation.determinant);
+            let factor = self.shortest(factor);
+            if self.graph.divisor_count(factor) > 0 {
+                return None;
+            }
+            parts.push(self.graph.mul(factor, right));
+        }
+        let sum = self.graph.sum(&parts);
+        let told = self.shortest(sum);
+        let graph = &self.graph;
+        let pays = graph.operations(&[told]) <= graph.operations(&[expr]);
+        (pays && !graph.mentions(told, &relation.symbols)).then_some(told)
     }
 
     /// An expression with `parts` written out, multiplied out and nested again. `None` where that

@@ -548,6 +548,15 @@ impl Derivation {
                 columns_of.push(columns.collect::<Outcome<_>>()?);
             }
         }
+        for (columns, variables) in columns_of.iter_mut().zip(variables) {
+            for (column, variable) in columns.iter_mut().zip(variables) {
+                if symbols.coordinates.contains(variable) {
+                    for entry in column {
+                        *entry = algebra.unless_zero(*entry);
+                    }
+                }
+            }
+        }
         let by_row = |columns: Vec<Vec<Expr>>| {
             let row = |row| columns.iter().map(move |column: &Vec<Expr>| column[row]);
             (0..rows).flat_map(row).collect()

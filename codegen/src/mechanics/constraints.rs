@@ -64,7 +64,7 @@ pub fn constraints(
     )?;
     let mut places: Vec<Place> = Vec::new();
     let (mut rows, mut findings) = (Vec::new(), Vec::new());
-    for index in positions_last(mechanism) {
+    for index in by_precedence(mechanism) {
         let scalars = scalar_rows(algebra, mechanism, symbols, &kinematics, index);
         let (place, scalars) = match scalars {
             Ok(scalars) => scalars,
@@ -111,17 +111,15 @@ pub fn constraints(
     })
 }
 
-/// The constraints, those of positions last: where a contact and a position constraint say the same,
-/// the contact is kept, because its reaction has a point.
-fn positions_last(mechanism: &Mechanism) -> Vec<ConstraintId> {
+/// The constraints, in the order in which they are kept. Where a contact and a position constraint say the
+/// same, the contact is kept, because its reaction has a point; a position says more than its derivative.
+fn by_precedence(mechanism: &Mechanism) -> Vec<ConstraintId> {
+    let kind = |i: ConstraintId| &mechanism.constraints[i].kind;
+    let is_position = |i| matches!(kind(i), ConstraintKind::Position { .. });
     let mut order: Vec<ConstraintId> = mechanism.constraints.ids().collect();
-    let position = |&i: &ConstraintId| {
-        matches!(
-            mechanism.constraints[i].kind,
-            ConstraintKind::Position { .. }
-        )
-    };
-    order.sort_by_key(position);
+    let has_positions = order.iter().any(|&i| is_position(i));
+    let is_derivative = |i| has_positions && matches!(kind(i), ConstraintKind::Velocity { .. });
+    order.sort_by_key(|&i| (is_derivative(i), is_position(i)));
     order
 }
 

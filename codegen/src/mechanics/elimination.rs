@@ -5,11 +5,13 @@ use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
 
 use super::algebra::Algebra;
 use super::constraints::Constraints;
+use super::cramer::{self, Block};
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::rank::{LinearRow, Standing, standings};
-use super::symbols::Symbols;
-use crate::symbolic::{Expr, Graph, Intervals, Substitution};
+use super::row::Row;
+use super::symbols::{Symbols, ids};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution, SymbolId};
 
 /// The generalised velocities in terms of the pseudo-velocities.
 #[derive(Debug, Clone)]
@@ -119,7 +121,7 @@ pub fn eliminate(
         .iter()
         .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
     let given: Vec<LinearRow> = given.collect();
-    let solved = solve(algebra, equations, &symbols.rates, intervals);
+    let solved = solve(algebra, equations, symbols, intervals);
     let Some((violating, violated)) = solved else {
         let (speeds, rows) = given.split_at(mechanism.pseudo_velocities.len());
         let names = constraints.rows.iter().filter(|row| row.is_active());
@@ -276,34 +278,56 @@ fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usiz
     if equations == coordinates {
         return Ok(());
     }
-    let rows = constraints.rows.iter().filter(|r| r.is_active()).count();
-    let speeds = mechanism.pseudo_velocities.len();
-    let needed = coordinates.saturating_sub(rows);
-    let left_out = constraints.rows.iter().filter(|row| row.redundant);
-    let left_out: Vec<String> = left_out.map(|row| format!("`{}`", row.name)).collect();
-    let remark = if left_out.is_empty() {
-        String::new()
-    } else {
-        format!(
-            "{} is not counted, because it follows from the others; ",
-            left_out.join(", ")
-        )
+    let named = |kept: &dyn Fn(&Row) -> bool| -> Vec<String> {
+        let rows = constraints.rows.iter().filter(|row| kept(row));
+        rows.map(|row| format!("`{}`", row.name)).collect()
     };
+    let (counted, left_out) = (named(&Row::is_active), named(&|row| row.redundant));
+    let (rows, speeds) = (counted.len(), mechanism.pseudo_velocities.len());
+    let needed = coordinates.saturating_sub(rows);
+    let kept = match counted.join(", ") {
+        none if none.is_empty() => none,
+        names => format!("counted are {names}; "),
+    };
+    let dropped = match &left_out[..] {
+        [] => String::new(),
+        [one] => format!("{one} is not counted, because it follows from the others; "),
+        more => format!(
+            "{} are not counted, because they follow from the others; ",
+            more.join(", ")
+        ),
+    };
+    let remark = kept + &dropped;
+    let velocities = |n| count(n, "pseudo-velocity", "pseudo-velocities");
+    let missing = speeds.saturating_sub(needed);
     Err(vec![Finding {
         code: Code::MissingPseudoVelocities,
         message: format!(
-            "{coordinates} coordinates under {rows} velocity constraints need {needed} \
-             pseudo-velocities, found {speeds}"
+            "{} under {} need {}, found {speeds}",
+            count(coordinates, "coordinate", "coordinates"),
+            count(rows, "constraint row", "constraint rows"),
+            velocities(needed),
         ),
         item: Item::Mechanism,
         help: if rows > coordinates {
             "remove constraints: there are more of them than coordinates".to_owned()
         } else if needed == 0 {
-            "remove constraints: they leave no degree of freedom".to_owned()
+            format!("{remark}remove constraints: they leave no degree of freedom")
+        } else if missing > 0 {
+            let constraints = match missing {
+                1 => "the missing constraint".to_owned(),
+                more => format!("the {more} missing constraints"),
+            };
+            let needed = velocities(needed);
+            format!("{remark}define exactly {needed}, or add {constraints}")
         } else {
-            format!("{remark}define exactly {needed} pseudo-velocities")
+            format!("{remark}define exactly {}", velocities(needed))
         },
     }])
+}
+
+fn count(number: usize, one: &str, more: &str) -> String {
+    format!("{number} {}", if number == 1 { one } else { more })
 }
 
 /// A solved unknown: `q̇_column = right - Σ coefficient · q̇_later`.
@@ -318,11 +342,11 @@ struct Solved {
 fn solve(
     algebra: &mut Algebra,
     mut equations: Vec<Equation>,
-    symbols: &[Expr],
+    symbols: &Symbols,
     intervals: &mut Intervals,
 ) -> Option<(Vec<Expr>, OpenSystem)> {
-    let unknowns = equations.len();
-    let mut open: Vec<usize> = (0..unknowns).collect();
+    let count = equations.len();
+    let mut open: Vec<usize> = (0..count).collect();
     let mut solved: Vec<Solved> = Vec::new();
     while let Some((row, column)) = safest_pivot(algebra, &equations, &open, intervals) {
         let Equation {
@@ -366,20 +390,37 @@ fn solve(
         return None;
     }
 
-    let mut rates = vec![Graph::ZERO; unknowns];
-    if let Some(pair) = pair_by_formula(algebra, &equations, &open, intervals) {
-        for (&column, rate) in open.iter().zip(pair) {
-            rates[column] = rate;
+    let mut rates = vec![Graph::ZERO; count];
+    let positions = ids(&algebra.graph, &symbols.coordinates);
+    let mut kept: Vec<usize> = Vec::new();
+    let matrix: Vec<&[Expr]> = equations.iter().map(|e| &*e.coefficients).collect();
+    for Block {
+        equations: places,
+        unknowns,
+    } in cramer::blocks(&matrix, &open)
+    {
+        let row = |&place: &usize| unknowns.iter().map(|&q| matrix[place][q]).collect();
+        let rows: Vec<Vec<Expr>> = places.iter().map(row).collect();
+        let right: Vec<Expr> = places.iter().map(|&place| equations[place].right).collect();
+        let held: &[SymbolId] = if open.len() == 2 { &[] } else { &positions };
+        match cramer::solve(algebra, &rows, &right, held, intervals) {
+            Some(values) => {
+                for (&column, value) in unknowns.iter().zip(values) {
+                    rates[column] = value;
+                }
+                open.retain(|column| !unknowns.contains(column));
+            }
+            None => kept.extend(places),
         }
-        open.clear();
     }
+    kept.sort_unstable();
     let mut system = OpenSystem::default();
     if !open.is_empty() {
-        system.unknowns = open.iter().map(|&column| symbols[column]).collect();
+        system.unknowns = open.iter().map(|&column| symbols.rates[column]).collect();
         for &column in &open {
-            rates[column] = symbols[column];
+            rates[column] = symbols.rates[column];
         }
-        for equation in &equations {
+        for equation in kept.iter().map(|&place| &equations[place]) {
             let row = open.iter().map(|&c| equation.coefficients[c]);
             system.matrix.extend(row);
             system.right.push(equation.right);
@@ -402,35 +443,6 @@ fn solve(
     }
     system.coordinates = open;
     Some((rates, system))
-}
-
-/// Two unknowns whose determinant cannot vanish although every entry can, as in a turn by an angle.
-fn pair_by_formula(
-    algebra: &mut Algebra,
-    equations: &[Equation],
-    open: &[usize],
-    intervals: &mut Intervals,
-) -> Option<[Expr; 2]> {
-    let ([first, second], &[i, j]) = (equations, open) else {
-        return None;
-    };
-    let mut minor = |[a, b, c, d]: [Expr; 4]| {
-        let (ad, bc) = (algebra.graph.mul(a, d), algebra.graph.mul(b, c));
-        let difference = algebra.graph.sub(ad, bc);
-        algebra.shortest(difference)
-    };
-    let ([a, b], [c, d]) = (
-        [first.coefficients[i], first.coefficients[j]],
-        [second.coefficients[i], second.coefficients[j]],
-    );
-    let determinant = minor([a, b, c, d]);
-    let numerators = [
-        minor([first.right, b, second.right, d]),
-        minor([a, first.right, c, second.right]),
-    ];
-    intervals
-        .cannot_vanish(&algebra.graph, determinant)
-        .then(|| numerators.map(|n| algebra.graph.div(n, determinant)))
 }
 
 /// The pivot that fills in least, among those that cannot vanish.

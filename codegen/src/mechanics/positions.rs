@@ -6,13 +6,16 @@ use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechani
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::rank::{LinearRow, Standing, is_finite, standings};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals};
 
 /// The position constraints `f(q, t) = 0` of a mechanism.
 #[derive(Debug, Clone, Default)]
 pub struct Positions {
-    /// Names of the constraints.
+    /// The constraints; those that others repeat are left out.
+    pub constraints: Vec<ConstraintId>,
+    /// Their names.
     pub names: Vec<String>,
     /// `f`, one per constraint.
     pub residual: Vec<Expr>,
@@ -20,6 +23,8 @@ pub struct Positions {
     pub jacobian: Vec<Vec<Expr>>,
     /// The coordinate that follows from the others by each constraint, no two equal.
     pub dependent: Vec<usize>,
+    /// What is left out.
+    pub warnings: Vec<Finding>,
 }
 
 impl Positions {
@@ -50,6 +55,12 @@ impl Positions {
                 .iter()
                 .map(|&q| algebra.derivative(residual, q))
                 .collect();
+            if let Some(others) = positions.repeated(algebra, intervals, residual, &row) {
+                positions
+                    .warnings
+                    .push(redundant(&constraint.name, index, &others));
+                continue;
+            }
             match positions.dependent_of(
                 algebra,
                 intervals,
@@ -59,6 +70,7 @@ impl Positions {
                 Some(coordinate) => positions.dependent.push(coordinate),
                 None => findings.push(undetermined(mechanism, index, *dependent)),
             }
+            positions.constraints.push(index);
             positions.names.push(constraint.name.clone());
             positions.residual.push(residual);
             positions.jacobian.push(row);
@@ -68,6 +80,36 @@ impl Positions {
         } else {
             Err(findings)
         }
+    }
+
+    /// The names of the constraints of which this one, with its slopes, is a sum in every configuration.
+    fn repeated(
+        &self,
+        algebra: &Algebra,
+        intervals: &mut Intervals,
+        residual: Expr,
+        slopes: &[Expr],
+    ) -> Option<Vec<String>> {
+        let row = |(coefficients, &rest): (&[Expr], &Expr)| LinearRow {
+            coefficients: coefficients.to_vec(),
+            rest,
+        };
+        let before = self.jacobian.iter().map(Vec::as_slice).zip(&self.residual);
+        let rows: Vec<LinearRow> = before.chain([(slopes, &residual)]).map(row).collect();
+        // The question must not change how equations are written.
+        let mut algebra = algebra.clone();
+        let Some(Standing::Redundant(sum)) = standings(&mut algebra, &rows).pop() else {
+            return None;
+        };
+        let finite = |&(_, factor): &(usize, Expr)| is_finite(&algebra.graph, intervals, factor);
+        if sum.is_empty() || !sum.iter().all(finite) {
+            return None;
+        }
+        Some(
+            sum.iter()
+                .map(|&(place, _)| self.names[place].clone())
+                .collect(),
+        )
     }
 
     /// The coordinate that the spec names, or the first free one whose coefficient is safest.
@@ -88,6 +130,19 @@ impl Positions {
         let candidates: Vec<usize> = (0..row.len()).filter(free).collect();
         let safe = |&&q: &&usize| intervals.cannot_vanish(&algebra.graph, row[q]);
         candidates.iter().find(safe).or(candidates.first()).copied()
+    }
+}
+
+fn redundant(name: &str, index: ConstraintId, others: &[String]) -> Finding {
+    let others: Vec<String> = others.iter().map(|other| format!("`{other}`")).collect();
+    Finding {
+        code: Code::RedundantConstraint,
+        message: format!(
+            "`{name}` follows from {} and is left out: the motion is the same without it",
+            others.join(", ")
+        ),
+        item: Item::Constraint(index),
+        help: "remove it".to_owned(),
     }
 }
 

@@ -124,8 +124,10 @@ impl Closure {
             }
         }
         let solved = appell_runtime::dense::solved_in_place(&mut matrix, right, count);
-        let residual = f64::INFINITY;
-        solved.then_some(()).ok_or(Inconsistent { residual })
+        solved.then_some(()).ok_or(Inconsistent {
+            residual: f64::INFINITY,
+            state: self.dependent[0],
+        })
     }
 
     /// Recomputes the dependent rows of a matrix, n rows of any width: N A.

@@ -17,6 +17,8 @@ const NEAR: f64 = 0.5;
 const PLACES: usize = 9;
 /// Waves that are tried alone.
 const WAVES: usize = 48;
+/// Rates that are tried on either side of the best wave, up to its neighbours.
+const FINER: u32 = 12;
 /// Width of a step in parts of the range.
 const STEP: f64 = 0.01;
 
@@ -30,6 +32,8 @@ struct Trial {
     text: String,
     terms: Vec<usize>,
     alike: usize,
+    /// Of a wave, radians per SI unit of the variable.
+    rate: Option<f64>,
 }
 
 /// The forms that come near to a law.
@@ -39,9 +43,41 @@ pub(super) fn forms(
     dependence: Dependence<'_>,
     law: &Unnamed,
 ) -> Result<Vec<Form>, DiagnoseError> {
+    let (terms, tried) = trials(bench, dependence);
+    let mut forms = scored(bench, base, dependence, law, (terms, tried))?;
+    // The rates of waves are a grid: the best of them is found between its neighbours.
+    let best = forms.iter().find_map(|(rate, _)| *rate);
+    if let Some(rate) = best {
+        let step = dependence.rate(1) - dependence.rate(0);
+        let finer = (0..=2 * FINER).map(|place| {
+            let beside = (f64::from(place) - f64::from(FINER)) / f64::from(FINER);
+            rate + beside * step
+        });
+        let finer: Vec<f64> = finer.filter(|rate| *rate > 0.0).collect();
+        let finer = waves(bench, dependence, &finer);
+        let finer = scored(bench, base, dependence, law, finer)?;
+        let place = forms.iter().position(|(own, _)| *own == best);
+        let better = finer.into_iter().next().zip(place);
+        if let Some((better, place)) = better {
+            forms[place] = better;
+        }
+    }
+    let mut forms: Vec<Form> = forms.into_iter().map(|(_, form)| form).collect();
+    forms.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
+    forms.truncate(TOLD);
+    Ok(forms)
+}
+
+/// Forms that come near to the law, the best first; of waves with their rates.
+fn scored(
+    bench: &Bench<'_>,
+    base: &Fitted,
+    dependence: Dependence<'_>,
+    law: &Unnamed,
+    (terms, trials): (Vec<Term>, Vec<Trial>),
+) -> Result<Vec<(Option<f64>, Form)>, DiagnoseError> {
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let (terms, trials) = trials(bench, dependence);
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
         let x = dependence.variable((bench, setup.model), run, at);
         let factor = dependence.factor(at);
@@ -62,13 +98,12 @@ pub(super) fn forms(
     let Some((_, scores)) = scores.into_iter().find(|(place, _)| *place == law.place) else {
         return Ok(Vec::new());
     };
-    let mut forms: Vec<Form> = trials
+    let mut forms: Vec<(Option<f64>, Form)> = trials
         .into_iter()
-        .filter_map(|trial| judged(trial, &scores, law.gain))
-        .filter(|form| form.share > NEAR)
+        .filter_map(|trial| Some((trial.rate, judged(trial, &scores, law.gain)?)))
+        .filter(|(_, form)| form.share > NEAR)
         .collect();
-    forms.sort_by(|a, b| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
-    forms.truncate(TOLD);
+    forms.sort_by(|(_, a), (_, b)| b.log_bayes_factor.total_cmp(&a.log_bayes_factor));
     Ok(forms)
 }
 
@@ -104,6 +139,7 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
             text,
             terms: (first..terms.len()).collect(),
             alike,
+            rate: None,
         });
     };
     let unit = range.abs().max(f64::MIN_POSITIVE);
@@ -159,18 +195,44 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
             vec![Box::new(move |x| (-(x - low) / length).exp())],
         );
     }
-    for wave in 0..WAVES {
-        let rate = dependence.rate(wave);
-        let shown = format!("{:.4}", rate * scale);
-        let shown = shown.trim_end_matches('0').trim_end_matches('.');
-        add(
-            format!("sin({shown}*{name} + phase)"),
-            WAVES,
-            vec![
-                Box::new(move |x| (rate * x).sin()),
-                Box::new(move |x| (rate * x).cos()),
-            ],
-        );
+    let rates: Vec<f64> = (0..WAVES).map(|wave| dependence.rate(wave)).collect();
+    let (more, waves) = waves(bench, dependence, &rates);
+    let first = terms.len();
+    trials.extend(waves.into_iter().map(|wave| Trial {
+        terms: wave.terms.iter().map(|term| first + term).collect(),
+        ..wave
+    }));
+    terms.extend(more);
+    (terms, trials)
+}
+
+/// A sine with a free phase for each of these rates.
+fn waves(bench: &Bench<'_>, dependence: Dependence<'_>, rates: &[f64]) -> (Vec<Term>, Vec<Trial>) {
+    let (name, written) = dependence.letters(bench);
+    let scale = dependence.unit(bench).1;
+    let (mut terms, mut trials) = (Vec::new(), Vec::new());
+    for &rate in rates {
+        let shown = format!("{:.3e}", rate * scale);
+        let shown = (shown.parse::<f64>()).map_or(shown, |value| value.to_string());
+        let text = format!("sin({shown}*{name} + phase)");
+        let first = terms.len();
+        terms.extend([
+            Term {
+                of: Box::new(move |x| (rate * x).sin()),
+            },
+            Term {
+                of: Box::new(move |x| (rate * x).cos()),
+            },
+        ]);
+        trials.push(Trial {
+            text: match &written {
+                Some(factor) => format!("{factor}*{text}"),
+                None => text,
+            },
+            terms: vec![first, first + 1],
+            alike: WAVES,
+            rate: Some(rate),
+        });
     }
     (terms, trials)
 }

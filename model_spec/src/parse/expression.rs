@@ -78,17 +78,45 @@ impl<'a> Parser<'_, 'a> {
     fn stray(&self) -> Diagnostic {
         let found = self.peek();
         let words = found.token.words();
+        let help = self.forgotten_sign();
         match found.token {
             Token::Number(_) | Token::Name(_) | Token::Symbol('(') => self
                 .error(found, format!("expected an operator before {words}"))
-                .help("a product is written with `*`"),
+                .maybe_help(help),
             Token::Relation(_) => self
                 .error(found, format!("{words} is allowed only inside `if(…)`"))
                 .help("write `if(a < b, x, y)`"),
             Token::Unit(_) => self
                 .error(found, "a unit may only follow a number")
                 .help("write `5 [N]`"),
-            _ => self.error(found, format!("{words} is not expected here")),
+            _ => self
+                .error(found, format!("{words} is not expected here"))
+                .maybe_help(help),
+        }
+    }
+
+    /// What the tokens around the present place would mean with one more sign.
+    fn forgotten_sign(&self) -> Option<String> {
+        let before = self.tokens.get(self.at.checked_sub(1)?)?.token;
+        let after = self.tokens.get(self.at + 1).map(|located| located.token);
+        match (before, self.peek().token, after) {
+            (Token::Name(function), Token::Number(argument) | Token::Name(argument), _)
+                if Function::from_name(function).is_some() =>
+            {
+                Some(format!("write `{function}({argument})`"))
+            }
+            (Token::Number(number), Token::Name(unit), _) if units::parse(unit).is_ok() => Some(
+                format!("a product is written with `*`, a unit in brackets: `{number} [{unit}]`"),
+            ),
+            (Token::Number(whole), Token::Symbol(','), Some(Token::Number(part))) => {
+                Some(format!("write the decimal point, `{whole}.{part}`"))
+            }
+            (
+                Token::Number(_) | Token::Name(_) | Token::Symbol(')'),
+                Token::Number(_) | Token::Name(_) | Token::Symbol('('),
+                _,
+            ) => Some("a product is written with `*`".to_owned()),
+            _ => None,
         }
     }
 
@@ -98,10 +126,8 @@ impl<'a> Parser<'_, 'a> {
             return Ok(self.next());
         }
         let words = found.token.words();
-        Err(self.error(
-            found,
-            format!("expected `{symbol}` after {after}, found {words}"),
-        ))
+        let message = format!("expected `{symbol}` after {after}, found {words}");
+        Err(self.error(found, message).maybe_help(self.forgotten_sign()))
     }
 
     fn node(

@@ -27,15 +27,20 @@ impl Resolver<'_> {
             let Some(ItemKind::Constraint(word)) = item.kind.map(|kind| kind.is) else {
                 continue;
             };
-            let kind = match word {
-                ConstraintWord::Rolling => self.rolling(item, bodies),
+            let (kind, left) = match word {
+                ConstraintWord::Rolling => (self.rolling(item, bodies), Dim::Any),
                 ConstraintWord::Velocity => self.velocity(item),
-                ConstraintWord::FixedVelocity => self.fixed_velocity(item, bodies),
+                ConstraintWord::FixedVelocity => (self.fixed_velocity(item, bodies), Dim::Any),
                 ConstraintWord::Position => self.position(item),
             };
             self.constraints
                 .insert(item.name.value.as_str(), constraints.len());
-            self.reacting.push(Some(acting(&kind)));
+            let mut acting = acting(&kind);
+            // Nothing follows from what could not be read.
+            if left == Dim::Unknown {
+                acting.dimension = None;
+            }
+            self.reacting.push(Some(acting));
             constraints.push(Constraint {
                 name: item.name.value.clone(),
                 about: Self::about(item),
@@ -99,7 +104,8 @@ impl Resolver<'_> {
         })
     }
 
-    fn velocity(&mut self, item: &ItemAst) -> ConstraintKind {
+    /// A velocity constraint, and the dimension of its sides.
+    fn velocity(&mut self, item: &ItemAst) -> (ConstraintKind, Dim) {
         let span = item.name.span.clone();
         let ast = item.expression("zero").cloned();
         let left = self.elaborate(&ast.unwrap_or_else(|| zero(span.clone())), &Place::RATE_ROW);
@@ -113,12 +119,13 @@ impl Resolver<'_> {
         }
         let right = item.expression("equals").cloned();
         let right = self.elaborate(&right.unwrap_or_else(|| zero(span)), &PRESCRIBED);
-        let dimension = self.unify(&left, &right, "equate").known();
-        ConstraintKind::Velocity {
+        let dim = self.unify(&left, &right, "equate");
+        let kind = ConstraintKind::Velocity {
             zero: left.expr,
             equals: right.expr,
-            dimension: dimension.unwrap_or(Dimension::NONE),
-        }
+            dimension: dim.known().unwrap_or(Dimension::NONE),
+        };
+        (kind, dim)
     }
 
     fn fixed_velocity(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
@@ -139,16 +146,18 @@ impl Resolver<'_> {
         }
     }
 
-    fn position(&mut self, item: &ItemAst) -> ConstraintKind {
+    /// A position constraint, and its dimension.
+    fn position(&mut self, item: &ItemAst) -> (ConstraintKind, Dim) {
         let ast = item.expression("zero").cloned();
         let ast = ast.unwrap_or_else(|| zero(item.name.span.clone()));
         let typed = self.elaborate(&ast, &CLOSURE);
-        ConstraintKind::Position {
+        let kind = ConstraintKind::Position {
             dimension: typed.dim.known().unwrap_or(Dimension::NONE),
             zero: typed.expr,
             dependent: self.optional_reference(item, "dependent"),
             one_sided: item.flag("one_sided"),
-        }
+        };
+        (kind, typed.dim)
     }
 
     /// Reports a point mass used as a rigid body.

@@ -5,8 +5,9 @@ use std::f64::consts::TAU;
 use num_traits::ToPrimitive;
 
 use super::resolver::Resolver;
+use crate::ast::{ExprAst, ExprAstKind, ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Expr, ExprKind, Quantity, Span};
+use crate::expr::{BinaryOp, Expr, ExprKind, Function, Quantity, Span};
 use crate::mechanism::{Label, Mechanism};
 
 impl Resolver<'_> {
@@ -32,8 +33,12 @@ impl Resolver<'_> {
             if is_in_radians(label) && most > TAU && coordinate.initial.abs() > TAU {
                 let what = format!("the initial value of `{}`", label.name);
                 notes.push(in_degrees(&what, coordinate.initial, &label.span));
+            } else if is_in_radians(label) && coordinate.range.is_some_and(is_sector_in_degrees) {
+                let what = format!("the range of `{}`", label.name);
+                notes.push(in_degrees(&what, most, &label.span));
             }
         }
+        notes.extend(self.numbers_beside_angles());
         for turn in mechanism.frames.iter().flat_map(|frame| &frame.turns) {
             if let ExprKind::Number(angle) = &turn.angle.kind {
                 let angle = angle.to_f64().unwrap_or(0.0);
@@ -60,6 +65,104 @@ impl Resolver<'_> {
             self.tell(note);
         }
     }
+}
+
+impl Resolver<'_> {
+    /// Plain numbers of more than a revolution in the sums that turn a frame or stand in `sin`, `cos`, `tan`.
+    fn numbers_beside_angles(&self) -> Vec<Diagnostic> {
+        let sections = self.ast.sections.iter();
+        let items = sections.flat_map(|section| &section.items);
+        let mut sums = Vec::new();
+        for item in items {
+            collect_angles(item, &mut sums);
+        }
+        let note = |(sum, of): (&ExprAst, &str)| {
+            let (angle, span) = large_term(sum)?;
+            let note = in_degrees(&format!("a number in {of}"), angle, span);
+            Some(note.help(format!("if it is in degrees, write `{angle} [deg]`")))
+        };
+        sums.into_iter().filter_map(note).collect()
+    }
+}
+
+/// The expressions of an item that are angles, with words for what each is.
+fn collect_angles<'a>(item: &'a ItemAst, angles: &mut Vec<(&'a ExprAst, &'static str)>) {
+    for entry in &item.entries {
+        let expressions: Vec<&ExprAst> = match &entry.value {
+            ValueAst::Expression(one) => vec![one],
+            ValueAst::Components(three) => three.iter().collect(),
+            ValueAst::Matrix(nine) => nine.iter().flatten().collect(),
+            ValueAst::Tables(items) => {
+                for item in items {
+                    collect_angles(item, angles);
+                }
+                continue;
+            }
+            ValueAst::Table(item) => {
+                collect_angles(item, angles);
+                continue;
+            }
+            _ => continue,
+        };
+        for expression in expressions {
+            // A turn by a number alone is told of already.
+            let is_number = matches!(expression.kind, ExprAstKind::Number(..));
+            if entry.key.name == "by" && !is_number {
+                angles.push((expression, "the turn"));
+            }
+            arguments(expression, angles);
+        }
+    }
+}
+
+/// The arguments of trigonometric functions.
+fn arguments<'a>(expression: &'a ExprAst, angles: &mut Vec<(&'a ExprAst, &'static str)>) {
+    let parts: Vec<&ExprAst> = match &expression.kind {
+        ExprAstKind::Negate(inner) => vec![inner],
+        ExprAstKind::Binary(_, a, b) => vec![a, b],
+        ExprAstKind::Call(function, inner) => {
+            let of = match function {
+                Function::Sin => Some("the argument of `sin`"),
+                Function::Cos => Some("the argument of `cos`"),
+                Function::Tan => Some("the argument of `tan`"),
+                _ => None,
+            };
+            angles.extend(inner.first().zip(of));
+            inner.iter().collect()
+        }
+        ExprAstKind::Choice {
+            compared, branches, ..
+        } => compared.iter().chain(branches.iter()).collect(),
+        ExprAstKind::Number(..)
+        | ExprAstKind::Name(_)
+        | ExprAstKind::Rate(_)
+        | ExprAstKind::Named(..)
+        | ExprAstKind::Broken => Vec::new(),
+    };
+    for part in parts {
+        arguments(part, angles);
+    }
+}
+
+/// The first term of a sum that is a plain number of more than a revolution.
+fn large_term(sum: &ExprAst) -> Option<(f64, &Span)> {
+    match &sum.kind {
+        ExprAstKind::Number(value, None) => {
+            let angle = value.to_f64().filter(|angle| angle.abs() > TAU)?;
+            Some((angle, &sum.span))
+        }
+        ExprAstKind::Negate(inner) => large_term(inner),
+        ExprAstKind::Binary(BinaryOp::Add | BinaryOp::Subtract, a, b) => {
+            large_term(a).or_else(|| large_term(b))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the ends of a range are those of a sector in degrees: within a turn either way, and multiples of five.
+fn is_sector_in_degrees(ends: [f64; 2]) -> bool {
+    let most = ends[0].abs().max(ends[1].abs());
+    most > TAU && most <= 360.0 && ends.iter().all(|end| (end / 5.0).fract() == 0.0)
 }
 
 fn is_in_radians(label: &Label) -> bool {

@@ -174,7 +174,8 @@ impl Resolver<'_> {
                 let help = match named.meaning {
                     Meaning::Quantity(Quantity::Parameter(_)) => "a parameter is constant",
                     Meaning::Quantity(Quantity::PseudoVelocity(_)) => {
-                        "accelerations are results and cannot be used in expressions"
+                        "accelerations are results: an output may name `acceleration(P, x)` of a point, or \
+                         `angular_acceleration(F, x)` of a frame"
                     }
                     Meaning::Quantity(_) | Meaning::Definition(_) | Meaning::Output => {
                         "define its rate as a separate quantity"
@@ -200,11 +201,19 @@ impl Resolver<'_> {
 
     fn unknown_name(&self, name: &str, span: &Span) -> Diagnostic {
         let known = self.names.keys().copied().chain(["t", "pi"]);
+        let rate_of = name.strip_suffix("_dot").filter(|&of| {
+            let named = self.names.get(of).map(|named| named.meaning);
+            matches!(named, Some(Meaning::Quantity(Quantity::Coordinate(_))))
+        });
+        let known = known.filter(|_| rate_of.is_none());
         let help = did_you_mean(name, known, || {
+            if let Some(coordinate) = rate_of {
+                return format!("write `dot({coordinate})`");
+            }
             if Function::from_name(name).is_some() {
                 format!("`{name}` is a function; write `{name}(…)`")
             } else {
-                "define it as a parameter, coordinate, input or signal".to_owned()
+                "define it as a parameter, coordinate, input, signal or definition".to_owned()
             }
         });
         Diagnostic::error(Code::UnknownName, format!("unknown name `{}`", shown(name)))
@@ -223,13 +232,19 @@ impl Resolver<'_> {
             Quantity::Motion(_) | Quantity::Response(_) => "the motion",
             Quantity::Time | Quantity::Pi => "the quantity",
         };
+        let allowed = format!("allowed here: {}", place.allowed_words());
+        let instead = "write the coordinates that the motion depends on";
+        let help = match quantity {
+            Quantity::Motion(_) if place.allows_coordinates() => format!("{instead}; {allowed}"),
+            _ => allowed,
+        };
         self.tell(
             Diagnostic::error(
                 Code::NotAllowedHere,
                 format!("{} cannot depend on {what} `{name}`", place.what),
             )
             .at(span.clone(), "")
-            .help(format!("allowed here: {}", place.allowed_words())),
+            .help(help),
         );
     }
 

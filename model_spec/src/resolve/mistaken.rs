@@ -22,6 +22,7 @@ impl Resolver<'_> {
         let mut notes = material_points(mechanism);
         notes.extend(sideways(mechanism));
         notes.extend(twice(mechanism));
+        notes.extend(repeated(mechanism));
         notes.extend(mechanism.constraints.iter().filter_map(|constraint| {
             let ConstraintKind::Rolling { body, contact, .. } = constraint.kind else {
                 return None;
@@ -167,6 +168,21 @@ fn twice(mechanism: &Mechanism) -> Vec<Diagnostic> {
         }
     }
     notes
+}
+
+/// Loads of kind `gravity` along the axis of another one.
+fn repeated(mechanism: &Mechanism) -> Vec<Diagnostic> {
+    let all: Vec<_> = weights(mechanism).collect();
+    let repeats = all.iter().enumerate().filter_map(|(place, (load, down))| {
+        let mut before = all[..place].iter();
+        let (first, _) = before.find(|(_, other)| other == down)?;
+        Some(note(
+            format!("`{}` acts on every body, as `{}` does", load.0, first.0),
+            load.1,
+            "omit one of the two: together they double the weight of each body".to_owned(),
+        ))
+    });
+    repeats.collect()
 }
 
 /// A wheel with equal moments about its axle and across it: then its moments across differ, as if it were not round.

@@ -18,6 +18,11 @@ type Names<'a> = &'a [Spanned<String>];
 /// An axis of a frame.
 type Along = (Axis, FrameId);
 
+fn as_written(word: Word, names: Names<'_>) -> String {
+    let names: Vec<&str> = names.iter().map(|name| name.value.as_str()).collect();
+    shown(&format!("{}({})", word.name(), names.join(", ")))
+}
+
 impl Resolver<'_> {
     /// A kinematic quantity or a force by name.
     pub(super) fn named(
@@ -89,9 +94,9 @@ impl Resolver<'_> {
             Motion::Velocity(..) | Motion::Speed(_) => Dimension::VELOCITY,
             Motion::AngularVelocity(..) => Dimension::NONE.rate().unwrap_or(Dimension::NONE),
         };
-        let shown = word.example();
+        let shown = as_written(word, names);
         let quantity = Quantity::Motion(quantity);
-        let typed = self.quantity(quantity, Some(dimension), shown, span, place);
+        let typed = self.quantity(quantity, Some(dimension), &shown, span, place);
         if word == Word::Speed {
             self.not_linear(place, "a speed", typed.span(), "not linear");
         }
@@ -113,7 +118,7 @@ impl Resolver<'_> {
         match response {
             Some(response) => {
                 let quantity = Quantity::Response(response);
-                self.quantity(quantity, dimension, word.example(), span, place)
+                self.quantity(quantity, dimension, &as_written(word, names), span, place)
             }
             None => Typed::poisoned(span),
         }

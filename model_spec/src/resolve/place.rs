@@ -135,6 +135,11 @@ impl Place {
         self.allows & asked == asked
     }
 
+    /// Whether it may depend on where the mechanism is.
+    pub(super) fn allows_coordinates(&self) -> bool {
+        self.allows & COORDINATES != 0
+    }
+
     /// Whether it is a force of the mechanism.
     pub(super) fn is_force(&self) -> bool {
         self.allows & FORCES != 0 && self.allows & ACCELERATIONS == 0

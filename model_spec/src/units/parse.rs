@@ -64,9 +64,13 @@ pub fn parse(text: &str) -> Result<Unit, UnitError> {
     }
     let product = parser.product(0)?;
     if parser.peek().is_some() {
-        return Err(parser.error(match parser.peek() {
-            Some('.') => "a product is written with `*`, a fractional exponent as `^(1/2)`",
-            _ => "this does not belong in a unit",
+        let (before, rest) = text.split_at(parser.at);
+        return Err(parser.error(&match parser.peek() {
+            Some('.') => {
+                "a product is written with `*`, a fractional exponent as `^(1/2)`".to_owned()
+            }
+            Some('0'..='9') => format!("a power is written with `^`, as in `{before}^{rest}`"),
+            _ => "this does not belong in a unit".to_owned(),
         }));
     }
     Ok(Unit::new(

@@ -11,6 +11,9 @@ use appell_codegen::symbolic::print::{Math, clean};
 /// Width of a line of equations, in characters as [`super::Math::width`] counts them.
 const WIDTH: usize = 92;
 
+/// A longer formula has its description on the next line.
+const LONGEST_CELL: usize = 56;
+
 /// Style sheet of the page.
 const STYLE: &str = concat!(
     include_str!("page.css"),
@@ -107,20 +110,40 @@ fn spans(spans: &[Span]) -> Markup {
 
 fn table(table: &Table, purpose: Use) -> Markup {
     markup! {
-        table {
+        div class="table" { table {
             @if !table.title.is_empty() {
                 caption { (clean(&table.title)) }
             }
             @for row in &table.rows {
-                tr data-lines=[located(purpose, &[row.line])] {
-                    @for cell in &row.cells {
-                        td { (spans(cell)) }
+                @let lines = located(purpose, &[row.line]);
+                @match row.cells.as_slice() {
+                    // A long formula would leave its description a word a line.
+                    [formula, about] if width(formula) > LONGEST_CELL && !about.is_empty() => {
+                        tr data-lines=[lines.clone()] {
+                            td colspan="2" { (spans(formula)) }
+                            td class="line" { (row.line) }
+                        }
+                        tr data-lines=[lines] { td {} td { (spans(about)) } td class="line" {} }
                     }
-                    td class="line" { (row.line) }
+                    cells => {
+                        tr data-lines=[lines] {
+                            @for cell in cells { td { (spans(cell)) } }
+                            td class="line" { (row.line) }
+                        }
+                    }
                 }
             }
-        }
+        } }
     }
+}
+
+/// Width of a cell, in characters.
+fn width(cell: &[Span]) -> usize {
+    let width = |span: &Span| match span {
+        Span::Text(text) => text.chars().count(),
+        Span::Math(math) => math.width(),
+    };
+    cell.iter().map(width).sum()
 }
 
 fn chain(chain: &Chain) -> Markup {

@@ -121,6 +121,11 @@ impl<'a> Writer<'a> {
             .collect()
     }
 
+    /// Letters of parts and of unknowns.
+    pub(super) fn bases(&mut self) -> [&'static str; 2] {
+        self.setter.bases(&self.derivation.algebra.graph)
+    }
+
     /// Marks a name as defined: a section shows it among its equations.
     pub(super) fn define(&mut self, letter: Letter) {
         self.defined.insert(letter);

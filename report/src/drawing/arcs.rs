@@ -17,8 +17,8 @@ const ALONG_LINK: f64 = 0.8;
 const SMALLEST: f64 = 0.02;
 /// Lengths below, relative to the drawing, have no direction.
 const NO_LENGTH: f64 = 1e-9;
-/// Angle between two corners of an arc.
-const STEP: f64 = 0.05;
+/// Parts of an arc.
+const PARTS: u32 = 32;
 /// How far the direction from which an angle counts is drawn, in radii.
 const BEYOND: f64 = 1.3;
 
@@ -97,9 +97,8 @@ fn arc([centre, begin]: [Vector; 2], about: Vector, angle: f64, name: String) ->
     if angle.is_nan() || angle.abs() < SMALLEST {
         return None;
     }
-    let count = (angle.abs() / STEP).ceil() as u32;
     let at = |part: f64| add(centre, 1.0, turned(begin, about, part * angle));
-    let corners = (0..=count).map(|k| at(f64::from(k) / f64::from(count)));
+    let corners = (0..=PARTS).map(|k| at(f64::from(k) / f64::from(PARTS)));
     Some(Arc {
         corners: corners.collect(),
         from: [centre, add(centre, BEYOND, begin)],

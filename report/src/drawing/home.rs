@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 
 use appell_spec::expr::{Expr, Quantity};
 use appell_spec::mechanism::{
-    Connection, ConstraintKind, CoordinateId, Load, LoadKind, Mechanism, PointId,
+    Body, BodyId, Connection, ConstraintKind, CoordinateId, Load, LoadKind, Mechanism, PointId,
 };
 
 /// Points that represent a coordinate, pseudo-velocity, parameter, input, body, constraint or
@@ -107,9 +107,36 @@ fn shaped(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
     points
 }
 
+/// The point about which a body turns.
+fn pivot(mechanism: &Mechanism, body: &Body) -> PointId {
+    let placing = mechanism.points.iter();
+    let placing = placing.filter(|point| Some(point.frame) == body.frame);
+    let mut pivots = placing.filter_map(|point| point.from);
+    pivots.next().unwrap_or(body.centre)
+}
+
+/// Where a torque acts: in the joint of its two bodies, or about the pivot of the only one.
+fn motor(mechanism: &Mechanism, on: BodyId, reaction_on: Option<BodyId>) -> PointId {
+    let on = &mechanism.bodies[on];
+    let own = pivot(mechanism, on);
+    let Some(other) = reaction_on.map(|other| &mechanism.bodies[other]) else {
+        return own;
+    };
+    let lies_on = |point: PointId, body: &Body| {
+        point == body.centre || Some(mechanism.points[point].frame) == body.frame
+    };
+    let others = pivot(mechanism, other);
+    if !lies_on(own, other) && lies_on(others, on) {
+        return others;
+    }
+    own
+}
+
 fn attack(mechanism: &Mechanism, load: &Load) -> Vec<PointId> {
     match &load.kind {
-        LoadKind::Torque { on, .. } => vec![mechanism.bodies[*on].centre],
+        LoadKind::Torque {
+            on, reaction_on, ..
+        } => vec![motor(mechanism, *on, *reaction_on)],
         LoadKind::Generalized { velocity, .. } => {
             let mut points = Vec::new();
             velocity.visit(&mut |quantity| points.extend(carried(mechanism, quantity)));

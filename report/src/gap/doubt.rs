@@ -1,4 +1,4 @@
-//! Suspected unit errors: fitted values that are close to a common conversion factor.
+//! Suspected errors of units and signs: fitted values that are close to a common conversion factor, or to −1.
 
 use appell_gap::diagnose::{Hypothesis, Report};
 
@@ -70,9 +70,12 @@ fn doubt(value: f64, std: f64, says: &str, whose: &str) -> Option<String> {
         return None;
     }
     let within = (NEAR * std).max(ROUNDED * size);
+    let says = says.replace("{}", &number(value));
+    if (value + 1.0).abs() <= within {
+        return Some(format!("{says}: is the sign of `{whose}` right?"));
+    }
     let near = |(factor, _): &&(f64, &str)| (size - factor).abs() <= within;
     let (_, factor) = FACTORS.iter().find(near)?;
-    let says = says.replace("{}", &number(value));
     Some(format!(
         "{says}, which is close to {factor}: is the unit of `{whose}` right?"
     ))
@@ -89,6 +92,8 @@ mod tests {
         assert!(degrees.contains("57.1"), "{degrees}");
         assert!(degrees.ends_with("close to 180/π: is the unit of `x` right?"));
         assert!(question(-0.10197, 1e-6).is_some_and(|text| text.contains("1/9.81")));
+        let reversed = question(-1.001, 0.002).unwrap_or_default();
+        assert!(reversed.ends_with("times what there is: is the sign of `x` right?"));
         for (value, std) in [(1.02, 0.01), (50.0, 1.0), (9.0, 2.0), (1000.0, f64::NAN)] {
             assert_eq!(question(value, std), None, "{value} ± {std}");
         }

@@ -28,6 +28,13 @@ pub fn percent(part: f64) -> String {
     format!("{:.1} %", thousandths / 10.0)
 }
 
+/// Whether a part with its interval says anything: beyond this width everything is possible.
+pub fn is_determined(part: f64, [low, high]: [f64; 2]) -> bool {
+    /// Twice all there is.
+    const WIDEST: f64 = 2.0;
+    (low..=high).contains(&part) && high - low <= WIDEST
+}
+
 /// The same of what noise bounds: predictions may end below the floor that was expected.
 pub(super) fn part_of_all(part: f64) -> String {
     /// Half of the last digit.

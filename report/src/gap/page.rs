@@ -9,9 +9,12 @@ use super::budget::budget;
 use super::doubt::doubts;
 use super::elements::{bar, capital, code, figure, separated, table};
 use super::law::{law, predicts};
-use super::numbers::{measured, percent};
+use super::numbers::{is_determined, measured, percent};
 use super::plots;
-use super::words::{alternatives, hinted, imperfections, joined, left_out, percent_of, statement};
+use super::words::{
+    alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, refit_sentence,
+    said, statement,
+};
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
 use crate::text::{horizon, short, with_unit};
@@ -75,6 +78,7 @@ fn reading(report: &Report) -> Markup {
             }
             @if let Some((probability, same, rivals)) = alternatives(report) {
                 li { "Probability " (percent_of(probability)) "."
+                @if let Some(next) = next_best(report).filter(|_| report.verdict == GapVerdict::Explained) { " Next: " (next) "." }
                 @if !same.is_empty() { " The same in every motion: " (separated(&same, |one| code(one), &html! { ", " })) "." }
                 @if !rivals.is_empty() { " Not ruled out: " (separated(&rivals, |one| code(one), &html! { ", " })) "." } }
             }
@@ -87,14 +91,21 @@ fn reading(report: &Report) -> Markup {
 
 /// What the leading hypothesis is worth on held-out runs.
 fn worth(far: &HowFar) -> String {
+    let [low, high] = far.closed_ci95.map(percent);
+    if !is_determined(far.closed, far.closed_ci95) {
+        return format!(
+            "What it closes is not determined: the held-out runs leave it between {low} and {high}."
+        );
+    }
     let mut text = format!(
-        "On held-out runs it closes {} [{}, {}] of the gap, and {} of the gap that remains after re-fitting the \
+        "On held-out runs it closes {} [{low}, {high}] of the gap, and {} of the gap that remains after re-fitting the \
          parameters.",
         percent(far.closed),
-        percent(far.closed_ci95[0]),
-        percent(far.closed_ci95[1]),
         percent(far.closed_vs_refitted),
     );
+    if far.closed_ci95[0] <= 0.0 {
+        text += " The interval includes zero: these runs leave it open whether it closes anything.";
+    }
     if far.is_worse {
         text += " Predictions become worse with it: the fit does not generalise to these runs.";
     } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
@@ -271,11 +282,15 @@ fn windows(place: &Where) -> Markup {
     }
 }
 
-fn hypotheses(list: &[&Hypothesis]) -> Markup {
+fn hypotheses(report: &Report, list: &[&Hypothesis]) -> Markup {
     let rows = list.iter().map(|hypothesis| {
         let name = match hypothesis.effects.first().map(String::as_str) {
             None => html! { "no effect: the model with its parameters within tolerance" },
-            Some("unknown") => html! { "none of the library" },
+            Some("unknown") => {
+                let beside = said(report, hypothesis);
+                let beside = beside.split_once(" beside ").map(|(_, effects)| code(effects));
+                html! { "none of the library" @if let Some(effects) = beside { ", beside " (effects) } }
+            }
             Some(_) => code(&joined(&hypothesis.effects)),
         };
         let sizes = hypothesis
@@ -309,11 +324,11 @@ fn which(report: &Report) -> Markup {
         report.which.iter().partition(is_told);
     html! {
         h2 { "Which" }
-        (hypotheses(&told))
+        (hypotheses(report, &told))
         @if !others.is_empty() {
             details {
                 summary { (others.len()) " of less than " (percent(TOLD)) }
-                (hypotheses(&others))
+                (hypotheses(report, &others))
             }
         }
         @for doubt in doubts(report) {
@@ -415,15 +430,20 @@ fn how_far(report: &Report) -> Markup {
 }
 
 fn closed(far: &HowFar) -> Markup {
-    let [low, high] = far.closed_ci95;
+    let [low, high] = far.closed_ci95.map(percent);
     html! {
         p {
-            (far.horizon_s) " s ahead the RMS prediction error, in units of the noise, falls from "
+            (short(far.horizon_s)) " s ahead the RMS prediction error, in units of the noise, falls from "
             (short(far.nominal)) " to " (short(far.with_effect)) " (noise floor "
-            (short(far.noise_floor)) "). The gap closes by " b { (percent(far.closed)) }
-            ", with 95 % between " (percent(low)) " and " (percent(high))
-            "; against the model with re-fitted parameters by "
-            b { (percent(far.closed_vs_refitted)) } ". Runs: " (far.runs.join(", ")) "."
+            (short(far.noise_floor)) "). "
+            @if is_determined(far.closed, far.closed_ci95) {
+                "The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (low) " and " (high)
+                "; against the model with re-fitted parameters by "
+                b { (percent(far.closed_vs_refitted)) } ". "
+            } @else {
+                "The held-out runs leave it open what closes: between " (low) " and " (high) ". "
+            }
+            "Runs: " (far.runs.join(", ")) "."
         }
     }
 }
@@ -436,6 +456,12 @@ fn is_alternative(hypothesis: &Hypothesis) -> bool {
 /// Recommended actions.
 fn next(set: &DataSet, report: &Report) -> Markup {
     let advice = match report.verdict {
+        GapVerdict::NoGap if refit_sentence(report).is_some() => html! {
+            p {
+                "Take the parameters over: " code { "appell apply" } " writes those of the report that "
+                code { "appell diagnose" } " writes as JSON into the spec."
+            }
+        },
         GapVerdict::NoGap => html! {
             p {
                 "Nothing has to be added to the model. The table below tells how small an effect these \
@@ -445,7 +471,14 @@ fn next(set: &DataSet, report: &Report) -> Markup {
         _ if is_alternative(&report.which[0]) => html! {
             p { "Adopt the alternative model and repeat the diagnosis with it." }
         },
-        GapVerdict::Explained | GapVerdict::Ambiguous => html! {
+        GapVerdict::Ambiguous => html! {
+            p {
+                "Tell the tied hypotheses apart before one of them is written into the spec: record "
+                @if report.experiment.is_some() { "the experiment below" } @else { "other motions" }
+                ", diagnose again with the recording, and then use " code { "appell apply" } "."
+            }
+        },
+        GapVerdict::Explained => html! {
             p {
                 "Write the effect into the spec: " code { "appell apply" } " reads the report that "
                 code { "appell diagnose" } " writes as JSON."

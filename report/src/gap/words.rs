@@ -11,21 +11,85 @@ pub fn sentence(report: &Report) -> String {
     let Some((probability, same, rivals)) = alternatives(report) else {
         return statement;
     };
+    if report.verdict == GapVerdict::Explained {
+        let next = next_best(report).map(|next| format!("; next: {next}"));
+        let (sure, next) = (percent_of(probability), next.unwrap_or_default());
+        return format!("{statement} (probability {sure}{next})");
+    }
     let same = (!same.is_empty())
         .then(|| format!("; {} would be the same in every motion", same.join(", ")));
     let rivals =
         (!rivals.is_empty()).then(|| format!("; {} cannot be ruled out", rivals.join(", ")));
     let (same, rivals) = (same.unwrap_or_default(), rivals.unwrap_or_default());
-    format!(
-        "{statement} (probability {}){same}{rivals}",
-        percent_of(probability)
-    )
+    let values = leading(report).map(values).unwrap_or_default();
+    let sure = percent_of(probability);
+    format!("{statement} (probability {sure}{values}){same}{rivals}")
+}
+
+/// The hypothesis after the leading one, with its probability.
+pub(super) fn next_best(report: &Report) -> Option<String> {
+    let first = &leading(report)?.effects;
+    let mut others = report.which.iter();
+    let next = others.find(|one| one.same_as.is_none() && one.effects != *first)?;
+    let name = if next.is_unknown() {
+        "none of the library".to_owned()
+    } else {
+        joined(&next.effects)
+    };
+    Some(format!("{name}, {}", percent_of(next.probability)))
+}
+
+/// `, delay = 0.012 ± 0.001 s`
+fn values(hypothesis: &Hypothesis) -> String {
+    let values = hypothesis.parameters.iter().map(|value| {
+        let number = with_unit(&measured(value.value, value.std), &value.unit);
+        let name = value.name.rsplit('.').next().unwrap_or_default();
+        format!(", {} = {number}", name.replace('_', " "))
+    });
+    values.collect()
+}
+
+/// `m = 1.35 ± 0.01 kg (stated 1 kg)`: parameters that differ from what is stated beyond doubt.
+fn moved(report: &Report) -> Vec<String> {
+    /// Standard deviations beyond which a parameter has moved.
+    const BEYOND: f64 = 3.0;
+    let plain = report.which.iter().find(|one| one.effects.is_empty());
+    let changes = plain.and_then(|one| one.changes.as_ref());
+    let parameters = changes.iter().flat_map(|changes| &changes.parameters);
+    let moved = parameters.filter_map(|one| {
+        let std = one.std?;
+        let has_moved = (one.value - one.stated).abs() > BEYOND * std;
+        has_moved.then(|| {
+            let value = with_unit(&measured(one.value, std), &one.unit);
+            let stated = with_unit(&as_written(one.stated), &one.unit);
+            format!("{} = {value} (stated {stated})", one.name)
+        })
+    });
+    moved.collect()
+}
+
+/// A stated value as it was written, without the rounding of units.
+fn as_written(value: f64) -> String {
+    let rounded: f64 = format!("{value:.5e}").parse().unwrap_or(value);
+    rounded.to_string()
+}
+
+/// The parameters that moved, where predictions need them.
+pub fn refit_sentence(report: &Report) -> Option<String> {
+    let far = report.how_far.as_ref();
+    let is_needed = far.is_none_or(|far| refitted(&far.budget).is_some());
+    let moved = moved(report);
+    (is_needed && !moved.is_empty()).then(|| moved.join(", "))
 }
 
 /// Where several hypotheses may be true: the probability of the leading one, those that say the same of every motion,
 /// and those that cannot be ruled out.
 pub(super) fn alternatives(report: &Report) -> Option<(f64, Vec<String>, Vec<String>)> {
-    let is_open = report.change.is_none() && report.verdict == GapVerdict::Ambiguous;
+    let is_named = matches!(
+        report.verdict,
+        GapVerdict::Explained | GapVerdict::Ambiguous
+    );
+    let is_open = report.change.is_none() && is_named;
     let first = leading(report).filter(|_| is_open)?;
     Some((first.probability, twins(report), rivals(report)))
 }
@@ -41,19 +105,34 @@ pub(super) fn statement(report: &Report) -> String {
         return changed(report, change, &about);
     }
     match report.verdict {
-        GapVerdict::NoGap => "no gap beyond measurement and process noise".to_owned(),
+        GapVerdict::NoGap => {
+            let refit = refit_sentence(report);
+            let refit = refit.map(|moved| format!(" once parameters are re-fitted: {moved}"));
+            let refit = refit.unwrap_or_default();
+            format!("no gap beyond measurement and process noise{refit}")
+        }
         GapVerdict::Explained => match shares(report) {
             Some(shares) => shares,
             None => format!("the gap is explained by {}", about.join(" and ")),
         },
         GapVerdict::Ambiguous => shares(report).unwrap_or_else(|| {
-            let explain = if about.len() > 1 { "explain" } else { "explains" };
-            format!(
-                "there is a gap; {} {explain} it best",
-                about.join(" and ")
-            )
+            let explain = if about.len() > 1 {
+                "explain"
+            } else {
+                "explains"
+            };
+            format!("there is a gap; {} {explain} it best", about.join(" and "))
         }),
         GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
+            let far = report.how_far.as_ref();
+            let refit = far.and_then(|far| refitted(&far.budget));
+            if let (Some(refit), Some(moved)) = (refit, refit_sentence(report)) {
+                return format!(
+                    "re-fitted parameters close {} of the gap: {moved}; what fits the recordings best beyond them \
+                     does not better predictions",
+                    percent(refit.closed)
+                );
+            }
             "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
                 .to_owned()
         }
@@ -142,7 +221,8 @@ fn shares(report: &Report) -> Option<String> {
         }
         [one] if others.is_empty() => {
             let [low, high] = one.interval.map(|end| percent(end / left));
-            format!("{before}{names} closes {sum} [{low}, {high}] of {whole}")
+            let open = unsettled(one.interval, left);
+            format!("{before}{names} closes {sum} [{low}, {high}] of {whole}{open}")
         }
         [_] => format!("{before}{names} closes {sum} of {whole}"),
         several => {
@@ -158,6 +238,17 @@ fn shares(report: &Report) -> Option<String> {
     });
     text.extend(tail);
     Some(text)
+}
+
+/// What an interval that bounds a share hardly or not at all means.
+fn unsettled([low, high]: [f64; 2], whole: f64) -> &'static str {
+    if low <= 0.0 {
+        ", an interval in which the held-out runs leave it open whether it closes anything"
+    } else if high - low > whole {
+        ", an interval so wide that the held-out runs hardly bound the share"
+    } else {
+        ""
+    }
 }
 
 /// What the recordings before told: effects that the model has now, and how many parameters.
@@ -208,9 +299,13 @@ fn names_effects(report: &Report) -> bool {
         .is_some_and(|first| !first.parameters.is_empty())
 }
 
-/// A probability in whole percent.
+/// A probability in whole percent, none of them certain.
 pub(super) fn percent_of(probability: f64) -> String {
-    format!("{:.0} %", 100.0 * probability)
+    match 100.0 * probability {
+        percent if percent > 99.0 => "over 99 %".to_owned(),
+        percent if percent < 1.0 => "under 1 %".to_owned(),
+        percent => format!("{percent:.0} %"),
+    }
 }
 
 /// The most probable hypothesis of the library.
@@ -243,9 +338,10 @@ fn rivals(report: &Report) -> Vec<String> {
             return None;
         }
         Some(format!(
-            "{} ({})",
+            "{} ({}{})",
             joined(effects),
-            percent_of(hypothesis.probability)
+            percent_of(hypothesis.probability),
+            values(hypothesis)
         ))
     };
     tied.filter(|effects| *effects != first)
@@ -283,6 +379,22 @@ pub fn imperfections(report: &Report) -> Option<String> {
             named.join(", ")
         )
     })
+}
+
+/// What a hypothesis says. Beside what the library lacks stand the effects that close a part of the gap.
+pub fn said(report: &Report, hypothesis: &Hypothesis) -> String {
+    let named = joined(&hypothesis.effects);
+    if !hypothesis.is_unknown() {
+        return named;
+    }
+    let budget = report.how_far.iter().flat_map(|far| &far.budget);
+    let beside = budget.filter(|part| part.is_effect() && part.is_material);
+    let beside: Vec<&str> = beside.map(|part| part.name.as_str()).collect();
+    if beside.is_empty() {
+        named
+    } else {
+        format!("{named} beside {}", beside.join(" + "))
+    }
 }
 
 /// `a + b`

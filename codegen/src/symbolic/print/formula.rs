@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::letter::Letter;
 use super::math::Math;
-use crate::symbolic::{Expr, Factor, Function, Graph, Node, Rational, Relation, Term};
+use crate::symbolic::{Expr, Factor, Function, Graph, Node, Rational, Relation, SymbolId, Term};
 
 /// A part that would print wider than this becomes a letter of its own, defined apart.
 const WIDEST_PART: usize = 160;
@@ -54,7 +54,14 @@ pub struct Setter<V> {
     inline: bool,
     /// Parts that got a letter, by first use.
     parts: FxHashMap<Expr, usize>,
+    /// Letters of parts and of unknowns, once they are chosen.
+    bases: Option<[&'static str; 2]>,
 }
+
+/// Letters of parts, in order of preference.
+const PARTS: [&str; 4] = ["c", "k", "e", "a"];
+/// Letters of the unknowns of linear systems.
+const UNKNOWNS: [&str; 4] = ["s", "y", "w", "u"];
 
 impl<V: Vocabulary> Setter<V> {
     /// A setter that writes named quantities by their names.
@@ -63,7 +70,22 @@ impl<V: Vocabulary> Setter<V> {
             vocabulary,
             inline: false,
             parts: FxHashMap::default(),
+            bases: None,
         }
+    }
+
+    /// The letters of parts and of unknowns of linear systems: none that a symbol has.
+    pub fn bases(&mut self, graph: &Graph) -> [&'static str; 2] {
+        *self.bases.get_or_insert_with(|| {
+            let symbols = (0u32..).take(graph.symbol_count()).map(SymbolId);
+            let taken: Vec<String> = symbols
+                .map(|symbol| Letter::of(graph.symbol_name(symbol)).base)
+                .collect();
+            [PARTS, UNKNOWNS].map(|letters| {
+                let free = letters.into_iter().find(|&l| !taken.iter().any(|t| t == l));
+                free.unwrap_or(letters[0])
+            })
+        })
     }
 
     /// Writes the definitions of named quantities in their places.
@@ -82,13 +104,13 @@ impl<V: Vocabulary> Setter<V> {
     pub fn letter(&mut self, graph: &Graph, expr: Expr) -> Letter {
         match graph.node(expr) {
             Node::Named(_) | Node::Symbol(_) => self.vocabulary.letter(graph, expr),
-            Node::Solution { system, row } => Letter::plain("z")
+            Node::Solution { system, row } => Letter::plain(self.bases(graph)[1])
                 .below(&(system + 1).to_string())
                 .below(&(row + 1).to_string()),
             _ => {
                 let next = self.parts.len() + 1;
                 let number = *self.parts.entry(expr).or_insert(next);
-                Letter::plain("c").below(&number.to_string())
+                Letter::plain(self.bases(graph)[0]).below(&number.to_string())
             }
         }
     }

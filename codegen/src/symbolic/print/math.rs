@@ -54,6 +54,54 @@ pub enum Math {
 }
 
 impl Math {
+    /// Changes every letter, in reading order.
+    pub fn for_each_letter(&mut self, change: &mut dyn FnMut(&mut Letter)) {
+        match self {
+            Self::Letter(letter) => {
+                change(letter);
+                if let Some(by) = &mut letter.by {
+                    change(by);
+                }
+            }
+            Self::Row(parts)
+            | Self::Vector {
+                components: parts, ..
+            } => {
+                for part in parts {
+                    part.for_each_letter(change);
+                }
+            }
+            Self::Sum(terms) => {
+                for (_, term) in terms {
+                    term.for_each_letter(change);
+                }
+            }
+            Self::Fraction(first, second) | Self::Power(first, second) => {
+                first.for_each_letter(change);
+                second.for_each_letter(change);
+            }
+            Self::Call(_, _, inner)
+            | Self::Root(inner)
+            | Self::Size(inner)
+            | Self::Brackets(inner) => inner.for_each_letter(change),
+            Self::Matrix(rows) => {
+                for entry in rows.iter_mut().flatten() {
+                    entry.for_each_letter(change);
+                }
+            }
+            Self::Cases {
+                value,
+                condition,
+                otherwise,
+            } => {
+                for part in [value, condition, otherwise] {
+                    part.for_each_letter(change);
+                }
+            }
+            Self::Integer(_) | Self::Ratio(..) | Self::Words(_) | Self::Sign(_) => {}
+        }
+    }
+
     /// A small whole number.
     pub fn integer(value: usize) -> Self {
         Self::Integer(value.to_string())

@@ -77,7 +77,7 @@ pub fn mathml(math: &Math) -> String {
                 .iter()
                 .map(|row| row.iter().map(mathml).collect())
                 .collect();
-            format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&rows))
+            grid(&rows)
         }
         Math::Cases {
             value,
@@ -91,7 +91,7 @@ pub fn mathml(math: &Math) -> String {
                 ],
                 vec![mathml(otherwise), "<mtext>otherwise</mtext>".to_owned()],
             ];
-            format!("<mrow><mo>{{</mo>{}</mrow>", grid(&rows))
+            format!("<mrow><mo>{{</mo>{}</mrow>", table("<mtable>", &rows))
         }
     }
 }
@@ -131,8 +131,13 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
     format!("<mrow>{head}<mo>\u{2061}</mo>{argument}</mrow>")
 }
 
+/// Rows in brackets, which the style sheet draws as high as they are: fonts often have none that grow.
 fn grid(rows: &[Vec<String>]) -> String {
-    let mut out = String::from("<mtable>");
+    table("<mtable class=\"matrix\">", rows)
+}
+
+fn table(tag: &str, rows: &[Vec<String>]) -> String {
+    let mut out = String::from(tag);
     for row in rows {
         out.push_str("<mtr>");
         for cell in row {
@@ -149,7 +154,7 @@ fn vector(components: &[Math], frame: Option<&str>, column: bool) -> String {
     let Some(frame) = frame else {
         return if column {
             let rows: Vec<Vec<String>> = components.into_iter().map(|c| vec![c]).collect();
-            format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&rows))
+            grid(&rows)
         } else {
             format!(
                 "<mrow><mo>(</mo>{}<mo>)</mo></mrow>",
@@ -160,12 +165,9 @@ fn vector(components: &[Math], frame: Option<&str>, column: bool) -> String {
     let frame = format!("<mtext>{}</mtext>", escaped(frame));
     if column {
         let rows: Vec<Vec<String>> = components.into_iter().map(|c| vec![c]).collect();
-        return format!(
-            "<msub><mrow><mo>[</mo>{}<mo>]</mo></mrow>{frame}</msub>",
-            grid(&rows)
-        );
+        return format!("<msub>{}{frame}</msub>", grid(&rows));
     }
-    let inside = format!("<mrow><mo>[</mo>{}<mo>]</mo></mrow>", grid(&[components]));
+    let inside = grid(&[components]);
     format!("<msubsup>{inside}{frame}<mi mathvariant=\"normal\">T</mi></msubsup>")
 }
 

@@ -15,7 +15,7 @@ const TILT_DEG: f64 = 60.0;
 /// Largest yaw rate that is drawn, in rad/s.
 const YAW: f64 = 10.0;
 const COMMAND: &str =
-    "appell stability unicycle --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0";
+    "appell stability unicycle --chart theta=-60deg..60deg,psi_dot=-10..10 --require 'z_A>=0'";
 
 /// Kinds of cells: the feasible motions by the place of the mass, and the others. They are indices
 /// of colours.

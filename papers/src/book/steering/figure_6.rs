@@ -112,7 +112,7 @@ fn claim(mass: f64, mechanism: Mechanism, chart: &Chart) -> Result<Claim, Error>
     let holds = worst < 1e-6 && wrong == 0 && enough && count(true) > 0 && count(false) > 0;
     let command = if mass > 0.0 {
         format!(
-            "appell stability unicycle --set m0={mass} --chart theta=-60deg..60deg,psi_dot=-10..10 --require z_A>=0"
+            "appell stability unicycle --set m0={mass} --chart theta=-60deg..60deg,psi_dot=-10..10 --require 'z_A>=0'"
         )
     } else {
         "appell stability rolling_wheel --chart theta=-60deg..60deg,psi_dot=-10..10".to_owned()

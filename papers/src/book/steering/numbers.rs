@@ -228,7 +228,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
         lane.push(output_rank(&equations.system, &outputs));
         turn.push(output_rank(&equations.system, &outputs[..5]));
     }
-    let command = "appell control unicycle --at omega_2=5[m/s]/R";
+    let command = "appell control unicycle --at 'omega_2=5[m/s]/R'";
     let mut rank = |place: &str, what: &str, found: &[usize], wanted: usize| {
         let holds = found.iter().all(|rank| *rank == wanted);
         let ours = format!("{found:?} at 1 and 5 m/s");
@@ -274,7 +274,7 @@ fn reach(claims: &mut Vec<Claim>) -> Result<(), Error> {
         }
         let published = format!("all {} poles at −8 1/s at both speeds", outputs.len());
         let ours = format!("coefficients of the characteristic polynomial agree in {worst} digits");
-        let command = "appell control unicycle --at omega_2=5[m/s]/R --poles -8";
+        let command = "appell control unicycle --at 'omega_2=5[m/s]/R' --poles -8";
         let claim = Statement {
             place: "(67)",
             published: &published,

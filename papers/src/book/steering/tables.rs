@@ -96,7 +96,7 @@ pub(super) fn section() -> Result<Section, Error> {
         let outputs = &OUTPUTS[..printed.len()];
         let gains = placed(speed, outputs)?;
         let command = format!(
-            "appell control unicycle --at omega_2={speed}[m/s]/R --outputs {} --poles {POLE}",
+            "appell control unicycle --at 'omega_2={speed}[m/s]/R' --outputs {} --poles {POLE}",
             outputs.join(",")
         );
         for ((printed, gain), (letter, unit)) in printed.iter().zip(gains.iter()).zip(LETTERS) {

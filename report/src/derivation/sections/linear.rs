@@ -151,7 +151,7 @@ pub(super) fn characteristic(w: &mut Writer<'_>, polynomial: &Characteristic) ->
         if value == Graph::ZERO {
             continue;
         }
-        let letter = Math::Letter(numbered("c", &[k - 1]));
+        let letter = Math::Letter(numbered("χ", &[k - 1]));
         let in_entries = w.set(polynomial.in_entries[k]);
         let explicit = w.try_explicit(value);
         if in_entries != explicit {
@@ -180,7 +180,7 @@ fn factored(polynomial: &Characteristic) -> Math {
         }
         let mut factors = Vec::new();
         if k > 0 {
-            factors.push(Math::Letter(numbered("c", &[k - 1])));
+            factors.push(Math::Letter(numbered("χ", &[k - 1])));
         }
         factors.extend(power(degree - k));
         let term = if factors.is_empty() {

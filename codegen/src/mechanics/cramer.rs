@@ -1,0 +1,137 @@
+//! Small systems whose entries can all vanish while their determinant cannot, as in a turn by angles:
+//! solved by Cramer's rule.
+
+use super::algebra::Algebra;
+use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
+
+/// Unknowns of the largest system that is solved by its determinant: a turn in space has three.
+const MOST_UNKNOWNS: usize = 3;
+
+/// Equations and the unknowns that occur in them alone, by their places.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Block {
+    /// Places of its equations.
+    pub equations: Vec<usize>,
+    /// Its unknowns.
+    pub unknowns: Vec<usize>,
+}
+
+/// The blocks into which equations fall. `matrix` holds the coefficients of all unknowns, a row per
+/// equation; `open` are the unknowns that are left.
+pub fn blocks(matrix: &[&[Expr]], open: &[usize]) -> Vec<Block> {
+    let mut left: Vec<usize> = (0..matrix.len()).collect();
+    let mut blocks = Vec::new();
+    while !left.is_empty() {
+        let mut equations = vec![left.remove(0)];
+        let mut unknowns: Vec<usize> = Vec::new();
+        let mut asked = 0;
+        while let Some(&equation) = equations.get(asked) {
+            asked += 1;
+            let occurs = |&q: &usize| matrix[equation][q] != Graph::ZERO && !unknowns.contains(&q);
+            let new: Vec<usize> = open.iter().copied().filter(occurs).collect();
+            left.retain(|&other| {
+                let joins = new.iter().any(|&q| matrix[other][q] != Graph::ZERO);
+                if joins {
+                    equations.push(other);
+                }
+                !joins
+            });
+            unknowns.extend(new);
+        }
+        equations.sort_unstable();
+        unknowns.sort_unstable();
+        blocks.push(Block {
+            equations,
+            unknowns,
+        });
+    }
+    // The larger ones first: what is left may then be a pair alone.
+    blocks.sort_by_key(|block| std::cmp::Reverse(block.unknowns.len()));
+    blocks
+}
+
+/// The unknowns of a square system. `None` where it is larger than a turn in space, or its
+/// determinant is not known to keep off zero; the identity test takes out of it what cancels.
+/// The determinant must not mention `held`: quotients by what changes are longer than a system.
+pub fn solve(
+    algebra: &mut Algebra,
+    rows: &[Vec<Expr>],
+    right: &[Expr],
+    held: &[SymbolId],
+    intervals: &mut Intervals,
+) -> Option<Vec<Expr>> {
+    let (cofactors, determinant) = adjugate(algebra, rows)?;
+    if algebra.graph.mentions(determinant, held)
+        || !intervals.cannot_vanish(&algebra.graph, determinant)
+    {
+        return None;
+    }
+    let n = rows.len();
+    let unknowns = (0..n).map(|j| {
+        let column: Vec<Expr> = cofactors.iter().map(|row| row[j]).collect();
+        let numerator = along(algebra, right, &column);
+        algebra.graph.div(numerator, determinant)
+    });
+    Some(unknowns.collect())
+}
+
+/// Cofactors, row by row, and determinant of a square matrix. `None` where it is larger than a turn in
+/// space.
+pub fn adjugate(algebra: &mut Algebra, rows: &[Vec<Expr>]) -> Option<(Vec<Vec<Expr>>, Expr)> {
+    let n = rows.len();
+    if !(1..=MOST_UNKNOWNS).contains(&n) || rows.iter().any(|row| row.len() != n) {
+        return None;
+    }
+    let mut cofactors = Vec::with_capacity(n);
+    for i in 0..n {
+        let row: Vec<Expr> = (0..n).map(|j| cofactor(algebra, rows, i, j)).collect();
+        cofactors.push(row);
+    }
+    let determinant = along(algebra, &rows[0], &cofactors[0]);
+    Some((cofactors, determinant))
+}
+
+/// The minor without row i and column j, with its sign. In a turn it is an entry again.
+fn cofactor(algebra: &mut Algebra, rows: &[Vec<Expr>], i: usize, j: usize) -> Expr {
+    let others = |left_out: usize| (0..rows.len()).filter(move |&k| k != left_out);
+    let rest: Vec<Expr> = others(i)
+        .flat_map(|row| others(j).map(move |column| rows[row][column]))
+        .collect();
+    let graph = &mut algebra.graph;
+    let minor = match rest[..] {
+        [] => Graph::ONE,
+        [only] => only,
+        [a, b, c, d] => {
+            let (ad, bc) = (graph.mul(a, d), graph.mul(b, c));
+            graph.sub(ad, bc)
+        }
+        _ => return Graph::ZERO,
+    };
+    let signed = if (i + j).is_multiple_of(2) {
+        minor
+    } else {
+        graph.neg(minor)
+    };
+    if rest.len() < 4 {
+        return signed;
+    }
+    let mut best = algebra.shortest(signed);
+    for &entry in rows.iter().flatten() {
+        for entry in [entry, algebra.graph.neg(entry)] {
+            if algebra.graph.operations(&[entry]) < algebra.graph.operations(&[best])
+                && algebra.test.are_equal(&algebra.graph, entry, best)
+            {
+                best = entry;
+            }
+        }
+    }
+    best
+}
+
+/// `Σ a b`
+fn along(algebra: &mut Algebra, a: &[Expr], b: &[Expr]) -> Expr {
+    let parts = a.iter().zip(b).map(|(&a, &b)| algebra.graph.mul(a, b));
+    let parts: Vec<Expr> = parts.collect();
+    let sum = algebra.graph.sum(&parts);
+    algebra.shortest(sum)
+}

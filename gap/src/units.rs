@@ -1,0 +1,226 @@
+//! Units of channels that the motion contradicts: another unit, and only it, reconciles the channel with
+//! the equations, with the rates, or with the declared range.
+
+mod balance;
+
+use appell_recordings::{Channel, DataSet, Role};
+use appell_runtime::model::Model;
+use appell_spec::units::{self, Unit};
+
+use balance::Balance;
+
+/// Units of loggers and sensors.
+const UNITS: [&str; 26] = [
+    "rad", "deg", "rev", "rad/s", "deg/s", "rpm", "rev/s", "rad/s^2", "deg/s^2", "m", "mm", "m/s",
+    "mm/s", "m/s^2", "mm/s^2", "N", "mN", "kN", "N*m", "mN*m", "V", "mV", "A", "mA", "kg", "g",
+];
+/// Units that are chosen together.
+const SYSTEMS: [&[&str]; 4] = [
+    &["rad", "rad/s", "rad/s^2"],
+    &["deg", "deg/s", "deg/s^2"],
+    &["m", "m/s", "m/s^2"],
+    &["mm", "mm/s", "mm/s^2"],
+];
+/// Standard gravity in m/s², in which accelerometers count.
+const GRAVITY: f64 = 9.806_65;
+/// Factor below which another unit may be a matter of parameters.
+const LEAST: f64 = 5.0;
+/// Factor below which a real effect may imitate a unit.
+const MODEST: f64 = 50.0;
+/// Part above which an equation says nothing of what is measured.
+const BROKEN: f64 = 0.7;
+/// Part below which it says nearly all.
+const WHOLE: f64 = 0.35;
+/// Part below which it says something of what is measured, noise included.
+const PARTLY: f64 = 0.8;
+/// Factors by which the right unit misses less, if an equation says nearly all and if only a part.
+const BETTER: [f64; 2] = [4.0, 20.0];
+/// Advantage over another reading, as a logarithm, that decides.
+const DECIDES: f64 = 0.7;
+
+/// A doubt about a channel.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Doubt {
+    /// Its column.
+    pub column: String,
+    /// What contradicts its unit, and what to write.
+    pub message: String,
+}
+
+/// Another unit of a channel.
+#[derive(Clone)]
+struct Reading {
+    channel: usize,
+    unit: String,
+    /// By which numbers in SI become larger.
+    factor: f64,
+}
+
+/// Another reading of the recordings, and what it misses.
+struct Rival {
+    readings: Vec<Reading>,
+    score: f64,
+}
+
+/// The channels whose units the training runs contradict.
+pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
+    let balance = Balance::new(set, model);
+    let plain = vec![1.0; set.channels.len()];
+    let stated = balance.missed(&plain);
+    if !stated.iter().flatten().any(|part| *part > BROKEN) {
+        return Vec::new();
+    }
+    let with = |readings: &[Reading], by: f64| {
+        let mut factors = plain.clone();
+        for reading in readings {
+            factors[reading.channel] = by * reading.factor;
+        }
+        balance.missed(&factors)
+    };
+    let rival = |readings: Vec<Reading>| {
+        let missed = with(&readings, 1.0);
+        let mended = mended(&stated, &missed)?;
+        let varying: Vec<usize> = (mended.iter().copied())
+            .filter(|index| *index < balance.varying())
+            .collect();
+        let least = readings
+            .iter()
+            .map(|own| own.factor.max(1.0 / own.factor))
+            .fold(f64::INFINITY, f64::min);
+        let near = if least < MODEST { 1.08 } else { 1.3 };
+        // The size that fits is the one of the unit.
+        let at = score(&missed, &varying);
+        let is_best = varying.is_empty()
+            || [near, 1.0 / near]
+                .iter()
+                .all(|by| score(&with(&readings, *by), &varying) > at);
+        let all: Vec<usize> = (0..missed.len()).collect();
+        let score = score(&missed, &all);
+        is_best.then_some(Rival { readings, score })
+    };
+    let mut rivals: Vec<Rival> = readings(set).into_iter().filter_map(rival).collect();
+    rivals.sort_by(|a, b| a.score.total_cmp(&b.score));
+    let Some(best) = rivals.first() else {
+        return Vec::new();
+    };
+    let tied = rivals[1..]
+        .iter()
+        .find(|other| other.score < best.score + DECIDES);
+    best.readings
+        .iter()
+        .map(|reading| doubt(set, reading, tied))
+        .collect()
+}
+
+/// What another reading mends, if it mends something and breaks nothing.
+fn mended(stated: &[Option<f64>], read: &[Option<f64>]) -> Option<Vec<usize>> {
+    let mut mended = Vec::new();
+    for (index, (before, after)) in stated.iter().zip(read).enumerate() {
+        let (Some(before), Some(after)) = (before, after) else {
+            continue;
+        };
+        let gains = |most: f64, better: f64| *after < most && better * after < *before;
+        let is_mended = gains(WHOLE, BETTER[0]) || gains(PARTLY, BETTER[1]);
+        if *before > BROKEN && is_mended {
+            mended.push(index);
+        } else if *after > WHOLE.max(1.1 * before) {
+            return None;
+        }
+    }
+    (!mended.is_empty()).then_some(mended)
+}
+
+/// Sum of the logarithms of what is missed.
+fn score(missed: &[Option<f64>], of: &[usize]) -> f64 {
+    let parts = of.iter().filter_map(|index| missed[*index]);
+    parts.map(|part| part.clamp(0.01, 100.0).ln()).sum()
+}
+
+/// Channels in other units: one alone, and all that are measured in one system.
+fn readings(set: &DataSet) -> Vec<Vec<Reading>> {
+    let channels = || set.channels.iter().enumerate();
+    let mut all: Vec<Vec<Reading>> = channels()
+        .flat_map(|(index, channel)| others(index, channel, set))
+        .map(|reading| vec![reading])
+        .collect();
+    for system in SYSTEMS {
+        let own = channels().filter_map(|(index, channel)| {
+            let mut others = others(index, channel, set).into_iter();
+            others.find(|reading| system.contains(&&*reading.unit))
+        });
+        let own: Vec<Reading> = own.collect();
+        if own.len() > 1 {
+            all.push(own);
+        }
+    }
+    all
+}
+
+/// Other units of a channel.
+fn others(index: usize, channel: &Channel, set: &DataSet) -> Vec<Reading> {
+    let label = channel.role.label(&set.mechanism);
+    if channel.unit_checked || label.is_none() {
+        return Vec::new();
+    }
+    let has_angle = channel.unit.has_angle() || label.is_some_and(|label| label.unit.has_angle());
+    let own: &Unit = &channel.unit;
+    let known = UNITS.iter().filter_map(|text| units::parse(text).ok());
+    let alike = known.filter(|unit| {
+        let is_angle = unit.has_angle();
+        unit.dimension == own.dimension && is_angle == has_angle
+    });
+    let alike = alike.map(|unit| (unit.scale / own.scale, unit.text));
+    let is_acceleration = units::parse("m/s^2").is_ok_and(|unit| unit.dimension == own.dimension);
+    let gravity = is_acceleration.then(|| (GRAVITY / own.scale, "standard gravity".to_owned()));
+    let far = |(factor, _): &(f64, String)| factor.max(1.0 / factor) > LEAST;
+    // The gain of an actuator is often off by a small factor.
+    let is_input = matches!(channel.role, Role::Input(_));
+    alike
+        .chain(gravity)
+        .filter(far)
+        .filter(|(factor, _)| !is_input || factor.max(1.0 / factor) > MODEST)
+        .map(|(factor, unit)| Reading {
+            channel: index,
+            unit,
+            factor,
+        })
+        .collect()
+}
+
+/// The sentence for a channel.
+fn doubt(set: &DataSet, reading: &Reading, tied: Option<&Rival>) -> Doubt {
+    let channel = &set.channels[reading.channel];
+    let (own, other) = (&channel.unit.text, &reading.unit);
+    let mut values = set
+        .runs
+        .iter()
+        .flat_map(|run| &run.values[reading.channel])
+        .filter(|value| !value.is_nan());
+    let largest = values
+        .try_fold(0.0, |most: f64, value| Some(most.max(value.abs())))
+        .unwrap_or(0.0);
+    let largest = channel.unit.from_si(largest);
+    let place = channel.unit_at.as_ref();
+    let place = place.map(|(file, line, column)| format!("{file}:{line}:{column}"));
+    let write = match &place {
+        _ if units::parse(other).is_err() => format!("convert the column with 1 = {GRAVITY} m/s^2"),
+        Some(place) => format!("write unit = \"{other}\" at {place}"),
+        None => format!("describe the column in a recording.toml with unit = \"{other}\""),
+    };
+    let tied = tied.map(|rival| {
+        let names = rival
+            .readings
+            .iter()
+            .map(|own| format!("`{}` in {}", set.channels[own.channel].column, own.unit));
+        format!("; or {}", names.collect::<Vec<_>>().join(" and "))
+    });
+    let message = format!(
+        "values up to {largest:.4} {own} contradict the equations, which they fit in {other}{}: {write}, or vouch \
+         for {own} with unit_checked = true",
+        tied.unwrap_or_default()
+    );
+    Doubt {
+        column: channel.column.clone(),
+        message,
+    }
+}

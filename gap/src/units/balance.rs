@@ -1,0 +1,327 @@
+//! How far recordings miss the equations when their channels are read with factors: the motion is
+//! smoothed, and each equation is balanced with the accelerations, each rate and output with what the
+//! coordinates say.
+
+use std::ops::Range;
+
+use appell_estimate::inverse::{Record, Track};
+use appell_estimate::smoothing::angle::unwrap;
+use appell_recordings::{DataSet, Measured, Part, Role, Run};
+use appell_runtime::model::{At, Model};
+use nalgebra::{DMatrix, DVector};
+
+/// Runs and rows of each that are looked at.
+const MOST: [usize; 2] = [6, 2500];
+/// Relative step of the derivative of q̇ along the motion.
+const STEP: f64 = 1e-6;
+/// Singular values below this fraction of the largest are zero.
+const SINGULAR: f64 = 1e-6;
+/// Distance from a declared range, in its width, that is far outside.
+const FAR: f64 = 2.0;
+
+/// Measured values and their first two derivatives.
+type Derivatives = [DVector<f64>; 3];
+/// ω and ω̇, where something tells them.
+type Speeds = Option<[DVector<f64>; 2]>;
+
+/// Recordings and equations.
+pub(super) struct Balance<'a> {
+    set: &'a DataSet,
+    model: &'a dyn Model,
+    p: Vec<f64>,
+    /// Measured channels with their quantities.
+    measured: Vec<(usize, Measured)>,
+    /// The channel of each declared input.
+    inputs: Vec<Option<usize>>,
+}
+
+/// What is missed in relation to what is measured, summed over a motion.
+#[derive(Clone, Copy, Default)]
+struct Miss {
+    error: f64,
+    size: f64,
+}
+
+impl Miss {
+    fn add(&mut self, measured: f64, expected: f64) {
+        self.error += (measured - expected).abs();
+        self.size += measured.abs();
+    }
+}
+
+impl<'a> Balance<'a> {
+    pub(super) fn new(set: &'a DataSet, model: &'a dyn Model) -> Self {
+        let channels = set.channels.iter().enumerate();
+        let measured = channels.filter_map(|(index, channel)| match channel.role {
+            Role::Measures(measured) => Some((index, measured)),
+            _ => None,
+        });
+        let input = |input| {
+            let is_it = |channel: &appell_recordings::Channel| channel.role == Role::Input(input);
+            set.channels.iter().position(is_it)
+        };
+        Self {
+            set,
+            model,
+            p: set.parameters.iter().map(|own| own.value).collect(),
+            measured: measured.collect(),
+            inputs: (0..model.info().declared_inputs).map(input).collect(),
+        }
+    }
+
+    fn runs(&self) -> impl Iterator<Item = &'a Run> {
+        let runs = self.set.runs.iter();
+        runs.filter(|run| run.part == Part::Fit).take(MOST[0])
+    }
+
+    /// The part that is missed of each equation, rate and output, where the recordings tell it; above one
+    /// where the model expects more than is measured.
+    pub(super) fn missed(&self, factors: &[f64]) -> Vec<Option<f64>> {
+        let info = self.model.info();
+        let mut misses = vec![Miss::default(); self.varying()];
+        let is_told = info.signals.is_empty() && self.p.len() == info.parameter_len();
+        if let Some(track) = self.track(factors).filter(|_| is_told) {
+            let runs: Vec<&Run> = self.runs().collect();
+            for stretch in &track.stretches {
+                for motion in &stretch.motions {
+                    let half = 0.5 * track.spacing;
+                    let u = self.inputs(
+                        runs[stretch.run],
+                        [motion.t - half, motion.t + half],
+                        factors,
+                    );
+                    self.add(&mut misses, motion.t, &motion.derivatives, &u);
+                }
+            }
+        }
+        let missed = |miss: &Miss| {
+            let part = miss.error / miss.size;
+            part.is_finite().then_some(part)
+        };
+        let mut missed: Vec<Option<f64>> = misses.iter().map(missed).collect();
+        missed.extend(self.measured.iter().map(|own| self.outside(*own, factors)));
+        missed
+    }
+
+    /// How many of the statistics of [`missed`](Self::missed) vary with the size of a channel; whether a
+    /// value is inside its range does not.
+    pub(super) fn varying(&self) -> usize {
+        self.model.info().speeds + 2 * self.measured.len()
+    }
+
+    fn track(&self, factors: &[f64]) -> Option<Track> {
+        let records: Vec<Record> = self
+            .runs()
+            .map(|run| {
+                let rows = run.times.len().min(MOST[1]);
+                let column = |(index, _): &(usize, Measured)| {
+                    let values = run.values[*index][..rows].iter();
+                    let mut values: Vec<f64> =
+                        values.map(|value| value * factors[*index]).collect();
+                    if rescaled(factors[*index]) && self.set.channels[*index].is_angle() {
+                        unwrap(&mut values);
+                    }
+                    bridge(&run.times[..rows], &mut values);
+                    DVector::from_vec(values)
+                };
+                let columns: Vec<DVector<f64>> = self.measured.iter().map(column).collect();
+                Record {
+                    times: run.times[..rows].to_vec(),
+                    values: DMatrix::from_columns(&columns),
+                }
+            })
+            .collect();
+        Track::of(&records).ok()
+    }
+
+    /// Means of the inputs over a time.
+    fn inputs(&self, run: &Run, [from, to]: [f64; 2], factors: &[f64]) -> Vec<f64> {
+        let rows: Range<usize> =
+            run.times.partition_point(|t| *t < from)..run.times.partition_point(|t| *t < to);
+        let mean = |channel: &Option<usize>| {
+            let Some(channel) = *channel else { return 0.0 };
+            let values = run.values[channel].get(rows.clone()).unwrap_or_default();
+            let sum: f64 = values.iter().sum();
+            factors[channel] * sum / values.len().max(1) as f64
+        };
+        self.inputs.iter().map(mean).collect()
+    }
+
+    /// Rates at a state.
+    fn rates(&self, t: f64, q: &[f64], w: &DVector<f64>, u: &[f64]) -> Vec<f64> {
+        let x = [w.as_slice(), q].concat();
+        let mut rates = vec![0.0; x.len()];
+        let p = &self.p;
+        self.model.rates(At { t, x: &x, u, p }, &mut rates);
+        rates
+    }
+
+    /// Measured coordinates: the row of each and its index.
+    fn coordinates(&self) -> Vec<(usize, usize)> {
+        let rows = self.measured.iter().enumerate();
+        rows.filter_map(|(row, (_, measured))| match measured {
+            Measured::Coordinate(i) => Some((row, *i)),
+            _ => None,
+        })
+        .collect()
+    }
+
+    /// ω and ω̇ from q̇ = T ω + τ and its derivative, in the rows of measured coordinates.
+    fn by_coordinates(&self, t: f64, q: &[f64], u: &[f64], derivatives: &Derivatives) -> Speeds {
+        let speeds = self.model.info().speeds;
+        let coordinates = self.coordinates();
+        if speeds == 0 || coordinates.len() < speeds {
+            return None;
+        }
+        let q_dot = |w: &DVector<f64>| {
+            let rates = self.rates(t, q, w, u);
+            let rows = coordinates.iter().map(|(_, i)| rates[speeds + i]);
+            DVector::from_iterator(coordinates.len(), rows)
+        };
+        let tau = q_dot(&DVector::zeros(speeds));
+        let columns: Vec<DVector<f64>> = (0..speeds)
+            .map(|j| {
+                let unit = DVector::from_fn(speeds, |i, _| f64::from(u8::from(i == j)));
+                q_dot(&unit) - &tau
+            })
+            .collect();
+        let svd = DMatrix::from_columns(&columns).svd(true, true);
+        let sizes = &svd.singular_values;
+        let is_finite = sizes.iter().all(|size| size.is_finite());
+        if !is_finite || sizes.min() <= SINGULAR * sizes.max() {
+            return None;
+        }
+        let solve = |order: usize, less: &DVector<f64>| {
+            let known = coordinates.iter().map(|(row, _)| derivatives[order][*row]);
+            let known = DVector::from_iterator(coordinates.len(), known) - less;
+            svd.solve(&known, 0.0).ok()
+        };
+        let w = solve(1, &tau)?;
+        // d/dt (T ω + τ) with ω held.
+        let flow = self.rates(t, q, &w, u).split_off(speeds);
+        let size = flow
+            .iter()
+            .fold(1.0, |most: f64, rate| most.max(rate.abs()));
+        let along = |side: f64| {
+            let moved = q
+                .iter()
+                .zip(&flow)
+                .map(|(q, rate)| q + side * STEP * rate / size);
+            let moved: Vec<f64> = moved.collect();
+            let rates = self.rates(t, &moved, &w, u);
+            DVector::from_iterator(
+                coordinates.len(),
+                coordinates.iter().map(|(_, i)| rates[speeds + i]),
+            )
+        };
+        let carried = (along(1.0) - along(-1.0)) * (size / (2.0 * STEP));
+        let w_dot = solve(2, &carried)?;
+        Some([w, w_dot])
+    }
+
+    /// ω and ω̇ where all pseudo-velocities are measured.
+    fn as_measured(&self, derivatives: &Derivatives) -> Speeds {
+        let own = (0..self.model.info().speeds).map(|j| {
+            let mut measured = self.measured.iter();
+            measured.position(|(_, own)| *own == Measured::PseudoVelocity(j))
+        });
+        let own: Vec<usize> = own.collect::<Option<_>>()?;
+        let read = |order: usize| {
+            let values = own.iter().map(|row| derivatives[order][*row]);
+            DVector::from_iterator(own.len(), values)
+        };
+        Some([read(0), read(1)])
+    }
+
+    /// Adds what a motion misses.
+    fn add(&self, misses: &mut [Miss], t: f64, derivatives: &Derivatives, u: &[f64]) {
+        let info = self.model.info();
+        let speeds = info.speeds;
+        let mut q = info.initial_state().split_off(speeds);
+        for (row, i) in self.coordinates() {
+            q[i] = derivatives[0][row];
+        }
+        let by_coordinates = self.by_coordinates(t, &q, u, derivatives);
+        let is_told = by_coordinates.is_some();
+        let Some([w, w_dot]) = by_coordinates.or_else(|| self.as_measured(derivatives)) else {
+            return;
+        };
+        let expected = self.rates(t, &q, &w, u);
+        let x = [w.as_slice(), &q].concat();
+        let mut outputs = vec![0.0; info.output_len()];
+        let p = &self.p;
+        self.model.outputs(At { t, x: &x, u, p }, &mut outputs);
+        let mut all = expected.iter().chain(&outputs).chain(&w_dot);
+        if all.any(|value| !value.is_finite()) {
+            return;
+        }
+        for i in 0..speeds {
+            misses[i].add(w_dot[i], expected[i]);
+        }
+        let (of_values, of_rates) = (speeds, speeds + self.measured.len());
+        for (row, (_, measured)) in self.measured.iter().enumerate() {
+            let value = derivatives[0][row];
+            match measured {
+                Measured::PseudoVelocity(i) if is_told => misses[of_values + row].add(value, w[*i]),
+                Measured::Output(i) => misses[of_values + row].add(value, outputs[*i]),
+                // More coordinates than speeds: constraints tie their rates.
+                Measured::Coordinate(i) if is_told && self.coordinates().len() > speeds => {
+                    misses[of_rates + row].add(derivatives[1][row], expected[speeds + i]);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// Whether a coordinate is far outside its declared range, as a part that is missed.
+    fn outside(&self, (index, measured): (usize, Measured), factors: &[f64]) -> Option<f64> {
+        let Measured::Coordinate(i) = measured else {
+            return None;
+        };
+        let [low, high] = self.model.info().coordinate_quantities()[i].range;
+        let width = high - low;
+        if !width.is_finite() {
+            return None;
+        }
+        let values = || self.runs().flat_map(|run| &run.values[index]);
+        let distance = |value: &f64| {
+            let value = value * factors[index];
+            (low - value).max(value - high)
+        };
+        if values().any(|value| distance(value) > FAR * width) {
+            return Some(FAR);
+        }
+        Some(
+            if values().all(|value| value.is_nan() || distance(value) <= 0.0) {
+                0.0
+            } else {
+                0.5
+            },
+        )
+    }
+}
+
+/// Whether a channel is read in another unit than its own.
+fn rescaled(factor: f64) -> bool {
+    (factor - 1.0).abs() > f64::EPSILON
+}
+
+/// Fills missing values on straight lines.
+fn bridge(times: &[f64], values: &mut [f64]) {
+    let present: Vec<usize> = (0..values.len())
+        .filter(|row| values[*row].is_finite())
+        .collect();
+    let (Some(&first), Some(&last)) = (present.first(), present.last()) else {
+        return;
+    };
+    let ends = [values[first], values[last]];
+    values[..first].fill(ends[0]);
+    values[last..].fill(ends[1]);
+    for pair in present.windows(2) {
+        let [a, b] = [pair[0], pair[1]];
+        let slope = (values[b] - values[a]) / (times[b] - times[a]);
+        for row in a + 1..b {
+            values[row] = values[a] + slope * (times[row] - times[a]);
+        }
+    }
+}

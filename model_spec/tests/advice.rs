@@ -1,0 +1,108 @@
+//! What a finding says to write instead.
+
+use appell_spec::{Report, load};
+
+const SPEC: &str = r#"
+[mechanism]
+name  = "rod"
+title = "A rod on a slider"
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x     = { unit = "m" }
+delta = { unit = "rad", range = [-1, 1] }
+[frames]
+arm = { parent = "ground", about_axis = "-y", by = "delta" }
+[points]
+P = { from = "O", in = "ground", at = ["x", 0, 0] }
+B = { from = "P", in = "arm", at = [0, 0, "-l"] }
+[bodies]
+rod = { frame = "arm", centre = "B", mass = "m", inertia = { in = "arm", diagonal = ["m*l^2", "m*l^2", "m*l^2"] } }
+[constraints]
+along = { kind = "position", zero = "x - l*sin(delta)" }
+[pseudo_velocities]
+v = { value = "dot(x)", unit = "m/s" }
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+[outputs]
+out = { value = "l*cos(delta)", unit = "m" }
+held = { value = "reaction(along)", unit = "N" }
+"#;
+
+/// What is told of the spec with one text in place of another.
+fn told(from: &str, to: &str) -> String {
+    assert!(SPEC.contains(from), "{from}");
+    let text = SPEC.replace(from, to);
+    match load("rod.toml", &text) {
+        Ok(checked) => Report::new("rod.toml", text, checked.warnings).plain(),
+        Err(report) => report.plain(),
+    }
+}
+
+#[test]
+fn a_finding_says_what_to_write() {
+    const OUTPUT: &str = "l*cos(delta)";
+    for (from, to, says) in [
+        (OUTPUT, "l*delta_dot", "help: write `dot(delta)`"),
+        (OUTPUT, "l*stranger", "input, signal or definition"),
+        (OUTPUT, "l*sin delta", "help: write `sin(delta)`"),
+        (OUTPUT, "l*cos 2", "help: write `cos(2)`"),
+        (OUTPUT, "l*0,2", "help: write the decimal point, `0.2`"),
+        (OUTPUT, "l*(1 deg)", "`1 [deg]`"),
+        (OUTPUT, "l*(2 delta)", "a product is written with `*`"),
+        (OUTPUT, "dot(v)", "`acceleration(P, x)`"),
+        ("\"m/s^2\"", "\"m/s2\"", "as in `m/s^2`"),
+        (
+            "x - l*sin(delta)",
+            "position(B, x) - x",
+            "cannot depend on the motion `position(B, x)`",
+        ),
+        (
+            "x - l*sin(delta)",
+            "position(B, x) - x",
+            "help: write the coordinates that the motion depends on",
+        ),
+    ] {
+        let told = told(from, to);
+        assert!(told.contains(says), "{to}: {says} in\n{told}");
+    }
+}
+
+#[test]
+fn nothing_follows_from_a_constraint_that_cannot_be_read() {
+    for zero in [
+        "position(B, x) - x",
+        "x - l*sni(delta)",
+        "x - l*stranger",
+        "x + l^2",
+    ] {
+        let told = told("x - l*sin(delta)", zero);
+        assert_eq!(told.matches("error[").count(), 1, "{zero}:\n{told}");
+    }
+}
+
+#[test]
+fn degrees_read_as_radians_are_doubted() {
+    for (from, to, doubted) in [
+        ("by = \"delta\"", "by = \"delta + 180\"", true),
+        ("by = \"delta\"", "by = \"-(90 - delta)\"", true),
+        ("by = \"delta\"", "by = \"delta + 180 [deg]\"", false),
+        ("by = \"delta\"", "by = \"10*delta\"", false),
+        ("cos(delta)", "sin(45)", true),
+        ("cos(delta)", "cos(delta - 30)", true),
+        ("cos(delta)", "cos(pi/2 - 20*delta)", false),
+        ("cos(delta)", "exp(-30)", false),
+        ("[-1, 1]", "[-60, 60]", true),
+        ("[-1, 1]", "[-6.28, 6.28]", false),
+        (
+            "\"rad\", range = [-1, 1]",
+            "\"deg\", range = [-60, 60]",
+            false,
+        ),
+    ] {
+        let told = told(from, to);
+        assert_eq!(told.contains("doubtful-unit"), doubted, "{to}:\n{told}");
+    }
+}

@@ -6,8 +6,8 @@ use appell_codegen::linearisation::{Linearisation, SteadyMotion};
 use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Finding;
 use appell_codegen::program::FunctionKind;
-use appell_codegen::python;
 use appell_codegen::{Derived, derived};
+use appell_codegen::{c, python};
 use appell_report::derivation::{self, Page};
 use appell_report::drawing::{Moment, drawing, drawing_at};
 use appell_spec::mechanism::Mechanism;
@@ -95,6 +95,12 @@ impl Source {
         };
         let emitted = emit(&program, &options).map_err(Error::computation)?;
         Ok(emitted.source)
+    }
+
+    /// C99: a header and a source without allocation.
+    pub fn c(&self, options: &c::Options) -> Result<c::Emitted, Error> {
+        let program = appell_codegen::compile(&self.file, &self.text, &options.functions)?;
+        Ok(c::emit(&program, options))
     }
 
     /// A module of Python functions over an array namespace: NumPy, JAX, CasADi or SymPy.

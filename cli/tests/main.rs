@@ -27,6 +27,7 @@ mod help;
 mod identify;
 mod imperfection;
 mod language_server;
+mod languages;
 mod late;
 mod law;
 mod motion;

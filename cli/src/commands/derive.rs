@@ -4,11 +4,13 @@ use std::path::PathBuf;
 
 use appell::derivation::{Format, Stage};
 use appell::{Source, files};
+use appell_codegen::c;
+use appell_codegen::program::FunctionKind;
 
 use crate::choice::{Choice, one_of};
 use crate::destinations::extension;
 use crate::failure::Error;
-use crate::progress;
+use crate::{output, progress};
 
 /// Writes the derivation, from frames to equations of motion.
 ///
@@ -18,6 +20,8 @@ use crate::progress;
 Examples:
   appell derive unicycle
   appell derive my_pendulum.toml --out derivation.html
+  appell derive unicycle --out unicycle.c
+  appell derive unicycle --out unicycle.py
   appell derive unicycle --stage linear --about \"theta=0, r=0, dot(psi)=0, u=0\"")]
 pub(crate) struct Derive {
     /// Name of a shipped mechanism or path of a spec
@@ -33,6 +37,12 @@ pub(crate) struct Derive {
     /// inputs that are not given stay symbolic
     #[arg(long, value_name = "CONDITIONS")]
     about: Vec<String>,
+    /// C: numbers of 32 bits instead of 64
+    #[arg(long)]
+    float: bool,
+    /// C: a step of the classical Runge-Kutta method as well
+    #[arg(long)]
+    integrator: bool,
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -42,7 +52,15 @@ pub(crate) struct Derive {
 enum Output {
     Page(Format),
     Rust,
+    C,
     Python,
+}
+
+impl Output {
+    /// Whether it is a page for a reader, which has stages.
+    const fn is_page(self) -> bool {
+        matches!(self, Self::Page(_))
+    }
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -51,7 +69,7 @@ enum Extent {
     Linear,
 }
 
-const FORMATS: [Choice<Output>; 5] = [
+const FORMATS: [Choice<Output>; 6] = [
     (
         "text",
         "Unicode, for a terminal",
@@ -65,6 +83,11 @@ const FORMATS: [Choice<Output>; 5] = [
         Output::Rust,
     ),
     (
+        "c",
+        "C99: `--out NAME.c` writes source and header",
+        Output::C,
+    ),
+    (
         "python",
         "Functions for NumPy, JAX, CasADi and SymPy alike",
         Output::Python,
@@ -72,13 +95,15 @@ const FORMATS: [Choice<Output>; 5] = [
 ];
 
 /// What a file holds by its extension.
-const ENDS: [(&str, Output); 6] = [
+const ENDS: [(&str, Output); 8] = [
     ("txt", Output::Page(Format::Text)),
     ("md", Output::Page(Format::Text)),
     ("tex", Output::Page(Format::Latex)),
     ("html", Output::Page(Format::Html)),
     ("htm", Output::Page(Format::Html)),
     ("rs", Output::Rust),
+    ("c", Output::C),
+    ("py", Output::Python),
 ];
 
 const EXTENTS: [Choice<Extent>; 6] = [
@@ -118,13 +143,22 @@ impl Derive {
     pub(super) fn run(&self) -> Result<(), Error> {
         let source = Source::find(&self.model)?;
         let format = self.format()?;
-        let linear = self.stage == Extent::Linear && format != Output::Rust;
+        let linear = self.stage == Extent::Linear && format.is_page();
         if !linear && !self.about.is_empty() {
             let message = "--about needs --stage linear, as text, latex or html";
             return Err(Error::Usage(message.to_owned()));
         }
+        if format != Output::C && (self.float || self.integrator) {
+            let message = "--float and --integrator need --format c";
+            return Err(Error::Usage(message.to_owned()));
+        }
         let spinner = progress::spinner("deriving the equations of motion");
         let text = match (format, self.stage) {
+            (Output::C, _) => {
+                let emitted = source.c(&self.c_options());
+                spinner.finish_and_clear();
+                return self.write_c(&emitted?);
+            }
             (Output::Rust, _) => source.rust(),
             (Output::Python, _) => source.python(),
             (Output::Page(format), Extent::Through(stage)) => source.derivation(stage, format),
@@ -133,6 +167,39 @@ impl Derive {
         spinner.finish_and_clear();
         files::write(self.out.as_deref().unwrap_or("-".as_ref()), &text?)?;
         Ok(())
+    }
+
+    fn c_options(&self) -> c::Options {
+        c::Options {
+            functions: FunctionKind::STANDARD.to_vec(),
+            real: if self.float {
+                c::Real::Float
+            } else {
+                c::Real::Double
+            },
+            integrator: self.integrator,
+        }
+    }
+
+    /// Writes source and header, which bear the name of the mechanism.
+    fn write_c(&self, emitted: &c::Emitted) -> Result<(), Error> {
+        let name = &emitted.name;
+        let file = self.out.as_deref();
+        let Some(file) =
+            file.filter(|file| file.file_stem().is_some_and(|stem| stem == name.as_str()))
+        else {
+            let message =
+                format!("C is a source and a header: write `--out {name}.c`, in any folder");
+            return Err(Error::Usage(message));
+        };
+        let header = file.with_extension("h");
+        files::write(&header, &emitted.header)?;
+        files::write(file, &emitted.source)?;
+        output::print(&format!(
+            "wrote {} and {}\n",
+            file.display(),
+            header.display()
+        ))
     }
 
     /// The format that is asked for, by its name or by that of the file.
@@ -149,7 +216,7 @@ impl Derive {
             // An extension of one's own promises nothing.
             (Some(format), Some(None)) => Ok(format),
             _ => Err(Error::Usage(format!(
-                "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html or .rs (Rust), \
+                "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html, .rs (Rust), .c or .py (Python), \
                  without another `--format`",
                 extension.unwrap_or_default()
             ))),

@@ -359,7 +359,7 @@ fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> St
     };
     let real = types.real.name();
     let mut text = format!("{} {{\n", types.signature(function));
-    let groups = types.groups(function.kind);
+    let groups = types.groups();
     for &argument in &schedule.arguments {
         let name = types.local(argument);
         let _ = match argument {
@@ -393,7 +393,7 @@ fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> St
     for step in &schedule.steps {
         statement(&mut text, &infix, real, step);
     }
-    for unused in types.unused(function.kind, schedule) {
+    for unused in types.unused(schedule) {
         let _ = writeln!(text, "    (void){unused};");
     }
     text.push('\n');

@@ -56,7 +56,7 @@ impl<'a> Types<'a> {
     }
 
     /// Arguments of functions, none of them called like a quantity.
-    pub(super) fn groups(&self, _kind: FunctionKind) -> Groups {
+    pub(super) fn groups(&self) -> Groups {
         let free = |name: &str| {
             let mut name = name.to_owned();
             while self.names.iter().any(|other| *other == name) {
@@ -155,7 +155,7 @@ impl<'a> Types<'a> {
 
     /// How a function is called.
     pub(super) fn signature(&self, function: &Function) -> String {
-        let groups = self.groups(function.kind);
+        let groups = self.groups();
         let real = self.real.name();
         let mut arguments = vec![
             format!("{real} {}", groups.time),
@@ -208,8 +208,8 @@ impl<'a> Types<'a> {
     }
 
     /// Arguments that a function does not use.
-    pub(super) fn unused(&self, kind: FunctionKind, schedule: &Schedule) -> Vec<String> {
-        let groups = self.groups(kind);
+    pub(super) fn unused(&self, schedule: &Schedule) -> Vec<String> {
+        let groups = self.groups();
         let uses = |is: fn(&Argument) -> bool| schedule.arguments.iter().any(is);
         let all = [
             (

@@ -103,7 +103,7 @@ impl Source {
         Ok(c::emit(&program, options))
     }
 
-    /// A module of Python functions over an array namespace: NumPy, JAX, CasADi or SymPy.
+    /// A module of Python functions over an array namespace: `numpy`, `jax.numpy`, `casadi` or `sympy`.
     pub fn python(&self) -> Result<String, Error> {
         let program = appell_codegen::compile(&self.file, &self.text, &FunctionKind::STANDARD)?;
         Ok(python::module(&program, &FunctionKind::STANDARD))

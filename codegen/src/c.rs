@@ -234,16 +234,15 @@ pub fn emit(program: &Program, options: &Options) -> Emitted {
     source.push_str(&types.values());
     source.push_str(&helpers(options.real, &bodies));
     source.push_str(&bodies);
-    let prototypes: String = functions
-        .iter()
-        .map(|function| {
-            format!(
-                "{}{};\n\n",
-                comment(program, function),
-                types.signature(function)
-            )
-        })
-        .collect();
+    let mut prototypes = String::new();
+    for function in &functions {
+        let _ = write!(
+            prototypes,
+            "{}{};\n\n",
+            comment(program, function),
+            types.signature(function)
+        );
+    }
     let mut header = types.header(&heading(program), &prototypes, options.integrator);
     if options.integrator {
         source.push_str(&types.integrator());

@@ -1,5 +1,5 @@
-//! Equations as Python functions over a namespace of arrays: the same lines run on NumPy and JAX arrays and on
-//! CasADi and SymPy symbols.
+//! Equations as Python functions over a namespace of arrays: the same lines run on arrays of `numpy` and `jax.numpy`
+//! and on symbols of `casadi` and `sympy`.
 
 use std::fmt::Write as _;
 

@@ -7,7 +7,7 @@ mod types;
 
 use std::fmt::Write as _;
 
-use crate::infix::{Dialect, Infix, harmless, shape};
+use crate::infix::{Dialect, Infix, harmless, math_name, shape};
 use crate::program::{Array, Function, FunctionKind, Layout, Program};
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
@@ -136,23 +136,10 @@ impl Dialect for Real {
     }
 
     fn function(&self, function: symbolic::Function, of: &str) -> String {
-        use symbolic::Function as F;
-        let name = match function {
-            F::Sin => "sin",
-            F::Cos => "cos",
-            F::Asin => "asin",
-            F::Acos => "acos",
-            F::Atan => "atan",
-            F::Sinh => "sinh",
-            F::Cosh => "cosh",
-            F::Tanh => "tanh",
-            F::Exp => "exp",
-            F::Ln => "log",
-            F::Sqrt => "sqrt",
-            F::Abs => "fabs",
-            F::Sign => return format!("sign_of({of})"),
-        };
-        format!("{name}{}({of})", self.suffix())
+        match function {
+            symbolic::Function::Sign => format!("sign_of({of})"),
+            other => format!("{}{}({of})", math_name(other), self.suffix()),
+        }
     }
 
     fn atan2(&self, y: &str, x: &str) -> String {

@@ -7,6 +7,7 @@ use std::collections::BTreeSet;
 
 use crate::program::{Layout, Program, Space};
 use crate::schedule::names::ArgumentNames;
+use crate::schedule::piece::method;
 use crate::schedule::{Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Function, Rational, Relation};
 
@@ -22,6 +23,15 @@ pub(crate) trait Dialect {
     fn power(&self, base: &str, exponent: &str) -> String;
     /// Left, right, value where the relation holds, value elsewhere.
     fn choice(&self, relation: Relation, operands: [String; 4]) -> String;
+}
+
+/// Name of a function of one argument in `math.h`; the sign, which that lacks, is `sign`.
+pub(crate) fn math_name(function: Function) -> &'static str {
+    match function {
+        Function::Ln => "log",
+        Function::Abs => "fabs",
+        other => method(other),
+    }
 }
 
 /// How tightly an operation binds.

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 
 use appell_runtime::model::Quantity;
 
-use crate::infix::{Dialect, Infix, harmless, shape};
+use crate::infix::{Dialect, Infix, harmless, math_name, shape};
 use crate::program::{Function, FunctionKind, Program};
 use crate::schedule::names::ArgumentNames;
 use crate::schedule::pi::parts_of_pi;
@@ -35,23 +35,7 @@ impl Dialect for Python {
     }
 
     fn function(&self, function: symbolic::Function, of: &str) -> String {
-        use symbolic::Function as F;
-        let name = match function {
-            F::Sin => "sin",
-            F::Cos => "cos",
-            F::Asin => "asin",
-            F::Acos => "acos",
-            F::Atan => "atan",
-            F::Sinh => "sinh",
-            F::Cosh => "cosh",
-            F::Tanh => "tanh",
-            F::Exp => "exp",
-            F::Ln => "log",
-            F::Sqrt => "sqrt",
-            F::Abs => "abs",
-            F::Sign => "sign",
-        };
-        format!("_f.{name}({of})")
+        format!("_f.{}({of})", math_name(function))
     }
 
     fn atan2(&self, y: &str, x: &str) -> String {

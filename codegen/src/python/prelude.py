@@ -23,7 +23,7 @@ class _Namespace:
         self.atan2 = first("arctan2", "atan2")
         self.sinh, self.cosh, self.tanh = first("sinh"), first("cosh"), first("tanh")
         self.exp, self.log, self.sqrt = first("exp"), first("log"), first("sqrt")
-        self.abs, self.sign = first("fabs", "Abs", "abs"), first("sign")
+        self.fabs, self.sign = first("fabs", "Abs", "abs"), first("sign")
         self.power = first("power", "Pow", "pow")
         self.pi = getattr(xp, "pi", math.pi)
         self.number = getattr(xp, "Rational", lambda n, d: n / d)

@@ -24,7 +24,7 @@ mod substitute;
 pub mod vector;
 
 pub use differentiate::Derivatives;
-pub use evaluate::evaluate;
+pub use evaluate::{Evaluation, evaluate};
 pub use gradient::gradient;
 pub use graph::Graph;
 pub use identity::IdentityTest;

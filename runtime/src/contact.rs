@@ -57,18 +57,30 @@ impl ContactForces {
     /// number where the equations have no finite solution.
     pub fn at(&mut self, model: &dyn Model, at: At<'_>) -> &[ContactForce] {
         let info = model.info();
+        if info.contacts.is_empty() {
+            return &[];
+        }
+        let mut reactions = std::mem::take(&mut self.reactions);
+        reactions.resize(3 * info.reactions.len(), 0.0);
+        model.constraint_forces(at, &mut reactions);
+        self.of(model, at, &reactions);
+        self.reactions = reactions;
+        &self.forces
+    }
+
+    /// [`Self::at`] where the constraint forces are known.
+    pub fn of(&mut self, model: &dyn Model, at: At<'_>, reactions: &[f64]) -> &[ContactForce] {
+        let info = model.info();
         self.forces.clear();
         if info.contacts.is_empty() {
             return &self.forces;
         }
-        self.reactions.resize(3 * info.reactions.len(), 0.0);
         self.normals.resize(3 * info.contacts.len(), 0.0);
         self.friction.resize(info.contacts.len(), 0.0);
-        model.constraint_forces(at, &mut self.reactions);
         model.contacts(at, &mut self.normals, &mut self.friction);
         let surfaces = self.normals.chunks_exact(3).zip(&self.friction);
         for (contact, (normal, &friction)) in info.contacts.iter().zip(surfaces) {
-            let reaction = self.reactions.get(3 * contact.reaction..).unwrap_or(&[]);
+            let reaction = reactions.get(3 * contact.reaction..).unwrap_or(&[]);
             self.forces.push(force(contact, reaction, normal, friction));
         }
         &self.forces

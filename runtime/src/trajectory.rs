@@ -40,6 +40,9 @@ impl Extras {
     };
 }
 
+/// Columns of [`Extras::energies`].
+const ENERGIES: usize = 3;
+
 /// Rows over time; each row holds the state, the inputs, and the extras asked for. All in SI.
 ///
 /// No two columns have the same name: what a spec does not name itself, such as the rate of a
@@ -107,12 +110,17 @@ impl Trajectory {
                 let energies = model.energies(at);
                 rows.extend([energies.kinetic, energies.potential, energies.power]);
             }
-            if extras.reactions {
+            if extras.reactions || (extras.contacts && !info.contacts.is_empty()) {
                 model.constraint_forces(at, &mut reactions);
+            }
+            if extras.reactions {
                 rows.extend_from_slice(&reactions);
             }
             if extras.contacts {
-                let forces = forces.at(model, at).iter().zip(info.contacts.iter());
+                let forces = forces
+                    .of(model, at, &reactions)
+                    .iter()
+                    .zip(info.contacts.iter());
                 for (force, contact) in forces {
                     rows.push(force.normal);
                     if contact.grips {
@@ -195,6 +203,19 @@ impl Trajectory {
     /// The inputs of a row, signals included.
     pub fn inputs(&self, row: usize) -> &[f64] {
         &self.row(row)[self.info.state_len()..][..self.info.input_len()]
+    }
+
+    /// The constraint forces of a row, three components a reaction in the ground, where they are recorded.
+    pub fn reactions(&self, row: usize) -> Option<&[f64]> {
+        let Extras {
+            outputs, energies, ..
+        } = self.extras;
+        let before = self.info.state_len()
+            + self.info.input_len()
+            + usize::from(outputs) * self.info.output_len()
+            + usize::from(energies) * ENERGIES;
+        let forces = || &self.row(row)[before..][..3 * self.info.reactions.len()];
+        self.extras.reactions.then(forces)
     }
 
     /// The rows with the names of their model; `None` where the trajectory is one of another model.

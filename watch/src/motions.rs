@@ -11,6 +11,7 @@ use appell::setup::Assignment;
 use appell::{IntegrationOptions, Model, Motion, Simulated};
 use appell_report::figure::Figure;
 use appell_report::film;
+use appell_runtime::trajectory::Extras;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::oneshot;
@@ -20,7 +21,7 @@ use crate::board::Board;
 /// Longest motion, in s.
 const LONGEST: f64 = 600.0;
 /// Pictures of a motion.
-const ROWS: f64 = 600.0;
+const ROWS: f64 = 400.0;
 /// Steps of the integrator, rejected ones included.
 const MOST_STEPS: usize = 50_000;
 /// Longest computation of a motion.
@@ -182,6 +183,10 @@ impl Request {
         let whole = Motion::new(self.end);
         Ok(Motion {
             interval: Some(self.end / ROWS),
+            extras: Extras {
+                reactions: true,
+                ..whole.extras
+            },
             options: IntegrationOptions {
                 max_steps: MOST_STEPS,
                 ..whole.options

@@ -240,6 +240,7 @@ fn prepare(model: &Model) {
     };
     equations.energies(at);
     equations.outputs(at, &mut vec![0.0; info.output_len()]);
+    equations.constraint_forces(at, &mut vec![0.0; 3 * info.reactions.len()]);
 }
 
 fn shown(places: &Places<'_>, finding: &Diagnostic) -> Value {

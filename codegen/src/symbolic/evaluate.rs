@@ -7,50 +7,86 @@ use super::{Expr, Function, Graph, Node, Relation};
 /// Values of `roots` where the symbol with id `i` has the value `values[i]`. A symbol without a value
 /// is NaN.
 pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
-    let mut known = vec![f64::NAN; g.len()];
-    let mut solutions: FxHashMap<u32, Vec<f64>> = FxHashMap::default();
-    for expr in g.in_order(roots) {
-        let of = |e: Expr| known[e.0 as usize];
-        let value = match g.node(expr) {
-            Node::Number(n) => n.to_f64(),
-            Node::Symbol(symbol) => values.get(symbol.0 as usize).copied().unwrap_or(f64::NAN),
-            Node::Named(id) => of(g.definition(*id).value),
-            Node::Sum(terms) => terms
-                .iter()
-                .map(|t| t.coefficient.to_f64() * of(t.expr))
-                .sum(),
-            Node::Product(factors) => factors
-                .iter()
-                .map(|f| of(f.base).powi(f.exponent))
-                .product(),
-            Node::Function(function, x) => apply(*function, of(*x)),
-            Node::Atan2(y, x) => of(*y).atan2(of(*x)),
-            Node::Power(base, exponent) => of(*base).powf(of(*exponent)),
-            Node::Choice {
-                relation,
-                compared,
-                branches,
-            } => {
-                let [left, right] = compared.map(of);
-                let holds = match relation {
-                    Relation::Less => left < right,
-                    Relation::LessOrEqual => left <= right,
-                };
-                of(branches[usize::from(!holds)])
-            }
-            Node::Solution { system, row } => {
-                if !solutions.contains_key(system) {
-                    let equations = g.system(*system);
-                    let matrix = equations.matrix.iter().map(|&e| of(e)).collect();
-                    let right = equations.right.iter().map(|&e| of(e)).collect();
-                    solutions.insert(*system, solve(matrix, right));
-                }
-                solutions[system][*row as usize]
-            }
-        };
-        known[expr.0 as usize] = value;
+    let mut evaluation = Evaluation::new(g, roots);
+    evaluation.compute(values);
+    roots.iter().map(|&root| evaluation.of(root)).collect()
+}
+
+/// Values of the same expressions at one point after the other.
+pub struct Evaluation<'g> {
+    graph: &'g Graph,
+    /// Parts before wholes.
+    order: Vec<Expr>,
+    /// By expression.
+    known: Vec<f64>,
+}
+
+impl<'g> Evaluation<'g> {
+    /// Of these expressions and of what they are built from.
+    pub fn new(graph: &'g Graph, roots: &[Expr]) -> Self {
+        let newest = roots.iter().max().map_or(0, |root| root.0 as usize + 1);
+        Self {
+            graph,
+            order: graph.in_order(roots),
+            known: vec![f64::NAN; newest],
+        }
     }
-    roots.iter().map(|&root| known[root.0 as usize]).collect()
+
+    /// The value of one of the expressions where it was computed last.
+    pub fn of(&self, expr: Expr) -> f64 {
+        self.known[expr.0 as usize]
+    }
+
+    /// Computes all where the symbol with id `i` has the value `values[i]`; a symbol without a value is NaN.
+    pub fn compute(&mut self, values: &[f64]) {
+        let Self {
+            graph: g,
+            order,
+            known,
+        } = self;
+        let mut solutions: FxHashMap<u32, Vec<f64>> = FxHashMap::default();
+        for &expr in &*order {
+            let of = |e: Expr| known[e.0 as usize];
+            let value = match g.node(expr) {
+                Node::Number(n) => n.to_f64(),
+                Node::Symbol(symbol) => values.get(symbol.0 as usize).copied().unwrap_or(f64::NAN),
+                Node::Named(id) => of(g.definition(*id).value),
+                Node::Sum(terms) => terms
+                    .iter()
+                    .map(|t| t.coefficient.to_f64() * of(t.expr))
+                    .sum(),
+                Node::Product(factors) => factors
+                    .iter()
+                    .map(|f| of(f.base).powi(f.exponent))
+                    .product(),
+                Node::Function(function, x) => apply(*function, of(*x)),
+                Node::Atan2(y, x) => of(*y).atan2(of(*x)),
+                Node::Power(base, exponent) => of(*base).powf(of(*exponent)),
+                Node::Choice {
+                    relation,
+                    compared,
+                    branches,
+                } => {
+                    let [left, right] = compared.map(of);
+                    let holds = match relation {
+                        Relation::Less => left < right,
+                        Relation::LessOrEqual => left <= right,
+                    };
+                    of(branches[usize::from(!holds)])
+                }
+                Node::Solution { system, row } => {
+                    if !solutions.contains_key(system) {
+                        let equations = g.system(*system);
+                        let matrix = equations.matrix.iter().map(|&e| of(e)).collect();
+                        let right = equations.right.iter().map(|&e| of(e)).collect();
+                        solutions.insert(*system, solve(matrix, right));
+                    }
+                    solutions[system][*row as usize]
+                }
+            };
+            known[expr.0 as usize] = value;
+        }
+    }
 }
 
 fn apply(function: Function, x: f64) -> f64 {

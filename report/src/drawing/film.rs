@@ -11,7 +11,7 @@ use appell_spec::mechanism::{
 };
 
 use super::link::{self, Link};
-use super::placement::Placement;
+use super::placement::{Placement, frames, points};
 use super::scene::Scene;
 use super::solids::{Solid, solids};
 use super::space::{Matrix, Vector, add, dot, length};
@@ -25,7 +25,7 @@ use appell_codegen::mechanics::loads::{Acts, applied_loads};
 use appell_codegen::mechanics::seed;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::symbolic::vector::Vec3;
-use appell_codegen::symbolic::{Graph, SymbolId, evaluate};
+use appell_codegen::symbolic::{Evaluation, Expr, Graph, SymbolId};
 
 /// Least semi-axis of an ellipsoid relative to the largest, so that rods are visible.
 const THINNEST: f64 = 0.06;
@@ -115,7 +115,10 @@ pub fn film(
     let reactions = reactions(mechanism, model);
 
     let graph = &algebra.graph;
-    let mut values = Values::new(graph, &symbols, model, motion);
+    let arrows: Vec<Expr> = applied.iter().flat_map(|(_, force)| *force).collect();
+    let all = [placement.point_exprs(), placement.frame_exprs(), &arrows].concat();
+    let mut evaluation = Evaluation::new(graph, &all);
+    let mut values = Values::new(graph, &symbols, &all, model, motion);
     let mut film = Film {
         view: {
             let view = View::of(mechanism, flat_across);
@@ -143,18 +146,23 @@ pub fn film(
             let scene = Scene::at(&placement, graph, values, flat_across);
             film.shapes = shapes(mechanism, &scene);
         }
-        for place in &placement.points_at(graph, values) {
+        evaluation.compute(values);
+        let of = |exprs: &[Expr]| -> Vec<f64> { exprs.iter().map(|&e| evaluation.of(e)).collect() };
+        for place in &points(&of(placement.point_exprs())) {
             film.positions.extend(place.unwrap_or([f64::NAN; 3]));
         }
-        for axes in &placement.frames_at(graph, values) {
+        for axes in &frames(&of(placement.frame_exprs())) {
             film.turns.extend(axes.map_or([f64::NAN; 4], quaternion));
         }
-        model.constraint_forces(at, &mut forces);
+        let forces = motion.reactions(row).unwrap_or_else(|| {
+            model.constraint_forces(at, &mut forces);
+            &forces
+        });
         for (index, _) in &reactions {
             film.arrows.extend(&forces[3 * index..][..3]);
         }
         for (_, force) in &applied {
-            film.arrows.extend(evaluate(graph, values, force));
+            film.arrows.extend(of(force));
         }
     }
     let named = reactions.into_iter().map(|(_, force)| force);
@@ -343,25 +351,37 @@ struct Values<'m> {
     time: Vec<SymbolId>,
     states: Vec<SymbolId>,
     inputs: Vec<SymbolId>,
+    /// Empty where no value depends on them.
     rates: Vec<SymbolId>,
     /// By symbol.
     of_symbols: Vec<f64>,
 }
 
 impl<'m> Values<'m> {
-    fn new(graph: &Graph, symbols: &Symbols, model: &'m dyn Model, motion: &'m Trajectory) -> Self {
+    /// Of the symbols in these expressions.
+    fn new(
+        graph: &Graph,
+        symbols: &Symbols,
+        exprs: &[Expr],
+        model: &'m dyn Model,
+        motion: &'m Trajectory,
+    ) -> Self {
         let tabulated = (model.info().signal_inputs.iter())
             .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]);
         let inputs: Vec<_> = symbols.inputs.iter().copied().chain(tabulated).collect();
         let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
         let rates = [symbols.accelerations.as_slice(), &symbols.rates].concat();
+        let mut rates = ids(graph, &rates);
+        if !exprs.iter().any(|&expr| graph.mentions(expr, &rates)) {
+            rates.clear();
+        }
         let mut values = Self {
             model,
             motion,
             time: ids(graph, &[symbols.time]),
             states: ids(graph, &states),
             inputs: ids(graph, &inputs),
-            rates: ids(graph, &rates),
+            rates,
             of_symbols: vec![f64::NAN; graph.symbol_count()],
         };
         let of_symbols = &mut values.of_symbols;
@@ -381,7 +401,9 @@ impl<'m> Values<'m> {
             p: motion.parameters(),
         };
         let mut rates = vec![0.0; at.x.len()];
-        self.model.rates(at, &mut rates);
+        if !self.rates.is_empty() {
+            self.model.rates(at, &mut rates);
+        }
         for (symbols, numbers) in [
             (&self.time, &[at.t][..]),
             (&self.states, at.x),

@@ -106,17 +106,24 @@ impl Placement {
             .find(|&axis| self.points.iter().all(|v| vanishes(v, axis)))
     }
 
+    /// Three components a point.
+    pub(super) fn point_exprs(&self) -> &[Expr] {
+        self.points.as_flattened()
+    }
+
+    /// Three axes a frame.
+    pub(super) fn frame_exprs(&self) -> &[Expr] {
+        self.frames.as_flattened().as_flattened()
+    }
+
     /// Values by point; `None` where the position is not finite.
     pub(super) fn points_at(&self, graph: &Graph, values: &[f64]) -> List<PointId, Option<Vector>> {
-        let numbers = evaluate(graph, values, self.points.as_flattened());
-        triples(&numbers).collect()
+        points(&evaluate(graph, values, self.point_exprs()))
     }
 
     /// Values by frame; `None` where an angle is not finite.
     pub(super) fn frames_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Option<Matrix>> {
-        let axes = self.frames.as_flattened().as_flattened();
-        let numbers = evaluate(graph, values, axes);
-        numbers.chunks_exact(9).map(matrix).collect()
+        frames(&evaluate(graph, values, self.frame_exprs()))
     }
 
     /// Values by frame: the angles of its turns.
@@ -144,6 +151,16 @@ impl Placement {
         };
         self.bodies.iter().map(value).collect()
     }
+}
+
+/// From the values of [`Placement::point_exprs`].
+pub(super) fn points(numbers: &[f64]) -> List<PointId, Option<Vector>> {
+    triples(numbers).collect()
+}
+
+/// From the values of [`Placement::frame_exprs`].
+pub(super) fn frames(numbers: &[f64]) -> List<FrameId, Option<Matrix>> {
+    numbers.chunks_exact(9).map(matrix).collect()
 }
 
 /// Vectors that are near enough to be drawn.

@@ -80,7 +80,8 @@ pub fn failed(model: &str, failure: &Error) -> Value {
     }
 }
 
-fn findings(report: &Report) -> Vec<Value> {
+/// The findings of a report as JSON, each with its line and column.
+pub fn findings(report: &Report) -> Vec<Value> {
     let finding = |diagnostic: &Diagnostic| {
         let at = diagnostic.labels.first().map_or(0, |(span, _)| span.start);
         let (line, column) = report.line_column(at);

@@ -28,6 +28,8 @@ pub enum Format {
     Latex,
     /// A page for a browser.
     Html,
+    /// The equations alone, in LaTeX.
+    Formulas,
 }
 
 impl Format {
@@ -36,6 +38,7 @@ impl Format {
             Self::Text => derivation::text(page),
             Self::Latex => derivation::latex(page),
             Self::Html => derivation::html(page),
+            Self::Formulas => derivation::formulas(page),
         }
     }
 }
@@ -64,6 +67,26 @@ impl Source {
         } = derived(&self.file, &self.text)?;
         let page = derivation::page(&mechanism, &mut derivation, stage)
             .map_err(|findings| report(&mechanism, &self.text, &findings))?;
+        Ok(format.set(&page))
+    }
+
+    /// The equations of motion alone, without the way to them.
+    ///
+    /// ```
+    /// use appell::Source;
+    /// use appell::derivation::Format;
+    ///
+    /// let equations = Source::shipped("pendulum")?.equations_of_motion(Format::Formulas)?;
+    /// assert!(equations.starts_with("\\begin{align*}"));
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn equations_of_motion(&self, format: Format) -> Result<String, Error> {
+        let Derived {
+            mechanism,
+            mut derivation,
+            ..
+        } = derived(&self.file, &self.text)?;
+        let page = derivation::equations_of_motion(&mechanism, &mut derivation);
         Ok(format.set(&page))
     }
 

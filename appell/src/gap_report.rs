@@ -238,12 +238,16 @@ struct Outside {
 impl GapReport {
     /// Reads a file that [`json()`] filled.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        let file = path.to_string_lossy();
         let text = files::read(path, files::MAX_DATA)?;
-        let report: Self = serde_json::from_str(&text).map_err(|cause| {
+        Self::parse(&path.to_string_lossy(), &text)
+    }
+
+    /// Reads a text that [`json()`] made; `file` is its name in messages.
+    pub fn parse(file: &str, text: &str) -> Result<Self, Error> {
+        let report: Self = serde_json::from_str(text).map_err(|cause| {
             let message =
                 format!("this is not a gap report: {cause}\n  write one with `appell diagnose`");
-            Error::data(&file, message)
+            Error::data(file, message)
         })?;
         if report.schema != SCHEMA {
             let found = &report.schema;

@@ -1,7 +1,10 @@
 //! A request for a motion: values with units, feedback laws, inputs, an integrator.
 
+use std::fmt;
 use std::path::PathBuf;
+use std::sync::Arc;
 
+use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::Model;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
@@ -33,6 +36,23 @@ pub enum Law {
     },
 }
 
+/// Inputs that a program computes, in SI.
+#[derive(Clone)]
+pub struct Driven {
+    /// The declared inputs that it gives.
+    pub inputs: Vec<String>,
+    /// Writes all declared inputs; those that it does not give are ignored.
+    pub source: Arc<dyn InputSource + Send + Sync>,
+}
+
+impl fmt::Debug for Driven {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("Driven")
+            .field("inputs", &self.inputs)
+            .finish_non_exhaustive()
+    }
+}
+
 /// A request for a motion. Values are texts: `0.3` and `2*10` are in the unit that the spec declares,
 /// `30cm` and `5[m/s]/R` are converted and checked. Inputs and feedback laws are added.
 #[derive(Debug, Clone)]
@@ -53,6 +73,8 @@ pub struct Motion {
     pub inputs: Vec<Assignment>,
     /// Inputs from a CSV file, or from a run of a data set, such as `rig/recording.toml:run1.csv`.
     pub recorded: Option<PathBuf>,
+    /// Inputs as functions or tables of a program.
+    pub driven: Vec<Driven>,
     /// Feedback laws.
     pub laws: Vec<Law>,
     /// Additional columns of the trajectory.
@@ -86,6 +108,7 @@ impl Motion {
             initial: Vec::new(),
             inputs: Vec::new(),
             recorded: None,
+            driven: Vec::new(),
             laws: Vec::new(),
             extras: Extras {
                 outputs: true,
@@ -114,6 +137,31 @@ impl Motion {
     #[must_use]
     pub fn input(mut self, name: &str, expression: impl ToString) -> Self {
         self.inputs.push(Assignment::new(name, expression));
+        self
+    }
+
+    /// Drives inputs by a function of time and state, in SI, that writes all declared inputs.
+    ///
+    /// ```
+    /// use appell::{Model, Motion};
+    ///
+    /// let model = Model::shipped("cart_pole")?;
+    /// let push = |t: f64, _: &[f64], u: &mut [f64]| u[0] = (3.0 * t).sin();
+    /// let motion = model.simulate(&Motion::new(1.0).drive(&["F"], push))?;
+    /// let force = motion.trajectory.column("F").unwrap();
+    /// assert!((force[500] - 1.5f64.sin()).abs() < 1e-12);
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    #[must_use]
+    pub fn drive(
+        mut self,
+        inputs: &[&str],
+        source: impl InputSource + Send + Sync + 'static,
+    ) -> Self {
+        self.driven.push(Driven {
+            inputs: inputs.iter().map(ToString::to_string).collect(),
+            source: Arc::new(source),
+        });
         self
     }
 
@@ -219,6 +267,9 @@ impl Motion {
         setup.start(&self.initial)?;
         for assignment in &self.inputs {
             plan.expression(assignment, setup)?;
+        }
+        for driven in &self.driven {
+            plan.driven(driven, setup)?;
         }
         if let Some(file) = &self.recorded {
             plan.recording(

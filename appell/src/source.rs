@@ -55,8 +55,12 @@ impl Source {
     }
 }
 
+/// Names of the shipped mechanisms.
+pub fn names() -> impl Iterator<Item = &'static str> {
+    ALL.iter().map(|shipped| shipped.name)
+}
+
 fn unknown(model: &str) -> String {
-    let names = || ALL.iter().map(|shipped| shipped.name);
     let similar = appell_spec::closest(model, names())
         .map(|name| format!("; did you mean `{name}`?"))
         .unwrap_or_default();

@@ -26,7 +26,7 @@ use appell_spec::mechanism::Mechanism;
 pub use about::About;
 pub use content::{Block, Chain, Page, Row, Section, Span, Stage, Table};
 pub use html::{EQUATIONS, clickable, html};
-pub use latex::latex;
+pub use latex::{formulas, latex};
 pub use sources::locate;
 pub use text::text;
 

@@ -1,5 +1,7 @@
 //! The inputs of a simulation as one function of time and state.
 
+use std::sync::Arc;
+
 use appell_analysis::control::sampler::Sampler;
 use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::symbolic::Expr as Lowered;
@@ -12,6 +14,7 @@ use nalgebra::DVector;
 use crate::formula::{StateFunction, Workbench, switching_times};
 use crate::inputs::feedback::{Feedback, Gains, Sampled, SchedulingVariable};
 use crate::inputs::tabulated::Table;
+use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, bracketed};
 use crate::{Error, Field};
 
@@ -22,6 +25,7 @@ pub struct Controller {
     slots: Vec<Slot>,
     parameters: Vec<f64>,
     recorded: Option<TabulatedInputs>,
+    driven: Vec<DrivenInputs>,
     sampled: Vec<SampledLaw>,
     scheduled: Vec<ScheduledLaw>,
     switching_times: Vec<f64>,
@@ -43,6 +47,9 @@ enum Slot {
     /// Desired deviation from the steady motions of a scheduled law: index of the law, index of the state.
     Beside(usize, usize),
 }
+
+/// Inputs that a program computes, and which these are.
+type DrivenInputs = (Vec<usize>, Arc<dyn InputSource + Send + Sync>);
 
 /// A gain-scheduled law.
 struct ScheduledLaw {
@@ -72,6 +79,7 @@ pub struct Plan {
     sampled: Vec<(Sampled, Vec<usize>)>,
     scheduled: Vec<ScheduledLaw>,
     recorded: Option<Table>,
+    driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
     /// Inputs set by an expression or a recording.
     set: Vec<usize>,
@@ -88,6 +96,7 @@ impl Plan {
             sampled: Vec::new(),
             scheduled: Vec::new(),
             recorded: None,
+            driven: Vec::new(),
             switching_times: Vec::new(),
             set: Vec::new(),
         }
@@ -96,7 +105,8 @@ impl Plan {
     /// Whether there is no source.
     pub fn is_empty(&self) -> bool {
         let laws = self.zero.is_empty() && self.scheduled.is_empty();
-        self.slots.is_empty() && laws && self.recorded.is_none()
+        let given = self.recorded.is_some() || !self.driven.is_empty();
+        self.slots.is_empty() && laws && !given
     }
 
     /// The last time of a recording in s.
@@ -150,6 +160,19 @@ impl Plan {
         }
         self.switching_times.extend(table.values.switching_times());
         self.recorded = Some(table);
+        Ok(())
+    }
+
+    /// Adds inputs that a program computes.
+    pub fn driven(&mut self, driven: &Driven, setup: &Setup<'_>) -> Result<(), Error> {
+        let mut inputs = Vec::new();
+        for name in &driven.inputs {
+            let input = setup.input(Field::Input, name)?;
+            self.take(Field::Input, input, setup)?;
+            inputs.push(input);
+        }
+        self.switching_times.extend(driven.source.switching_times());
+        self.driven.push((inputs, Arc::clone(&driven.source)));
         Ok(())
     }
 
@@ -232,6 +255,7 @@ impl Plan {
             slots,
             parameters: setup.parameters.clone(),
             recorded: self.recorded.map(|table| table.values),
+            driven: self.driven,
             sampled,
             scheduled: self.scheduled,
             switching_times,
@@ -261,6 +285,15 @@ impl InputSource for Controller {
         match &self.recorded {
             Some(recorded) => recorded.inputs(t, x, u),
             None => u.fill(0.0),
+        }
+        if !self.driven.is_empty() {
+            let mut own = vec![0.0; u.len()];
+            for (inputs, source) in &self.driven {
+                source.inputs(t, x, &mut own);
+                for &input in inputs {
+                    u[input] += own[input];
+                }
+            }
         }
         let mut values = vec![0.0; self.slots.len()];
         self.function.values(t, x, &self.parameters, &mut values);

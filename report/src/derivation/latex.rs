@@ -76,6 +76,18 @@ pub fn latex(page: &Page) -> String {
     out
 }
 
+/// The equations of the page alone, for a page that sets formulas itself.
+pub fn formulas(page: &Page) -> String {
+    let mut out = String::new();
+    for block in page.sections.iter().flat_map(|section| &section.blocks) {
+        if let Block::Equations(all) = block {
+            equations(&mut out, all);
+            out.push('\n');
+        }
+    }
+    out
+}
+
 fn spans(spans: &[Span]) -> String {
     spans
         .iter()

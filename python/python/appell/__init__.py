@@ -1,0 +1,56 @@
+"""Equations of motion from a declarative mechanism spec, by the Gibbs-Appell method.
+
+>>> import appell
+>>> m = appell.load("cart_pole")
+>>> m.simulate(1.0, initial={"theta": "5deg"})["theta"].max() > 0
+True
+
+Arrays are in SI. Texts such as `"5deg"` have their unit, or that of the spec.
+"""
+
+from __future__ import annotations
+
+from importlib.metadata import version as _version
+from pathlib import Path
+
+from . import _appell
+from ._errors import ComputationError, DataError, Diagnostic, Error, RequestError, SpecError
+from ._model import Derivation, Model, Quantity
+from ._motion import Motion
+from ._notebook import Page, Picture
+from ._recordings import Diagnosis, Identification, Recordings, diagnose, identify, sample_rig
+from ._results import Appell, Design, Energies, Jacobians, Linear, SteadyMotion
+from ._values import Vector, labelled
+
+__version__ = _version("appell")
+
+__all__ = [
+    "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "Energies", "Error",
+    "Identification", "Jacobians", "Linear", "Model", "Motion", "Page", "Picture", "Quantity", "Recordings",
+    "RequestError", "SpecError", "SteadyMotion", "Vector", "diagnose", "identify", "labelled", "load", "sample_rig",
+    "shipped",
+]  # fmt: skip
+
+
+def load(spec: str | Path) -> Model:
+    """The model of a shipped mechanism, of the spec in a file, or of a text with line breaks.
+
+    >>> import appell
+    >>> appell.load("unicyle")
+    Traceback (most recent call last):
+        ...
+    appell._errors.RequestError: model: there is no shipped mechanism and no file `unicyle`; did you mean `unicycle`?
+      shipped: ...
+    """
+    spec = str(spec)
+    return Model(spec, text="\n" in spec)
+
+
+def shipped() -> list[str]:
+    """Names of the shipped mechanisms.
+
+    >>> import appell
+    >>> "unicycle" in appell.shipped()
+    True
+    """
+    return _appell.shipped()

@@ -1,0 +1,47 @@
+"""Exceptions; each tells the places of what is wrong."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Diagnostic:
+    """A finding in a spec, or in an expression of a request."""
+
+    severity: str
+    """`error`, `warning` or `note`."""
+    code: str | None
+    message: str
+    help: str | None
+    """What to write instead."""
+    line: int
+    column: int
+
+
+class Error(Exception):
+    """A request that has no answer."""
+
+    def __init__(self, message: str, diagnostics: str = "[]", field: str | None = None):
+        super().__init__(message)
+        self.diagnostics: list[Diagnostic] = [Diagnostic(**found) for found in json.loads(diagnostics)]
+        """The findings, with their places."""
+        self.field = field
+        """The part of the request that is wrong."""
+
+
+class SpecError(Error):
+    """A spec, an effect or a description is wrong; `diagnostics` has the places."""
+
+
+class RequestError(Error, ValueError):
+    """The request names something that does not exist, or is inconsistent."""
+
+
+class DataError(Error):
+    """A file is wrong or cannot be read."""
+
+
+class ComputationError(Error):
+    """The computation failed."""

@@ -1,0 +1,436 @@
+"""A mechanism with its equations of motion."""
+
+from __future__ import annotations
+
+import json
+import types
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _appell
+from ._motion import Motion
+from ._notebook import Page, Picture
+from ._results import Appell, Design, Energies, Jacobians, Linear, SteadyMotion
+from ._values import Vector, labelled, text, texts
+
+Values = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """A state, input, parameter or output of a spec."""
+
+    name: str
+    about: str
+    unit: str
+    """Unit of the spec."""
+    scale: float
+    """One of `unit` in SI."""
+    value: float
+    """Parameter value or initial value in SI."""
+    low: float
+    high: float
+    """Declared range in SI."""
+
+
+class Derivation(Page):
+    """Equations, typeset in a notebook; `.latex` and `.text` are the same for documents and terminals."""
+
+    def __init__(self, model: Model, stage: str):
+        super().__init__(model._derivation(stage, "html"), 560)
+        self._model, self._stage = model, stage
+
+    @property
+    def latex(self) -> str:
+        """A document for LaTeX."""
+        return self._model._derivation(self._stage, "latex")
+
+    @property
+    def plain(self) -> str:
+        """Unicode for a terminal."""
+        return self._model._derivation(self._stage, "text")
+
+    def _repr_latex_(self) -> str:
+        return self._model._derivation(self._stage, "formulas")
+
+    def __repr__(self) -> str:
+        return self.plain
+
+
+class Model(_appell.Model):
+    """A mechanism with its equations of motion ẋ = f(t, x, u, p), all in SI.
+
+    The state x has the pseudo-velocities first, then the coordinates. `x`, `u`, `p` and `t` of every function may be
+    left out for the values of the spec; each is one place, (n,), or one a row, (N, n). Arrays of doubles that are
+    contiguous are not copied, and the interpreter goes on while N places are evaluated. `out` takes the results.
+
+    >>> import appell
+    >>> m = appell.load("pendulum")
+    >>> m.states
+    ('omega', 'theta')
+    >>> m.rates(m.state(theta="90deg")).round(3)
+    array([-9.81,  0.  ])
+    """
+
+    @cached_property
+    def _all(self) -> tuple[tuple[Quantity, ...], ...]:
+        return tuple(tuple(Quantity(*told) for told in group) for group in self._quantities())
+
+    @property
+    def name(self) -> str:
+        """Name of the mechanism."""
+        return self._about()[0]
+
+    @property
+    def title(self) -> str:
+        """One line about it."""
+        return self._about()[1]
+
+    @property
+    def source(self) -> str:
+        """Where the model comes from."""
+        return self._about()[2]
+
+    @cached_property
+    def quantities(self) -> dict[str, Quantity]:
+        """States, declared inputs, parameters and outputs by name."""
+        states, inputs, parameters, outputs = self._all
+        declared = inputs[: len(self.inputs)]
+        return {quantity.name: quantity for quantity in (*states, *declared, *parameters, *outputs)}
+
+    @cached_property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states: pseudo-velocities, then coordinates."""
+        return tuple(quantity.name for quantity in self._all[0])
+
+    @cached_property
+    def speeds(self) -> tuple[str, ...]:
+        """Names of the pseudo-velocities, the first part of the state."""
+        return self.states[: self._structure()[0]]
+
+    @cached_property
+    def coordinates(self) -> tuple[str, ...]:
+        """Names of the coordinates, the last part of the state."""
+        return self.states[self._structure()[0] :]
+
+    @cached_property
+    def inputs(self) -> tuple[str, ...]:
+        """Names of the declared inputs."""
+        return tuple(quantity.name for quantity in self._all[1][: self._structure()[1]])
+
+    @cached_property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return tuple(quantity.name for quantity in self._all[2])
+
+    @cached_property
+    def output_names(self) -> tuple[str, ...]:
+        """Names of the outputs of the spec."""
+        return tuple(quantity.name for quantity in self._all[3])
+
+    @property
+    def constraint_rows(self) -> tuple[str, ...]:
+        """Names of the velocity constraints, row by row."""
+        return tuple(self._structure()[2])
+
+    @property
+    def reactions(self) -> tuple[str, ...]:
+        """Points and constraints of `constraint_forces`, in its order."""
+        return tuple(self._structure()[3])
+
+    @cached_property
+    def units(self) -> dict[str, str]:
+        """Units of the spec by name; arrays are in SI."""
+        return {name: quantity.unit for name, quantity in self.quantities.items()}
+
+    @cached_property
+    def _scales(self) -> dict[str, float]:
+        return {name: quantity.scale for name, quantity in self.quantities.items()}
+
+    # Vectors
+
+    def state(self, **values: Any) -> Vector:
+        """The initial state of the spec with other values: numbers in SI, or texts such as `"20deg"`.
+
+        >>> import appell
+        >>> appell.load("pendulum").state(theta="180deg")["theta"]
+        3.141592653589793
+        """
+        return labelled(self._state(texts(values, self._scales)), self.states)
+
+    def input(self, **values: float) -> Vector:
+        """The declared inputs, zero but for these, in SI."""
+        u = labelled(np.zeros(len(self.inputs)), self.inputs)
+        for name, value in values.items():
+            u[name] = value
+        return u
+
+    def parameter_values(self, **values: Any) -> Vector:
+        """The parameters of the spec with other values: numbers in SI, or texts such as `"30cm"`."""
+        return labelled(self._parameters(texts(values, self._scales)), self.parameters)
+
+    # Equations
+
+    def jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Any = None) -> Jacobians:
+        """ẋ, A = ∂ẋ/∂x and B = ∂ẋ/∂u."""
+        return Jacobians(*self._jacobians(x, u, p, t, out=out))
+
+    def appell(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Any = None) -> Appell:
+        """Appell's equations M ω̇ + b = Π."""
+        return Appell(*self._appell(x, u, p, t, out=out))
+
+    def mass_matrix(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
+        """M of Appell's equations M ω̇ + b = Π."""
+        return self._appell(x, u, p, t)[0]
+
+    def bias(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
+        """b of Appell's equations M ω̇ + b = Π."""
+        return self._appell(x, u, p, t)[1]
+
+    def forces(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
+        """The pseudo-forces Π of Appell's equations M ω̇ + b = Π."""
+        return self._appell(x, u, p, t)[2]
+
+    def energies(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Energies:
+        """Kinetic, potential and acceleration energy, and the power of what has no potential."""
+        return Energies(*(value if value.ndim else value.item() for value in self._energies(x, u, p, t)))
+
+    def linearise(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Linear:
+        """The linear equations about a place, or about a `SteadyMotion`."""
+        if isinstance(x, SteadyMotion):
+            x, u, p = x.x, x.u if u is None else u, x.p if p is None else p
+        count = len(self.inputs)
+        _, a, b = self._jacobians(x, u, p, t)
+        _, c, d = self._output_jacobians(x, u, p, t)
+        return Linear(a, b[..., :count], c, d[..., :count], self.states, self.inputs, self.output_names)
+
+    # Motions
+
+    def simulate(
+        self,
+        t_end: float,
+        *,
+        dt: float | None = None,
+        initial: Values | np.ndarray | None = None,
+        parameters: Values | np.ndarray | None = None,
+        inputs: Mapping[str, Any] | Callable[[float, Vector], Any] | None = None,
+        feedback: Design | str | Path | Sequence[Design | str | Path] = (),
+        recorded: str | Path | None = None,
+        method: str = "dop853",
+        step: float | None = None,
+        rtol: float | None = None,
+        atol: float | None = None,
+        max_steps: int | None = None,
+        record: Iterable[str] = (),
+    ) -> Motion:
+        """Integrates the equations of motion from 0 to `t_end` in s.
+
+        `inputs` gives each input a number in SI, a text (an expression in t, states and parameters, in units of the
+        spec), a function of t and x, or a pair of arrays: times in s and values in SI, each held until the next; or it
+        is one function of t and x that returns all inputs. `feedback` takes designs of `control`, and the texts and
+        paths of feedback files. `recorded` is a table of inputs, or a run of a data set such as
+        `rig/recording.toml:run1.csv`. `record` adds columns: `reactions`, `contacts`, `conditions`, `residuals`.
+        A function sees the state before a step is accepted too, and should be smooth.
+
+        >>> import appell, math
+        >>> m = appell.load("cart_pole")
+        >>> m.simulate(1, inputs={"F": lambda t, x: math.sin(3 * t)})["F"][-1] == math.sin(3)
+        True
+        """
+        expressions: list[tuple[str, str]] = []
+        tables: list[tuple[str, np.ndarray, np.ndarray]] = []
+        functions: list[tuple[str, Callable[[float, np.ndarray], float]]] = []
+        if callable(inputs):
+            functions = self._functions(inputs)
+            inputs = None
+        for name, given in (inputs or {}).items():
+            if callable(given):
+                functions.append((name, self._seen(given)))
+            elif isinstance(given, str) or np.ndim(given) == 0:
+                expressions.append((name, text(given, self._scales.get(name, 1.0))))
+            else:
+                times, values = (np.ascontiguousarray(column, dtype=float) for column in given)
+                tables.append((name, times, values))
+        laws = [feedback] if isinstance(feedback, (Design, str, Path)) else list(feedback)
+        native = _appell.simulate(
+            self,
+            float(t_end),
+            dt=dt,
+            parameters=self._given(parameters, self.parameters),
+            initial=self._given(initial, self.states),
+            expressions=expressions,
+            tables=tables,
+            functions=functions,
+            recorded=None if recorded is None else str(recorded),
+            laws=[_law(law) for law in laws],
+            method=method,
+            step=step,
+            tolerances=[rtol, atol],
+            max_steps=max_steps,
+            extras=list(record),
+        )
+        return Motion(native, self.states)
+
+    def _given(self, values: Values | np.ndarray | None, names: tuple[str, ...]) -> list[tuple[str, str]]:
+        if values is None or isinstance(values, Mapping):
+            return texts(values, self._scales)
+        numbers = np.asarray(values, dtype=float)
+        if numbers.shape != (len(names),):
+            raise ValueError(f"{len(names)} values are needed, not the shape {numbers.shape}")
+        return texts(dict(zip(names, numbers.tolist(), strict=True)), self._scales)
+
+    def _seen(self, function: Callable[[float, Vector], Any]) -> Callable[[float, np.ndarray], float]:
+        states = self.states
+        return lambda t, x: float(function(t, labelled(x, states)))
+
+    def _functions(self, function: Callable[[float, Vector], Any]) -> list[tuple[str, Callable[[float, np.ndarray], float]]]:
+        """One function of all inputs, asked once at a place."""
+        last: tuple[Any, Any] = (None, None)
+        states, count = self.states, len(self.inputs)
+
+        def values(t: float, x: np.ndarray) -> np.ndarray:
+            nonlocal last
+            place = (t, x.tobytes())
+            if last[0] != place:
+                found = np.asarray(function(t, labelled(x, states)), dtype=float).reshape(-1)
+                if found.shape != (count,):
+                    raise ValueError(f"inputs returns {found.size} values; there are {count} inputs")
+                last = (place, found)
+            return last[1]
+
+        def one(index: int) -> Callable[[float, np.ndarray], float]:
+            return lambda t, x: float(values(t, x)[index])
+
+        return [(name, one(index)) for index, name in enumerate(self.inputs)]
+
+    # Questions
+
+    def steady(
+        self,
+        fix: Values | None = None,
+        *,
+        free: Sequence[str] = (),
+        along: tuple[str, Any, Any] | str | None = None,
+        require: Values | None = None,
+        parameters: Values | None = None,
+        starts: int | None = None,
+    ) -> list[SteadyMotion] | list[list[SteadyMotion]]:
+        """Steady motions with their stability: isolated ones, or branches `along` a quantity.
+
+        `fix` prescribes states, inputs, outputs, or rates of ignorable coordinates such as `dot(psi)`; inputs that
+        are not fixed are zero. `free` names inputs or parameters to solve for.
+
+        >>> import appell
+        >>> [motion.verdict for motion in appell.load("pendulum").steady()]
+        ['neutral', 'unstable']
+        """
+        if isinstance(along, str):
+            name, _, span = along.partition("=")
+            along = (name.strip(), *span.split(".."))
+            if len(along) != 3:
+                raise ValueError("write along as NAME=FROM..TO, such as speed=0.5..10")
+        span = None
+        if along is not None:
+            name, *ends = along
+            low, high = (text(end, self._scales.get(name, 1.0)) for end in ends)
+            span = (name, low, high)
+        told = self._steady(
+            texts(parameters, self._scales),
+            texts(fix, self._scales),
+            list(free),
+            span,
+            texts(require, self._scales),
+            starts,
+        )
+        answer = json.loads(told)
+        names = (self.states, self.inputs, self.parameters)
+        if "branches" in answer:
+            branches = [branch["points"] for branch in answer["branches"]]
+            return [[SteadyMotion(point, names) for point in points] for points in branches]
+        return [SteadyMotion(motion, names) for motion in answer["motions"]]
+
+    def control(
+        self,
+        at: Values | None = None,
+        *,
+        poles: str | float | None = None,
+        weights: str | float | None = None,
+        inputs: Sequence[str] = (),
+        outputs: Sequence[str] = (),
+        sampled_ms: float | None = None,
+        delay_ms: float | None = None,
+        parameters: Values | None = None,
+    ) -> Design:
+        """Controllability about a steady motion, and gains by `poles` in 1/s (`-8`, `"-8,-2+3i,-2-3i"`) or by
+        `weights` of a linear-quadratic regulator (`1`, `"Q=1,10,R=0.1"`).
+
+        >>> import appell
+        >>> m = appell.load("cart_pole")
+        >>> law = m.control(poles=-3)
+        >>> m.simulate(5, initial={"theta": "10deg"}, feedback=law).failure is None
+        True
+        """
+        sampled = None if sampled_ms is None and delay_ms is None else [sampled_ms or 0.0, delay_ms or 0.0]
+        told, law = self._control(
+            texts(parameters, self._scales),
+            texts(at, self._scales),
+            list(inputs),
+            list(outputs),
+            None if poles is None else str(poles),
+            None if weights is None else str(weights),
+            sampled,
+        )
+        return Design(json.loads(told), law)
+
+    # To read
+
+    @property
+    def equations(self) -> Derivation:
+        """The equations of motion."""
+        return Derivation(self, "motion")
+
+    @property
+    def derivation(self) -> Derivation:
+        """The derivation, from the frames to the energies."""
+        return Derivation(self, "equations")
+
+    def draw(self, parameters: Values | None = None, **initial: Any) -> Picture:
+        """The mechanism at its initial state, or at another one."""
+        return Picture(self._drawing(texts(parameters, self._scales), texts(initial, self._scales)))
+
+    @cached_property
+    def module(self) -> str:
+        """The text of a Python module with the equations as functions over an array namespace."""
+        return self._module()
+
+    def functions(self, xp: Any) -> types.SimpleNamespace:
+        """The equations as functions of (t, x, u, p) over a namespace of arrays: `numpy`, `jax.numpy`, `casadi` or
+        `sympy`. They return lists, row by row.
+
+        >>> import appell, math
+        >>> f = appell.load("pendulum").functions(math)
+        >>> f.rates(0.0, [0.0, 0.0], [], f.DEFAULT_PARAMETERS)
+        [0.0, 0.0]
+        """
+        module: dict[str, Any] = {"__name__": f"appell_{self.name}"}
+        exec(compile(self.module, f"<equations of {self.name}>", "exec"), module)
+        public = {name: value for name, value in module.items() if not name.startswith("_")}
+        bound = {name: partial(value, xp) if callable(value) else value for name, value in public.items()}
+        return types.SimpleNamespace(**bound)
+
+    def __repr__(self) -> str:
+        return f"<{self.name}: {self.title}; states {', '.join(self.states)}; inputs {', '.join(self.inputs) or 'none'}>"
+
+
+def _law(law: Design | str | Path) -> str:
+    if isinstance(law, Design):
+        if law.law is None:
+            raise ValueError("the design has no law: give `control` poles or weights")
+        return law.law
+    is_file = isinstance(law, Path) or "\n" not in law
+    return Path(law).read_text(encoding="utf-8") if is_file else law

@@ -1,0 +1,227 @@
+"""Recordings of a rig, and what follows from them."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from . import _appell
+from ._model import Model
+from ._notebook import Page, Picture, Progress, framed, reporter
+
+Paths = str | Path | Sequence[str | Path]
+
+
+class Recordings(_appell.DataSet):
+    """Recordings: a folder with a `recording.toml`, or CSV files of a mechanism."""
+
+    def __new__(cls, data: Paths, model: Model | str | Path | None = None) -> Recordings:
+        paths = [data] if isinstance(data, (str, Path)) else list(data)
+        return super().__new__(cls, [str(path) for path in paths], _name(model))
+
+    @cached_property
+    def told(self) -> dict[str, Any]:
+        """Runs, channels, noise and findings, as `appell recording --json` writes them."""
+        return json.loads(self.json())
+
+    @property
+    def runs(self) -> list[str]:
+        """Names of the runs."""
+        return [run["run"] for run in self.told["runs"]]
+
+    @property
+    def channels(self) -> list[str]:
+        """Names of the columns."""
+        return [channel["channel"] for channel in self.told["channels"]]
+
+    def __repr__(self) -> str:
+        return f"<recordings {', '.join(self.runs)}: {', '.join(self.channels)}>"
+
+
+class Identification:
+    """Estimated parameters with their intervals; a page in a notebook."""
+
+    def __init__(self, native: _appell.Identified):
+        self._native = native
+
+    @cached_property
+    def told(self) -> dict[str, Any]:
+        """All results, as `appell identify --json` writes them."""
+        return json.loads(self._native.json())
+
+    @property
+    def parameters(self) -> dict[str, dict[str, Any]]:
+        """By name: `value`, `std`, `interval95`, `nominal`, `unit` …, in SI."""
+        return {one["name"]: one for one in self.told["parameters"]}
+
+    @property
+    def values(self) -> dict[str, float]:
+        """Estimates in SI by name, for `simulate(parameters=...)`."""
+        return {name: one["value"] for name, one in self.parameters.items()}
+
+    @property
+    def figure(self) -> Picture:
+        """The held-out runs with their predictions."""
+        return Picture(self._native.figure())
+
+    @property
+    def page(self) -> Page:
+        """The report."""
+        return Page(self._native.page(), 640)
+
+    def _repr_html_(self) -> str:
+        return framed(self._native.page(), 640)
+
+    def __repr__(self) -> str:
+        return self._native.text()
+
+
+class Diagnosis:
+    """A diagnosed gap: where it lies, what causes it, how far it closes. A page in a notebook."""
+
+    def __init__(self, native: _appell.Gap):
+        self._native = native
+
+    @cached_property
+    def json(self) -> str:
+        """The gap report, byte for byte as `appell diagnose --json -` writes it."""
+        return self._native.json()
+
+    @cached_property
+    def told(self) -> dict[str, Any]:
+        """The gap report."""
+        return json.loads(self.json)
+
+    @property
+    def sentence(self) -> str:
+        """What was found, with its probability and the alternatives."""
+        return self._native.sentence()
+
+    @property
+    def hypotheses(self) -> list[dict[str, Any]]:
+        """Hypotheses, the most probable one first: `effects`, `probability`, `parameters`, `closes` …"""
+        return self.told["which"]
+
+    @property
+    def page(self) -> Page:
+        """The report."""
+        return Page(self._native.page(), 640)
+
+    @property
+    def experiment(self) -> str | None:
+        """Inputs of the experiment that would tell most, as CSV."""
+        return self._native.experiment()
+
+    def apply(self, hypothesis: int | None = None) -> Model:
+        """The model with the effect that was found, or with another hypothesis, numbered from 1."""
+        return Model(self.improved(hypothesis)[0], text=True)
+
+    def improved(self, hypothesis: int | None = None, file: str = "improved.toml") -> tuple[str, str]:
+        """The text of the spec with that effect, and what was changed in it."""
+        spec, text = self._native._spec()
+        return _appell.apply(spec, text, self.json, hypothesis, file)
+
+    def save(self, path: str | Path) -> None:
+        """Writes the gap report: as a page to `.html`, else as JSON."""
+        path = Path(path)
+        text = self._native.page() if path.suffix == ".html" else self.json
+        path.write_text(text, encoding="utf-8")
+
+    def _repr_html_(self) -> str:
+        return framed(self._native.page(), 640)
+
+    def __repr__(self) -> str:
+        return f"<{self.sentence}>"
+
+
+def identify(
+    data: Recordings | Paths,
+    model: Model | str | Path | None = None,
+    *,
+    free: Sequence[str] | None = None,
+    also: Sequence[str] = (),
+    drifting: Mapping[str, float] | None = None,
+    start: str = "nominal",
+    progress: Progress | bool = True,
+) -> Identification:
+    """Estimates parameters by maximum likelihood, with intervals and errors on held-out runs.
+
+    `free` names parameters; by default those with a tolerance in the data set. `also` names lags, delays, biases and
+    scales such as `tau.delay` and `theta.bias`; `drifting` gives parameters that drift the standard deviation of their
+    change in one second. `start` is `nominal`, or `shooting` if the nominal values are far off.
+    """
+    if start not in ("nominal", "shooting"):
+        raise ValueError(f"start is `nominal` or `shooting`, not `{start}`")
+    set_ = _read(data, model)
+    with reporter(progress) as tell:
+        rates = list((drifting or {}).items())
+        free = None if free is None else list(free)
+        native = set_._identify(free, list(also), rates, start == "shooting", tell)
+    return Identification(native)
+
+
+def diagnose(
+    data: Recordings | Paths,
+    model: Model | str | Path | None = None,
+    *,
+    effects: Sequence[str | Path] = (),
+    without: Sequence[str] = (),
+    horizon: float | None = None,
+    tolerance: float | None = None,
+    limits: Mapping[str, tuple[float, float]] | None = None,
+    alternatives: Sequence[str | Path] = (),
+    against: Recordings | Paths | None = None,
+    progress: Progress | bool = True,
+) -> Diagnosis:
+    """Diagnoses the gap between recordings and their model: where it lies, which unmodelled effect causes it, and how
+    far it closes on held-out runs once the effect is added.
+
+    `effects` are files of your own effects, `without` kinds of shipped ones to leave out, `horizon` the horizon of
+    predictions in s, `tolerance` the part of the gap below which an effect names no cause, `limits` by column those of
+    the next experiment in the column's unit, `alternatives` other specs of the same rig, `against` earlier recordings.
+    `progress` shows the stages, is silent if false, and is called with each if it is a function. Ctrl-C ends it.
+    """
+    set_ = _read(data, model)
+    before = None if against is None else _read(against, model)
+    scaled = []
+    for column, ends in (limits or {}).items():
+        scale = set_._scale(column)
+        if scale is None:
+            raise ValueError(f"limits: there is no column `{column}`; the columns are {', '.join(set_.channels)}")
+        low, high = (scale * end for end in ends)
+        scaled.append((column, [low, high]))
+    with reporter(progress) as tell:
+        native = set_._diagnose(
+            [str(path) for path in effects],
+            list(without),
+            horizon,
+            tolerance,
+            scaled,
+            [str(path) for path in alternatives],
+            before,
+            tell,
+        )
+    return Diagnosis(native)
+
+
+def sample_rig(folder: str | Path) -> list[str]:
+    """Writes the spec of a simulated rig, three recordings and their description; returns the names of the files.
+
+    The rig has effects that its spec lacks: `diagnose(folder)` finds them.
+    """
+    return _appell.sample(str(folder))
+
+
+def _read(data: Recordings | Paths, model: Model | str | Path | None) -> Recordings:
+    return data if isinstance(data, Recordings) else Recordings(data, model)
+
+
+def _name(model: Model | str | Path | None) -> str | None:
+    if isinstance(model, Model):
+        if model._reference is None:
+            raise ValueError("the model of a text has no file: give recordings the path of a spec")
+        return model._reference
+    return None if model is None else str(model)

@@ -1,0 +1,143 @@
+"""Steady motions, linear equations, designs."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from ._values import Vector, labelled
+
+
+class Jacobians(NamedTuple):
+    """ẋ = f(x, u) and its derivatives at one place, or at N: (n,), (n, n), (n, m)."""
+
+    rates: np.ndarray
+    A: np.ndarray
+    B: np.ndarray
+
+
+class Appell(NamedTuple):
+    """Appell's equations M ω̇ + b = Π: (s, s), (s,), (s,), or N of them."""
+
+    M: np.ndarray
+    b: np.ndarray
+    forces: np.ndarray
+
+
+class Energies(NamedTuple):
+    """Kinetic and potential energy in J, power in W of what changes their sum, acceleration energy in W/s."""
+
+    kinetic: Any
+    potential: Any
+    power: Any
+    acceleration: Any
+
+
+class Linear(NamedTuple):
+    """δẋ = A δx + B δu, δy = C δx + D δu. `control.StateSpace(*linear[:4])` and
+    `scipy.signal.StateSpace(*linear[:4])` take it."""
+
+    A: np.ndarray
+    B: np.ndarray
+    C: np.ndarray
+    D: np.ndarray
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+
+
+def _complex(pairs: Sequence[Sequence[float]]) -> np.ndarray:
+    return np.array([complex(*pair) for pair in pairs])
+
+
+class SteadyMotion:
+    """A steady motion with its stability, in SI."""
+
+    def __init__(self, told: dict[str, Any], names: tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]):
+        self.told = told
+        """All that is known of it, as `appell steady --json` writes it."""
+        states, inputs, parameters = names
+        values = told["state"]
+        self.x: Vector = labelled([values[name] for name in states], states)
+        """The state; what a steady motion leaves open has the value of the spec."""
+        self.u: Vector = labelled([told["inputs"][name] for name in inputs], inputs)
+        """The declared inputs."""
+        self.p: Vector = labelled([told["parameters"][name] for name in parameters], parameters)
+        """The parameters."""
+
+    @property
+    def verdict(self) -> str:
+        """`asymptotic`, `neutral`, `unstable` or `critical`."""
+        return self.told["verdict"]
+
+    @property
+    def stable(self) -> bool:
+        """Whether no disturbance grows in the linear equations."""
+        return self.verdict in ("asymptotic", "neutral")
+
+    @property
+    def eigenvalues(self) -> np.ndarray:
+        """Eigenvalues of the essential states in 1/s."""
+        return _complex(self.told["eigenvalues"])
+
+    def __repr__(self) -> str:
+        return f"<steady motion, {self.verdict}: {self.x!r}>"
+
+
+class Design:
+    """Controllability about a steady motion, and the gains of a law u = u₀ - K (x - x₀)."""
+
+    def __init__(self, told: dict[str, Any], law: str | None):
+        self.told = told
+        """All that is known of it, as `appell control --json` writes it."""
+        self.law = law
+        """The law as the text of a feedback file, for `simulate(feedback=...)`."""
+
+    @property
+    def A(self) -> np.ndarray:
+        """Of the linear equations, in the order of `states`."""
+        return np.array(self.told["A"])
+
+    @property
+    def B(self) -> np.ndarray:
+        """Of the linear equations, (states, inputs)."""
+        return np.array(self.told["B"])
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """The order of A and B."""
+        return tuple(self.told["state_order"])
+
+    @property
+    def outputs(self) -> tuple[str, ...]:
+        """The states that are fed back: the columns of K."""
+        return tuple(self.told["outputs"]["order"])
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The rows of K."""
+        return tuple(self.told["input_order"])
+
+    @property
+    def rank(self) -> int:
+        """Rank of the controllability matrix."""
+        return self.told["controllability"]["rank"]
+
+    @property
+    def K(self) -> np.ndarray | None:
+        """The gains, (inputs, outputs)."""
+        law = self.told["law"]
+        return None if law is None else np.array(law["gains"])
+
+    @property
+    def poles(self) -> np.ndarray | None:
+        """Poles of the closed loop in 1/s; of a sampled law in the z plane."""
+        law = self.told["law"]
+        return None if law is None else _complex(law["poles"])
+
+    def __repr__(self) -> str:
+        if self.K is None:
+            return f"<controllability: rank {self.rank} of {len(self.outputs)}>"
+        return f"<law of {', '.join(self.inputs)} from {', '.join(self.outputs)}; poles {self.poles}>"

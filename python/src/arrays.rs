@@ -1,0 +1,243 @@
+//! Arrays from Python: a single place, or one a row.
+
+use appell::{EquationsOfMotion, ModelInputs};
+use appell_runtime::inputs::ZeroInputs;
+use appell_runtime::model::At;
+use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+
+/// What Python gives: one row, or several.
+struct Rows<'py> {
+    array: PyReadonlyArrayDyn<'py, f64>,
+    width: usize,
+    count: Option<usize>,
+}
+
+impl<'py> Rows<'py> {
+    /// Rows of one of some widths. Arrays that are contiguous are not copied.
+    fn new(value: &Bound<'py, PyAny>, widths: &[usize], name: &str) -> PyResult<Self> {
+        let array = contiguous(value)?;
+        let shape = array.shape();
+        let width = shape.last().copied().unwrap_or(1);
+        let count = match shape {
+            [_] => None,
+            [count, _] => Some(*count),
+            _ => return Err(wrong_shape(name, widths, shape)),
+        };
+        if !widths.contains(&width) {
+            return Err(wrong_shape(name, widths, shape));
+        }
+        Ok(Self {
+            array: array.readonly(),
+            width,
+            count,
+        })
+    }
+
+    fn numbers(&self) -> PyResult<&[f64]> {
+        Ok(self.array.as_slice()?)
+    }
+}
+
+fn wrong_shape(name: &str, widths: &[usize], shape: &[usize]) -> PyErr {
+    let wanted = widths
+        .iter()
+        .map(|width| format!("({width},) or (N, {width})"));
+    let wanted = wanted.collect::<Vec<_>>().join(" or ");
+    PyValueError::new_err(format!("{name} has the shape {shape:?}; it needs {wanted}"))
+}
+
+/// An array of doubles, row by row.
+fn contiguous<'py>(value: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
+    if let Ok(array) = value.cast::<PyArrayDyn<f64>>()
+        && array.is_c_contiguous()
+    {
+        return Ok(array.clone());
+    }
+    let numpy = value.py().import("numpy")?;
+    let made = numpy.call_method1("ascontiguousarray", (value, "float64"))?;
+    Ok(made.cast_into::<PyArrayDyn<f64>>()?)
+}
+
+/// Arguments of a call; those that are left out are the values of the spec.
+pub(crate) struct Places<'a, 'py> {
+    pub(crate) x: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) u: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) p: Option<&'a Bound<'py, PyAny>>,
+    pub(crate) t: Option<&'a Bound<'py, PyAny>>,
+}
+
+/// Values of the spec.
+pub(crate) struct Defaults {
+    pub(crate) x: Vec<f64>,
+    pub(crate) u: Vec<f64>,
+    pub(crate) p: Vec<f64>,
+}
+
+/// The numbers of one argument, row by row.
+#[derive(Clone, Copy)]
+struct Column<'a> {
+    numbers: &'a [f64],
+    width: usize,
+    /// How far the next row is; zero for a single one.
+    step: usize,
+}
+
+impl<'a> Column<'a> {
+    fn of(rows: Option<&'a Rows<'_>>, default: &'a [f64]) -> PyResult<Self> {
+        let Some(rows) = rows else {
+            return Ok(Self {
+                numbers: default,
+                width: default.len(),
+                step: 0,
+            });
+        };
+        Ok(Self {
+            numbers: rows.numbers()?,
+            width: rows.width,
+            step: if rows.count.is_some() { rows.width } else { 0 },
+        })
+    }
+
+    fn row(self, row: usize) -> &'a [f64] {
+        &self.numbers[row * self.step..][..self.width]
+    }
+}
+
+/// Evaluates a function at one place or at each of N. `shapes` are the shapes of its results at one place; the results
+/// are written to `out` where that is given.
+pub(crate) fn evaluate<'py, const R: usize>(
+    py: Python<'py>,
+    (model, defaults): (&dyn EquationsOfMotion, &Defaults),
+    places: &Places<'_, 'py>,
+    shapes: [&[usize]; R],
+    out: [Option<Bound<'py, PyAny>>; R],
+    function: impl Fn(At<'_>, [&mut [f64]; R]) + Send,
+) -> PyResult<[Array<'py>; R]> {
+    let info = model.info();
+    let (m, declared) = (info.input_len(), info.declared_inputs);
+    let rows = |value: Option<&Bound<'py, PyAny>>, widths: &[usize], name| {
+        let rows = value.map(|value| Rows::new(value, widths, name));
+        rows.transpose()
+    };
+    let x = rows(places.x, &[info.state_len()], "x")?;
+    let u = rows(
+        places.u,
+        &[declared, m][..1 + usize::from(m != declared)],
+        "u",
+    )?;
+    let p = rows(places.p, &[info.parameter_len()], "p")?;
+    let times = places.t.map(contiguous).transpose()?;
+    let t_count = times.as_ref().filter(|t| t.ndim() > 0).map(|t| t.len());
+    let counts = [&x, &u, &p].map(|rows| rows.as_ref().and_then(|rows| rows.count));
+    let count = common(
+        ["x", "u", "p", "t"]
+            .into_iter()
+            .zip(counts.into_iter().chain([t_count])),
+    )?;
+
+    let arrays = results(py, count, shapes, out)?;
+    let mut writers = Vec::with_capacity(R);
+    for array in &arrays {
+        let writer = array.try_readwrite();
+        writers.push(writer.map_err(|error| PyValueError::new_err(format!("out: {error}")))?);
+    }
+    let mut slices = Vec::with_capacity(R);
+    for writer in &mut writers {
+        slices.push(writer.as_slice_mut()?);
+    }
+    let mut slices = slices.into_iter();
+    let mut written: [&mut [f64]; R] = std::array::from_fn(|_| slices.next().unwrap_or_default());
+
+    let x = Column::of(x.as_ref(), &defaults.x)?;
+    let u = Column::of(u.as_ref(), &defaults.u)?;
+    let p = Column::of(p.as_ref(), &defaults.p)?;
+    let times = times.as_ref().map(PyArrayMethods::readonly);
+    let t: &[f64] = match &times {
+        Some(times) => times.as_slice()?,
+        None => &[0.0],
+    };
+    let t_step = usize::from(t_count.is_some());
+    let sizes = shapes.map(|shape| shape.iter().product::<usize>());
+    let mut compute = move || {
+        // Signals are checked when the model is made.
+        let signals = (u.width < m).then(|| ModelInputs::new(info, &ZeroInputs).ok());
+        let mut all = vec![0.0; m];
+        for row in 0..count.unwrap_or(1) {
+            let (t, x, mut inputs) = (t[row * t_step], x.row(row), u.row(row));
+            if let Some(Some(signals)) = &signals {
+                signals.fill(t, x, &mut all);
+                all[..declared].copy_from_slice(inputs);
+                inputs = &all;
+            }
+            let at = At {
+                t,
+                x,
+                u: inputs,
+                p: p.row(row),
+            };
+            let mut sizes = sizes.into_iter();
+            let results = written.each_mut().map(|numbers| {
+                let size = sizes.next().unwrap_or(0);
+                &mut numbers[row * size..][..size]
+            });
+            function(at, results);
+        }
+    };
+    match count {
+        Some(_) => py.detach(compute),
+        // Shorter than it takes to leave the lock and to get it back.
+        None => compute(),
+    }
+    drop(writers);
+    Ok(arrays)
+}
+
+/// The number of rows that all have that have rows.
+fn common(counts: impl Iterator<Item = (&'static str, Option<usize>)>) -> PyResult<Option<usize>> {
+    let mut first: Option<(&str, usize)> = None;
+    for (name, count) in counts {
+        match (count, first) {
+            (Some(count), Some((of, wanted))) if count != wanted => {
+                let message = format!("{of} has {wanted} rows, and {name} has {count}");
+                return Err(PyValueError::new_err(message));
+            }
+            (Some(count), None) => first = Some((name, count)),
+            _ => {}
+        }
+    }
+    Ok(first.map(|(_, count)| count))
+}
+
+/// New arrays, or those that are given.
+fn results<'py, const R: usize>(
+    py: Python<'py>,
+    count: Option<usize>,
+    shapes: [&[usize]; R],
+    out: [Option<Bound<'py, PyAny>>; R],
+) -> PyResult<[Array<'py>; R]> {
+    let mut all = Vec::with_capacity(R);
+    for (shape, out) in shapes.into_iter().zip(out) {
+        let shape: Vec<usize> = count.into_iter().chain(shape.iter().copied()).collect();
+        let array = match out {
+            None => PyArrayDyn::zeros(py, shape, false),
+            Some(out) => {
+                let array = out.cast_into::<PyArrayDyn<f64>>()?;
+                if array.shape() != shape || !array.is_c_contiguous() {
+                    let message = format!(
+                        "out has the shape {:?}; it needs {shape:?}, contiguous",
+                        array.shape()
+                    );
+                    return Err(PyValueError::new_err(message));
+                }
+                array
+            }
+        };
+        all.push(array);
+    }
+    all.try_into()
+        .map_err(|_| PyValueError::new_err("out needs one array for each result"))
+}

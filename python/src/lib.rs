@@ -1,0 +1,21 @@
+//! The native part of the Python package `appell`. It converts arrays and texts, and calls the crate `appell`; names,
+//! results and pictures are made in Python on top of it.
+
+mod arrays;
+mod errors;
+mod model;
+mod motion;
+mod recordings;
+mod watched;
+
+use pyo3::prelude::*;
+
+#[pymodule]
+mod _appell {
+    #[pymodule_export]
+    use super::model::{Model, shipped};
+    #[pymodule_export]
+    use super::motion::{Simulated, simulate};
+    #[pymodule_export]
+    use super::recordings::{DataSet, Gap, Identified, apply, sample};
+}

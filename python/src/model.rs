@@ -1,0 +1,504 @@
+//! A mechanism: its names, its equations, and what is asked of them.
+
+use std::sync::Arc;
+
+use appell::control::Request;
+use appell::derivation::{Format, Stage};
+use appell::setup::Assignment;
+use appell::steady::Question;
+use appell::{EquationsOfMotion, ModelInputs, Quantity, Source};
+use appell_runtime::inputs::ZeroInputs;
+use numpy::{PyArray1, PyArrayDyn};
+use pyo3::prelude::*;
+
+use crate::arrays::{Defaults, Places, evaluate};
+use crate::errors::Raise;
+use crate::watched::watched;
+
+type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
+type Any<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+/// Names with their values as texts.
+pub(crate) type Values = Vec<(String, String)>;
+
+/// Names of the shipped mechanisms.
+#[pyfunction]
+pub(crate) fn shipped() -> Vec<&'static str> {
+    appell::source::names().collect()
+}
+
+pub(crate) fn assignments(values: &Values) -> Vec<Assignment> {
+    let values = values.iter();
+    values
+        .map(|(name, value)| Assignment::new(name, value))
+        .collect()
+}
+
+/// A mechanism with its equations of motion.
+#[pyclass(subclass, frozen)]
+pub(crate) struct Model {
+    pub(crate) model: Arc<appell::Model>,
+    defaults: Defaults,
+    /// Whether its spec is in no file.
+    is_text: bool,
+}
+
+/// A quantity as a tuple: name, about, unit, scale, value, low, high.
+type Told = (String, String, String, f64, f64, f64, f64);
+
+fn told(quantity: &Quantity) -> Told {
+    let [name, about, unit] =
+        [&quantity.name, &quantity.about, &quantity.unit].map(ToString::to_string);
+    let [low, high] = quantity.range;
+    (name, about, unit, quantity.scale, quantity.value, low, high)
+}
+
+impl Model {
+    fn equations(&self) -> (&dyn EquationsOfMotion, &Defaults) {
+        (self.model.equations(), &self.defaults)
+    }
+
+    fn sizes(&self) -> [usize; 5] {
+        let info = self.model.info();
+        [
+            info.state_len(),
+            info.input_len(),
+            info.parameter_len(),
+            info.speeds,
+            info.output_len(),
+        ]
+    }
+}
+
+#[pymethods]
+impl Model {
+    /// A shipped name, the path of a spec, or the text of one.
+    #[new]
+    #[pyo3(signature = (spec, *, text = false))]
+    fn new(py: Python<'_>, spec: &str, text: bool) -> PyResult<Self> {
+        let spec = spec.to_owned();
+        let model = watched(py, None, move |_| {
+            if text {
+                appell::Model::from_spec(&spec)
+            } else {
+                appell::Model::find(&spec)
+            }
+        })?;
+        let model = model.raise(py)?;
+        let info = model.info();
+        let mut u = vec![0.0; info.input_len()];
+        let x = info.initial_state();
+        ModelInputs::new(info, &ZeroInputs)
+            .raise(py)?
+            .fill(0.0, &x, &mut u);
+        // At other times signals have other values.
+        u.truncate(info.declared_inputs);
+        let defaults = Defaults {
+            p: info.default_parameters(),
+            x,
+            u,
+        };
+        Ok(Self {
+            model: Arc::new(model),
+            defaults,
+            is_text: text,
+        })
+    }
+
+    /// Name, title and source.
+    fn _about(&self) -> [String; 3] {
+        let info = self.model.info();
+        [&info.name, &info.title, &info.source].map(ToString::to_string)
+    }
+
+    /// States, inputs with signals, parameters, outputs.
+    fn _quantities(&self) -> [Vec<Told>; 4] {
+        let info = self.model.info();
+        [&info.states, &info.inputs, &info.parameters, &info.outputs]
+            .map(|list| list.iter().map(told).collect())
+    }
+
+    /// Numbers of pseudo-velocities and of declared inputs; names of constraint rows and of reactions.
+    fn _structure(&self) -> (usize, usize, Vec<String>, Vec<String>) {
+        let info = self.model.info();
+        let rows = info.constraint_rows.iter().map(ToString::to_string);
+        let reactions = info.reactions.iter().map(|one| one.name.to_string());
+        (
+            info.speeds,
+            info.declared_inputs,
+            rows.collect(),
+            reactions.collect(),
+        )
+    }
+
+    /// Shipped name or path; none of a text.
+    #[getter]
+    fn _reference(&self) -> Option<&str> {
+        let source = self.model.source();
+        let reference = source
+            .shipped
+            .map_or(source.file.as_str(), |shipped| shipped.name);
+        (!self.is_text).then_some(reference)
+    }
+
+    /// The text of the spec.
+    #[getter]
+    fn spec(&self) -> &str {
+        &self.model.source().text
+    }
+
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn rates<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let model = self.model.equations();
+        let [n, ..] = self.sizes();
+        let places = Places { x, u, p, t };
+        let [rates] = evaluate(
+            py,
+            self.equations(),
+            &places,
+            [&[n]],
+            [out],
+            |at, [rates]| {
+                model.rates(at, rates);
+            },
+        )?;
+        Ok(rates)
+    }
+
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn _jacobians<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<[Bound<'py, PyAny>; 3]>,
+    ) -> PyResult<[Array<'py>; 3]> {
+        let model = self.model.equations();
+        let [n, m, ..] = self.sizes();
+        let places = Places { x, u, p, t };
+        let shapes: [&[usize]; 3] = [&[n], &[n, n], &[n, m]];
+        evaluate(
+            py,
+            self.equations(),
+            &places,
+            shapes,
+            optional(out),
+            |at, [rates, a, b]| {
+                model.jacobians(at, rates, a, b);
+            },
+        )
+    }
+
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn parameter_jacobian<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let model = self.model.equations();
+        let [n, _, k, ..] = self.sizes();
+        let places = Places { x, u, p, t };
+        let [jacobian] = evaluate(
+            py,
+            self.equations(),
+            &places,
+            [&[n, k]],
+            [out],
+            |at, [by_p]| {
+                model.parameter_jacobian(at, by_p);
+            },
+        )?;
+        Ok(jacobian)
+    }
+
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn _appell<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<[Bound<'py, PyAny>; 3]>,
+    ) -> PyResult<[Array<'py>; 3]> {
+        let model = self.model.equations();
+        let [_, _, _, s, _] = self.sizes();
+        let places = Places { x, u, p, t };
+        let shapes: [&[usize]; 3] = [&[s, s], &[s], &[s]];
+        evaluate(
+            py,
+            self.equations(),
+            &places,
+            shapes,
+            optional(out),
+            |at, [mass, bias, forces]| {
+                model.appell(at, mass, bias, forces);
+            },
+        )
+    }
+
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn outputs<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let model = self.model.equations();
+        let [.., l] = self.sizes();
+        let places = Places { x, u, p, t };
+        let [outputs] = evaluate(
+            py,
+            self.equations(),
+            &places,
+            [&[l]],
+            [out],
+            |at, [outputs]| {
+                model.outputs(at, outputs);
+            },
+        )?;
+        Ok(outputs)
+    }
+
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn _output_jacobians<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<[Bound<'py, PyAny>; 3]>,
+    ) -> PyResult<[Array<'py>; 3]> {
+        let model = self.model.equations();
+        let [n, m, _, _, l] = self.sizes();
+        let places = Places { x, u, p, t };
+        let shapes: [&[usize]; 3] = [&[l], &[l, n], &[l, m]];
+        evaluate(
+            py,
+            self.equations(),
+            &places,
+            shapes,
+            optional(out),
+            |at, [outputs, c, d]| {
+                model.output_jacobians(at, outputs, c, d);
+            },
+        )
+    }
+
+    /// Kinetic, potential, power, acceleration energy.
+    #[pyo3(signature = (x = None, u = None, p = None, t = None))]
+    fn _energies<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+    ) -> PyResult<[Array<'py>; 4]> {
+        let model = self.model.equations();
+        let places = Places { x, u, p, t };
+        let shapes: [&[usize]; 4] = [&[]; 4];
+        evaluate(
+            py,
+            self.equations(),
+            &places,
+            shapes,
+            optional(None),
+            |at, results| {
+                let energies = model.energies(at);
+                let values = [
+                    energies.kinetic,
+                    energies.potential,
+                    energies.power,
+                    energies.acceleration,
+                ];
+                for (result, value) in results.into_iter().zip(values) {
+                    result[0] = value;
+                }
+            },
+        )
+    }
+
+    /// Forces of the constraints in the ground, three components each.
+    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
+    fn constraint_forces<'py>(
+        &self,
+        py: Python<'py>,
+        x: Any<'_, 'py>,
+        u: Any<'_, 'py>,
+        p: Any<'_, 'py>,
+        t: Any<'_, 'py>,
+        out: Option<Bound<'py, PyAny>>,
+    ) -> PyResult<Array<'py>> {
+        let model = self.model.equations();
+        let places = Places { x, u, p, t };
+        let shape = [model.info().reactions.len(), 3];
+        let [forces] = evaluate(
+            py,
+            self.equations(),
+            &places,
+            [&shape],
+            [out],
+            |at, [forces]| {
+                model.constraint_forces(at, forces);
+            },
+        )?;
+        Ok(forces)
+    }
+
+    /// A state of the spec with other values, as numbers in SI.
+    fn _state<'py>(&self, py: Python<'py>, values: Values) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut setup = self.model.setup().raise(py)?;
+        setup.start(&assignments(&values)).raise(py)?;
+        Ok(PyArray1::from_vec(py, setup.initial))
+    }
+
+    /// Parameters of the spec with other values, as numbers in SI.
+    fn _parameters<'py>(
+        &self,
+        py: Python<'py>,
+        values: Values,
+    ) -> PyResult<Bound<'py, PyArray1<f64>>> {
+        let mut setup = self.model.setup().raise(py)?;
+        setup.set(&assignments(&values)).raise(py)?;
+        Ok(PyArray1::from_vec(py, setup.parameters))
+    }
+
+    /// Steady motions as JSON.
+    #[pyo3(signature = (parameters, fix, free, along, require, starts))]
+    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+    fn _steady(
+        &self,
+        py: Python<'_>,
+        parameters: Values,
+        fix: Values,
+        free: Vec<String>,
+        along: Option<(String, String, String)>,
+        require: Values,
+        starts: Option<usize>,
+    ) -> PyResult<String> {
+        let mut question = Question {
+            parameters: assignments(&parameters),
+            fix: assignments(&fix),
+            free,
+            require: assignments(&require),
+            ..Question::default()
+        };
+        if let Some((name, from, to)) = along {
+            question = question.along(&name, from, to);
+        }
+        question.starts = starts.unwrap_or(question.starts);
+        let model = Arc::clone(&self.model);
+        let told = watched(py, None, move |_| {
+            let asked = model.resolve(&question)?;
+            let answer = asked.answer()?;
+            Ok::<_, appell::Error>(appell::json::steady(&asked, &answer).to_string())
+        })?;
+        told.raise(py)
+    }
+
+    /// A design as JSON, and the text of its law.
+    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+    fn _control(
+        &self,
+        py: Python<'_>,
+        parameters: Values,
+        at: Values,
+        inputs: Vec<String>,
+        outputs: Vec<String>,
+        poles: Option<String>,
+        weights: Option<String>,
+        sampled: Option<[f64; 2]>,
+    ) -> PyResult<(String, Option<String>)> {
+        let request = Request {
+            parameters: assignments(&parameters),
+            at: assignments(&at),
+            inputs,
+            outputs,
+            poles,
+            weights,
+            sampled_ms: sampled.map(|[period, _]| period),
+            delay_ms: sampled.map(|[_, delay]| delay),
+        };
+        let model = Arc::clone(&self.model);
+        let told = watched(py, None, move |_| {
+            let design = model.control(&request)?;
+            let law = design.law.is_some().then(|| model.law(&design));
+            let law = law.transpose()?;
+            let json = appell::json::design(model.info(), &design);
+            Ok::<_, appell::Error>((json.to_string(), law))
+        })?;
+        told.raise(py)
+    }
+
+    /// The derivation up to a stage, as `text`, `latex`, `html` or `formulas`.
+    fn _derivation(&self, py: Python<'_>, stage: &str, format: &str) -> PyResult<String> {
+        let stage = match stage {
+            "motion" => None,
+            "kinematics" => Some(Stage::Kinematics),
+            "energy" => Some(Stage::Energy),
+            "jacobians" => Some(Stage::Jacobians),
+            "all" => Some(Stage::All),
+            _ => Some(Stage::Equations),
+        };
+        let format = match format {
+            "latex" => Format::Latex,
+            "html" => Format::Html,
+            "formulas" => Format::Formulas,
+            _ => Format::Text,
+        };
+        self.of_source(py, move |source| match stage {
+            Some(stage) => source.derivation(stage, format),
+            None => source.equations_of_motion(format),
+        })
+    }
+
+    /// The drawing as SVG.
+    fn _drawing(&self, py: Python<'_>, parameters: Values, initial: Values) -> PyResult<String> {
+        self.of_source(py, move |source| {
+            source.drawing_at(&assignments(&parameters), &assignments(&initial))
+        })
+    }
+
+    /// The equations as a Python module.
+    fn _module(&self, py: Python<'_>) -> PyResult<String> {
+        self.of_source(py, Source::python)
+    }
+}
+
+impl Model {
+    fn of_source(
+        &self,
+        py: Python<'_>,
+        compute: impl FnOnce(&Source) -> Result<String, appell::Error> + Send + 'static,
+    ) -> PyResult<String> {
+        let model = Arc::clone(&self.model);
+        watched(py, None, move |_| compute(model.source()))?.raise(py)
+    }
+}
+
+fn optional<'py, const R: usize>(
+    out: Option<[Bound<'py, PyAny>; R]>,
+) -> [Option<Bound<'py, PyAny>>; R] {
+    match out {
+        Some(all) => all.map(Some),
+        None => std::array::from_fn(|_| None),
+    }
+}

@@ -1,0 +1,250 @@
+//! Motions: what is asked for, and what comes of it.
+
+use std::path::PathBuf;
+use std::sync::{Arc, Mutex, PoisonError};
+
+use appell::setup::Assignment;
+use appell::{CsvOptions, Driven, InputSource, Law, Method, Motion, TabulatedInputs};
+use appell_report::figure::Figure;
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+use pyo3::types::PyDict;
+
+use crate::errors::Raise;
+use crate::model::{Model, Values, assignments};
+use crate::watched::watched;
+
+/// A motion with its model.
+#[pyclass(frozen)]
+pub(crate) struct Simulated {
+    model: Arc<appell::Model>,
+    simulated: appell::Simulated,
+}
+
+/// An input that Python computes. The first exception is kept; the motion ends there.
+struct Callable {
+    input: usize,
+    function: Py<PyAny>,
+    failed: Arc<Mutex<Option<PyErr>>>,
+}
+
+impl InputSource for Callable {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        u.fill(0.0);
+        let value = Python::attach(|py| {
+            let x = PyArray1::from_slice(py, x);
+            self.function.bind(py).call1((t, x))?.extract::<f64>()
+        });
+        u[self.input] = value.unwrap_or_else(|error| {
+            lock(&self.failed).get_or_insert(error);
+            f64::NAN
+        });
+    }
+}
+
+fn lock<T>(value: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
+    // An error is written whole.
+    value.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// One input over time, held from row to row.
+fn table(
+    inputs: usize,
+    input: usize,
+    times: &[f64],
+    values: &[f64],
+) -> Result<TabulatedInputs, appell::Error> {
+    let columns = (0..inputs).map(|one| match one {
+        _ if one == input => values.to_vec(),
+        _ => vec![0.0; times.len()],
+    });
+    Ok(TabulatedInputs::held(times, &columns.collect::<Vec<_>>())?)
+}
+
+/// Integrates the equations of motion. Of the inputs, texts are expressions, pairs of arrays are tables, and the
+/// rest are functions of time and state.
+#[pyfunction]
+#[pyo3(signature = (model, t_end, *, dt, parameters, initial, expressions, tables, functions, recorded, laws, method, step, tolerances, max_steps, extras))]
+#[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+pub(crate) fn simulate(
+    py: Python<'_>,
+    model: &Bound<'_, Model>,
+    t_end: f64,
+    dt: Option<f64>,
+    parameters: Values,
+    initial: Values,
+    expressions: Values,
+    tables: Vec<(String, PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>)>,
+    functions: Vec<(String, Py<PyAny>)>,
+    recorded: Option<PathBuf>,
+    laws: Vec<String>,
+    method: &str,
+    step: Option<f64>,
+    tolerances: [Option<f64>; 2],
+    max_steps: Option<usize>,
+    extras: Vec<String>,
+) -> PyResult<Simulated> {
+    let model = &model.get().model;
+    let info = model.info();
+    let failed = Arc::new(Mutex::new(None));
+    let mut motion = Motion::new(t_end);
+    motion.interval = dt;
+    motion.parameters = assignments(&parameters);
+    motion.initial = assignments(&initial);
+    motion.inputs = expressions
+        .iter()
+        .map(|(name, value)| Assignment::new(name, value))
+        .collect();
+    motion.recorded = recorded;
+    motion.laws = laws
+        .into_iter()
+        .map(|text| Law::Text {
+            name: "feedback law".to_owned(),
+            text,
+        })
+        .collect();
+    motion.method = match (method, step) {
+        ("dop853", _) => Method::Dop853,
+        ("dopri5", _) => Method::Dopri5,
+        ("rk4", Some(step)) => Method::Rk4 { step },
+        ("rk4", None) => return Err(PyValueError::new_err("method `rk4` needs a step in s")),
+        (other, _) => {
+            let message = format!("method is one of dop853, dopri5, rk4, not `{other}`");
+            return Err(PyValueError::new_err(message));
+        }
+    };
+    let [relative, absolute] = tolerances;
+    let options = &mut motion.options;
+    options.rtol = relative.unwrap_or(options.rtol);
+    options.atol = absolute.unwrap_or(options.atol);
+    options.max_steps = max_steps.unwrap_or(options.max_steps);
+    for extra in &extras {
+        let all = &mut motion.extras;
+        let flag = match extra.as_str() {
+            "reactions" => &mut all.reactions,
+            "contacts" => &mut all.contacts,
+            "conditions" => &mut all.conditions,
+            "residuals" => &mut all.residuals,
+            other => {
+                let message = format!(
+                    "record names reactions, contacts, conditions, residuals, not `{other}`"
+                );
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        *flag = true;
+    }
+    let index = |name: &str| info.input_index(name).unwrap_or(0);
+    for (name, times, values) in &tables {
+        let source = table(
+            info.declared_inputs,
+            index(name),
+            times.as_slice()?,
+            values.as_slice()?,
+        );
+        motion.driven.push(Driven {
+            inputs: vec![name.clone()],
+            source: Arc::new(source.raise(py)?),
+        });
+    }
+    for (name, function) in functions {
+        let source = Callable {
+            input: index(&name),
+            function,
+            failed: Arc::clone(&failed),
+        };
+        motion.driven.push(Driven {
+            inputs: vec![name],
+            source: Arc::new(source),
+        });
+    }
+    let model = Arc::clone(model);
+    let told = Arc::clone(&failed);
+    let simulated = watched(py, None, move |watch| {
+        let simulated = model.simulate_while(&motion, || watch.goes_on() && lock(&told).is_none());
+        simulated.map(|simulated| (model, simulated))
+    })?;
+    if let Some(error) = lock(&failed).take() {
+        return Err(error);
+    }
+    let (model, simulated) = simulated.raise(py)?;
+    Ok(Simulated { model, simulated })
+}
+
+#[pymethods]
+impl Simulated {
+    /// Times in s.
+    fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
+        PyArray1::from_slice(py, self.simulated.trajectory.times())
+    }
+
+    /// All columns in SI, a row a time.
+    fn values<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let motion = &self.simulated.trajectory;
+        let all: Vec<f64> = (0..motion.len())
+            .flat_map(|row| motion.row(row).iter().copied())
+            .collect();
+        PyArray1::from_vec(py, all).reshape([motion.len(), motion.columns().len()])
+    }
+
+    /// Name, meaning, unit and scale of the columns.
+    fn columns(&self) -> Vec<(String, String, String, f64)> {
+        let columns = self.simulated.trajectory.columns().iter();
+        columns
+            .map(|column| {
+                let [name, about, unit] =
+                    [&column.name, &column.about, &column.unit].map(ToString::to_string);
+                (name, about, unit, column.scale)
+            })
+            .collect()
+    }
+
+    /// The reason of an early end.
+    #[getter]
+    fn failure(&self) -> Option<&str> {
+        self.simulated.failure.as_deref()
+    }
+
+    /// The time from which the last values of recorded inputs are held.
+    #[getter]
+    fn held_from(&self) -> Option<f64> {
+        self.simulated.held_from
+    }
+
+    /// Steps, rejected steps, evaluations.
+    fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
+        let statistics = &self.simulated.trajectory.statistics;
+        let told = PyDict::new(py);
+        told.set_item("steps", statistics.steps)?;
+        told.set_item("rejected", statistics.rejected)?;
+        told.set_item("evaluations", statistics.evaluations)?;
+        Ok(told)
+    }
+
+    /// The summary of `appell simulate --json`.
+    fn summary(&self) -> String {
+        appell::json::motion(&self.simulated.trajectory, self.failure()).to_string()
+    }
+
+    /// The page that animates the motion.
+    fn page(&self, py: Python<'_>) -> PyResult<String> {
+        self.model
+            .page(&self.simulated.trajectory, self.failure())
+            .raise(py)
+    }
+
+    /// States and inputs over time as SVG.
+    fn figure(&self) -> String {
+        Figure::of_states_and_inputs(&self.simulated.trajectory).to_svg()
+    }
+
+    /// Comma-separated values in the units of the spec.
+    fn csv(&self) -> PyResult<Vec<u8>> {
+        let mut text = Vec::new();
+        self.simulated
+            .trajectory
+            .write_csv(&mut text, CsvOptions::default())?;
+        Ok(text)
+    }
+}

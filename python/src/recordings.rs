@@ -1,0 +1,241 @@
+//! Recordings, and what is concluded from them.
+
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+use appell::diagnosis::{Library, Options, Report};
+use appell::gap_report::GapReport;
+use appell::identification::{Answer, Begin};
+use appell::{Error, Source, identification};
+use appell_report::identification as identified;
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::errors::{Raise, exception};
+use crate::watched::watched;
+
+/// Recordings of a mechanism.
+#[pyclass(subclass, frozen)]
+pub(crate) struct DataSet(Arc<appell::DataSet>);
+
+/// Estimated parameters.
+#[pyclass(frozen)]
+pub(crate) struct Identified {
+    set: Arc<appell::DataSet>,
+    answer: Answer,
+}
+
+/// A diagnosed gap.
+#[pyclass(frozen)]
+pub(crate) struct Gap {
+    set: Arc<appell::DataSet>,
+    report: Report,
+    /// Shipped effects that were replaced, and warnings about the data.
+    findings: Vec<String>,
+}
+
+type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
+
+#[pymethods]
+impl DataSet {
+    /// A folder with a `recording.toml`, or CSV files of a mechanism, which is a shipped name or the path of a spec.
+    #[new]
+    #[pyo3(signature = (paths, model = None))]
+    fn new(py: Python<'_>, paths: Vec<PathBuf>, model: Option<String>) -> PyResult<Self> {
+        let set = watched(py, None, move |_| {
+            appell::recording::read(&paths, model.as_deref())
+        })?;
+        Ok(Self(Arc::new(set.raise(py)?)))
+    }
+
+    /// Runs, channels, noise and findings as JSON.
+    fn json(&self) -> String {
+        appell::json::recording(&self.0).to_string()
+    }
+
+    /// Warnings that may affect conclusions.
+    #[getter]
+    fn warnings(&self) -> Vec<String> {
+        appell::recording::warnings(&self.0)
+    }
+
+    #[pyo3(signature = (free, also, drifting, shooting, progress))]
+    fn _identify(
+        &self,
+        py: Python<'_>,
+        free: Option<Vec<String>>,
+        also: Vec<String>,
+        drifting: Vec<(String, f64)>,
+        shooting: bool,
+        progress: Progress<'_, '_>,
+    ) -> PyResult<Identified> {
+        let set = Arc::clone(&self.0);
+        let options = identification::Options {
+            free,
+            additional: also,
+            drifting,
+            allow_none: false,
+            begin: if shooting {
+                Begin::Shooting
+            } else {
+                Begin::Nominal
+            },
+            rough: false,
+        };
+        let answer = watched(py, progress, move |watch| {
+            let source = Source {
+                file: set.spec.file.clone(),
+                text: set.spec.text.clone(),
+                shipped: None,
+            };
+            let model = appell::Model::for_estimation(source)?;
+            model.identify(&set, &options, |stage| watch.stage(stage))
+        })?;
+        Ok(Identified {
+            set: Arc::clone(&self.0),
+            answer: answer.raise(py)?,
+        })
+    }
+
+    #[pyo3(signature = (effects, without, horizon, tolerance, limits, alternatives, against, progress))]
+    #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
+    fn _diagnose(
+        &self,
+        py: Python<'_>,
+        effects: Vec<PathBuf>,
+        without: Vec<String>,
+        horizon: Option<f64>,
+        tolerance: Option<f64>,
+        limits: Vec<(String, [f64; 2])>,
+        alternatives: Vec<String>,
+        against: Option<&Self>,
+        progress: Progress<'_, '_>,
+    ) -> PyResult<Gap> {
+        if horizon.is_some_and(|horizon| !(horizon.is_finite() && horizon > 0.0)) {
+            return Err(PyValueError::new_err(
+                "horizon is a positive number of seconds",
+            ));
+        }
+        let set = Arc::clone(&self.0);
+        let before = against.map(|before| Arc::clone(&before.0));
+        let gap = watched(py, progress, move |watch| {
+            let mut library = Library::shipped()?;
+            for kind in &without {
+                library = library.without(kind)?;
+            }
+            let library = library.with(&effects)?;
+            let options = Options {
+                pictures: true,
+                limits,
+                alternatives: alternatives
+                    .iter()
+                    .map(|model| {
+                        let Source { file, text, .. } = Source::find(model)?;
+                        Ok(appell::recording::Spec { file, text })
+                    })
+                    .collect::<Result<_, Error>>()?,
+                horizon,
+                tolerance,
+                present: Vec::new(),
+            };
+            let stage = |stage| watch.stage(stage);
+            let report = match &before {
+                Some(before) => library.against(before, &set, &options, stage),
+                None => library.diagnose(&set, &options, stage),
+            }?;
+            let findings = [library.warnings, appell::recording::warnings(&set)].concat();
+            Ok::<_, Error>(Gap {
+                set,
+                report,
+                findings,
+            })
+        })?;
+        gap.raise(py)
+    }
+
+    /// The scale of a channel's unit.
+    fn _scale(&self, column: &str) -> Option<f64> {
+        let mut channels = self.0.channels.iter();
+        let channel = channels.find(|channel| channel.column == column)?;
+        Some(channel.unit.scale)
+    }
+}
+
+#[pymethods]
+impl Identified {
+    fn json(&self) -> String {
+        appell::json::identification(&self.set, &self.answer).to_string()
+    }
+
+    fn text(&self) -> String {
+        identified::text(&self.set, &self.answer)
+    }
+
+    fn page(&self) -> String {
+        identified::page(&self.set, &self.answer)
+    }
+
+    fn figure(&self) -> String {
+        identified::figure(&self.set, &self.answer).to_svg()
+    }
+}
+
+#[pymethods]
+impl Gap {
+    /// The text that `appell diagnose --json` writes.
+    fn json(&self, py: Python<'_>) -> PyResult<String> {
+        let report = appell::json::diagnosis(&self.report, None, &self.findings);
+        let text = serde_json::to_string_pretty(&report);
+        text.map(|text| text + "\n")
+            .map_err(|error| exception(py, &error.into()))
+    }
+
+    /// What was found, in one sentence.
+    fn sentence(&self) -> String {
+        appell_report::gap::sentence(&self.report)
+    }
+
+    fn page(&self) -> String {
+        appell_report::gap::page(&self.set, &self.report)
+    }
+
+    /// The inputs that the next experiment should have, as CSV.
+    fn experiment(&self) -> Option<String> {
+        let experiment = self.report.experiment.as_ref()?;
+        Some(appell::diagnosis::experiment_inputs(&self.set, experiment))
+    }
+
+    /// Text and file of the spec that was diagnosed.
+    fn _spec(&self) -> (&str, &str) {
+        (&self.set.spec.file, &self.set.spec.text)
+    }
+}
+
+/// The spec with a hypothesis of a gap report, and what was changed.
+#[pyfunction]
+#[pyo3(signature = (spec, text, report, hypothesis, out))]
+pub(crate) fn apply(
+    py: Python<'_>,
+    spec: String,
+    text: String,
+    report: &str,
+    hypothesis: Option<usize>,
+    out: &str,
+) -> PyResult<(String, String)> {
+    let source = Source {
+        file: spec,
+        text,
+        shipped: None,
+    };
+    let report = GapReport::parse("gap report", report).raise(py)?;
+    let improved = source.improved(&report, hypothesis, out).raise(py)?;
+    let summary = improved.summary(out);
+    Ok((improved.spec, summary))
+}
+
+/// Writes a folder with recordings of a simulated rig; the names of the files.
+#[pyfunction]
+pub(crate) fn sample(py: Python<'_>, folder: PathBuf) -> PyResult<Vec<&'static str>> {
+    let folder: &Path = &folder;
+    appell::sample::rig(folder).raise(py)
+}

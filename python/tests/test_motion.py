@@ -1,0 +1,137 @@
+"""Simulated motions."""
+
+import _thread
+import threading
+import time
+
+import numpy as np
+import pytest
+
+import appell
+
+
+def test_inputs_of_all_kinds_drive_alike(model):
+    m = model("cart_pole")
+    t = np.linspace(0, 1, 2001)
+    kinds = [
+        "2*sin(3 [1/s]*t) [N]",
+        lambda t, x: 2 * np.sin(3 * t),
+        (t, 2 * np.sin(3 * (t + 0.00025))),
+    ]
+    expected, *others = [m.simulate(1, inputs={"F": kind}) for kind in kinds]
+    np.testing.assert_allclose(others[0]["x"], expected["x"], atol=1e-9)
+    np.testing.assert_allclose(others[1]["x"], expected["x"], atol=1e-6)
+    whole = m.simulate(1, inputs=lambda t, x: [2 * np.sin(3 * t)])
+    np.testing.assert_allclose(whole["x"], expected["x"], atol=1e-9)
+    constant = m.simulate(1, inputs={"F": 2.0})
+    assert set(constant["F"]) == {2.0}
+
+
+def test_feedback_sees_the_state_by_name(model):
+    m = model("cart_pole")
+    law = m.control(poles=-3)
+    assert np.all(law.poles.real < 0)
+    by_law = m.simulate(4, initial={"theta": "5deg"}, feedback=law)
+    gains = dict(zip(law.outputs, law.K[0], strict=True))
+    by_hand = m.simulate(
+        4, initial={"theta": "5deg"}, inputs={"F": lambda t, x: -sum(k * x[s] for s, k in gains.items())}
+    )
+    np.testing.assert_allclose(by_hand["theta"], by_law["theta"], atol=1e-8)
+    assert abs(by_law["theta"][-1]) < 1e-3
+
+
+def test_numbers_are_in_si_and_texts_in_units(model):
+    m = model("pendulum")
+    motions = [m.simulate(1, initial={"theta": value}) for value in (np.pi / 6, "30deg", m.state(theta="30deg")["theta"])]
+    motions.append(m.simulate(1, initial=m.state(theta="30deg")))
+    for motion in motions:
+        np.testing.assert_allclose(motion["theta"], motions[0]["theta"], atol=1e-12)
+    np.testing.assert_allclose(motions[0].x["theta"], motions[0]["theta"])
+
+
+def test_an_exception_in_an_input_is_raised(model):
+    def broken(t, x):
+        if t > 0.5:
+            raise LookupError("no more inputs")
+        return 0.0
+
+    with pytest.raises(LookupError, match="no more inputs"):
+        model("cart_pole").simulate(5, inputs={"F": broken})
+    with pytest.raises(ValueError, match="there are 1 inputs"):
+        model("cart_pole").simulate(1, inputs=lambda t, x: [1, 2])
+
+
+def test_an_interruption_ends_a_motion_at_once(model):
+    def slow(t, x):
+        time.sleep(0.001)
+        return 0.0
+
+    threading.Timer(0.5, _thread.interrupt_main).start()
+    start = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        model("cart_pole").simulate(1000, inputs={"F": slow})
+    assert time.monotonic() - start < 5
+
+
+@pytest.mark.parametrize(
+    "request_, message",
+    [
+        ({"t_end": -1}, "positive"),
+        ({"t_end": 1, "initial": {"thet": 1}}, "did you mean"),
+        ({"t_end": 1, "inputs": {"G": 1.0}}, "G"),
+        ({"t_end": 1, "inputs": {"G": lambda t, x: 1.0}}, "G"),
+        ({"t_end": 1, "method": "euler"}, "dop853"),
+        ({"t_end": 1, "record": ["all"]}, "reactions"),
+        ({"t_end": 1, "inputs": {"F": ([0.0, 1.0], [1.0])}}, ""),
+        ({"t_end": 1, "initial": np.zeros(3)}, "4 values"),
+    ],
+)
+def test_wrong_requests_are_refused(model, request_, message):
+    with pytest.raises((appell.Error, ValueError), match=message):
+        model("cart_pole").simulate(request_.pop("t_end"), **request_)
+
+
+def test_a_motion_becomes_tables_and_pictures(model, tmp_path):
+    motion = model("unicycle").simulate(1, dt=0.1, record=["reactions", "contacts"])
+    assert any(name.startswith("reaction_") for name in motion.columns)
+    frame = pytest.importorskip("pandas") and motion.to_pandas()
+    assert frame.shape == (11, len(motion.columns))
+    set_ = pytest.importorskip("xarray") and motion.to_xarray()
+    assert set_["theta"].shape == (11,)
+    page = motion._repr_html_()
+    assert page.startswith("<iframe") and "sandbox" in page
+    motion.to_csv(tmp_path / "motion.csv")
+    assert (tmp_path / "motion.csv").read_text().splitlines()[-1].startswith("1")
+    matplotlib = pytest.importorskip("matplotlib")
+    matplotlib.use("Agg")
+    axes = motion.plot("theta", "psi")
+    assert "theta" in axes[0].get_ylabel()
+    assert motion.figure.svg.startswith("<svg")
+    assert motion.statistics["steps"] > 0
+
+
+def test_steady_motions_have_their_stability(model):
+    m = model("rolling_wheel")
+    motions = m.steady({"theta": 0, "omega_2": "20rad/s"})
+    assert motions and all(len(motion.x) == len(m.states) for motion in motions)
+    np.testing.assert_allclose(m.rates(motions[0].x, motions[0].u, motions[0].p)[: len(m.speeds)], 0, atol=1e-9)
+    branches = m.steady({"theta": 0}, along=("omega_2", 1.0, 20.0))
+    assert len({motion.verdict for motion in branches[0]}) > 1
+
+
+def test_linear_equations_fit_other_packages(model):
+    signal = pytest.importorskip("scipy.signal")
+    m = model("cart_pole")
+    upright = m.steady({"theta": 0})[0]
+    linear = m.linearise(upright)
+    system = signal.StateSpace(*linear[:4])
+    assert system.A.shape == (4, 4)
+    np.testing.assert_array_equal(linear.A, m.jacobians(upright.x, upright.u).A)
+
+
+def test_equations_are_typeset(model):
+    m = model("pendulum")
+    assert m.equations._repr_latex_().startswith("\\begin{align*}")
+    assert "<math" in m.equations.text and "\\documentclass" in m.equations.latex
+    assert "Acceleration energy" in m.derivation.plain
+    assert m.draw(theta="30deg").svg.startswith("<svg")

@@ -78,7 +78,7 @@ def test_arrays_of_other_kinds_are_taken(model):
 
 @pytest.mark.parametrize(
     "x, message",
-    [(np.zeros(3), r"x has the shape \[3\]; it needs \(2,\) or \(N, 2\)"), (np.zeros((1, 2, 2)), "x has the shape"), ("a", "")],
+    [(np.zeros(3), r"x has the shape \[3\]; it needs \(2,\) or \(N, 2\)"), (np.zeros((1, 2, 2)), "x has the shape"), ("a", "could not convert")],
 )
 def test_wrong_shapes_are_refused(model, x, message):
     with pytest.raises((ValueError, TypeError), match=message):
@@ -134,7 +134,8 @@ def test_wrong_specs_tell_their_places():
         appell.load(text)
     found = failure.value.diagnostics[0]
     assert found.severity == "error"
-    assert text.splitlines()[found.line - 1][found.column - 1 :].startswith(("\"mm/", "mm/", "/"))
+    line = text.splitlines()[found.line - 1]
+    assert line[: found.column - 1].endswith('unit = "mm/')
     with pytest.raises(appell.RequestError, match="did you mean `theta`"):
         appell.load("pendulum").state(thet=1)
     with pytest.raises(appell.DataError):

@@ -38,10 +38,10 @@ def test_a_gap_gets_a_cause_and_a_better_model(diagnosis, rig, tmp_path):
     assert diagnosis.hypotheses[0]["effects"]
     assert "friction" in diagnosis.sentence
     text, changed = diagnosis.improved()
-    assert "found" in changed
+    assert changed.startswith("improved.toml: my_rig")
     better = diagnosis.apply()
     assert better.spec == text
-    assert set(better.parameters) > set(appell.load(rig / "my_rig.toml").parameters) or text != (rig / "my_rig.toml").read_text()
+    assert text != (rig / "my_rig.toml").read_text()
     with pytest.raises(appell.RequestError, match="there is no hypothesis 99"):
         diagnosis.apply(99)
     diagnosis.save(tmp_path / "gap.html")

@@ -69,12 +69,12 @@ class Model(_appell.Model):
     left out for the values of the spec; each is one place, (n,), or one a row, (N, n). Arrays of doubles that are
     contiguous are not copied, and the interpreter goes on while N places are evaluated. `out` takes the results.
 
-    >>> import appell
+    >>> import appell, numpy as np
     >>> m = appell.load("pendulum")
     >>> m.states
     ('omega', 'theta')
-    >>> m.rates(m.state(theta="90deg")).round(3)
-    array([-9.81,  0.  ])
+    >>> m.rates(np.zeros((1000, 2))).shape
+    (1000, 2)
     """
 
     @cached_property
@@ -239,7 +239,7 @@ class Model(_appell.Model):
 
         >>> import appell, math
         >>> m = appell.load("cart_pole")
-        >>> m.simulate(1, inputs={"F": lambda t, x: math.sin(3 * t)})["F"][-1] == math.sin(3)
+        >>> m.simulate(1, inputs={"F": lambda t, x: math.sin(3 * t)})["F"][-1].item() == math.sin(3)
         True
         """
         expressions: list[tuple[str, str]] = []
@@ -326,7 +326,7 @@ class Model(_appell.Model):
         are not fixed are zero. `free` names inputs or parameters to solve for.
 
         >>> import appell
-        >>> [motion.verdict for motion in appell.load("pendulum").steady()]
+        >>> sorted({motion.verdict for motion in appell.load("pendulum").steady()})
         ['neutral', 'unstable']
         """
         if isinstance(along, str):
@@ -414,7 +414,7 @@ class Model(_appell.Model):
 
         >>> import appell, math
         >>> f = appell.load("pendulum").functions(math)
-        >>> f.rates(0.0, [0.0, 0.0], [], f.DEFAULT_PARAMETERS)
+        >>> f.rates(0.0, [0.0, 0.0], [0.0], f.DEFAULT_PARAMETERS)
         [0.0, 0.0]
         """
         module: dict[str, Any] = {"__name__": f"appell_{self.name}"}

@@ -124,14 +124,13 @@ pub(crate) fn evaluate<'py, const R: usize>(
         rows.transpose()
     };
     let x = rows(places.x, &[info.state_len()], "x")?;
-    let u = rows(
-        places.u,
-        &[declared, m][..1 + usize::from(m != declared)],
-        "u",
-    )?;
+    let u = rows(places.u, &[declared, m][..=usize::from(m != declared)], "u")?;
     let p = rows(places.p, &[info.parameter_len()], "p")?;
     let times = places.t.map(contiguous).transpose()?;
-    let t_count = times.as_ref().filter(|t| t.ndim() > 0).map(|t| t.len());
+    let t_count = times
+        .as_ref()
+        .filter(|t| t.ndim() > 0)
+        .map(PyUntypedArrayMethods::len);
     let counts = [&x, &u, &p].map(|rows| rows.as_ref().and_then(|rows| rows.count));
     let count = common(
         ["x", "u", "p", "t"]

@@ -1,7 +1,7 @@
 //! Errors as exceptions of the package, which know the places of what is wrong.
 
 use appell::check::findings;
-use appell::{Class, Error, Report};
+use appell::{Class, Error, Field, Report};
 use pyo3::prelude::*;
 
 /// The exception of an error: `appell.SpecError`, `RequestError`, `DataError` or `ComputationError`.
@@ -20,7 +20,7 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
         (_, Class::Data) => "DataError",
         (_, Class::Computation) => "ComputationError",
     };
-    let field = error.field().map(|field| field.name());
+    let field = error.field().map(Field::name);
     made(py, class, (error.to_string(), found, field))
 }
 

@@ -1,6 +1,11 @@
 //! The native part of the Python package `appell`. It converts arrays and texts, and calls the crate `appell`; names,
 //! results and pictures are made in Python on top of it.
 
+#![allow(
+    clippy::needless_pass_by_value,
+    reason = "arguments come from Python as values"
+)]
+
 mod arrays;
 mod errors;
 mod model;

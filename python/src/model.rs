@@ -36,7 +36,7 @@ pub(crate) fn assignments(values: &Values) -> Vec<Assignment> {
 /// A mechanism with its equations of motion.
 #[pyclass(subclass, frozen)]
 pub(crate) struct Model {
-    pub(crate) model: Arc<appell::Model>,
+    pub(crate) inner: Arc<appell::Model>,
     defaults: Defaults,
     /// Whether its spec is in no file.
     is_text: bool,
@@ -54,11 +54,11 @@ fn told(quantity: &Quantity) -> Told {
 
 impl Model {
     fn equations(&self) -> (&dyn EquationsOfMotion, &Defaults) {
-        (self.model.equations(), &self.defaults)
+        (self.inner.equations(), &self.defaults)
     }
 
     fn sizes(&self) -> [usize; 5] {
-        let info = self.model.info();
+        let info = self.inner.info();
         [
             info.state_len(),
             info.input_len(),
@@ -98,7 +98,7 @@ impl Model {
             u,
         };
         Ok(Self {
-            model: Arc::new(model),
+            inner: Arc::new(model),
             defaults,
             is_text: text,
         })
@@ -106,20 +106,20 @@ impl Model {
 
     /// Name, title and source.
     fn _about(&self) -> [String; 3] {
-        let info = self.model.info();
+        let info = self.inner.info();
         [&info.name, &info.title, &info.source].map(ToString::to_string)
     }
 
     /// States, inputs with signals, parameters, outputs.
     fn _quantities(&self) -> [Vec<Told>; 4] {
-        let info = self.model.info();
+        let info = self.inner.info();
         [&info.states, &info.inputs, &info.parameters, &info.outputs]
             .map(|list| list.iter().map(told).collect())
     }
 
     /// Numbers of pseudo-velocities and of declared inputs; names of constraint rows and of reactions.
     fn _structure(&self) -> (usize, usize, Vec<String>, Vec<String>) {
-        let info = self.model.info();
+        let info = self.inner.info();
         let rows = info.constraint_rows.iter().map(ToString::to_string);
         let reactions = info.reactions.iter().map(|one| one.name.to_string());
         (
@@ -133,7 +133,7 @@ impl Model {
     /// Shipped name or path; none of a text.
     #[getter]
     fn _reference(&self) -> Option<&str> {
-        let source = self.model.source();
+        let source = self.inner.source();
         let reference = source
             .shipped
             .map_or(source.file.as_str(), |shipped| shipped.name);
@@ -143,7 +143,7 @@ impl Model {
     /// The text of the spec.
     #[getter]
     fn spec(&self) -> &str {
-        &self.model.source().text
+        &self.inner.source().text
     }
 
     #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
@@ -156,7 +156,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Array<'py>> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let [n, ..] = self.sizes();
         let places = Places { x, u, p, t };
         let [rates] = evaluate(
@@ -182,7 +182,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<[Bound<'py, PyAny>; 3]>,
     ) -> PyResult<[Array<'py>; 3]> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let [n, m, ..] = self.sizes();
         let places = Places { x, u, p, t };
         let shapes: [&[usize]; 3] = [&[n], &[n, n], &[n, m]];
@@ -208,7 +208,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Array<'py>> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let [n, _, k, ..] = self.sizes();
         let places = Places { x, u, p, t };
         let [jacobian] = evaluate(
@@ -234,7 +234,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<[Bound<'py, PyAny>; 3]>,
     ) -> PyResult<[Array<'py>; 3]> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let [_, _, _, s, _] = self.sizes();
         let places = Places { x, u, p, t };
         let shapes: [&[usize]; 3] = [&[s, s], &[s], &[s]];
@@ -260,7 +260,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Array<'py>> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let [.., l] = self.sizes();
         let places = Places { x, u, p, t };
         let [outputs] = evaluate(
@@ -286,7 +286,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<[Bound<'py, PyAny>; 3]>,
     ) -> PyResult<[Array<'py>; 3]> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let [n, m, _, _, l] = self.sizes();
         let places = Places { x, u, p, t };
         let shapes: [&[usize]; 3] = [&[l], &[l, n], &[l, m]];
@@ -312,7 +312,7 @@ impl Model {
         p: Any<'_, 'py>,
         t: Any<'_, 'py>,
     ) -> PyResult<[Array<'py>; 4]> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let places = Places { x, u, p, t };
         let shapes: [&[usize]; 4] = [&[]; 4];
         evaluate(
@@ -347,7 +347,7 @@ impl Model {
         t: Any<'_, 'py>,
         out: Option<Bound<'py, PyAny>>,
     ) -> PyResult<Array<'py>> {
-        let model = self.model.equations();
+        let model = self.inner.equations();
         let places = Places { x, u, p, t };
         let shape = [model.info().reactions.len(), 3];
         let [forces] = evaluate(
@@ -365,7 +365,7 @@ impl Model {
 
     /// A state of the spec with other values, as numbers in SI.
     fn _state<'py>(&self, py: Python<'py>, values: Values) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut setup = self.model.setup().raise(py)?;
+        let mut setup = self.inner.setup().raise(py)?;
         setup.start(&assignments(&values)).raise(py)?;
         Ok(PyArray1::from_vec(py, setup.initial))
     }
@@ -376,7 +376,7 @@ impl Model {
         py: Python<'py>,
         values: Values,
     ) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut setup = self.model.setup().raise(py)?;
+        let mut setup = self.inner.setup().raise(py)?;
         setup.set(&assignments(&values)).raise(py)?;
         Ok(PyArray1::from_vec(py, setup.parameters))
     }
@@ -405,7 +405,7 @@ impl Model {
             question = question.along(&name, from, to);
         }
         question.starts = starts.unwrap_or(question.starts);
-        let model = Arc::clone(&self.model);
+        let model = Arc::clone(&self.inner);
         let told = watched(py, None, move |_| {
             let asked = model.resolve(&question)?;
             let answer = asked.answer()?;
@@ -437,7 +437,7 @@ impl Model {
             sampled_ms: sampled.map(|[period, _]| period),
             delay_ms: sampled.map(|[_, delay]| delay),
         };
-        let model = Arc::clone(&self.model);
+        let model = Arc::clone(&self.inner);
         let told = watched(py, None, move |_| {
             let design = model.control(&request)?;
             let law = design.law.is_some().then(|| model.law(&design));
@@ -489,14 +489,14 @@ impl Model {
         py: Python<'_>,
         compute: impl FnOnce(&Source) -> Result<String, appell::Error> + Send + 'static,
     ) -> PyResult<String> {
-        let model = Arc::clone(&self.model);
+        let model = Arc::clone(&self.inner);
         watched(py, None, move |_| compute(model.source()))?.raise(py)
     }
 }
 
-fn optional<'py, const R: usize>(
-    out: Option<[Bound<'py, PyAny>; R]>,
-) -> [Option<Bound<'py, PyAny>>; R] {
+fn optional<const R: usize>(
+    out: Option<[Bound<'_, PyAny>; R]>,
+) -> [Option<Bound<'_, PyAny>>; R] {
     match out {
         Some(all) => all.map(Some),
         None => std::array::from_fn(|_| None),

@@ -13,7 +13,7 @@ use pyo3::types::PyDict;
 
 use crate::errors::Raise;
 use crate::model::{Model, Values, assignments};
-use crate::watched::watched;
+use crate::watched::awaited;
 
 /// A motion with its model.
 #[pyclass(frozen)]
@@ -85,7 +85,7 @@ pub(crate) fn simulate(
     max_steps: Option<usize>,
     extras: Vec<String>,
 ) -> PyResult<Simulated> {
-    let model = &model.get().model;
+    let model = &model.get().inner;
     let info = model.info();
     let failed = Arc::new(Mutex::new(None));
     let mut motion = Motion::new(t_end);
@@ -161,7 +161,7 @@ pub(crate) fn simulate(
     }
     let model = Arc::clone(model);
     let told = Arc::clone(&failed);
-    let simulated = watched(py, None, move |watch| {
+    let simulated = awaited(py, move |watch| {
         let simulated = model.simulate_while(&motion, || watch.goes_on() && lock(&told).is_none());
         simulated.map(|simulated| (model, simulated))
     })?;

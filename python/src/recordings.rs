@@ -8,6 +8,7 @@ use appell::gap_report::GapReport;
 use appell::identification::{Answer, Begin};
 use appell::{Error, Source, identification};
 use appell_report::identification as identified;
+use numpy::PyArray1;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -34,6 +35,7 @@ pub(crate) struct Gap {
     findings: Vec<String>,
 }
 
+type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 #[pymethods]
@@ -151,6 +153,15 @@ impl DataSet {
             })
         })?;
         gap.raise(py)
+    }
+
+    /// Times in s and a column for each channel, in SI, of a run.
+    fn _run<'py>(&self, py: Python<'py>, name: &str) -> Option<(Numbers<'py>, Vec<Numbers<'py>>)> {
+        let mut runs = self.0.runs.iter();
+        let run = runs.find(|run| run.name == name)?;
+        let columns = run.values.iter();
+        let columns = columns.map(|values| PyArray1::from_slice(py, values));
+        Some((PyArray1::from_slice(py, &run.times), columns.collect()))
     }
 
     /// The scale of a channel's unit.

@@ -49,6 +49,24 @@ pub(crate) fn watched<T: Send + 'static>(
     progress: Option<&Bound<'_, PyAny>>,
     compute: impl FnOnce(&Watch) -> T + Send + 'static,
 ) -> PyResult<T> {
+    run(py, progress, false, compute)
+}
+
+/// The same of a computation that calls Python: an interruption is raised once it has ended, since no thread may call
+/// an interpreter that is shut down.
+pub(crate) fn awaited<T: Send + 'static>(
+    py: Python<'_>,
+    compute: impl FnOnce(&Watch) -> T + Send + 'static,
+) -> PyResult<T> {
+    run(py, None, true, compute)
+}
+
+fn run<T: Send + 'static>(
+    py: Python<'_>,
+    progress: Option<&Bound<'_, PyAny>>,
+    is_awaited: bool,
+    compute: impl FnOnce(&Watch) -> T + Send + 'static,
+) -> PyResult<T> {
     let (send, mut stages) = channel();
     let left = Arc::new(AtomicBool::new(false));
     let watch = Watch {
@@ -69,6 +87,9 @@ pub(crate) fn watched<T: Send + 'static>(
         };
         if let Err(error) = heard.and_then(|()| py.check_signals()) {
             left.store(true, Ordering::Relaxed);
+            if is_awaited {
+                let _ = py.detach(|| worker.join());
+            }
             return Err(error);
         }
     }

@@ -8,7 +8,6 @@ import sys
 import time
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import appell
@@ -60,7 +59,10 @@ def test_parameters_are_estimated(rig):
 def test_recordings_are_described(rig):
     recordings = appell.Recordings(rig)
     assert recordings.runs == ["run1.csv", "run2.csv", "run3.csv"]
-    assert recordings.channels
+    run = recordings["run1.csv"]
+    assert set(run) == {"t", *recordings.channels} and all(len(column) == len(run["t"]) for column in run.values())
+    with pytest.raises(KeyError, match="there is no run `run9`"):
+        recordings["run9"]
     with pytest.raises(appell.RequestError, match="there is no folder or file"):
         appell.Recordings(rig / "missing")
     with pytest.raises(ValueError, match="there is no column `nothing`"):

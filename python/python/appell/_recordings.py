@@ -8,6 +8,8 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from . import _appell
 from ._model import Model
 from ._notebook import Page, Picture, Progress, framed, reporter
@@ -36,6 +38,14 @@ class Recordings(_appell.DataSet):
     def channels(self) -> list[str]:
         """Names of the columns."""
         return [channel["channel"] for channel in self.told["channels"]]
+
+    def __getitem__(self, run: str) -> dict[str, np.ndarray]:
+        """The columns of a run in SI, with the times `t` in s."""
+        found = self._run(run)
+        if found is None:
+            raise KeyError(f"there is no run `{run}`; there are {', '.join(self.runs)}")
+        times, columns = found
+        return {"t": times, **dict(zip(self.channels, columns, strict=True))}
 
     def __repr__(self) -> str:
         return f"<recordings {', '.join(self.runs)}: {', '.join(self.channels)}>"
@@ -134,7 +144,7 @@ class Diagnosis:
         return framed(self._native.page(), 640)
 
     def __repr__(self) -> str:
-        return f"<{self.sentence}>"
+        return self.sentence
 
 
 def identify(

@@ -42,7 +42,7 @@ class Derivation(Page):
     """Equations, typeset in a notebook; `.latex` and `.text` are the same for documents and terminals."""
 
     def __init__(self, model: Model, stage: str):
-        super().__init__(model._derivation(stage, "html"), 560)
+        super().__init__(model._derivation(stage, "html"), 900)
         self._model, self._stage = model, stage
 
     @property

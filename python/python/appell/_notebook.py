@@ -14,9 +14,16 @@ Progress = Callable[[str], Any]
 
 
 def framed(page: str, height: int = 480) -> str:
-    """A page with scripts and styles of its own, in a frame of a notebook."""
+    """A page in a frame of a notebook. A page that moves has the height that is given; one to read is as tall as what
+    it holds, up to that height."""
+    if "<script" in page:
+        # Scripts have no access to the notebook around them.
+        kind = 'sandbox="allow-scripts"'
+    else:
+        tall = f"Math.min({height}, this.contentDocument.body.offsetHeight + 48)"
+        kind = f"""sandbox="allow-same-origin" onload="this.style.height = {tall} + 'px'\""""
     return (
-        f'<iframe srcdoc="{html.escape(page, quote=True)}" sandbox="allow-scripts" '
+        f'<iframe srcdoc="{html.escape(page, quote=True)}" {kind} '
         f'style="width:100%;height:{height}px;border:0"></iframe>'
     )
 
@@ -85,7 +92,7 @@ class Reporter:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         if self._handle is not None:
-            line = f"{time.monotonic() - self._start:.1f} s"
+            line = f"done in {time.monotonic() - self._start:.1f} s"
             self._handle.update({"text/plain": line}, raw=True)
         elif self._shown:
             sys.stderr.write("\r\x1b[K")

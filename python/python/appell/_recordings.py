@@ -80,10 +80,10 @@ class Identification:
     @property
     def page(self) -> Page:
         """The report."""
-        return Page(self._native.page(), 640)
+        return Page(self._native.page(), 1000)
 
     def _repr_html_(self) -> str:
-        return framed(self._native.page(), 640)
+        return framed(self._native.page(), 1000)
 
     def __repr__(self) -> str:
         return self._native.text()
@@ -118,7 +118,7 @@ class Diagnosis:
     @property
     def page(self) -> Page:
         """The report."""
-        return Page(self._native.page(), 640)
+        return Page(self._native.page(), 1000)
 
     @property
     def experiment(self) -> str | None:
@@ -141,7 +141,7 @@ class Diagnosis:
         path.write_text(text, encoding="utf-8")
 
     def _repr_html_(self) -> str:
-        return framed(self._native.page(), 640)
+        return framed(self._native.page(), 1000)
 
     def __repr__(self) -> str:
         return self.sentence

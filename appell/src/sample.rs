@@ -16,8 +16,8 @@ const ROWS: u32 = 800;
 /// Standard deviation of the encoder's noise in m.
 const NOISE: f64 = 1e-3;
 /// Spec and description as their owner has them.
-const SPEC: &str = include_str!("../../docs/examples/rig/my_rig.toml");
-const DESCRIPTION: &str = include_str!("../../docs/examples/rig/recording.toml");
+const SPEC: &str = include_str!("../rig/my_rig.toml");
+const DESCRIPTION: &str = include_str!("../rig/recording.toml");
 /// What nobody told the owner: dry friction, and a rail with a grain.
 const HIDDEN: &str = r#"
 [loads.rubbing]

@@ -16,7 +16,7 @@ use crate::output::shell;
 use crate::{engine, output, progress, summary};
 
 /// The lane change of the paper at 5 m/s.
-const LANE_CHANGE: &str = include_str!("../../../docs/examples/feedback/lane_change_5_m_s.toml");
+const LANE_CHANGE: &str = include_str!("../../feedback/lane_change_5_m_s.toml");
 
 /// Derives the unicycle, lets it change lanes under feedback, and finds what a rig has that its spec lacks.
 ///

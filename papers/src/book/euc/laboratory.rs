@@ -10,7 +10,7 @@ use crate::book::{computation, failed, replaced};
 use appell::Error;
 
 /// The skeleton file of the examples.
-pub(super) const SKELETON: &str = include_str!("../../../../docs/examples/euc/skeleton.toml");
+pub(super) const SKELETON: &str = include_str!("../../../euc/skeleton.toml");
 /// The rider's angle about the pedals, as in the skeleton, and about the wheel centre, as in (3).
 const SEEN_FROM: [&str; 2] = ["lean = [\"A\", \"G\"] }", "lean = [\"C\", \"G\"] }"];
 

@@ -71,6 +71,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-runtime",
         ],
     ),
+    ("python", &["appell", "appell-report", "appell-runtime"]),
     (
         "papers",
         &[
@@ -109,7 +110,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 12] = [
+const NAME_NO_MECHANISM: [&str; 13] = [
     "model_spec",
     "codegen",
     "runtime",
@@ -122,6 +123,7 @@ const NAME_NO_MECHANISM: [&str; 12] = [
     "appell",
     "lsp",
     "watch",
+    "python/src",
 ];
 
 fn read(path: &Path) -> String {

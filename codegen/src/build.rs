@@ -26,6 +26,7 @@ use std::path::{Path, PathBuf};
 use appell_spec::{Report, Severity};
 use thiserror::Error;
 
+use crate::c;
 use crate::compile::{Derived, audited, report};
 use crate::emit::{self, Emitted, Options, emit};
 use crate::mechanics::assemble;
@@ -44,6 +45,7 @@ pub struct Build {
     out_dir: Option<PathBuf>,
     options: Options,
     adjoints: bool,
+    c: Option<c::Options>,
 }
 
 /// A mechanism that was compiled.
@@ -143,6 +145,13 @@ impl Build {
         self
     }
 
+    /// Writes the equations as C99 too: `NAME.h` and `NAME.c`, where `NAME` is that of the mechanism in C.
+    #[must_use]
+    pub fn c(mut self, options: c::Options) -> Self {
+        self.c = Some(options);
+        self
+    }
+
     /// Compiles every spec to `NAME.rs` and `NAME.md`. All wrong specs are reported together.
     ///
     /// With the environment variable `GENERATED_DIR` a copy goes to that folder, for reading.
@@ -192,6 +201,11 @@ impl Build {
                 let name = &one.program.info.name;
                 write(&folder.join(format!("{name}.rs")), &one.emitted.source)?;
                 write(&folder.join(format!("{name}.md")), &one.emitted.docs)?;
+                if let Some(options) = &self.c {
+                    let c = c::emit(&one.program, options);
+                    write(&folder.join(format!("{}.h", c.name)), &c.header)?;
+                    write(&folder.join(format!("{}.c", c.name)), &c.source)?;
+                }
             }
         }
         Ok(compiled)

@@ -36,6 +36,17 @@ pub struct Options {
     pub integrator: bool,
 }
 
+impl Default for Options {
+    /// The functions that emitted Rust has, in double precision.
+    fn default() -> Self {
+        Self {
+            functions: FunctionKind::STANDARD.to_vec(),
+            real: Real::default(),
+            integrator: false,
+        }
+    }
+}
+
 /// Emitted text.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Emitted {

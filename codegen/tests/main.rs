@@ -1,5 +1,6 @@
 //! The derivation and what is made of it, from the outside.
 
+mod build_script;
 mod c_code;
 mod emit_support;
 #[cfg(feature = "jit")]

@@ -494,9 +494,7 @@ impl Model {
     }
 }
 
-fn optional<const R: usize>(
-    out: Option<[Bound<'_, PyAny>; R]>,
-) -> [Option<Bound<'_, PyAny>>; R] {
+fn optional<const R: usize>(out: Option<[Bound<'_, PyAny>; R]>) -> [Option<Bound<'_, PyAny>>; R] {
     match out {
         Some(all) => all.map(Some),
         None => std::array::from_fn(|_| None),

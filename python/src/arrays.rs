@@ -4,7 +4,7 @@ use appell::{EquationsOfMotion, ModelInputs};
 use appell_runtime::inputs::ZeroInputs;
 use appell_runtime::model::At;
 use numpy::{PyArrayDyn, PyArrayMethods, PyReadonlyArrayDyn, PyUntypedArrayMethods};
-use pyo3::exceptions::PyValueError;
+use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -107,92 +107,108 @@ impl<'a> Column<'a> {
     }
 }
 
-/// Evaluates a function at one place or at each of N. `shapes` are the shapes of its results at one place; the results
-/// are written to `out` where that is given.
-pub(crate) fn evaluate<'py, const R: usize>(
-    py: Python<'py>,
-    (model, defaults): (&dyn EquationsOfMotion, &Defaults),
-    places: &Places<'_, 'py>,
-    shapes: [&[usize]; R],
-    out: [Option<Bound<'py, PyAny>>; R],
-    function: impl Fn(At<'_>, [&mut [f64]; R]) + Send,
-) -> PyResult<[Array<'py>; R]> {
-    let info = model.info();
-    let (m, declared) = (info.input_len(), info.declared_inputs);
-    let rows = |value: Option<&Bound<'py, PyAny>>, widths: &[usize], name| {
-        let rows = value.map(|value| Rows::new(value, widths, name));
-        rows.transpose()
-    };
-    let x = rows(places.x, &[info.state_len()], "x")?;
-    let u = rows(places.u, &[declared, m][..=usize::from(m != declared)], "u")?;
-    let p = rows(places.p, &[info.parameter_len()], "p")?;
-    let times = places.t.map(contiguous).transpose()?;
-    let t_count = times
-        .as_ref()
-        .filter(|t| t.ndim() > 0)
-        .map(PyUntypedArrayMethods::len);
-    let counts = [&x, &u, &p].map(|rows| rows.as_ref().and_then(|rows| rows.count));
-    let count = common(
-        ["x", "u", "p", "t"]
-            .into_iter()
-            .zip(counts.into_iter().chain([t_count])),
-    )?;
+/// A call of a function of the equations.
+pub(crate) struct Call<'a, 'py> {
+    pub(crate) py: Python<'py>,
+    pub(crate) model: &'a dyn EquationsOfMotion,
+    pub(crate) defaults: &'a Defaults,
+    pub(crate) places: Places<'a, 'py>,
+    /// Arrays that take the results.
+    pub(crate) out: Option<Vec<Bound<'py, PyAny>>>,
+}
 
-    let arrays = results(py, count, shapes, out)?;
-    let mut writers = Vec::with_capacity(R);
-    for array in &arrays {
-        let writer = array.try_readwrite();
-        writers.push(writer.map_err(|error| PyValueError::new_err(format!("out: {error}")))?);
-    }
-    let mut slices = Vec::with_capacity(R);
-    for writer in &mut writers {
-        slices.push(writer.as_slice_mut()?);
-    }
-    let mut slices = slices.into_iter();
-    let mut written: [&mut [f64]; R] = std::array::from_fn(|_| slices.next().unwrap_or_default());
+impl<'py> Call<'_, 'py> {
+    /// Evaluates a function at one place or at each of N. `shapes` are the shapes of its results at one place.
+    pub(crate) fn evaluate<const R: usize>(
+        self,
+        shapes: [&[usize]; R],
+        function: impl Fn(At<'_>, [&mut [f64]; R]) + Send,
+    ) -> PyResult<Vec<Array<'py>>> {
+        let Self {
+            py,
+            model,
+            defaults,
+            places,
+            out,
+        } = self;
+        let info = model.info();
+        let (m, declared) = (info.input_len(), info.declared_inputs);
+        let rows = |value: Option<&Bound<'py, PyAny>>, widths: &[usize], name| {
+            let rows = value.map(|value| Rows::new(value, widths, name));
+            rows.transpose()
+        };
+        let x = rows(places.x, &[info.state_len()], "x")?;
+        let u = rows(places.u, &[declared, m][..=usize::from(m != declared)], "u")?;
+        let p = rows(places.p, &[info.parameter_len()], "p")?;
+        let times = places.t.map(contiguous).transpose()?;
+        let t_count = times
+            .as_ref()
+            .filter(|t| t.ndim() > 0)
+            .map(PyUntypedArrayMethods::len);
+        let counts = [&x, &u, &p].map(|rows| rows.as_ref().and_then(|rows| rows.count));
+        let count = common(
+            ["x", "u", "p", "t"]
+                .into_iter()
+                .zip(counts.into_iter().chain([t_count])),
+        )?;
 
-    let x = Column::of(x.as_ref(), &defaults.x)?;
-    let u = Column::of(u.as_ref(), &defaults.u)?;
-    let p = Column::of(p.as_ref(), &defaults.p)?;
-    let times = times.as_ref().map(PyArrayMethods::readonly);
-    let t: &[f64] = match &times {
-        Some(times) => times.as_slice()?,
-        None => &[0.0],
-    };
-    let t_step = usize::from(t_count.is_some());
-    let sizes = shapes.map(|shape| shape.iter().product::<usize>());
-    let mut compute = move || {
-        // Signals are checked when the model is made.
-        let signals = (u.width < m).then(|| ModelInputs::new(info, &ZeroInputs).ok());
-        let mut all = vec![0.0; m];
-        for row in 0..count.unwrap_or(1) {
-            let (t, x, mut inputs) = (t[row * t_step], x.row(row), u.row(row));
-            if let Some(Some(signals)) = &signals {
-                signals.fill(t, x, &mut all);
-                all[..declared].copy_from_slice(inputs);
-                inputs = &all;
-            }
-            let at = At {
-                t,
-                x,
-                u: inputs,
-                p: p.row(row),
-            };
-            let mut sizes = sizes.into_iter();
-            let results = written.each_mut().map(|numbers| {
-                let size = sizes.next().unwrap_or(0);
-                &mut numbers[row * size..][..size]
-            });
-            function(at, results);
+        let arrays = results(py, count, &shapes, out)?;
+        let mut writers = Vec::with_capacity(R);
+        for array in &arrays {
+            let writer = array.try_readwrite();
+            writers.push(writer.map_err(|error| PyValueError::new_err(format!("out: {error}")))?);
         }
-    };
-    match count {
-        Some(_) => py.detach(compute),
-        // Shorter than it takes to leave the lock and to get it back.
-        None => compute(),
+        let mut slices = Vec::with_capacity(R);
+        for writer in &mut writers {
+            slices.push(writer.as_slice_mut()?);
+        }
+        let mut slices = slices.into_iter();
+        let mut written: [&mut [f64]; R] =
+            std::array::from_fn(|_| slices.next().unwrap_or_default());
+
+        let x = Column::of(x.as_ref(), &defaults.x)?;
+        let u = Column::of(u.as_ref(), &defaults.u)?;
+        let p = Column::of(p.as_ref(), &defaults.p)?;
+        let times = times.as_ref().map(PyArrayMethods::readonly);
+        let t: &[f64] = match &times {
+            Some(times) => times.as_slice()?,
+            None => &[0.0],
+        };
+        let t_step = usize::from(t_count.is_some());
+        let sizes = shapes.map(|shape| shape.iter().product::<usize>());
+        let mut compute = move || {
+            // Signals are checked when the model is made.
+            let signals = (u.width < m).then(|| ModelInputs::new(info, &ZeroInputs).ok());
+            let mut all = vec![0.0; m];
+            for row in 0..count.unwrap_or(1) {
+                let (t, x, mut inputs) = (t[row * t_step], x.row(row), u.row(row));
+                if let Some(Some(signals)) = &signals {
+                    signals.fill(t, x, &mut all);
+                    all[..declared].copy_from_slice(inputs);
+                    inputs = &all;
+                }
+                let at = At {
+                    t,
+                    x,
+                    u: inputs,
+                    p: p.row(row),
+                };
+                let mut sizes = sizes.into_iter();
+                let results = written.each_mut().map(|numbers| {
+                    let size = sizes.next().unwrap_or(0);
+                    &mut numbers[row * size..][..size]
+                });
+                function(at, results);
+            }
+        };
+        match count {
+            Some(_) => py.detach(compute),
+            // Shorter than it takes to leave the lock and to get it back.
+            None => compute(),
+        }
+        drop(writers);
+        Ok(arrays)
     }
-    drop(writers);
-    Ok(arrays)
 }
 
 /// The number of rows that all have that have rows.
@@ -212,31 +228,33 @@ fn common(counts: impl Iterator<Item = (&'static str, Option<usize>)>) -> PyResu
 }
 
 /// New arrays, or those that are given.
-fn results<'py, const R: usize>(
+fn results<'py>(
     py: Python<'py>,
     count: Option<usize>,
-    shapes: [&[usize]; R],
-    out: [Option<Bound<'py, PyAny>>; R],
-) -> PyResult<[Array<'py>; R]> {
-    let mut all = Vec::with_capacity(R);
-    for (shape, out) in shapes.into_iter().zip(out) {
-        let shape: Vec<usize> = count.into_iter().chain(shape.iter().copied()).collect();
-        let array = match out {
-            None => PyArrayDyn::zeros(py, shape, false),
-            Some(out) => {
-                let array = out.cast_into::<PyArrayDyn<f64>>()?;
-                if array.shape() != shape || !array.is_c_contiguous() {
-                    let message = format!(
-                        "out has the shape {:?}; it needs {shape:?}, contiguous",
-                        array.shape()
-                    );
-                    return Err(PyValueError::new_err(message));
-                }
-                array
-            }
-        };
-        all.push(array);
+    shapes: &[&[usize]],
+    out: Option<Vec<Bound<'py, PyAny>>>,
+) -> PyResult<Vec<Array<'py>>> {
+    let shapes = shapes
+        .iter()
+        .map(|shape| count.into_iter().chain(shape.iter().copied()).collect());
+    let shapes: Vec<Vec<usize>> = shapes.collect();
+    let Some(out) = out else {
+        let zeros = |shape| PyArrayDyn::zeros(py, shape, false);
+        return Ok(shapes.into_iter().map(zeros).collect());
+    };
+    if out.len() != shapes.len() {
+        let message = format!("out needs {} arrays, not {}", shapes.len(), out.len());
+        return Err(PyValueError::new_err(message));
     }
-    all.try_into()
-        .map_err(|_| PyValueError::new_err("out needs one array for each result"))
+    let taken = out.into_iter().zip(shapes).map(|(out, shape)| {
+        let array = out.cast_into::<PyArrayDyn<f64>>();
+        let array = array.map_err(|_| PyTypeError::new_err("out needs an array of doubles"))?;
+        if array.shape() != shape || !array.is_c_contiguous() {
+            let found = array.shape();
+            let message = format!("out has the shape {found:?}; it needs {shape:?}, contiguous");
+            return Err(PyValueError::new_err(message));
+        }
+        Ok(array)
+    });
+    taken.collect()
 }

@@ -6,12 +6,13 @@ use appell::control::Request;
 use appell::derivation::{Format, Stage};
 use appell::setup::Assignment;
 use appell::steady::Question;
-use appell::{EquationsOfMotion, ModelInputs, Quantity, Source};
+use appell::{ModelInputs, Quantity, Source};
 use appell_runtime::inputs::ZeroInputs;
 use numpy::{PyArray1, PyArrayDyn};
+use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
-use crate::arrays::{Defaults, Places, evaluate};
+use crate::arrays::{Call, Defaults, Places};
 use crate::errors::Raise;
 use crate::watched::watched;
 
@@ -50,23 +51,6 @@ fn told(quantity: &Quantity) -> Told {
         [&quantity.name, &quantity.about, &quantity.unit].map(ToString::to_string);
     let [low, high] = quantity.range;
     (name, about, unit, quantity.scale, quantity.value, low, high)
-}
-
-impl Model {
-    fn equations(&self) -> (&dyn EquationsOfMotion, &Defaults) {
-        (self.inner.equations(), &self.defaults)
-    }
-
-    fn sizes(&self) -> [usize; 5] {
-        let info = self.inner.info();
-        [
-            info.state_len(),
-            info.input_len(),
-            info.parameter_len(),
-            info.speeds,
-            info.output_len(),
-        ]
-    }
 }
 
 #[pymethods]
@@ -146,221 +130,61 @@ impl Model {
         &self.inner.source().text
     }
 
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn rates<'py>(
+    /// The results of a function at one place or at N; `out` takes them where it is given.
+    #[expect(clippy::too_many_arguments, reason = "called from Python alone")]
+    fn _evaluate<'py>(
         &self,
         py: Python<'py>,
+        function: &str,
         x: Any<'_, 'py>,
         u: Any<'_, 'py>,
         p: Any<'_, 'py>,
         t: Any<'_, 'py>,
-        out: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Array<'py>> {
+        out: Option<Vec<Bound<'py, PyAny>>>,
+    ) -> PyResult<Vec<Array<'py>>> {
         let model = self.inner.equations();
-        let [n, ..] = self.sizes();
-        let places = Places { x, u, p, t };
-        let [rates] = evaluate(
+        let info = model.info();
+        let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
+        let (s, l, r) = (info.speeds, info.output_len(), info.reactions.len());
+        let call = Call {
             py,
-            self.equations(),
-            &places,
-            [&[n]],
-            [out],
-            |at, [rates]| {
-                model.rates(at, rates);
-            },
-        )?;
-        Ok(rates)
-    }
-
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn _jacobians<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-        out: Option<[Bound<'py, PyAny>; 3]>,
-    ) -> PyResult<[Array<'py>; 3]> {
-        let model = self.inner.equations();
-        let [n, m, ..] = self.sizes();
-        let places = Places { x, u, p, t };
-        let shapes: [&[usize]; 3] = [&[n], &[n, n], &[n, m]];
-        evaluate(
-            py,
-            self.equations(),
-            &places,
-            shapes,
-            optional(out),
-            |at, [rates, a, b]| {
+            model,
+            defaults: &self.defaults,
+            places: Places { x, u, p, t },
+            out,
+        };
+        match function {
+            "rates" => call.evaluate([&[n]], |at, [rates]| model.rates(at, rates)),
+            "jacobians" => call.evaluate([&[n], &[n, n], &[n, m]], |at, [rates, a, b]| {
                 model.jacobians(at, rates, a, b);
-            },
-        )
-    }
-
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn parameter_jacobian<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-        out: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Array<'py>> {
-        let model = self.inner.equations();
-        let [n, _, k, ..] = self.sizes();
-        let places = Places { x, u, p, t };
-        let [jacobian] = evaluate(
-            py,
-            self.equations(),
-            &places,
-            [&[n, k]],
-            [out],
-            |at, [by_p]| {
+            }),
+            "parameter_jacobian" => call.evaluate([&[n, k]], |at, [by_p]| {
                 model.parameter_jacobian(at, by_p);
-            },
-        )?;
-        Ok(jacobian)
-    }
-
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn _appell<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-        out: Option<[Bound<'py, PyAny>; 3]>,
-    ) -> PyResult<[Array<'py>; 3]> {
-        let model = self.inner.equations();
-        let [_, _, _, s, _] = self.sizes();
-        let places = Places { x, u, p, t };
-        let shapes: [&[usize]; 3] = [&[s, s], &[s], &[s]];
-        evaluate(
-            py,
-            self.equations(),
-            &places,
-            shapes,
-            optional(out),
-            |at, [mass, bias, forces]| {
+            }),
+            "appell" => call.evaluate([&[s, s], &[s], &[s]], |at, [mass, bias, forces]| {
                 model.appell(at, mass, bias, forces);
-            },
-        )
-    }
-
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn outputs<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-        out: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Array<'py>> {
-        let model = self.inner.equations();
-        let [.., l] = self.sizes();
-        let places = Places { x, u, p, t };
-        let [outputs] = evaluate(
-            py,
-            self.equations(),
-            &places,
-            [&[l]],
-            [out],
-            |at, [outputs]| {
-                model.outputs(at, outputs);
-            },
-        )?;
-        Ok(outputs)
-    }
-
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn _output_jacobians<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-        out: Option<[Bound<'py, PyAny>; 3]>,
-    ) -> PyResult<[Array<'py>; 3]> {
-        let model = self.inner.equations();
-        let [n, m, _, _, l] = self.sizes();
-        let places = Places { x, u, p, t };
-        let shapes: [&[usize]; 3] = [&[l], &[l, n], &[l, m]];
-        evaluate(
-            py,
-            self.equations(),
-            &places,
-            shapes,
-            optional(out),
-            |at, [outputs, c, d]| {
+            }),
+            "energies" => call.evaluate(
+                [&[], &[], &[], &[]],
+                |at, [kinetic, potential, power, acceleration]| {
+                    let energies = model.energies(at);
+                    kinetic[0] = energies.kinetic;
+                    potential[0] = energies.potential;
+                    power[0] = energies.power;
+                    acceleration[0] = energies.acceleration;
+                },
+            ),
+            "outputs" => call.evaluate([&[l]], |at, [outputs]| model.outputs(at, outputs)),
+            "output_jacobians" => call.evaluate([&[l], &[l, n], &[l, m]], |at, [outputs, c, d]| {
                 model.output_jacobians(at, outputs, c, d);
-            },
-        )
-    }
-
-    /// Kinetic, potential, power, acceleration energy.
-    #[pyo3(signature = (x = None, u = None, p = None, t = None))]
-    fn _energies<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-    ) -> PyResult<[Array<'py>; 4]> {
-        let model = self.inner.equations();
-        let places = Places { x, u, p, t };
-        let shapes: [&[usize]; 4] = [&[]; 4];
-        evaluate(
-            py,
-            self.equations(),
-            &places,
-            shapes,
-            optional(None),
-            |at, results| {
-                let energies = model.energies(at);
-                let values = [
-                    energies.kinetic,
-                    energies.potential,
-                    energies.power,
-                    energies.acceleration,
-                ];
-                for (result, value) in results.into_iter().zip(values) {
-                    result[0] = value;
-                }
-            },
-        )
-    }
-
-    /// Forces of the constraints in the ground, three components each.
-    #[pyo3(signature = (x = None, u = None, p = None, t = None, *, out = None))]
-    fn constraint_forces<'py>(
-        &self,
-        py: Python<'py>,
-        x: Any<'_, 'py>,
-        u: Any<'_, 'py>,
-        p: Any<'_, 'py>,
-        t: Any<'_, 'py>,
-        out: Option<Bound<'py, PyAny>>,
-    ) -> PyResult<Array<'py>> {
-        let model = self.inner.equations();
-        let places = Places { x, u, p, t };
-        let shape = [model.info().reactions.len(), 3];
-        let [forces] = evaluate(
-            py,
-            self.equations(),
-            &places,
-            [&shape],
-            [out],
-            |at, [forces]| {
+            }),
+            "constraint_forces" => call.evaluate([&[r, 3]], |at, [forces]| {
                 model.constraint_forces(at, forces);
-            },
-        )?;
-        Ok(forces)
+            }),
+            other => Err(PyValueError::new_err(format!(
+                "there is no function `{other}`"
+            ))),
+        }
     }
 
     /// A state of the spec with other values, as numbers in SI.
@@ -491,12 +315,5 @@ impl Model {
     ) -> PyResult<String> {
         let model = Arc::clone(&self.inner);
         watched(py, None, move |_| compute(model.source()))?.raise(py)
-    }
-}
-
-fn optional<const R: usize>(out: Option<[Bound<'_, PyAny>; R]>) -> [Option<Bound<'_, PyAny>>; R] {
-    match out {
-        Some(all) => all.map(Some),
-        None => std::array::from_fn(|_| None),
     }
 }

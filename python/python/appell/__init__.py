@@ -19,14 +19,14 @@ from ._model import Derivation, Model, Quantity
 from ._motion import Motion
 from ._notebook import Page, Picture
 from ._recordings import Diagnosis, Identification, Recordings, diagnose, identify, sample_rig
-from ._results import Appell, Design, Energies, Jacobians, Linear, SteadyMotion
+from ._results import Appell, Design, Energies, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._values import Vector, labelled
 
 __version__ = _version("appell")
 
 __all__ = [
     "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "Energies", "Error",
-    "Identification", "Jacobians", "Linear", "Model", "Motion", "Page", "Picture", "Quantity", "Recordings",
+    "Identification", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
     "RequestError", "SpecError", "SteadyMotion", "Vector", "diagnose", "identify", "labelled", "load", "sample_rig",
     "shipped",
 ]  # fmt: skip

@@ -15,7 +15,7 @@ import numpy as np
 from . import _appell
 from ._motion import Motion
 from ._notebook import Page, Picture
-from ._results import Appell, Design, Energies, Jacobians, Linear, SteadyMotion
+from ._results import Appell, Design, Energies, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._values import Vector, labelled, text, texts
 
 Values = Mapping[str, Any]
@@ -176,37 +176,58 @@ class Model(_appell.Model):
 
     # Equations
 
-    def jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Any = None) -> Jacobians:
-        """ẋ, A = ∂ẋ/∂x and B = ∂ẋ/∂u."""
-        return Jacobians(*self._jacobians(x, u, p, t, out=out))
+    def rates(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+        """ẋ, (n,) or (N, n)."""
+        return self._evaluate("rates", x, u, p, t, None if out is None else [out])[0]
 
-    def appell(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Any = None) -> Appell:
+    def jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> Jacobians:
+        """ẋ, A = ∂ẋ/∂x and B = ∂ẋ/∂u."""
+        return Jacobians(*self._evaluate("jacobians", x, u, p, t, None if out is None else list(out)))
+
+    def parameter_jacobian(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+        """P = ∂ẋ/∂p, (n, k) or (N, n, k)."""
+        return self._evaluate("parameter_jacobian", x, u, p, t, None if out is None else [out])[0]
+
+    def appell(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> Appell:
         """Appell's equations M ω̇ + b = Π."""
-        return Appell(*self._appell(x, u, p, t, out=out))
+        return Appell(*self._evaluate("appell", x, u, p, t, None if out is None else list(out)))
 
     def mass_matrix(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
-        """M of Appell's equations M ω̇ + b = Π."""
-        return self._appell(x, u, p, t)[0]
+        """M of Appell's equations M ω̇ + b = Π, (s, s) or (N, s, s)."""
+        return self._evaluate("appell", x, u, p, t, None)[0]
 
     def bias(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
-        """b of Appell's equations M ω̇ + b = Π."""
-        return self._appell(x, u, p, t)[1]
+        """b of Appell's equations M ω̇ + b = Π, (s,) or (N, s)."""
+        return self._evaluate("appell", x, u, p, t, None)[1]
 
     def forces(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
-        """The pseudo-forces Π of Appell's equations M ω̇ + b = Π."""
-        return self._appell(x, u, p, t)[2]
+        """The pseudo-forces Π of Appell's equations M ω̇ + b = Π, (s,) or (N, s)."""
+        return self._evaluate("appell", x, u, p, t, None)[2]
 
     def energies(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Energies:
-        """Kinetic, potential and acceleration energy, and the power of what has no potential."""
-        return Energies(*(value if value.ndim else value.item() for value in self._energies(x, u, p, t)))
+        """Kinetic, potential and acceleration energy, and the power of what has no potential; numbers or (N,)."""
+        values = self._evaluate("energies", x, u, p, t, None)
+        return Energies(*(value if value.ndim else value.item() for value in values))
+
+    def outputs(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+        """The outputs y of the spec, (l,) or (N, l); names: `output_names`."""
+        return self._evaluate("outputs", x, u, p, t, None if out is None else [out])[0]
+
+    def output_jacobians(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> OutputJacobians:
+        """y, C = ∂y/∂x and D = ∂y/∂u."""
+        return OutputJacobians(*self._evaluate("output_jacobians", x, u, p, t, None if out is None else list(out)))
+
+    def constraint_forces(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+        """Forces of the constraints in the ground in N, (r, 3) or (N, r, 3); names: `reactions`."""
+        return self._evaluate("constraint_forces", x, u, p, t, None if out is None else [out])[0]
 
     def linearise(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Linear:
         """The linear equations about a place, or about a `SteadyMotion`."""
         if isinstance(x, SteadyMotion):
             x, u, p = x.x, x.u if u is None else u, x.p if p is None else p
         count = len(self.inputs)
-        _, a, b = self._jacobians(x, u, p, t)
-        _, c, d = self._output_jacobians(x, u, p, t)
+        _, a, b = self.jacobians(x, u, p, t)
+        _, c, d = self.output_jacobians(x, u, p, t)
         return Linear(a, b[..., :count], c, d[..., :count], self.states, self.inputs, self.output_names)
 
     # Motions

@@ -18,6 +18,14 @@ class Jacobians(NamedTuple):
     B: np.ndarray
 
 
+class OutputJacobians(NamedTuple):
+    """y = g(x, u) and its derivatives at one place, or at N: (l,), (l, n), (l, m)."""
+
+    outputs: np.ndarray
+    C: np.ndarray
+    D: np.ndarray
+
+
 class Appell(NamedTuple):
     """Appell's equations M ω̇ + b = Π: (s, s), (s,), (s,), or N of them."""
 

@@ -4,7 +4,8 @@ use std::borrow::Cow;
 
 use appell_runtime::model::ModelInfo;
 use appell_spec::expr::Expr;
-use appell_spec::mechanism::{CoordinateId, InputId, ParameterId, SpeedId};
+pub use appell_spec::mechanism::InputId;
+use appell_spec::mechanism::{CoordinateId, ParameterId, SpeedId};
 pub use appell_spec::units::Unit;
 use appell_spec::units::{self, UnitError};
 use appell_spec::{Mechanism, Scope, Snippet, did_you_mean, formula};

@@ -57,8 +57,8 @@ fn contiguous<'py>(value: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
     {
         return Ok(array.clone());
     }
-    let numpy = value.py().import("numpy")?;
-    let made = numpy.call_method1("ascontiguousarray", (value, "float64"))?;
+    let made = value.py().import("appell._values")?;
+    let made = made.getattr("contiguous")?.call1((value,))?;
     Ok(made.cast_into::<PyArrayDyn<f64>>()?)
 }
 
@@ -227,6 +227,21 @@ fn common(counts: impl Iterator<Item = (&'static str, Option<usize>)>) -> PyResu
     Ok(first.map(|(_, count)| count))
 }
 
+/// A new array.
+fn zeros(py: Python<'_>, shape: Vec<usize>) -> PyResult<Array<'_>> {
+    /// More numbers may be more than there is memory, which `numpy` tells.
+    const MANY: usize = 1 << 24;
+    if shape
+        .iter()
+        .try_fold(1_usize, |all, &one| all.checked_mul(one))
+        .is_some_and(|all| all < MANY)
+    {
+        return Ok(PyArrayDyn::zeros(py, shape, false));
+    }
+    let made = py.import("numpy")?.call_method1("zeros", (shape,))?;
+    Ok(made.cast_into::<PyArrayDyn<f64>>()?)
+}
+
 /// New arrays, or those that are given.
 fn results<'py>(
     py: Python<'py>,
@@ -239,8 +254,7 @@ fn results<'py>(
         .map(|shape| count.into_iter().chain(shape.iter().copied()).collect());
     let shapes: Vec<Vec<usize>> = shapes.collect();
     let Some(out) = out else {
-        let zeros = |shape| PyArrayDyn::zeros(py, shape, false);
-        return Ok(shapes.into_iter().map(zeros).collect());
+        return shapes.into_iter().map(|shape| zeros(py, shape)).collect();
     };
     if out.len() != shapes.len() {
         let message = format!("out needs {} arrays, not {}", shapes.len(), out.len());
@@ -248,10 +262,14 @@ fn results<'py>(
     }
     let taken = out.into_iter().zip(shapes).map(|(out, shape)| {
         let array = out.cast_into::<PyArrayDyn<f64>>();
-        let array = array.map_err(|_| PyTypeError::new_err("out needs an array of doubles"))?;
-        if array.shape() != shape || !array.is_c_contiguous() {
+        let array = array.map_err(|_| PyTypeError::new_err("out needs an array of float64"))?;
+        if array.shape() != shape {
             let found = array.shape();
-            let message = format!("out has the shape {found:?}; it needs {shape:?}, contiguous");
+            let message = format!("out has the shape {found:?}; it needs {shape:?}");
+            return Err(PyValueError::new_err(message));
+        }
+        if !array.is_c_contiguous() {
+            let message = "out is not contiguous row by row";
             return Err(PyValueError::new_err(message));
         }
         Ok(array)

@@ -6,7 +6,7 @@ use appell::control::Request;
 use appell::derivation::{Format, Stage};
 use appell::setup::Assignment;
 use appell::steady::Question;
-use appell::{ModelInputs, Quantity, Source};
+use appell::{Field, ModelInputs, Quantity, Source};
 use appell_runtime::inputs::ZeroInputs;
 use numpy::{PyArray1, PyArrayDyn};
 use pyo3::exceptions::PyValueError;
@@ -203,6 +203,16 @@ impl Model {
         let mut setup = self.inner.setup().raise(py)?;
         setup.set(&assignments(&values)).raise(py)?;
         Ok(PyArray1::from_vec(py, setup.parameters))
+    }
+
+    /// The value of an input in SI.
+    fn _input(&self, py: Python<'_>, name: &str, value: &str) -> PyResult<f64> {
+        let setup = self.inner.setup().raise(py)?;
+        let input = setup.input(Field::Input, name).raise(py)?;
+        let unit = &setup.mechanism.inputs[appell::setup::InputId::new(input)]
+            .label
+            .unit;
+        setup.value(Field::Input, name, value, unit).raise(py)
     }
 
     /// Steady motions as JSON.

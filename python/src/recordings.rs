@@ -118,6 +118,11 @@ impl DataSet {
                 "horizon is a positive number of seconds",
             ));
         }
+        if tolerance.is_some_and(|part| !(0.0..1.0).contains(&part)) {
+            return Err(PyValueError::new_err(
+                "tolerance is a part of one, such as 0.02",
+            ));
+        }
         let set = Arc::clone(&self.0);
         let before = against.map(|before| Arc::clone(&before.0));
         let gap = watched(py, progress, move |watch| {

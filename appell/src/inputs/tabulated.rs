@@ -15,6 +15,7 @@ use appell_spec::mechanism::InputId;
 use appell_spec::{Code, shown};
 
 use crate::setup::{Setup, unknown};
+use crate::source::Source;
 use crate::{Error, Field, files, recording};
 
 /// Inputs of a file.
@@ -34,14 +35,14 @@ pub struct Table {
 /// name of a run defines the names and units itself.
 pub fn read(
     path: &Path,
-    mechanism: &str,
+    name: &str,
     setup: &Setup<'_>,
     model: &dyn Model,
     until: f64,
 ) -> Result<Table, Error> {
     let file = path.to_string_lossy();
     let columns = match described(&file) {
-        Some((description, run)) => recorded(description, run, mechanism)?,
+        Some((description, run)) => recorded(description, run, name, setup.spec)?,
         None => tabulated(path, setup, model)?,
     };
     let [from, to] =
@@ -93,8 +94,14 @@ fn described(text: &str) -> Option<(&str, &str)> {
 }
 
 /// The inputs of a run of a data set.
-fn recorded(description: &str, run: &str, mechanism: &str) -> Result<Columns, Error> {
-    let mut set = recording::read(&[description.into()], Some(mechanism))?;
+fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Columns, Error> {
+    // The spec may be in no file.
+    let source = Source {
+        file: name.to_owned(),
+        text: spec.to_owned(),
+        shipped: None,
+    };
+    let mut set = recording::read_of(&source, &[description.into()])?;
     recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();

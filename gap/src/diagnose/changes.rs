@@ -5,8 +5,8 @@ use std::collections::BTreeMap;
 use appell_estimate::{Coordinate, Measured, Unknown};
 use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_parameters};
-use appell_spec::mechanism::ParameterId;
-use appell_spec::units::{self, Unit};
+use appell_spec::mechanism::{Parameter, ParameterId};
+use appell_spec::units;
 use toml_edit::{DocumentMut, Item};
 
 use super::bench::Bench;
@@ -166,10 +166,12 @@ fn items(bench: &Bench<'_>, fitted: &Fitted) -> Result<String, DiagnoseError> {
             let value = match part {
                 Part::Switch => 1.0,
                 Part::Size | Part::Shape | Part::Term(_) => {
-                    let unit = &bench.effects.mechanism.parameters[ParameterId::new(index)]
-                        .label
-                        .unit;
-                    rounded(fitted.fit.values[index], deviation(fitted, index), unit)
+                    let parameter = &bench.effects.mechanism.parameters[ParameterId::new(index)];
+                    rounded(
+                        fitted.fit.values[index],
+                        deviation(fitted, index),
+                        parameter,
+                    )
                 }
             };
             values.push((&parameter.name, value));
@@ -213,7 +215,7 @@ fn parameters(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
         }
         let unit = &parameter.label.unit;
         let value = match free {
-            Some(_) => rounded(fitted.fit.values[index], free, unit),
+            Some(_) => rounded(fitted.fit.values[index], free, parameter),
             None => rig.value,
         };
         told.push(Refitted {
@@ -243,10 +245,11 @@ fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     })
 }
 
-/// A value in SI with the digits that its standard deviation leaves in its unit, and two more.
-fn rounded(value: f64, deviation: Option<f64>, unit: &Unit) -> f64 {
+/// A value in SI with the digits that its standard deviation leaves in its unit, and two more; within the limits.
+fn rounded(value: f64, deviation: Option<f64>, parameter: &Parameter) -> f64 {
     /// Digits where nothing tells how well the value is known.
     const DIGITS: usize = 6;
+    let unit = &parameter.label.unit;
     let number = unit.from_si(value);
     let digits = deviation
         .map(|std| (value / std).abs())
@@ -259,5 +262,35 @@ fn rounded(value: f64, deviation: Option<f64>, unit: &Unit) -> f64 {
             digits + 2
         });
     let text = format!("{number:.digits$e}");
-    unit.read(&text).unwrap_or(value)
+    let number = unit.read(&text).unwrap_or(value);
+    let number = parameter.at_least.map_or(number, |limit| number.max(limit));
+    parameter.at_most.map_or(number, |limit| number.min(limit))
+}
+
+#[cfg(test)]
+mod tests {
+    use appell_spec::expr::Span;
+    use appell_spec::mechanism::Label;
+
+    use super::*;
+
+    #[test]
+    fn a_rounded_value_stays_within_its_limits() {
+        let parameter = Parameter {
+            label: Label {
+                name: "rate".to_owned(),
+                about: String::new(),
+                unit: units::parse("rad/s").expect("a unit"),
+                line: 1,
+                span: Span::default(),
+            },
+            value: 0.1,
+            at_least: Some(0.053_232),
+            at_most: Some(0.9994),
+        };
+        let rounded = |value| rounded(value, Some(0.05), &parameter);
+        assert!((rounded(0.5) - 0.5).abs() < 1e-12);
+        assert!(rounded(0.053_232) >= 0.053_232);
+        assert!(rounded(0.9994) <= 0.9994);
+    }
 }

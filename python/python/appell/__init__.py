@@ -11,10 +11,10 @@ Arrays are in SI. Texts such as `"5deg"` have their unit, or that of the spec.
 from __future__ import annotations
 
 from importlib.metadata import version as _version
-from pathlib import Path
+from pathlib import Path as _Path
 
 from . import _appell
-from ._errors import ComputationError, DataError, Diagnostic, Error, RequestError, SpecError
+from ._errors import ComputationError, DataError, Diagnostic, EndsEarly, Error, RequestError, SpecError, Unstable
 from ._model import Derivation, Model, Quantity
 from ._motion import Motion
 from ._notebook import Page, Picture
@@ -25,14 +25,15 @@ from ._values import Vector, labelled
 __version__ = _version("appell")
 
 __all__ = [
-    "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "Energies", "Error",
+    "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "EndsEarly", "Energies",
+    "Error",
     "Identification", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
-    "RequestError", "SpecError", "SteadyMotion", "Vector", "diagnose", "identify", "labelled", "load", "sample_rig",
+    "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "diagnose", "identify", "labelled", "load", "sample_rig",
     "shipped",
 ]  # fmt: skip
 
 
-def load(spec: str | Path) -> Model:
+def load(spec: str | _Path) -> Model:
     """The model of a shipped mechanism, of the spec in a file, or of a text with line breaks.
 
     >>> import appell
@@ -42,6 +43,8 @@ def load(spec: str | Path) -> Model:
     appell._errors.RequestError: model: there is no shipped mechanism and no file `unicyle`; did you mean `unicycle`?
       shipped: ...
     """
+    if not isinstance(spec, (str, _Path)):
+        raise TypeError(f"a spec is a name, a path or a text, not {type(spec).__name__}")
     spec = str(spec)
     return Model(spec, text="\n" in spec)
 
@@ -54,3 +57,6 @@ def shipped() -> list[str]:
     True
     """
     return _appell.shipped()
+
+
+del annotations

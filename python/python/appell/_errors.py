@@ -45,3 +45,11 @@ class DataError(Error):
 
 class ComputationError(Error):
     """The computation failed."""
+
+
+class EndsEarly(UserWarning):
+    """A motion ends before its final time."""
+
+
+class Unstable(UserWarning):
+    """A closed loop is unstable."""

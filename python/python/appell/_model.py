@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import json
 import types
+import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property, partial
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 import numpy as np
 
 from . import _appell
+from ._errors import EndsEarly, Unstable
 from ._motion import Motion
 from ._notebook import Page, Picture
 from ._results import Appell, Design, Energies, Jacobians, Linear, OutputJacobians, SteadyMotion
-from ._values import Vector, labelled, text, texts
+from ._values import Vector, labelled, many, text, texts
 
 Values = Mapping[str, Any]
 
@@ -39,7 +41,7 @@ class Quantity:
 
 
 class Derivation(Page):
-    """Equations, typeset in a notebook; `.latex` and `.text` are the same for documents and terminals."""
+    """Equations, typeset in a notebook; `.latex` is a document, `.plain` is for terminals, `.text` a page."""
 
     def __init__(self, model: Model, stage: str):
         super().__init__(model._derivation(stage, "html"), 900)
@@ -163,11 +165,11 @@ class Model(_appell.Model):
         """
         return labelled(self._state(texts(values, self._scales)), self.states)
 
-    def input(self, **values: float) -> Vector:
-        """The declared inputs, zero but for these, in SI."""
+    def input(self, **values: Any) -> Vector:
+        """The declared inputs, zero but for these: numbers in SI, or texts such as `"2N"`."""
         u = labelled(np.zeros(len(self.inputs)), self.inputs)
         for name, value in values.items():
-            u[name] = value
+            u[name] = self._input(name, text(value, self._scales.get(name, 1.0)))
         return u
 
     def parameter_values(self, **values: Any) -> Vector:
@@ -263,6 +265,8 @@ class Model(_appell.Model):
         >>> m.simulate(1, inputs={"F": lambda t, x: math.sin(3 * t)})["F"][-1].item() == math.sin(3)
         True
         """
+        if not (inputs is None or callable(inputs) or isinstance(inputs, Mapping)):
+            raise TypeError("inputs is a dict by name, or a function of t and x")
         expressions: list[tuple[str, str]] = []
         tables: list[tuple[str, np.ndarray, np.ndarray]] = []
         functions: list[tuple[str, Callable[[float, np.ndarray], float]]] = []
@@ -275,9 +279,8 @@ class Model(_appell.Model):
             elif isinstance(given, str) or np.ndim(given) == 0:
                 expressions.append((name, text(given, self._scales.get(name, 1.0))))
             else:
-                times, values = (np.ascontiguousarray(column, dtype=float) for column in given)
-                tables.append((name, times, values))
-        laws = [feedback] if isinstance(feedback, (Design, str, Path)) else list(feedback)
+                tables.append((name, *_table(name, given)))
+        laws = [feedback] if isinstance(feedback, Design) else many(feedback)
         native = _appell.simulate(
             self,
             float(t_end),
@@ -293,8 +296,11 @@ class Model(_appell.Model):
             step=step,
             tolerances=[rtol, atol],
             max_steps=max_steps,
-            extras=list(record),
+            extras=many(record),
         )
+        if native.failure is not None:
+            reason = native.failure.partition("; state:")[0]
+            warnings.warn(f"the motion ends early: {reason}", EndsEarly, stacklevel=2)
         return Motion(native, self.states)
 
     def _given(self, values: Values | np.ndarray | None, names: tuple[str, ...]) -> list[tuple[str, str]]:
@@ -307,7 +313,7 @@ class Model(_appell.Model):
 
     def _seen(self, function: Callable[[float, Vector], Any]) -> Callable[[float, np.ndarray], float]:
         states = self.states
-        return lambda t, x: float(function(t, labelled(x, states)))
+        return lambda t, x: _number(function(t, labelled(x, states)))
 
     def _functions(self, function: Callable[[float, Vector], Any]) -> list[tuple[str, Callable[[float, np.ndarray], float]]]:
         """One function of all inputs, asked once at a place."""
@@ -318,7 +324,10 @@ class Model(_appell.Model):
             nonlocal last
             place = (t, x.tobytes())
             if last[0] != place:
-                found = np.asarray(function(t, labelled(x, states)), dtype=float).reshape(-1)
+                told = function(t, labelled(x, states))
+                if told is None:
+                    raise TypeError("inputs returns None; it returns one number for each input")
+                found = np.asarray(told, dtype=float).reshape(-1)
                 if found.shape != (count,):
                     raise ValueError(f"inputs returns {found.size} values; there are {count} inputs")
                 last = (place, found)
@@ -331,11 +340,35 @@ class Model(_appell.Model):
 
     # Questions
 
+    @overload
     def steady(
         self,
         fix: Values | None = None,
         *,
-        free: Sequence[str] = (),
+        free: str | Sequence[str] = (),
+        along: None = None,
+        require: Values | None = None,
+        parameters: Values | None = None,
+        starts: int | None = None,
+    ) -> list[SteadyMotion]: ...
+
+    @overload
+    def steady(
+        self,
+        fix: Values | None = None,
+        *,
+        free: str | Sequence[str] = (),
+        along: tuple[str, Any, Any] | str,
+        require: Values | None = None,
+        parameters: Values | None = None,
+        starts: int | None = None,
+    ) -> list[list[SteadyMotion]]: ...
+
+    def steady(
+        self,
+        fix: Values | None = None,
+        *,
+        free: str | Sequence[str] = (),
         along: tuple[str, Any, Any] | str | None = None,
         require: Values | None = None,
         parameters: Values | None = None,
@@ -344,7 +377,8 @@ class Model(_appell.Model):
         """Steady motions with their stability: isolated ones, or branches `along` a quantity.
 
         `fix` prescribes states, inputs, outputs, or rates of ignorable coordinates such as `dot(psi)`; inputs that
-        are not fixed are zero. `free` names inputs or parameters to solve for.
+        are not fixed are zero. `free` names inputs or parameters to solve for. Where the conditions leave a family of
+        motions, such as those at every speed, the error names what to prescribe.
 
         >>> import appell
         >>> sorted({motion.verdict for motion in appell.load("pendulum").steady()})
@@ -363,7 +397,7 @@ class Model(_appell.Model):
         told = self._steady(
             texts(parameters, self._scales),
             texts(fix, self._scales),
-            list(free),
+            many(free),
             span,
             texts(require, self._scales),
             starts,
@@ -379,15 +413,15 @@ class Model(_appell.Model):
         self,
         at: Values | None = None,
         *,
-        poles: str | float | None = None,
+        poles: str | complex | Sequence[complex] | None = None,
         weights: str | float | None = None,
-        inputs: Sequence[str] = (),
-        outputs: Sequence[str] = (),
+        inputs: str | Sequence[str] = (),
+        outputs: str | Sequence[str] = (),
         sampled_ms: float | None = None,
         delay_ms: float | None = None,
         parameters: Values | None = None,
     ) -> Design:
-        """Controllability about a steady motion, and gains by `poles` in 1/s (`-8`, `"-8,-2+3i,-2-3i"`) or by
+        """Controllability about a steady motion, and gains by `poles` in 1/s (`-8`, `[-8, -2+3j, -2-3j]`) or by
         `weights` of a linear-quadratic regulator (`1`, `"Q=1,10,R=0.1"`).
 
         >>> import appell
@@ -400,13 +434,16 @@ class Model(_appell.Model):
         told, law = self._control(
             texts(parameters, self._scales),
             texts(at, self._scales),
-            list(inputs),
-            list(outputs),
-            None if poles is None else str(poles),
+            many(inputs),
+            many(outputs),
+            _poles(poles),
             None if weights is None else str(weights),
             sampled,
         )
-        return Design(json.loads(told), law)
+        design = Design(json.loads(told), law)
+        if design.stable is False:
+            warnings.warn(f"the closed loop is unstable: its poles are {design.poles}", Unstable, stacklevel=2)
+        return design
 
     # To read
 
@@ -440,12 +477,47 @@ class Model(_appell.Model):
         """
         module: dict[str, Any] = {"__name__": f"appell_{self.name}"}
         exec(compile(self.module, f"<equations of {self.name}>", "exec"), module)
-        public = {name: value for name, value in module.items() if not name.startswith("_")}
+        public = {
+            name: value
+            for name, value in module.items()
+            if not name.startswith("_") and not isinstance(value, types.ModuleType)
+        }
         bound = {name: partial(value, xp) if callable(value) else value for name, value in public.items()}
         return types.SimpleNamespace(**bound)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        reference = self._reference
+        return _restored, (self.spec if reference is None else reference, reference is None)
+
     def __repr__(self) -> str:
         return f"<{self.name}: {self.title}; states {', '.join(self.states)}; inputs {', '.join(self.inputs) or 'none'}>"
+
+
+def _restored(spec: str, text: bool) -> Model:
+    return Model(spec, text=text)
+
+
+def _number(value: Any) -> float:
+    """A number, or an array of one."""
+    return value.item() if isinstance(value, np.ndarray) and value.size == 1 else float(value)
+
+
+def _table(name: str, given: Any) -> tuple[np.ndarray, np.ndarray]:
+    """Times and values of a pair of arrays, or of a series over the times."""
+    if hasattr(given, "index") and hasattr(given, "to_numpy"):
+        given = (given.index.to_numpy(), given.to_numpy())
+    if not (isinstance(given, (tuple, list)) and len(given) == 2):
+        raise ValueError(f"{name}: a table is a pair (times, values)")
+    times, values = (np.ascontiguousarray(column, dtype=float) for column in given)
+    if times.ndim != 1 or times.shape != values.shape:
+        raise ValueError(f"{name}: the times have the shape {times.shape}, the values {values.shape}")
+    return times, values
+
+
+def _poles(poles: Any) -> str | None:
+    if poles is None or isinstance(poles, str):
+        return poles
+    return ",".join(f"{p.real!r}{p.imag:+}i" if p.imag else repr(p.real) for p in map(complex, np.ravel(poles)))
 
 
 def _law(law: Design | str | Path) -> str:

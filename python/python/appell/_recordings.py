@@ -13,6 +13,7 @@ import numpy as np
 from . import _appell
 from ._model import Model
 from ._notebook import Page, Picture, Progress, framed, reporter
+from ._values import many
 
 Paths = str | Path | Sequence[str | Path]
 
@@ -31,7 +32,7 @@ class Recordings(_appell.DataSet):
 
     @property
     def runs(self) -> list[str]:
-        """Names of the runs."""
+        """Names of the runs; `told["findings"]` has all that was noticed about them."""
         return [run["run"] for run in self.told["runs"]]
 
     @property
@@ -112,7 +113,8 @@ class Diagnosis:
 
     @property
     def hypotheses(self) -> list[dict[str, Any]]:
-        """Hypotheses, the most probable one first: `effects`, `probability`, `parameters`, `closes` …"""
+        """Hypotheses, the most probable one first, each with `effects`, `probability`, `log_bayes_factor` and
+        `parameters`. The effect `unknown` stands for what no effect of the library explains."""
         return self.told["which"]
 
     @property
@@ -131,6 +133,8 @@ class Diagnosis:
 
     def improved(self, hypothesis: int | None = None, file: str = "improved.toml") -> tuple[str, str]:
         """The text of the spec with that effect, and what was changed in it."""
+        if hypothesis is not None and hypothesis < 1:
+            raise ValueError("hypotheses are numbered from 1")
         spec, text = self._native._spec()
         return _appell.apply(spec, text, self.json, hypothesis, file)
 
@@ -168,8 +172,8 @@ def identify(
     set_ = _read(data, model)
     with reporter(progress) as tell:
         rates = list((drifting or {}).items())
-        free = None if free is None else list(free)
-        native = set_._identify(free, list(also), rates, start == "shooting", tell)
+        free = None if free is None else many(free)
+        native = set_._identify(free, many(also), rates, start == "shooting", tell)
     return Identification(native)
 
 
@@ -205,12 +209,12 @@ def diagnose(
         scaled.append((column, [low, high]))
     with reporter(progress) as tell:
         native = set_._diagnose(
-            [str(path) for path in effects],
-            list(without),
+            [str(path) for path in many(effects)],
+            many(without),
             horizon,
             tolerance,
             scaled,
-            [str(path) for path in alternatives],
+            [str(path) for path in many(alternatives)],
             before,
             tell,
         )

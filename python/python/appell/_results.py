@@ -82,7 +82,8 @@ class SteadyMotion:
 
     @property
     def stable(self) -> bool:
-        """Whether no disturbance grows in the linear equations."""
+        """Whether no disturbance of the essential states grows in the linear equations. A steady motion may drift along
+        its family, and in ignorable coordinates such as the place on the ground."""
         return self.verdict in ("asymptotic", "neutral")
 
     @property
@@ -138,6 +139,12 @@ class Design:
         """The gains, (inputs, outputs)."""
         law = self.told["law"]
         return None if law is None else np.array(law["gains"])
+
+    @property
+    def stable(self) -> bool | None:
+        """Whether the closed loop is stable; None without a law."""
+        law = self.told["law"]
+        return None if law is None else law["stable"]
 
     @property
     def poles(self) -> np.ndarray | None:

@@ -7,7 +7,7 @@ use crate::text::with_unit;
 
 /// The verdict in one sentence, with the alternatives.
 pub fn sentence(report: &Report) -> String {
-    let statement = statement(report);
+    let statement = statement(report) + &not_found(report);
     let Some((probability, same, rivals)) = alternatives(report) else {
         return statement;
     };
@@ -24,6 +24,28 @@ pub fn sentence(report: &Report) -> String {
     let values = leading(report).map(values).unwrap_or_default();
     let sure = percent_of(probability);
     format!("{statement} (probability {sure}{values}){same}{rivals}")
+}
+
+/// `; the search of a, b did not converge`, where nothing of the library is found.
+fn not_found(report: &Report) -> String {
+    /// Longer lists are for the page.
+    const MOST: usize = 3;
+    let failed = report
+        .failed
+        .iter()
+        .filter(|(effects, _)| !effects.is_empty());
+    let failed: Vec<String> = failed.map(|(effects, _)| joined(effects)).collect();
+    if report.verdict != GapVerdict::Unexplained || failed.is_empty() {
+        return String::new();
+    }
+    let more = failed.len().saturating_sub(MOST);
+    let more = if more > 0 {
+        format!(" and {more} more")
+    } else {
+        String::new()
+    };
+    let first = failed[..failed.len().min(MOST)].join(", ");
+    format!("; the search of {first}{more} did not converge, so that these are not ruled out")
 }
 
 /// The hypothesis after the leading one, with its probability.

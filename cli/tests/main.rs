@@ -22,6 +22,7 @@ mod exit_status;
 mod experiment;
 mod files;
 mod film;
+mod fmu;
 mod handout;
 mod help;
 mod identify;

@@ -51,7 +51,7 @@ pub enum FmuError {
     /// No C compiler runs.
     #[error(
         "no C compiler was found (tried {tried}): install one, let the environment variable CC name one, or write \
-         only the sources, which the importing tool compiles (`--sources-only`)"
+         only the sources, which the importing tool compiles"
     )]
     NoCompiler {
         /// Names that were tried.
@@ -59,31 +59,42 @@ pub enum FmuError {
     },
     /// The C compiler fails.
     #[error(
-        "the C compiler `{compiler}` failed:\n{told}\n  let the environment variable CC name another one, or write \
-         only the sources (`--sources-only`)"
+        "the C compiler `{compiler}` failed: let the environment variable CC name another one, or write only the \
+         sources, which the importing tool compiles{told}"
     )]
     Compiler {
         /// Its name.
         compiler: String,
-        /// What it told.
+        /// What it told, a line each.
         told: String,
     },
-    /// FMI has no binaries of this platform that are made here.
+    /// There are no binaries for this platform.
     #[error(
-        "no machine code for {platform} is written here: write only the sources (`--sources-only`)"
+        "no machine code is written for {platform}: write only the sources, which the importing tool compiles"
     )]
     Platform {
         /// Architecture and operating system.
         platform: String,
     },
-    /// A step of the compilation fails.
+    /// Files of the compilation cannot be made or read.
     #[error("cannot {doing}: {cause}")]
-    Folder {
+    Scratch {
         /// What.
         doing: &'static str,
-        /// Why.
+        /// The error of the operating system.
+        #[source]
         cause: io::Error,
     },
+    /// The package cannot be made.
+    #[error("cannot pack the FMU: {0}")]
+    Package(#[from] zip::result::ZipError),
+}
+
+impl FmuError {
+    /// Whether sources alone are possible all the same.
+    pub(crate) fn is_about_machine_code(&self) -> bool {
+        !matches!(self, Self::Package(_))
+    }
 }
 
 impl Source {
@@ -108,7 +119,7 @@ impl Source {
             let path = format!("binaries/{platform}/{}.{extension}", emitted.name);
             (Some(platform), Some((path, code)))
         };
-        let bytes = packed(&emitted, binary).map_err(Error::computation)?;
+        let bytes = packed(&emitted, binary).map_err(FmuError::from)?;
         Ok(Fmu {
             name: emitted.name,
             info: program.info,
@@ -119,7 +130,7 @@ impl Source {
 }
 
 /// The name of this platform in FMI, and the extension of its shared libraries.
-fn platform() -> Result<(String, &'static str), Error> {
+fn platform() -> Result<(String, &'static str), FmuError> {
     let (system, extension) = match env::consts::OS {
         "linux" => ("linux", "so"),
         "macos" => ("darwin", "dylib"),
@@ -133,9 +144,9 @@ fn platform() -> Result<(String, &'static str), Error> {
     }
 }
 
-fn unsupported(system: &str) -> Error {
+fn unsupported(system: &str) -> FmuError {
     let platform = format!("{} and {system}", env::consts::ARCH);
-    Error::computation(FmuError::Platform { platform })
+    FmuError::Platform { platform }
 }
 
 /// A folder that is removed at the end.
@@ -167,20 +178,20 @@ impl Drop for Scratch {
 
 /// The shared library.
 fn compiled(emitted: &Emitted) -> Result<Vec<u8>, Error> {
-    let failed = |doing| move |cause| Error::computation(FmuError::Folder { doing, cause });
+    let failed = |doing| move |cause| FmuError::Scratch { doing, cause };
     let folder = Scratch::new().map_err(failed("make a folder for the compilation"))?;
     for (name, text) in &emitted.sources {
         files::write(&folder.0.join(name), text)?;
     }
     compile(emitted, &folder.0)?;
-    fs::read(folder.0.join(LIBRARY)).map_err(failed("read what was compiled"))
+    Ok(fs::read(folder.0.join(LIBRARY)).map_err(failed("read what was compiled"))?)
 }
 
 /// The name of the library while it is made.
 const LIBRARY: &str = "library";
 
 /// Runs the first compiler that is there.
-fn compile(emitted: &Emitted, folder: &Path) -> Result<(), Error> {
+fn compile(emitted: &Emitted, folder: &Path) -> Result<(), FmuError> {
     let wanted = env::var("CC").ok().filter(|name| !name.trim().is_empty());
     let compilers = match &wanted {
         Some(wanted) => vec![wanted.as_str()],
@@ -196,23 +207,23 @@ fn compile(emitted: &Emitted, folder: &Path) -> Result<(), Error> {
             .args(["-o", LIBRARY, "-lm"])
             .current_dir(folder)
             .output();
-        let compiler = (*compiler).to_owned();
-        match told {
+        let told = match told {
             Ok(told) if told.status.success() => return Ok(()),
-            Ok(told) => {
-                let told = String::from_utf8_lossy(&told.stderr);
-                let told = told.lines().take(20).collect::<Vec<_>>().join("\n");
-                return Err(Error::computation(FmuError::Compiler { compiler, told }));
-            }
-            Err(cause) if cause.kind() == io::ErrorKind::NotFound => {}
-            Err(cause) => {
-                let told = cause.to_string();
-                return Err(Error::computation(FmuError::Compiler { compiler, told }));
-            }
-        }
+            Ok(told) => String::from_utf8_lossy(&told.stderr).into_owned(),
+            Err(cause) if cause.kind() == io::ErrorKind::NotFound => continue,
+            Err(cause) => cause.to_string(),
+        };
+        return Err(FmuError::Compiler {
+            compiler: (*compiler).to_owned(),
+            told: told
+                .lines()
+                .take(20)
+                .map(|line| format!("\n  {line}"))
+                .collect(),
+        });
     }
     let tried = compilers.join(", ");
-    Err(Error::computation(FmuError::NoCompiler { tried }))
+    Err(FmuError::NoCompiler { tried })
 }
 
 /// The file: a ZIP archive without times.

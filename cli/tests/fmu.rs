@@ -88,12 +88,15 @@ fn without_a_compiler_only_sources_are_written() {
     assert_eq!(status, Some(4), "{told}");
     assert!(
         told.contains("no C compiler was found (tried no-such-compiler)")
-            && told.contains("--sources-only"),
+            && told.contains("see --sources-only"),
         "{told}"
     );
     let (status, told) = run("false", &[]);
     assert_eq!(status, Some(4), "{told}");
-    assert!(told.contains("the C compiler `false` failed"), "{told}");
+    assert!(
+        told.contains("the C compiler `false` failed") && told.contains("see --sources-only"),
+        "{told}"
+    );
     assert!(folder.files().is_empty(), "{:?}", folder.files());
     let (status, told) = run("no-such-compiler", &["--sources-only"]);
     assert_eq!(status, Some(0), "{told}");

@@ -11,6 +11,7 @@ mod bad_input;
 mod bad_recordings;
 mod commands;
 mod control;
+mod cortex_m;
 mod definitions;
 mod destinations;
 mod diagnose;

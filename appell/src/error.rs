@@ -105,7 +105,7 @@ pub enum Error {
     Inverse(#[from] RelationError),
     /// No FMU can be made.
     #[error(transparent)]
-    Fmu(#[from] FmuError),
+    Fmu(Box<FmuError>),
     /// A result cannot be written as JSON.
     #[error("the result is not JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -337,6 +337,12 @@ impl From<Report> for Error {
 impl From<DesignError> for Error {
     fn from(error: DesignError) -> Self {
         Self::Design(Box::new(error))
+    }
+}
+
+impl From<FmuError> for Error {
+    fn from(error: FmuError) -> Self {
+        Self::Fmu(Box::new(error))
     }
 }
 

@@ -119,7 +119,7 @@ impl Source {
             let path = format!("binaries/{platform}/{}.{extension}", emitted.name);
             (Some(platform), Some((path, code)))
         };
-        let bytes = packed(&emitted, binary).map_err(FmuError::from)?;
+        let bytes = packed(&emitted, binary.as_ref()).map_err(FmuError::from)?;
         Ok(Fmu {
             name: emitted.name,
             info: program.info,
@@ -215,11 +215,11 @@ fn compile(emitted: &Emitted, folder: &Path) -> Result<(), FmuError> {
         };
         return Err(FmuError::Compiler {
             compiler: (*compiler).to_owned(),
-            told: told
-                .lines()
-                .take(20)
-                .map(|line| format!("\n  {line}"))
-                .collect(),
+            told: [""]
+                .into_iter()
+                .chain(told.lines().take(20))
+                .collect::<Vec<_>>()
+                .join("\n  "),
         });
     }
     let tried = compilers.join(", ");
@@ -227,7 +227,10 @@ fn compile(emitted: &Emitted, folder: &Path) -> Result<(), FmuError> {
 }
 
 /// The file: a ZIP archive without times.
-fn packed(emitted: &Emitted, binary: Option<(String, Vec<u8>)>) -> zip::result::ZipResult<Vec<u8>> {
+fn packed(
+    emitted: &Emitted,
+    binary: Option<&(String, Vec<u8>)>,
+) -> zip::result::ZipResult<Vec<u8>> {
     let mut archive = ZipWriter::new(Cursor::new(Vec::new()));
     let plain = SimpleFileOptions::default()
         .compression_method(zip::CompressionMethod::Deflated)
@@ -243,7 +246,7 @@ fn packed(emitted: &Emitted, binary: Option<(String, Vec<u8>)>) -> zip::result::
         emitted.model_description.as_bytes(),
         plain,
     )?;
-    if let Some((path, code)) = &binary {
+    if let Some((path, code)) = binary {
         add(path, code, plain.unix_permissions(0o755))?;
     }
     add(

@@ -1,4 +1,4 @@
-//! FMUs, as an importer sees them: FMPy validates them, runs them in both kinds and asks for their derivatives.
+//! FMUs, as an importer sees them: `FMPy` validates them, runs them in both kinds and asks for their derivatives.
 
 use std::fs;
 use std::path::{Path, PathBuf};

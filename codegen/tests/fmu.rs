@@ -144,3 +144,23 @@ push = { kind = "force", on = "C", in = "ground", vector = [0, 0, "F - k*sign(z)
         assert!(description.contains(expected), "{expected}\n{description}");
     }
 }
+
+#[test]
+fn a_model_without_parameters_inputs_and_outputs_compiles() {
+    let text = r#"
+[mechanism]
+name  = "bare"
+title = "A mass that nothing moves"
+[coordinates]
+x = { unit = "m" }
+[points]
+P = { from = "O", in = "ground", at = ["x", 0, 0] }
+[bodies]
+mass = { centre = "P", mass = "2[kg]" }
+[pseudo_velocities]
+v = "dot(x)"
+"#;
+    let fmu = fmu("bare.toml", text);
+    compiles("fmu_bare", &fmu, &fmu.compiled);
+    assert_eq!(fmu.model_description.matches("<Float64").count(), 5);
+}

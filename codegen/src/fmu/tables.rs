@@ -40,8 +40,8 @@ pub(super) fn tables(program: &Program, variables: &Variables, name: &str) -> St
         "\n#define INSTANTIATION_TOKEN \"{TOKEN}\"\n#define DEFAULT_TOLERANCE {DEFAULT_TOLERANCE:?}\n\
          #define LEAST_TOLERANCE {LEAST_TOLERANCE:?}\n\n"
     );
-    numbers(&mut text, "initial_state", info.initial_state());
-    numbers(&mut text, "default_parameters", info.default_parameters());
+    numbers(&mut text, "initial_state", &info.initial_state());
+    numbers(&mut text, "default_parameters", &info.default_parameters());
     let fixed = variables.fixed.iter().map(|&fixed| usize::from(fixed));
     integers(&mut text, "parameter_is_fixed", fixed);
     let dependent = program.dependent.iter().copied();
@@ -74,10 +74,14 @@ fn signals(text: &mut String, program: &Program) {
     let tables: Vec<Signal> = (info.signals.iter())
         .filter_map(|table| Signal::new(table).ok())
         .collect();
-    numbers(text, "signal_times", concatenated(Signal::knots, &tables));
-    numbers(text, "signal_values", concatenated(Signal::values, &tables));
+    numbers(text, "signal_times", &concatenated(Signal::knots, &tables));
+    numbers(
+        text,
+        "signal_values",
+        &concatenated(Signal::values, &tables),
+    );
     let curvatures = concatenated(Signal::curvatures, &tables);
-    numbers(text, "signal_curvatures", curvatures);
+    numbers(text, "signal_curvatures", &curvatures);
     let inputs = || info.signal_inputs.iter();
     integers(text, "signal_of_input", inputs().map(|(signal, _)| *signal));
     let orders = inputs().map(|(_, order)| usize::from(*order));
@@ -97,7 +101,7 @@ fn coefficients(text: &mut String) {
         "#define STAGES {stages}\n#define ERROR_5 {stages}\n#define ERROR_3 {}\n",
         stages + 1
     );
-    numbers(text, "stage_nodes", method.nodes.to_vec());
+    numbers(text, "stage_nodes", method.nodes);
     let ends = rows.iter().scan(0, |end, row| {
         *end += row.len();
         Some(*end)
@@ -105,12 +109,12 @@ fn coefficients(text: &mut String) {
     integers(text, "row_first", std::iter::once(0).chain(ends));
     let terms = || rows.iter().flat_map(|row| row.iter());
     integers(text, "row_stages", terms().map(|(stage, _)| *stage));
-    let weights = terms().map(|(_, weight)| *weight).collect();
-    numbers(text, "row_weights", weights);
+    let weights: Vec<f64> = terms().map(|(_, weight)| *weight).collect();
+    numbers(text, "row_weights", &weights);
     text.push('\n');
 }
 
-fn numbers(text: &mut String, name: &str, values: Vec<f64>) {
+fn numbers(text: &mut String, name: &str, values: &[f64]) {
     let values: Vec<String> = values.iter().map(|value| format!("{value:?}")).collect();
     array(text, "double", name, &values);
 }

@@ -20,6 +20,10 @@ impl Element {
     }
 
     /// The same with another attribute.
+    #[expect(
+        clippy::needless_pass_by_value,
+        reason = "a number or a text is given as it stands"
+    )]
     pub(super) fn with(mut self, name: &'static str, value: impl ToString) -> Self {
         self.attributes.push((name, value.to_string()));
         self

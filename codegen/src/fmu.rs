@@ -18,11 +18,6 @@ use crate::c::{self, Real, adapted};
 use crate::program::{FunctionKind, Program};
 use variables::Variables;
 
-/// Tolerance of a co-simulation where none is asked for.
-const DEFAULT_TOLERANCE: f64 = 1e-10;
-/// The least tolerance: rounding allows no less.
-const LEAST_TOLERANCE: f64 = 1e-13;
-
 /// What is to be compiled beside the equations.
 const FUNCTIONS: &str = "fmi-functions.c";
 /// C that is the same for all models. No mechanism has such a name.

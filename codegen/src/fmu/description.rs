@@ -2,8 +2,8 @@
 
 use appell_runtime::model::Quantity;
 
-use super::DEFAULT_TOLERANCE;
 use super::structure::structure;
+use super::tables::DEFAULT_TOLERANCE;
 use super::units::Units;
 use super::variables::Variables;
 use super::xml::Element;

@@ -7,10 +7,13 @@ use appell_runtime::integrate::Dop853;
 use appell_runtime::model::Interpolation;
 
 use super::variables::Variables;
-use super::{DEFAULT_TOLERANCE, LEAST_TOLERANCE};
 use crate::c::adapters;
 use crate::program::Program;
 
+/// Tolerance of a co-simulation where none is asked for.
+pub(super) const DEFAULT_TOLERANCE: f64 = 1e-10;
+/// The least tolerance: rounding allows no less.
+const LEAST_TOLERANCE: f64 = 1e-13;
 /// Stands for the token of an instance, which is made of the texts around it.
 pub(super) const TOKEN: &str = "@TOKEN@";
 

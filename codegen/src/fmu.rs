@@ -21,8 +21,9 @@ use variables::Variables;
 /// What is to be compiled beside the equations.
 const FUNCTIONS: &str = "fmi-functions.c";
 /// C that is the same for all models. No mechanism has such a name.
-const TEMPLATES: [(&str, &str); 4] = [
+const TEMPLATES: [(&str, &str); 5] = [
     ("fmi-absent.h", include_str!("fmu/c/fmi-absent.h")),
+    ("fmi-derivatives.h", include_str!("fmu/c/fmi-derivatives.h")),
     (FUNCTIONS, include_str!("fmu/c/fmi-functions.c")),
     ("fmi-motion.h", include_str!("fmu/c/fmi-motion.h")),
     ("fmi-types.h", include_str!("fmu/c/fmi-types.h")),

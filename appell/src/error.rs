@@ -15,6 +15,7 @@ use appell_spec::{Diagnostic, Report};
 
 use crate::control::DesignError;
 use crate::field::Field;
+use crate::fmu::FmuError;
 
 /// Why a request has no answer.
 #[derive(Debug, thiserror::Error)]
@@ -102,6 +103,9 @@ pub enum Error {
     /// Recorded motions do not determine inputs or parameters.
     #[error(transparent)]
     Inverse(#[from] RelationError),
+    /// No FMU can be made.
+    #[error(transparent)]
+    Fmu(Box<FmuError>),
     /// A result cannot be written as JSON.
     #[error("the result is not JSON: {0}")]
     Json(#[from] serde_json::Error),
@@ -216,7 +220,9 @@ impl Error {
             | Self::Recording(_)
             | Self::Table { .. } => Class::Data,
             Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
-            Self::Stability(_) | Self::Json(_) | Self::Computation(_) => Class::Computation,
+            Self::Stability(_) | Self::Fmu(_) | Self::Json(_) | Self::Computation(_) => {
+                Class::Computation
+            }
             Self::Steady(error) => of_steady(error),
             Self::Branch(error) => of_branch(error),
             Self::Chart(error) => of_chart(error),
@@ -257,6 +263,7 @@ impl Error {
         match self {
             Self::Identify(IdentifyError::NothingFree) => Some(Field::Free),
             Self::Identify(error) if !advice(error).is_empty() => Some(Field::Start),
+            Self::Fmu(error) if error.is_about_machine_code() => Some(Field::Sources),
             Self::At { source, .. } => source.remedy(),
             _ => None,
         }
@@ -330,6 +337,12 @@ impl From<Report> for Error {
 impl From<DesignError> for Error {
     fn from(error: DesignError) -> Self {
         Self::Design(Box::new(error))
+    }
+}
+
+impl From<FmuError> for Error {
+    fn from(error: FmuError) -> Self {
+        Self::Fmu(Box::new(error))
     }
 }
 

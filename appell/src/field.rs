@@ -58,6 +58,7 @@ fields! {
     Start "start" "Start of an estimation.",
     Effects "effects" "Library of effects.",
     Hypothesis "hypothesis" "Hypothesis of a gap report.",
+    Sources "sources" "Sources of an FMU without machine code.",
     Bias "bias" "Columns with a constant bias.",
 }
 

@@ -12,6 +12,7 @@
 //! | [`Source::check`] | `appell check` |
 //! | [`Source::derivation`], [`Source::linear_equations`], [`Source::rust`] | `appell derive` |
 //! | [`Source::drawing`] | `appell draw` |
+//! | [`Source::fmu`] | `appell export` |
 //! | [`Model::evaluate`] | `appell evaluate` |
 //! | [`capture::convert`] | `appell motion` |
 //! | [`recording::read`], [`Model::identify`] | `appell recording`, `appell identify` |
@@ -37,6 +38,7 @@ pub mod evaluation;
 mod field;
 pub mod files;
 pub mod fleet;
+pub mod fmu;
 mod formula;
 pub mod gap_report;
 pub mod identification;

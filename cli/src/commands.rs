@@ -9,6 +9,7 @@ mod derive;
 mod diagnose;
 mod draw;
 mod evaluate;
+mod export;
 mod identify;
 mod inverse;
 mod list;
@@ -47,6 +48,7 @@ pub(crate) enum Command {
     Check(check::Check),
     Derive(derive::Derive),
     Draw(draw::Draw),
+    Export(export::Export),
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
     Control(Box<control::Control>),
@@ -76,6 +78,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Check(command) => command.run(),
         Command::Derive(command) => command.run(),
         Command::Draw(command) => command.run(),
+        Command::Export(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
         Command::Control(command) => command.run(),

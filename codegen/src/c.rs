@@ -3,6 +3,7 @@
 //! Operations and their order are those of the schedule, hence of the emitted Rust: compiled without contraction,
 //! the results are the same bits.
 
+mod adapters;
 mod types;
 
 use std::fmt::Write as _;
@@ -13,6 +14,7 @@ use crate::schedule::pi::parts_of_pi;
 use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
 use crate::symbolic::{self, Rational, Relation};
 
+pub(crate) use adapters::{adapted, adapters};
 use types::Types;
 
 /// The type of all numbers.

@@ -5,6 +5,7 @@ pub mod build;
 pub mod c;
 pub mod compile;
 pub mod emit;
+pub mod fmu;
 pub mod formulations;
 mod infix;
 pub mod interpreted;

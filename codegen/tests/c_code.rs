@@ -21,7 +21,7 @@ const STRICT: &[&str] = &[
 ];
 
 /// The shipped specs.
-fn specs() -> Vec<(String, String)> {
+pub(crate) fn specs() -> Vec<(String, String)> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("../generated/mechanisms");
     let entries = std::fs::read_dir(folder).expect("the shipped specs");
     let paths = entries.map(|entry| entry.expect("an entry").path());
@@ -54,12 +54,16 @@ fn options(real: Real) -> Options {
     }
 }
 
+/// A folder for the files of a mechanism.
+pub(crate) fn folder(test: &str, name: &str) -> PathBuf {
+    let folder = Path::new(env!("CARGO_TARGET_TMPDIR")).join(test).join(name);
+    std::fs::create_dir_all(&folder).expect("a folder");
+    folder
+}
+
 /// Writes both files to a folder of their own.
 fn written(test: &str, emitted: &Emitted) -> PathBuf {
-    let folder = Path::new(env!("CARGO_TARGET_TMPDIR"))
-        .join(test)
-        .join(&emitted.name);
-    std::fs::create_dir_all(&folder).expect("a folder");
+    let folder = folder(test, &emitted.name);
     let file = |end: &str, text: &str| {
         std::fs::write(folder.join(format!("{}.{end}", emitted.name)), text).expect("a file");
     };
@@ -68,8 +72,21 @@ fn written(test: &str, emitted: &Emitted) -> PathBuf {
     folder
 }
 
+/// The C compilers to try: the system's, and Clang where it is installed.
+pub(crate) fn compilers() -> Vec<&'static str> {
+    let clang = Command::new("clang").arg("--version").output();
+    let clang = clang.is_ok_and(|told| told.status.success());
+    if !clang {
+        println!("not tried: there is no clang on the path");
+    }
+    [("cc", true), ("clang", clang)]
+        .into_iter()
+        .filter_map(|(name, is_there)| is_there.then_some(name))
+        .collect()
+}
+
 /// Runs the C compiler in a folder, for files that have to compile without a warning.
-fn compiled(compiler: &str, folder: &Path, arguments: &[&str]) {
+pub(crate) fn compiled(compiler: &str, folder: &Path, arguments: &[&str]) {
     let told = Command::new(compiler)
         .args(STRICT)
         .args(arguments)
@@ -154,22 +171,24 @@ fn c_of_all_shipped_mechanisms_compiles_without_a_warning_and_gives_the_same_bit
         let folder = written("c_double", &emitted);
         let place = place(&program);
         std::fs::write(folder.join("main.c"), printer(&program, &emitted, &place)).expect("a file");
-        let source = format!("{}.c", emitted.name);
-        compiled("cc", &folder, &[&source, "main.c", "-o", "run", "-lm"]);
-        let told = Command::new(folder.join("run"))
-            .output()
-            .expect("the program runs");
-        let bits = String::from_utf8(told.stdout).expect("text");
-        let found = bits
-            .lines()
-            .map(|line| u64::from_str_radix(line, 16).expect("bits"));
         let function = program
             .function(FunctionKind::Jacobians)
             .expect("Jacobians");
         let [x, u, p] = &place;
         let expected = interpret(&schedule(&program, function), 0.3, x, u, p).concat();
         let expected: Vec<u64> = expected.iter().map(|value| value.to_bits()).collect();
-        assert_eq!(found.collect::<Vec<_>>(), expected, "{name}");
+        let source = format!("{}.c", emitted.name);
+        for compiler in compilers() {
+            compiled(compiler, &folder, &[&source, "main.c", "-o", "run", "-lm"]);
+            let told = Command::new(folder.join("run"))
+                .output()
+                .expect("the program runs");
+            let bits = String::from_utf8(told.stdout).expect("text");
+            let found = bits
+                .lines()
+                .map(|line| u64::from_str_radix(line, 16).expect("bits"));
+            assert_eq!(found.collect::<Vec<_>>(), expected, "{name}, {compiler}");
+        }
     }
 }
 
@@ -179,17 +198,11 @@ fn c_in_single_precision_compiles_without_a_warning() {
         let program = program(&name, &text);
         let emitted = emit(&program, &options(Real::Float));
         let folder = written("c_float", &emitted);
-        compiled(
-            "cc",
-            &folder,
-            &[
-                "-Wdouble-promotion",
-                "-c",
-                &format!("{}.c", emitted.name),
-                "-o",
-                "run.o",
-            ],
-        );
+        let source = format!("{}.c", emitted.name);
+        for compiler in compilers() {
+            let arguments = ["-Wdouble-promotion", "-c", &source, "-o", "run.o"];
+            compiled(compiler, &folder, &arguments);
+        }
         assert!(!emitted.source.contains("double "), "{name}");
     }
 }

@@ -11,6 +11,7 @@ mod audit;
 mod emit;
 mod emit_golden;
 mod findings;
+mod fmu;
 mod fuzz_derivation;
 #[cfg(feature = "jit")]
 mod jit;

@@ -40,7 +40,7 @@ pub use error::{Cause, Failure, IntegrationError};
 pub use events::{Direction, Event, EventFunction, EventHit};
 pub use options::Options;
 pub use outcome::{Ending, Outcome, Statistics};
-pub use pairs::{Dop853, Dopri5, EmbeddedPair};
+pub use pairs::{Coefficients, Dop853, Dopri5, EmbeddedPair};
 pub use range::Range;
 pub use rk4::Rk4;
 pub use solver::Solver;

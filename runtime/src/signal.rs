@@ -107,6 +107,16 @@ impl Signal {
         &self.times
     }
 
+    /// The values at the knots, in SI.
+    pub fn values(&self) -> &[f64] {
+        &self.values
+    }
+
+    /// The second derivatives at the knots, from the right: those of a spline, zeros elsewhere.
+    pub fn curvatures(&self) -> &[f64] {
+        &self.curvatures
+    }
+
     /// The time derivative of order 0, 1 or 2 at `t`, in SI; NaN for higher orders.
     pub fn derivative(&self, t: f64, order: u8) -> f64 {
         if order > 2 || t.is_nan() {

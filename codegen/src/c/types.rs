@@ -73,7 +73,7 @@ impl<'a> Types<'a> {
         }
     }
 
-    fn type_name(&self, space: Space) -> String {
+    pub(super) fn type_name(&self, space: Space) -> String {
         let name = match space {
             Space::Parameters => "Parameters",
             Space::State => "State",

@@ -47,8 +47,8 @@ class Vector(np.ndarray):
             column = np.asarray(self)[..., self._place(key)]
             return column.item() if column.ndim == 0 else column
         found = super().__getitem__(key)
-        if isinstance(found, Vector) and self.names is not None and _keeps_columns(key, self.ndim):
-            found.names = self.names
+        if isinstance(found, Vector):
+            found.names = self.names if _keeps_columns(key, self.ndim) else None
         return found
 
     def __setitem__(self, key: Any, value: Any) -> None:

@@ -130,6 +130,32 @@ impl EmbeddedPair for Dopri5 {
 #[derive(Debug, Clone, Copy)]
 pub struct Dop853;
 
+/// An embedded pair as numbers, for programs in other languages. A row is a list of stages with their
+/// weights; stages count from 0.
+#[derive(Debug, Clone, Copy)]
+pub struct Coefficients {
+    /// Nodes of the stages after the first.
+    pub nodes: &'static [f64],
+    /// Their rows.
+    pub stages: &'static [&'static [(usize, f64)]],
+    /// Weights of the new state.
+    pub weights: &'static [(usize, f64)],
+    /// The new state less the embedded ones, of order 5 and 3.
+    pub errors: [&'static [(usize, f64)]; 2],
+}
+
+impl Dop853 {
+    /// Its coefficients without those of the interpolant.
+    pub const fn coefficients() -> Coefficients {
+        Coefficients {
+            nodes: dop853::TABLEAU.nodes,
+            stages: dop853::TABLEAU.rows,
+            weights: dop853::TABLEAU.weights,
+            errors: [dop853::ERROR_5, dop853::ERROR_3],
+        }
+    }
+}
+
 #[allow(private_interfaces)]
 impl EmbeddedPair for Dop853 {
     const TABLEAU: Tableau = dop853::TABLEAU;

@@ -1,0 +1,168 @@
+//! `modelDescription.xml` and `buildDescription.xml`.
+
+use appell_runtime::model::Quantity;
+
+use super::structure::structure;
+use super::tables::DEFAULT_TOLERANCE;
+use super::units::Units;
+use super::variables::Variables;
+use super::xml::Element;
+use crate::program::Program;
+
+const VERSION: &str = "3.0";
+
+/// `modelDescription.xml`.
+pub(super) fn model(program: &Program, variables: &Variables, name: &str, token: &str) -> String {
+    let info = &program.info;
+    let mut units = Units::default();
+    let described = described(program, variables, &mut units);
+    let kind = |element: &'static str| {
+        Element::new(element)
+            .with("modelIdentifier", name)
+            .with("canGetAndSetFMUState", true)
+            .with("canSerializeFMUState", true)
+            .with("providesDirectionalDerivatives", true)
+            .with("providesAdjointDerivatives", true)
+    };
+    let log = Element::new("Category")
+        .with("name", "logStatusError")
+        .with("description", "Why a call has failed");
+    Element::new("fmiModelDescription")
+        .with("fmiVersion", VERSION)
+        .with("modelName", &info.name)
+        .with("instantiationToken", token)
+        .with("description", &info.title)
+        .with(
+            "generationTool",
+            concat!("appell ", env!("CARGO_PKG_VERSION")),
+        )
+        .with("variableNamingConvention", "structured")
+        .holding([
+            kind("ModelExchange").maybe(
+                "needsCompletedIntegratorStep",
+                (variables.end > variables.switches).then_some(true),
+            ),
+            kind("CoSimulation").with("canHandleVariableCommunicationStepSize", true),
+            units.element(),
+            Element::new("LogCategories").holding([log]),
+            Element::new("DefaultExperiment")
+                .with("startTime", 0)
+                .with("stopTime", 10)
+                .with("tolerance", number(DEFAULT_TOLERANCE)),
+            Element::new("ModelVariables").holding(described),
+            structure(program, variables),
+        ])
+        .document()
+}
+
+/// `buildDescription.xml`.
+pub(super) fn build(name: &str, compiled: &[String]) -> String {
+    let files = (compiled.iter()).map(|file| Element::new("SourceFile").with("name", file));
+    let set = Element::new("SourceFileSet").with("language", "C99");
+    let library = Element::new("Library")
+        .with("name", "m")
+        .with("external", true)
+        .with("description", "The mathematical functions of C");
+    let configuration = Element::new("BuildConfiguration")
+        .with("modelIdentifier", name)
+        .holding([set.holding(files), library]);
+    Element::new("fmiBuildDescription")
+        .with("fmiVersion", VERSION)
+        .holding([configuration])
+        .document()
+}
+
+/// A number as XML writes it.
+fn number(value: f64) -> String {
+    format!("{value:?}")
+}
+
+/// All variables in the order of their value references.
+fn described(program: &Program, variables: &Variables, units: &mut Units) -> Vec<Element> {
+    let info = &program.info;
+    let mut all = vec![
+        variable(variables.time, Variables::TIME)
+            .with("description", "time")
+            .with("causality", "independent")
+            .with("variability", "continuous")
+            .with("unit", units.of_time()),
+    ];
+    for ((k, parameter), fixed) in info.parameters.iter().enumerate().zip(&variables.fixed) {
+        let variability = if *fixed { "fixed" } else { "tunable" };
+        let element = quantity(parameter, variables.parameters + k, units)
+            .with("causality", "parameter")
+            .with("variability", variability)
+            .with("start", number(parameter.value));
+        all.push(element);
+    }
+    let inputs = &info.inputs[..info.declared_inputs];
+    for (k, input) in inputs.iter().enumerate() {
+        let element = quantity(input, variables.inputs + k, units)
+            .with("causality", "input")
+            .with("variability", "continuous")
+            .with("start", number(0.0));
+        all.push(element);
+    }
+    for (k, state) in info.states.iter().enumerate() {
+        let dependent =
+            (k.checked_sub(info.speeds)).is_some_and(|q| program.dependent.contains(&q));
+        let initial = if dependent { "approx" } else { "exact" };
+        let element = quantity(state, variables.states + k, units)
+            .with("causality", "output")
+            .with("variability", "continuous")
+            .with("initial", initial)
+            .with("start", number(state.value));
+        all.push(element);
+    }
+    for (k, state) in info.states.iter().enumerate() {
+        let element = variable(&format!("der({})", state.name), variables.rates + k)
+            .with("description", format!("rate of {}", state.name))
+            .with("causality", "local")
+            .with("variability", "continuous")
+            .with("initial", "calculated")
+            .maybe("unit", units.of_rate(state))
+            .with("derivative", variables.states + k);
+        all.push(element);
+    }
+    for (k, output) in info.outputs.iter().enumerate() {
+        let element = quantity(output, variables.outputs + k, units)
+            .with("causality", "output")
+            .with("variability", "continuous")
+            .with("initial", "calculated");
+        all.push(element);
+    }
+    for reference in variables.switches..variables.end {
+        let name = format!("switch[{}]", reference - variables.switches + 1);
+        let element = variable(&name, reference)
+            .with(
+                "description",
+                "event indicator: negative where time has switched the equations since the last event",
+            )
+            .with("causality", "local")
+            .with("variability", "continuous")
+            .with("initial", "calculated");
+        all.push(element);
+    }
+    all
+}
+
+fn variable(name: &str, reference: usize) -> Element {
+    Element::new("Float64")
+        .with("name", name)
+        .with("valueReference", reference)
+}
+
+/// A quantity of the spec, with its range.
+fn quantity(quantity: &Quantity, reference: usize, units: &mut Units) -> Element {
+    let [least, most] = quantity
+        .range
+        .map(|end| end.is_finite().then(|| number(end)));
+    let (unit, shown) = units.of(quantity).unzip();
+    let about = (!quantity.about.is_empty()).then_some(&quantity.about);
+    variable(&quantity.name, reference)
+        .maybe("description", about)
+        .maybe("unit", unit)
+        .maybe("displayUnit", shown.flatten())
+        .maybe("min", least)
+        .maybe("max", most)
+}

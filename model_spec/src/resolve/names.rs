@@ -205,6 +205,14 @@ impl<'a> Resolver<'a> {
 
     fn unknown_reference(&self, target: Target, name: &str, span: &Span) -> Diagnostic {
         let word = target.word();
+        let mut items = self.ast.items(target.section()).iter();
+        if items.any(|item| item.name.value == name) {
+            let message = format!("the {word} `{}` cannot be named here", shown(name));
+            let help = "it depends on what is defined here: pseudo-velocities are combinations of `dot(q)`";
+            return Diagnostic::error(Code::UnknownReference, message)
+                .at(span.clone(), "")
+                .help(help);
+        }
         let known: Vec<&str> = match target {
             Target::Frame => self.frames.keys().copied().collect(),
             Target::Point => self.points.keys().copied().collect(),

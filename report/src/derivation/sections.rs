@@ -57,7 +57,13 @@ pub(super) fn sections(w: &mut Writer<'_>, stage: Stage) -> finding::Outcome<Vec
 
 /// The equations of motion alone.
 pub(super) fn equations_of_motion(w: &mut Writer<'_>) -> Vec<Section> {
-    vec![equations::motion(w)]
+    let mut section = equations::motion(w);
+    if !equations::are_written_out(w) {
+        section.blocks.push(phrases::sentence(
+            "M, b and Π of Appell's equations M ω̇ + b = Π are those of the derivation.",
+        ));
+    }
+    vec![section]
 }
 
 /// The sections of a page about linear equations.

@@ -7,7 +7,10 @@ use crate::text::with_unit;
 
 /// The verdict in one sentence, with the alternatives.
 pub fn sentence(report: &Report) -> String {
-    let statement = statement(report) + &not_found(report);
+    let mut statement = statement(report);
+    if report.verdict == GapVerdict::Unexplained {
+        statement += &not_found(&report.failed);
+    }
     let Some((probability, same, rivals)) = alternatives(report) else {
         return statement;
     };
@@ -26,26 +29,19 @@ pub fn sentence(report: &Report) -> String {
     format!("{statement} (probability {sure}{values}){same}{rivals}")
 }
 
-/// `; the search of a, b did not converge`, where nothing of the library is found.
-fn not_found(report: &Report) -> String {
+/// `; the search of a, b did not converge, so that these are not ruled out`
+fn not_found(failed: &[(Vec<String>, String)]) -> String {
     /// Longer lists are for the page.
     const MOST: usize = 3;
-    let failed = report
-        .failed
-        .iter()
-        .filter(|(effects, _)| !effects.is_empty());
-    let failed: Vec<String> = failed.map(|(effects, _)| joined(effects)).collect();
-    if report.verdict != GapVerdict::Unexplained || failed.is_empty() {
+    let failed = failed.iter().filter(|(effects, _)| !effects.is_empty());
+    let mut names: Vec<String> = failed.map(|(effects, _)| joined(effects)).collect();
+    if names.is_empty() {
         return String::new();
     }
-    let more = failed.len().saturating_sub(MOST);
-    let more = if more > 0 {
-        format!(" and {more} more")
-    } else {
-        String::new()
-    };
-    let first = failed[..failed.len().min(MOST)].join(", ");
-    format!("; the search of {first}{more} did not converge, so that these are not ruled out")
+    let more = names.split_off(names.len().min(MOST)).len();
+    let more = (more > 0).then(|| format!(" and {more} more"));
+    let (names, more) = (names.join(", "), more.unwrap_or_default());
+    format!("; the search of {names}{more} did not converge, so that these are not ruled out")
 }
 
 /// The hypothesis after the leading one, with its probability.
@@ -425,5 +421,25 @@ pub fn joined(effects: &[String]) -> String {
         "nominal model".to_owned()
     } else {
         effects.join(" + ")
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_search_that_did_not_converge_rules_nothing_out() {
+        let failed = |names: &[&str]| {
+            let names = names
+                .iter()
+                .map(|name| (vec![(*name).to_owned()], String::new()));
+            names.collect::<Vec<_>>()
+        };
+        assert_eq!(not_found(&[(Vec::new(), String::new())]), "");
+        let told = not_found(&failed(&["dry friction at x"]));
+        assert!(told.starts_with("; the search of dry friction at x did not converge"));
+        let told = not_found(&failed(&["a", "b", "c", "d", "e"]));
+        assert!(told.starts_with("; the search of a, b, c and 2 more did"));
     }
 }

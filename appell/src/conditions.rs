@@ -77,7 +77,7 @@ fn quantity(
 }
 
 /// The unit of a rate: that of its coordinate per second.
-fn per_second(unit: &Unit) -> Unit {
+pub(crate) fn per_second(unit: &Unit) -> Unit {
     let written = format!("({})/s", unit.text);
     units::parse(&written).unwrap_or_else(|_| unit.clone())
 }

@@ -41,6 +41,7 @@ fields! {
     Require "require" "Lower bounds of feasible motions.",
     Chart "chart" "Axes of a stability chart.",
     Grid "grid" "Grid of a stability chart.",
+    Equation "equation" "Equations of motion typed by hand.",
     About "about" "Steady motion of a symbolic linearisation.",
     At "at" "Steady motion about which a law is designed.",
     Inputs "inputs" "Inputs of a law.",

@@ -28,6 +28,7 @@
 pub mod capture;
 pub mod cases;
 pub mod check;
+pub mod comparison;
 mod conditions;
 pub mod control;
 pub mod derivation;

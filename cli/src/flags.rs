@@ -19,6 +19,7 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Require => "--require",
         Field::Chart => "--chart",
         Field::Grid => "--grid",
+        Field::Equation => "--equation",
         Field::About => "--about",
         Field::At => "--at",
         Field::Outputs => "--outputs",

@@ -66,6 +66,53 @@ fn a_thorough_check_tells_what_was_proven_against_whom() {
 }
 
 #[test]
+fn typed_equations_are_compared_as_functions() {
+    let folder = Folder::new();
+    let check = |equation: &'static str| {
+        [
+            "check",
+            "pendulum",
+            "--equation",
+            equation,
+            "--json",
+            "check.json",
+        ]
+    };
+    let told = folder.done(&check("dot(omega) = (tau/l - m*g*sin(theta))/(I/l + m*l)"));
+    assert!(
+        told.stdout.contains("dot(omega)        identical"),
+        "{}",
+        told.stdout
+    );
+    let typed = &folder.json("check.json")["specs"][0]["typed"];
+    assert_eq!(typed["equations"][0]["result"], "identical");
+    assert!(typed["error_bound"].as_f64().expect("a bound") < 1e-9);
+
+    // The identity test does not know the sign of a root.
+    let told = folder.done(&check("dot(theta) = omega*sqrt(m^2)/m"));
+    assert!(
+        told.stdout.contains("dot(theta)        equal at"),
+        "{}",
+        told.stdout
+    );
+
+    let wrong = check("dot(omega) = (tau + m*g*l*sin(theta))/(I + m*l^2)");
+    folder.fails(4, &wrong, &["a typed equation is not the derived one"]);
+    let spec = &folder.json("check.json")["specs"][0];
+    assert_eq!(spec["ok"], false);
+    assert_eq!(spec["typed"]["equations"][0]["result"], "different");
+
+    folder.fails(
+        2,
+        &check("dot(thet) = omega"),
+        &["--equation", "no state `thet`", "`theta`"],
+    );
+    folder.fails(2, &check("dot(theta) = omga"), &["omga", "`omega`"]);
+    folder.fails(2, &check("dot(theta) = omega/0"), &["division by zero"]);
+    folder.fails(2, &check("omega"), &["write `dot(NAME) = EXPRESSION`"]);
+}
+
+#[test]
 fn a_thorough_check_without_time_says_what_it_did_not_compare() {
     let folder = Folder::new();
     let check = [

@@ -16,6 +16,7 @@ mod kane;
 mod lagrange;
 mod loads;
 mod points;
+mod typed;
 
 use appell_spec::mechanism::{Constraint, ConstraintKind, Mechanism};
 
@@ -33,6 +34,7 @@ use lagrange::Lagrange;
 use points::Points;
 
 pub use comparison::{Against, Agreement, Comparison, FormulationComparison};
+pub use typed::{Typed, compare_typed};
 
 /// Largest admissible error probability of an identity proof.
 const GREATEST_ERROR: f64 = 1e-9;
@@ -302,30 +304,58 @@ fn decide(
     claims: Vec<Claim>,
     is_time: &dyn Fn() -> bool,
 ) -> FormulationComparison {
-    let mut points = None;
-    let mut error_bound = 0.0;
+    let mut judge = Judge::new(mechanism, derivation);
     let mut comparisons = Vec::with_capacity(claims.len());
     for claim in claims {
         let pairs = claim.pairs.unwrap_or_default();
-        let agreement = if let Some(error) = proof(algebra, &pairs, seed(mechanism), is_time) {
-            error_bound += error;
-            Agreement::Identical
-        } else if pairs.is_empty() || !is_time() {
-            Agreement::NotReached
-        } else {
-            let new = || Points::new(&algebra.graph, mechanism, &derivation.symbols);
-            let points = points.get_or_insert_with(new);
-            points.compare(&algebra.graph, &pairs)
-        };
         comparisons.push(Comparison {
             against: claim.against,
             quantity: claim.quantity,
-            agreement,
+            agreement: judge.agreement(algebra, &pairs, is_time),
         });
     }
     FormulationComparison {
         comparisons,
-        error_bound,
+        error_bound: judge.error_bound,
+    }
+}
+
+/// Decides whether spellings agree, and adds up by how much its proofs may err.
+struct Judge<'a> {
+    mechanism: &'a Mechanism,
+    derivation: &'a Derivation,
+    points: Option<Points>,
+    error_bound: f64,
+}
+
+impl<'a> Judge<'a> {
+    fn new(mechanism: &'a Mechanism, derivation: &'a Derivation) -> Self {
+        Self {
+            mechanism,
+            derivation,
+            points: None,
+            error_bound: 0.0,
+        }
+    }
+
+    /// A proof where there is one, a comparison at points elsewhere.
+    fn agreement(
+        &mut self,
+        algebra: &mut Algebra,
+        pairs: &[Pair],
+        is_time: &dyn Fn() -> bool,
+    ) -> Agreement {
+        if let Some(error) = proof(algebra, pairs, seed(self.mechanism), is_time) {
+            self.error_bound += error;
+            return Agreement::Identical;
+        }
+        if pairs.is_empty() || !is_time() {
+            return Agreement::NotReached;
+        }
+        let symbols = &self.derivation.symbols;
+        let new = || Points::new(&algebra.graph, self.mechanism, symbols);
+        let points = self.points.get_or_insert_with(new);
+        points.compare(&algebra.graph, pairs)
     }
 }
 

@@ -311,6 +311,14 @@ impl Model {
         })
     }
 
+    /// Typed equations of motion against the derived ones, as JSON.
+    fn _compare(&self, py: Python<'_>, equations: Values) -> PyResult<String> {
+        self.of_source(py, move |source| {
+            let compared = source.compare(&assignments(&equations))?;
+            Ok(compared.json().to_string())
+        })
+    }
+
     /// The equations as a Python module.
     fn _module(&self, py: Python<'_>) -> PyResult<String> {
         self.of_source(py, Source::python)

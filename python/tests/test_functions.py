@@ -76,6 +76,19 @@ def test_sympy_has_the_same_expressions(model, name):
             assert abs(difference) < sympy.Float("1e-40") * size
 
 
+@pytest.mark.parametrize("name", ["unicycle", "rolling_wheel", "cart_pole", "euc_3dof"])
+def test_sympy_expressions_are_the_derived_ones(model, name):
+    """By the identity test of the derivation, over a finite field."""
+    sympy = pytest.importorskip("sympy")
+    m = model(name)
+    x, u, p = (sympy.symbols(list(names), real=True) for names in (m.states, m.inputs, m.parameters))
+    rates = m.functions(sympy).rates(sympy.Integer(0), x, u, p)
+    compared = m.compare(dict(zip(m.states, rates, strict=True)))
+    assert set(compared.values()) == {"identical"}
+    wrong = m.compare({m.states[0]: rates[0] + sympy.Rational(1, 1000) * x[0]})
+    assert wrong == {m.states[0]: "different"}
+
+
 def test_sympy_derives_what_a_hand_derives(model):
     sympy = pytest.importorskip("sympy")
     m = model("pendulum")

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use appell::check::{self, Checked, Thorough};
+use appell::setup::Assignment;
 use appell::{Source, files};
 use serde_json::{Value, json};
 
@@ -19,7 +20,8 @@ use crate::{output, progress};
 #[command(after_long_help = "\
 Examples:
   appell check my_pendulum.toml
-  appell check unicycle --thorough")]
+  appell check unicycle --thorough
+  appell check pendulum --equation 'dot(omega) = (tau - m*g*l*sin(theta))/(I + m*l^2)'")]
 pub(crate) struct Check {
     /// Names of shipped mechanisms or paths of specs
     #[arg(required = true, value_name = "MODEL")]
@@ -33,6 +35,12 @@ pub(crate) struct Check {
     /// and checked at random points in the declared ranges elsewhere.
     #[arg(long)]
     thorough: bool,
+    /// Compare an equation of motion that you derived with appell's: `dot(NAME) = EXPRESSION`
+    ///
+    /// The name is that of a pseudo-velocity or coordinate; the expression may use time, states, inputs and
+    /// parameters. Spelling does not matter: the two are compared as functions, as by `--thorough`.
+    #[arg(long = "equation", value_name = "EQUATION", value_parser = equation)]
+    equations: Vec<Assignment>,
     /// Time limit of this comparison for one mechanism, in s
     ///
     /// Quantities not compared by then are listed, and the check fails.
@@ -69,7 +77,7 @@ impl Check {
         }
     }
 
-    /// Checks one spec. Returns its JSON entry, and a failure if the formulations disagree.
+    /// Checks one spec. Returns its JSON entry, and a failure if equations disagree.
     fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Error>), Error> {
         let source = Source::find(model)?;
         let spinner = progress::spinner(&format!("deriving {}", source.file));
@@ -87,14 +95,27 @@ impl Check {
         if !checked.warnings().diagnostics().is_empty() {
             tell(&(shown(checked.warnings()).trim_end().to_owned() + "\n"));
         }
+        let typed = (!self.equations.is_empty()).then(|| source.compare(&self.equations));
+        let typed = typed.transpose()?;
+        if let (Some(typed), false) = (&typed, quiet) {
+            output::print(&typed.to_string())?;
+        }
         let mut entry = appell::json::check(&checked);
-        let Some(thorough) = thorough else {
+        let mut disagreements = Vec::new();
+        if let Some(thorough) = thorough {
+            disagreements.extend(thorough.failure());
+            entry["thorough"] = appell::json::thorough(&thorough);
+        }
+        if let Some(typed) = typed {
+            disagreements.extend(typed.failure());
+            entry["typed"] = typed.json();
+        }
+        if disagreements.is_empty() {
             return Ok((entry, None));
-        };
-        let disagreement = thorough.failure();
-        entry["ok"] = disagreement.is_none().into();
-        entry["thorough"] = appell::json::thorough(&thorough);
-        Ok((entry, disagreement.map(Error::from)))
+        }
+        entry["ok"] = false.into();
+        let disagreements = disagreements.into_iter().map(Error::from);
+        Ok((entry, Some(Error::Several(disagreements.collect()))))
     }
 
     fn compare(&self, checked: &Checked, source: &Source) -> Result<Thorough, Error> {
@@ -103,6 +124,11 @@ impl Check {
         spinner.finish_and_clear();
         Ok(thorough?)
     }
+}
+
+fn equation(text: &str) -> Result<Assignment, String> {
+    let written = |_| "write `dot(NAME) = EXPRESSION`".to_owned();
+    text.parse().map_err(written)
 }
 
 fn seconds(text: &str) -> Result<Duration, String> {

@@ -24,6 +24,8 @@ pub enum Scope {
     Law,
     /// Parameters, the state and the rates of the coordinates.
     Motion,
+    /// Parameters, signals, time, the state and the inputs.
+    Equation,
 }
 
 /// An expression and where it stands.
@@ -84,6 +86,7 @@ pub fn formula(
         Scope::Schedule => Place::scheduled(what),
         Scope::Law => Place::law(what),
         Scope::Motion => Place::motion(what),
+        Scope::Equation => Place::equation(what),
     };
     let plain = is_plain(&ast);
     let numbers = any(&ast, &is_bare_number);

@@ -94,6 +94,11 @@ impl Place {
         Self::new(what, COORDINATES | RATES | SPEEDS, Smooth::Any)
     }
 
+    /// The right-hand side of an equation of motion.
+    pub(super) const fn equation(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | SPEEDS | INPUTS | TIME, Smooth::Any)
+    }
+
     /// A quantity of interest.
     pub(super) const OUTPUT: Self = Self::new("an output", u8::MAX, Smooth::Any);
     /// A named expression.

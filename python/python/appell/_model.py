@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import types
 import warnings
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -485,6 +486,21 @@ class Model(_appell.Model):
         bound = {name: partial(value, xp) if callable(value) else value for name, value in public.items()}
         return types.SimpleNamespace(**bound)
 
+    def compare(self, equations: Mapping[str, Any]) -> dict[str, str]:
+        """Compares equations of motion that you derived with appell's: rates by the names of states, as texts in the
+        language of specs or as SymPy expressions with the names of the spec.
+
+        The answer for each: `identical` as functions, by an identity test with a bounded error probability; `equal` at
+        random points, where that test cannot tell; `different`; or `undefined` at all points.
+
+        >>> import appell
+        >>> appell.load("pendulum").compare({"omega": "(tau - m*g*l*sin(theta))/(I + m*l^2)", "theta": "-omega"})
+        {'omega': 'identical', 'theta': 'different'}
+        """
+        typed = [(name, _typed(expression)) for name, expression in equations.items()]
+        compared = json.loads(self._compare(typed))["equations"]
+        return {equation["rate"]: equation["result"] for equation in compared}
+
     def __reduce__(self) -> tuple[Any, ...]:
         reference = self._reference
         return _restored, (self.spec if reference is None else reference, reference is None)
@@ -495,6 +511,14 @@ class Model(_appell.Model):
 
 def _restored(spec: str, text: bool) -> Model:
     return Model(spec, text=text)
+
+
+def _typed(expression: Any) -> str:
+    """An expression in the language of specs; SymPy writes some functions and powers otherwise."""
+    if isinstance(expression, str):
+        return expression
+    written = str(expression).replace("**", "^")
+    return re.sub(r"\b(Abs|log)\(", lambda found: {"Abs": "abs(", "log": "ln("}[found[0][:-1]], written)
 
 
 def _number(value: Any) -> float:

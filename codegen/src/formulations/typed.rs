@@ -1,0 +1,48 @@
+//! Equations of motion that somebody typed, against the derived ones.
+
+use appell_spec::mechanism::Mechanism;
+
+use super::Judge;
+use super::comparison::{Agreement, Pair};
+use crate::mechanics::algebra::Algebra;
+use crate::mechanics::{Derivation, seed};
+use crate::symbolic::Expr;
+
+/// How typed equations compare with the derived ones.
+#[derive(Debug, Clone)]
+pub struct Typed {
+    /// One per equation.
+    pub agreements: Vec<Agreement>,
+    /// Bound on the probability that any equation was taken for identical though it is not.
+    pub error_bound: f64,
+}
+
+/// Compares rates of states, by their index, with what was typed for them. The expressions belong to the
+/// graph of the derivation.
+///
+/// # Panics
+///
+/// If there is no state of an index.
+pub fn compare_typed(
+    mechanism: &Mechanism,
+    derivation: &Derivation,
+    typed: &[(usize, Expr)],
+) -> Typed {
+    let graph = derivation.algebra.graph.clone();
+    let mut algebra = Algebra::new(graph, &derivation.symbols, seed(mechanism));
+    let mut judge = Judge::new(mechanism, derivation);
+    let accelerations = &derivation.motion.accelerations;
+    let derived = [accelerations.as_slice(), &derivation.coordinate_rates].concat();
+    let agreements = typed.iter().map(|&(state, other)| {
+        let pair = Pair {
+            entry: String::new(),
+            derived: derived[state],
+            other,
+        };
+        judge.agreement(&mut algebra, &[pair], &|| true)
+    });
+    Typed {
+        agreements: agreements.collect(),
+        error_bound: judge.error_bound,
+    }
+}

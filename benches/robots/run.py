@@ -77,9 +77,9 @@ def largest(values):
 class Differences(dict):
     """Largest differences by quantity, relative to the largest entry."""
 
-    def add(self, what, ours, theirs):
+    def add(self, what, ours, theirs, scale=None):
         ours, theirs = list(ours), list(theirs)
-        scale = largest(theirs) or 1.0
+        scale = scale or largest(theirs) or 1.0
         finite = all(value is not None and math.isfinite(value) for value in ours)
         error = largest(a - b for a, b in zip(ours, theirs, strict=True)) / scale if finite else math.inf
         self[what] = max(self.get(what, 0.0), error)
@@ -113,6 +113,10 @@ def compare(vectors, block, robot, appell, folder):
     answers = json.loads(answer)["cases"]
     place = [order.index(joint) for joint in joints]
     differences = Differences()
+    # Some programs count the links that stand still, so that energies compare up to a constant.
+    heights = [[at_rest["potential_energy"] for at_rest in answers[::2]], [state[block]["potential_energy"] for state in states]]
+    ours, theirs = ([value - values[0] for value in values] for values in heights)
+    differences.add("V", ours, theirs, largest(heights[1]))
     for state, at_rest, driven in zip(states, answers[::2], answers[1::2]):
         rigid, here = state["rigid"], state.get(block, {})
         mass = [[at_rest["mass_matrix"][i][j] for j in place] for i in place]
@@ -123,7 +127,6 @@ def compare(vectors, block, robot, appell, folder):
         bias = [at_rest["bias"][i] - at_rest["generalized_forces"][i] for i in place]
         differences.add("bias", bias, here["bias"])
         differences.add("T", [at_rest["kinetic_energy"]], [here["kinetic_energy"]])
-        differences.add("V", [at_rest["potential_energy"]], [here["potential_energy"]])
         differences.add("qdd", [driven["rates"][f"v_{joint}"] for joint in joints], here["qdd"])
         positions = {**rigid["leaf_positions"], vectors["last_link"]: rigid["last_link_position"]}
         for name, position in positions.items():

@@ -120,7 +120,7 @@ fn compiler(root: Element<'_>, findings: &Findings) -> Compiler {
         total_mass: None,
     };
     for element in children(root, "compiler") {
-        let mut word = |key: &str, words: &[&str]| -> Option<usize> {
+        let word = |key: &str, words: &[&str]| -> Option<usize> {
             let given = element.attribute_node(key)?;
             let found = words.iter().position(|word| *word == given.value());
             if found.is_none() {

@@ -63,7 +63,6 @@ pub(crate) struct Joint {
     pub(crate) stiffness: f64,
     /// The coordinate at which the spring is relaxed.
     pub(crate) relaxed: f64,
-    pub(crate) place: Span,
 }
 
 /// A coordinate that follows from another one, or has one value.
@@ -78,7 +77,6 @@ pub(crate) struct Coupling {
     pub(crate) zeros: [f64; 2],
     /// The polynomial, from its constant on.
     pub(crate) coefficients: Vec<f64>,
-    pub(crate) place: Span,
 }
 
 /// What has no place in a spec.

@@ -101,13 +101,10 @@ impl Rotation {
     /// A turn about a unit vector.
     pub(crate) fn about_vector(axis: Vector, angle: f64) -> Self {
         let (sin, cos) = sin_cos(angle);
-        let mut rows = [[0.0; 3]; 3];
+        let mut rows = axis.map(|a| axis.map(|b| (1.0 - cos) * a * b));
         for i in 0..3 {
-            for j in 0..3 {
-                rows[i][j] = (1.0 - cos) * axis[i] * axis[j];
-            }
-            rows[i][i] += cos;
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            rows[i][i] += cos;
             rows[j][k] -= sin * axis[i];
             rows[k][j] += sin * axis[i];
         }
@@ -204,8 +201,6 @@ impl Rotation {
         if right { Self(whole) } else { self }
     }
 
-    /// The same rotation with an angle that differs by less than `within` from a right one made right, and how
-    /// many angles that changes.
     pub(crate) fn is_identity(self) -> bool {
         self == Self::IDENTITY
     }
@@ -260,7 +255,7 @@ impl Rotation {
         let u = column(rest, k);
         let next = 3 - j - k;
         let handed = if (j + 1) % 3 == k { 1.0 } else { -1.0 };
-        let second = clean(handed * (-u[next]).atan2(u[k]));
+        let second = clean(handed * u[next].atan2(u[k]));
         let rest = Self::about(j, -second).then(rest);
         let (a, b) = ((k + 1) % 3, (k + 2) % 3);
         let third = clean(rest.0[b][a].atan2(rest.0[a][a]));
@@ -387,9 +382,17 @@ mod tests {
 
     #[test]
     fn one_vector_is_turned_to_another() {
-        for (from, to) in [([0.0, 0.0, 1.0], [0.6, 0.0, 0.8]), ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0])] {
-            let turned = Rotation::between(from, to).of(from);
-            assert!(minus(turned, to).iter().all(|d| d.abs() < 1e-15), "{turned:?}");
+        let mut numbers = Numbers(3);
+        let mut pairs = vec![([0.0, 0.0, 1.0], [0.6, 0.0, 0.8]), ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0])];
+        for _ in 0..100 {
+            let mut any = || unit([0, 1, 2].map(|_| numbers.next())).unwrap_or([1.0, 0.0, 0.0]);
+            pairs.push((any(), any()));
+        }
+        for (from, to) in pairs {
+            let rotation = Rotation::between(from, to);
+            let missed = minus(rotation.of(from), to);
+            assert!(missed.iter().all(|d| d.abs() < 1e-15), "{from:?} {to:?} {missed:?}");
+            assert!(error(rotation.then(rotation.inverse()), Rotation::IDENTITY) < 1e-15);
         }
     }
 }

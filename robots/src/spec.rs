@@ -55,6 +55,8 @@ pub(crate) struct Written {
 
 /// Writes the spec of a robot.
 pub(crate) fn write(file: &str, kind: &str, robot: &Robot, tree: &Tree, options: &Options) -> Written {
+    // The folder may be another one where the spec is read.
+    let file = file.rsplit('/').next().unwrap_or(file);
     let mut writer = Writer::new(robot, tree, options);
     let letters = writer.gravity(robot.gravity);
     for index in 0..tree.bodies.len() {

@@ -277,7 +277,6 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
         friction: number(dynamics, "friction", 0.0, findings),
         stiffness: 0.0,
         relaxed: 0.0,
-        place: tag(element),
     })
 }
 
@@ -347,7 +346,6 @@ fn mimic<'x>(
         other: follows.then(|| other.value().to_owned()),
         zeros: [0.0; 2],
         coefficients: if follows { vec![offset, multiplier] } else { vec![offset] },
-        place: tag(mimic),
     })
 }
 

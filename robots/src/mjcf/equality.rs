@@ -96,6 +96,5 @@ fn coupling(element: Element<'_>, reader: &Reader<'_, '_>, count: usize) -> Opti
         other: other.map(|other| other.name.clone()),
         zeros: [joint.zero, other.map_or(0.0, |other| other.zero)],
         coefficients,
-        place: tag(element),
     })
 }

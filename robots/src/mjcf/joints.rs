@@ -99,7 +99,6 @@ impl<'x> Reader<'x, '_> {
             friction: number("frictionloss").unwrap_or_default(),
             stiffness: number("stiffness").unwrap_or_default(),
             relaxed: angle(number("springref").unwrap_or_default()),
-            place: tag(element),
             name,
         })
     }

@@ -29,11 +29,11 @@ RIGID = ["damping", "armature", "springs", "compensation"]
 def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("vectors", type=Path)
-    parser.add_argument("names", nargs="*")
+    parser.add_argument("names", nargs="*", metavar="NAME.FORMAT")
     parser.add_argument("--appell", default="appell")
     parser.add_argument("--env", type=Path, default=Path("."))
     parser.add_argument("--out", type=Path, help="write the table there as well")
-    return parser.parse_args()
+    return parser.parse_intermixed_args()
 
 
 def robot_file(vectors, folder, env):
@@ -138,12 +138,14 @@ def compare(vectors, block, robot, appell, folder):
 
 def main():
     options = arguments()
-    found = sorted(path for path in options.vectors.glob("*.json") if not path.stem.startswith(("robots", "tricky")))
+    found = sorted(path for path in options.vectors.glob("*.json"))
     lines = ["| robot | block | joints | M | bias | T | V | positions | qdd | import | evaluate |", "|---|---|---|---|---|---|---|---|---|---|---|"]
     print("\n".join(lines))
     failed = 0
     for path in found:
         vectors = json.loads(path.read_text())
+        if "states" not in vectors:
+            continue
         if (options.names and path.stem not in options.names) or (not options.names and vectors["base"] != "fixed"):
             continue
         robot = robot_file(vectors, path.parent, options.env)

@@ -1,5 +1,6 @@
 //! Mass, centre of mass and inertia: turned, shifted, put together.
 
+use crate::letters::plain;
 use crate::rotation::{Pose, Rotation, Vector, add, dot, minus, scaled};
 
 /// A symmetric tensor: xx, yy, zz, xy, xz, yz.
@@ -41,13 +42,27 @@ pub(crate) fn turned(rotation: Rotation, tensor: Tensor) -> Tensor {
 
 fn without_rounding(tensor: Tensor) -> Tensor {
     let largest = tensor.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
-    tensor.map(|entry| if entry.abs() <= ROUNDING * largest { 0.0 } else { entry })
+    tensor.map(|entry| {
+        if entry.abs() <= ROUNDING * largest {
+            0.0
+        } else {
+            entry
+        }
+    })
 }
 
 /// A position whose components that vanish up to rounding are zero.
 pub(crate) fn position_without_rounding(position: Vector) -> Vector {
-    let largest = position.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
-    position.map(|entry| if entry.abs() <= ROUNDING * largest { 0.0 } else { entry })
+    let largest = position
+        .iter()
+        .fold(0.0_f64, |most, one| most.max(one.abs()));
+    position.map(|entry| {
+        if entry.abs() <= ROUNDING * largest {
+            0.0
+        } else {
+            entry
+        }
+    })
 }
 
 /// The tensor of a mass at a distance from the point about which it is taken.
@@ -93,7 +108,10 @@ impl Inertia {
         let centre = if mass == 0.0 {
             self.centre
         } else {
-            let moment = add(scaled(self.centre, self.mass), scaled(other.centre, other.mass));
+            let moment = add(
+                scaled(self.centre, self.mass),
+                scaled(other.centre, other.mass),
+            );
             position_without_rounding(scaled(moment, 1.0 / mass))
         };
         let about = |body: &Self| sum(body.tensor, of_point(body.mass, minus(body.centre, centre)));
@@ -108,7 +126,7 @@ impl Inertia {
     pub(crate) fn impossible(&self) -> Option<String> {
         let moments = principal(self.tensor);
         let [small, middle, large] = moments;
-        let number = |x: f64| format!("{}", (x * 1e6 / large.abs()).round() * large.abs() / 1e6);
+        let number = |x: f64| plain(format!("{x:.3e}").parse().unwrap_or(x));
         if self.mass < 0.0 {
             return Some(format!("its mass, {} kg, is negative", self.mass));
         }
@@ -150,7 +168,10 @@ fn principal(tensor: Tensor) -> Vector {
             a[p][k] = c * x - s * y;
             a[q][k] = s * x + c * y;
         }
-        let largest = a.iter().flatten().fold(0.0_f64, |most, one| most.max(one.abs()));
+        let largest = a
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, one| most.max(one.abs()));
         for (i, j) in [(p, q), (q, p)] {
             if a[i][j].abs() <= 1e-16 * largest {
                 a[i][j] = 0.0;
@@ -170,12 +191,21 @@ mod tests {
     fn principal_moments_do_not_depend_on_the_frame() {
         let rotation = Rotation::roll_pitch_yaw([0.3, -0.7, 1.9]);
         let moments = principal(turned(rotation, [1.0, 2.0, 2.5, 0.0, 0.0, 0.0]));
-        assert!(minus(moments, [1.0, 2.0, 2.5]).iter().all(|d| d.abs() < 1e-14), "{moments:?}");
+        assert!(
+            minus(moments, [1.0, 2.0, 2.5])
+                .iter()
+                .all(|d| d.abs() < 1e-14),
+            "{moments:?}"
+        );
     }
 
     #[test]
     fn two_halves_of_a_rod_are_the_rod() {
-        let half = |x: f64| Inertia { mass: 1.0, centre: [x, 0.0, 0.0], tensor: [0.0, 1.0 / 12.0, 1.0 / 12.0, 0.0, 0.0, 0.0] };
+        let half = |x: f64| Inertia {
+            mass: 1.0,
+            centre: [x, 0.0, 0.0],
+            tensor: [0.0, 1.0 / 12.0, 1.0 / 12.0, 0.0, 0.0, 0.0],
+        };
         let rod = half(-0.5).with(&half(0.5));
         assert_eq!((rod.mass, rod.centre), (2.0, [0.0; 3]));
         assert!((rod.tensor[1] - 2.0 * 4.0 / 12.0).abs() < 1e-15);

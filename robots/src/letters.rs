@@ -26,7 +26,10 @@ impl Letters {
             "inertias" => Self::Inertias,
             "all" => Self::All,
             names => {
-                let names = names.split(',').map(str::trim).filter(|name| !name.is_empty());
+                let names = names
+                    .split(',')
+                    .map(str::trim)
+                    .filter(|name| !name.is_empty());
                 Self::Of(names.map(str::to_owned).collect())
             }
         }
@@ -96,7 +99,10 @@ impl<'a> Numbers<'a> {
             Letters::Inertias => number.kind == Kind::Inertial,
             Letters::All => number.kind == Kind::Inertial || number.value != 0.0,
             Letters::Of(chosen) => {
-                let of_it: Vec<&String> = chosen.iter().filter(|one| names_of.contains(&one.as_str())).collect();
+                let of_it: Vec<&String> = chosen
+                    .iter()
+                    .filter(|one| names_of.contains(&one.as_str()))
+                    .collect();
                 self.used.extend(of_it.iter().map(|one| (*one).clone()));
                 // A name alone means what is there; a letter means this number, whatever its value.
                 of_it.iter().any(|one| *one == number.letter)
@@ -138,7 +144,11 @@ impl<'a> Numbers<'a> {
 pub(crate) fn tidy(x: f64) -> f64 {
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     let rounded: f64 = format!("{x:.13e}").parse().unwrap_or(x);
-    let short = if (rounded - x).abs() <= ROUNDING * x.abs() { rounded } else { x };
+    let short = if (rounded - x).abs() <= ROUNDING * x.abs() {
+        rounded
+    } else {
+        x
+    };
     // A zero has no sign.
     short + 0.0
 }
@@ -178,7 +188,11 @@ fn angle(x: f64) -> Option<String> {
             -1.0 => "-pi".to_owned(),
             count => format!("{count}*pi"),
         };
-        return Some(if parts == 1 { head } else { format!("{head}/{parts}") });
+        return Some(if parts == 1 {
+            head
+        } else {
+            format!("{head}/{parts}")
+        });
     }
     None
 }

@@ -30,7 +30,7 @@ mod urdf;
 mod without;
 mod xml;
 
-use appell_spec::{Code, Diagnostic, Report, Severity, did_you_mean};
+use appell_spec::{Code, Diagnostic, Report, did_you_mean};
 
 pub use letters::Letters;
 pub use without::Without;
@@ -105,7 +105,8 @@ pub enum Failure {
 /// assert!(door.spec.contains("leaf = { parent = \"ground\", about_axis = \"z\", by = \"hinge\" }"));
 /// ```
 pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Failure> {
-    let fail = |findings: Vec<Diagnostic>| Failure::File(Box::new(Report::new(file, text, findings)));
+    let fail =
+        |findings: Vec<Diagnostic>| Failure::File(Box::new(Report::new(file, text, findings)));
     let document = xml::parse(text).map_err(|error| fail(vec![error]))?;
     let findings = xml::Findings::default();
     let root = document.root_element();
@@ -115,7 +116,9 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Fai
         other => {
             let message = format!("the file begins with `<{}>`", appell_spec::shown(other));
             let error = Diagnostic::error(Code::UnknownWord, message).at(xml::tag(root), "");
-            let help = did_you_mean(other, ["robot", "mujoco"], || "a URDF begins with `<robot>`, an MJCF with `<mujoco>`".to_owned());
+            let help = did_you_mean(other, ["robot", "mujoco"], || {
+                "a URDF begins with `<robot>`, an MJCF with `<mujoco>`".to_owned()
+            });
             return Err(fail(vec![error.help(help)]));
         }
     };
@@ -124,33 +127,49 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Fai
     }
     let nearly_right = snap::snap(&mut robot, options.snap);
     let tree = tree::merged(&robot.links, &findings);
-    if tree.bodies.is_empty() {
+    if tree.bodies.is_empty() && !findings.has_errors() {
         let help = "joints are revolute, continuous or prismatic (URDF), hinge or slide (MJCF)";
-        findings.error(Code::MissingSection, xml::tag(root), "the robot has no joint that moves", help);
+        findings.error(
+            Code::MissingSection,
+            xml::tag(root),
+            "the robot has no joint that moves",
+            help,
+        );
+    }
+    if findings.has_errors() {
+        return Err(fail(findings.into_inner()));
     }
     let findings = findings.into_inner();
-    if findings.iter().any(|finding| finding.severity == Severity::Error) {
-        return Err(fail(findings));
-    }
     let written = spec::write(file, kind, &robot, &tree, options);
     if let Some(name) = written.unused.first() {
         let known = written.known.iter().map(String::as_str);
-        let help = did_you_mean(name, known, || "name links, joints or parameters of the robot".to_owned());
+        let help = did_you_mean(name, known, || {
+            "name links, joints or parameters of the robot".to_owned()
+        });
         return Err(Failure::Unknown {
             name: name.clone(),
             help,
         });
     }
     let warnings = Report::new(file, text, findings);
-    let left_out = spec::grouped(&robot.left_out).into_iter().map(|(what, all)| LeftOut {
-        what: what.to_owned(),
-        lines: all.iter().map(|one| warnings.line_column(one.place.start).0).collect(),
-    });
+    let left_out = spec::grouped(&robot.left_out)
+        .into_iter()
+        .map(|(what, all)| LeftOut {
+            what: what.to_owned(),
+            lines: all
+                .iter()
+                .map(|one| warnings.line_column(one.place.start).0)
+                .collect(),
+        });
     Ok(Imported {
         spec: written.text,
         name: robot.name.clone(),
         joints: tree.bodies.len(),
-        bodies: tree.bodies.iter().filter(|body| !body.inertia.is_nothing()).count(),
+        bodies: tree
+            .bodies
+            .iter()
+            .filter(|body| !body.inertia.is_nothing())
+            .count(),
         left_out: left_out.collect(),
         nearly_right,
         warnings,

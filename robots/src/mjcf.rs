@@ -128,7 +128,9 @@ fn compiler(root: Element<'_>, findings: &Findings) -> Compiler {
                     Code::UnknownWord,
                     given.range_value(),
                     format!("`{key}` cannot be `{}`", appell_spec::shown(given.value())),
-                    did_you_mean(given.value(), words.iter().copied(), || format!("write {}", words.join(" or "))),
+                    did_you_mean(given.value(), words.iter().copied(), || {
+                        format!("write {}", words.join(" or "))
+                    }),
                 );
             }
             found
@@ -140,11 +142,20 @@ fn compiler(root: Element<'_>, findings: &Findings) -> Compiler {
             compiler.autolimits = on == 1;
         }
         if let Some(from) = word("inertiafromgeom", &["auto", "true", "false"]) {
-            compiler.inertia_from = [InertiaFrom::Either, InertiaFrom::Geoms, InertiaFrom::Inertial][from];
+            compiler.inertia_from = [
+                InertiaFrom::Either,
+                InertiaFrom::Geoms,
+                InertiaFrom::Inertial,
+            ][from];
         }
         if word("coordinate", &["local", "global"]) == Some(1) {
             let help = "global coordinates were removed from the format: save the file anew with MuJoCo 2.3 or older";
-            findings.error(Code::NotAllowedHere, tag(element), "`coordinate=\"global\"` is not read", help);
+            findings.error(
+                Code::NotAllowedHere,
+                tag(element),
+                "`coordinate=\"global\"` is not read",
+                help,
+            );
         }
         if let Some(given) = element.attribute_node("eulerseq") {
             compiler.angles.read_sequence(&given, findings);
@@ -155,12 +166,22 @@ fn compiler(root: Element<'_>, findings: &Findings) -> Compiler {
         {
             compiler.total_mass = Some(total);
         }
-        for key in ["boundmass", "boundinertia", "balanceinertia", "inertiagrouprange"] {
+        for key in [
+            "boundmass",
+            "boundinertia",
+            "balanceinertia",
+            "inertiagrouprange",
+        ] {
             if let Some(given) = element.attribute_node(key)
                 && !["0", "false"].contains(&given.value())
             {
                 let help = "masses and inertias are taken as they are in the file";
-                findings.warning(Code::NotAllowedHere, given.range(), format!("`{key}` is not applied"), help);
+                findings.warning(
+                    Code::NotAllowedHere,
+                    given.range(),
+                    format!("`{key}` is not applied"),
+                    help,
+                );
             }
         }
     }
@@ -211,7 +232,14 @@ impl<'x> Reader<'x, '_> {
                 "frame" => {
                     let pose = level.pose.then(self.pose(inner, None));
                     let class = self.class(inner, "childclass").or(level.class);
-                    self.level(inner, Level { pose, class, ..level });
+                    self.level(
+                        inner,
+                        Level {
+                            pose,
+                            class,
+                            ..level
+                        },
+                    );
                 }
                 name if NOT_YET.contains(&name) => self.not_yet(inner),
                 name if READ.contains(&name) => {}
@@ -239,14 +267,24 @@ impl<'x> Reader<'x, '_> {
     }
 
     /// Position and orientation of an element.
-    fn pose(&self, element: Element<'x>, defaults: Option<(&'static str, Option<&'x str>)>) -> Pose {
+    fn pose(
+        &self,
+        element: Element<'x>,
+        defaults: Option<(&'static str, Option<&'x str>)>,
+    ) -> Pose {
         let attribute = |key: &str| {
             let own = element.attribute_node(key);
-            own.or_else(|| defaults.and_then(|(kind, class)| self.defaults.attribute(kind, class, key)))
+            own.or_else(|| {
+                defaults.and_then(|(kind, class)| self.defaults.attribute(kind, class, key))
+            })
         };
-        let position = attribute("pos").and_then(|given| exactly(self.findings, &given, "a position, x y z,"));
+        let position =
+            attribute("pos").and_then(|given| exactly(self.findings, &given, "a position, x y z,"));
         // What the element says itself stands before what its class says otherwise.
-        let own = self.compiler.angles.orientation(&|key| element.attribute_node(key), self.findings);
+        let own = self
+            .compiler
+            .angles
+            .orientation(&|key| element.attribute_node(key), self.findings);
         let rotation = own.or_else(|| self.compiler.angles.orientation(&attribute, self.findings));
         Pose {
             rotation: rotation.unwrap_or(Rotation::IDENTITY),
@@ -259,9 +297,18 @@ impl<'x> Reader<'x, '_> {
         let class = self.class(element, "childclass").or(level.class);
         let name = element.attribute("name");
         let name = name.map_or_else(|| format!("body{}", self.links.len() + 1), str::to_owned);
-        if self.links.iter().any(|link| link.written && link.name == name) {
+        if self
+            .links
+            .iter()
+            .any(|link| link.written && link.name == name)
+        {
             let message = format!("there are two bodies `{name}`");
-            self.findings.error(Code::DuplicateName, tag(element), message, "rename one of them");
+            self.findings.error(
+                Code::DuplicateName,
+                tag(element),
+                message,
+                "rename one of them",
+            );
         }
         self.no_free_joint(element, level);
         let joints = self.joints(element, &name, class);
@@ -273,7 +320,11 @@ impl<'x> Reader<'x, '_> {
         let count = joints.len();
         for (index, joint) in joints.into_iter().enumerate() {
             let last = index + 1 == count;
-            let step = if last { name.clone() } else { format!("{name}_{}", index + 1) };
+            let step = if last {
+                name.clone()
+            } else {
+                format!("{name}_{}", index + 1)
+            };
             self.push(step, parent, pose, Some(joint), last, tag(element));
             (parent, pose) = (Some(self.links.len() - 1), Pose::IDENTITY);
         }
@@ -313,13 +364,23 @@ impl<'x> Reader<'x, '_> {
     }
 
     /// The inertia of a body in its frame.
-    fn inertia(&mut self, body: Element<'x>, name: &str, class: Option<&'x str>, moves: bool) -> Inertia {
+    fn inertia(
+        &mut self,
+        body: Element<'x>,
+        name: &str,
+        class: Option<&'x str>,
+        moves: bool,
+    ) -> Inertia {
         let inertial = child(body, "inertial");
         let from = self.compiler.inertia_from;
         let inertia = match inertial {
             Some(inertial) if from != InertiaFrom::Geoms => self.inertial(inertial),
             None if from == InertiaFrom::Inertial => Inertia::NONE,
-            _ => self.of_geoms(body, class, moves || self.links.iter().any(|link| link.joint.is_some())),
+            _ => self.of_geoms(
+                body,
+                class,
+                moves || self.links.iter().any(|link| link.joint.is_some()),
+            ),
         };
         if let Some(reason) = inertia.impossible() {
             self.findings.warning(
@@ -338,10 +399,16 @@ impl<'x> Reader<'x, '_> {
         let mass = number("mass").and_then(|given| exactly::<1>(self.findings, &given, "a mass"));
         let diagonal = number("diaginertia")
             .and_then(|given| exactly::<3>(self.findings, &given, "a diagonal, xx yy zz,"));
-        let full = number("fullinertia")
-            .and_then(|given| exactly::<6>(self.findings, &given, "an inertia, xx yy zz xy xz yz,"));
+        let full = number("fullinertia").and_then(|given| {
+            exactly::<6>(self.findings, &given, "an inertia, xx yy zz xy xz yz,")
+        });
         if element.attribute_node("mass").is_none() {
-            self.findings.error(Code::MissingKey, tag(element), "`inertial` has no `mass`", "write `mass=\"1\"`");
+            self.findings.error(
+                Code::MissingKey,
+                tag(element),
+                "`inertial` has no `mass`",
+                "write `mass=\"1\"`",
+            );
         }
         let tensor = full.or_else(|| diagonal.map(|[xx, yy, zz]| [xx, yy, zz, 0.0, 0.0, 0.0]));
         Inertia {

@@ -32,7 +32,9 @@ impl Names {
 
 /// The characters of a name that may stand in one.
 fn legal(name: &str) -> String {
-    let kept = name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+    let kept = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
     let mut kept: String = kept.collect();
     if !kept.starts_with(|c: char| c.is_ascii_alphabetic()) {
         kept.insert(0, 'n');

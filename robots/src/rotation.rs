@@ -70,7 +70,11 @@ pub(crate) fn unit(a: Vector) -> Option<Vector> {
 fn whole(x: f64) -> f64 {
     let nearest = x.round();
     // A zero has no sign.
-    if (x - nearest).abs() <= RIGHT { nearest + 0.0 } else { x }
+    if (x - nearest).abs() <= RIGHT {
+        nearest + 0.0
+    } else {
+        x
+    }
 }
 
 /// Sine and cosine, exact for right angles.
@@ -250,7 +254,11 @@ impl Rotation {
         } else {
             handed * (-u[j]).atan2(u[other])
         };
-        let first = clean(if half { wrapped(first + std::f64::consts::PI) } else { first });
+        let first = clean(if half {
+            wrapped(first + std::f64::consts::PI)
+        } else {
+            first
+        });
         let rest = Self::about(i, -first).then(self);
         let u = column(rest, k);
         let next = 3 - j - k;
@@ -312,7 +320,9 @@ impl Axis {
     /// The axis along a unit vector, or the nearest one with the rotation from it to the vector.
     pub(crate) fn nearest(direction: Vector) -> (Self, Rotation) {
         let longest = |index: &usize| direction[*index].abs();
-        let index = (0..3).max_by(|a, b| longest(a).total_cmp(&longest(b))).unwrap_or(2);
+        let index = (0..3)
+            .max_by(|a, b| longest(a).total_cmp(&longest(b)))
+            .unwrap_or(2);
         let backwards = direction[index] < 0.0;
         let axis = Self { index, backwards };
         (axis, Rotation::between(axis.vector(), direction))
@@ -338,13 +348,18 @@ mod tests {
 
     impl Numbers {
         fn next(&mut self) -> f64 {
-            self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            self.0 = self
+                .0
+                .wrapping_mul(6_364_136_223_846_793_005)
+                .wrapping_add(1_442_695_040_888_963_407);
             (self.0 >> 11) as f64 / (1u64 << 52) as f64 - 1.0
         }
     }
 
     fn composed(turns: &[Turn]) -> Rotation {
-        let turns = turns.iter().map(|turn| Rotation::about(turn.axis, turn.angle));
+        let turns = turns
+            .iter()
+            .map(|turn| Rotation::about(turn.axis, turn.angle));
         turns.fold(Rotation::IDENTITY, Rotation::then)
     }
 
@@ -362,9 +377,15 @@ mod tests {
             let rotation = Rotation::roll_pitch_yaw([angle(), angle(), angle()]);
             for last in [None, Some(0), Some(1), Some(2)] {
                 let turns = rotation.turns(last);
-                assert!(error(composed(&turns), rotation) < 4e-12, "{rotation:?} {turns:?}");
+                assert!(
+                    error(composed(&turns), rotation) < 4e-12,
+                    "{rotation:?} {turns:?}"
+                );
                 if scale > 1e-6 {
-                    assert!(error(composed(&turns), rotation) < 2e-15, "{rotation:?} {turns:?}");
+                    assert!(
+                        error(composed(&turns), rotation) < 2e-15,
+                        "{rotation:?} {turns:?}"
+                    );
                 }
             }
         }
@@ -374,16 +395,31 @@ mod tests {
     fn right_angles_are_exact_and_few() {
         let half = std::f64::consts::FRAC_PI_2;
         let rotation = Rotation::roll_pitch_yaw([half, 0.0, 0.0]);
-        assert_eq!(rotation.0, [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]);
-        assert_eq!(rotation.turns(None), [Turn { axis: 0, angle: half }]);
+        assert_eq!(
+            rotation.0,
+            [[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]]
+        );
+        assert_eq!(
+            rotation.turns(None),
+            [Turn {
+                axis: 0,
+                angle: half
+            }]
+        );
         let quaternion = Rotation::quaternion([0.0, 0.0, 0.707_107, 0.707_107]);
-        assert_eq!(quaternion.map(|r| r.0), Some([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]]));
+        assert_eq!(
+            quaternion.map(|r| r.0),
+            Some([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])
+        );
     }
 
     #[test]
     fn one_vector_is_turned_to_another() {
         let mut numbers = Numbers(3);
-        let mut pairs = vec![([0.0, 0.0, 1.0], [0.6, 0.0, 0.8]), ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0])];
+        let mut pairs = vec![
+            ([0.0, 0.0, 1.0], [0.6, 0.0, 0.8]),
+            ([1.0, 0.0, 0.0], [-1.0, 0.0, 0.0]),
+        ];
         for _ in 0..100 {
             let mut any = || unit([0, 1, 2].map(|_| numbers.next())).unwrap_or([1.0, 0.0, 0.0]);
             pairs.push((any(), any()));
@@ -391,7 +427,10 @@ mod tests {
         for (from, to) in pairs {
             let rotation = Rotation::between(from, to);
             let missed = minus(rotation.of(from), to);
-            assert!(missed.iter().all(|d| d.abs() < 1e-15), "{from:?} {to:?} {missed:?}");
+            assert!(
+                missed.iter().all(|d| d.abs() < 1e-15),
+                "{from:?} {to:?} {missed:?}"
+            );
             assert!(error(rotation.then(rotation.inverse()), Rotation::IDENTITY) < 1e-15);
         }
     }

@@ -34,18 +34,34 @@ pub(crate) fn snap(robot: &mut Robot, really: bool) -> usize {
 fn rotation(rotation: Rotation) -> Rotation {
     let right = |angle: f64| {
         let right = (angle / std::f64::consts::FRAC_PI_2).round() * std::f64::consts::FRAC_PI_2;
-        if (angle - right).abs() < SNAP { right } else { angle }
+        if (angle - right).abs() < SNAP {
+            right
+        } else {
+            angle
+        }
     };
     let turns = rotation.turns(None);
     if turns.iter().all(|turn| right(turn.angle) == turn.angle) {
         return rotation;
     }
-    let turns = turns.iter().map(|turn| Rotation::about(turn.axis, right(turn.angle)));
+    let turns = turns
+        .iter()
+        .map(|turn| Rotation::about(turn.axis, right(turn.angle)));
     turns.fold(Rotation::IDENTITY, Rotation::then)
 }
 
 /// The direction without components that are nearly zero.
 fn axis(axis: Vector) -> Vector {
-    let cut = axis.map(|component| if component.abs() < SNAP { 0.0 } else { component });
-    if cut == axis { axis } else { unit(cut).unwrap_or(axis) }
+    let cut = axis.map(|component| {
+        if component.abs() < SNAP {
+            0.0
+        } else {
+            component
+        }
+    });
+    if cut == axis {
+        axis
+    } else {
+        unit(cut).unwrap_or(axis)
+    }
 }

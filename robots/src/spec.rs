@@ -54,7 +54,13 @@ pub(crate) struct Written {
 }
 
 /// Writes the spec of a robot.
-pub(crate) fn write(file: &str, kind: &str, robot: &Robot, tree: &Tree, options: &Options) -> Written {
+pub(crate) fn write(
+    file: &str,
+    kind: &str,
+    robot: &Robot,
+    tree: &Tree,
+    options: &Options,
+) -> Written {
     // The folder may be another one where the spec is read.
     let file = file.rsplit('/').next().unwrap_or(file);
     let mut writer = Writer::new(robot, tree, options);
@@ -76,7 +82,12 @@ pub(crate) fn write(file: &str, kind: &str, robot: &Robot, tree: &Tree, options:
     remarks::left_out(&robot.left_out, options, &mut text);
     Written {
         text,
-        unused: writer.numbers.unused().into_iter().map(str::to_owned).collect(),
+        unused: writer
+            .numbers
+            .unused()
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
         known: writer.numbers.known().map(str::to_owned).collect(),
     }
 }
@@ -85,8 +96,15 @@ impl<'a> Writer<'a> {
     fn new(robot: &'a Robot, tree: &'a Tree, options: &'a Options) -> Self {
         let mut places = Names::without(&["ground", "O"]);
         let mut quantities = Names::default();
-        let links: Vec<String> = robot.links.iter().map(|link| places.new_one(&short(&link.name))).collect();
-        let joints = tree.bodies.iter().map(|body| quantities.new_one(&short(&body.joint.name)));
+        let links: Vec<String> = robot
+            .links
+            .iter()
+            .map(|link| places.new_one(&short(&link.name)))
+            .collect();
+        let joints = tree
+            .bodies
+            .iter()
+            .map(|body| quantities.new_one(&short(&body.joint.name)));
         let coordinates = joints.collect();
         Self {
             links: &robot.links,
@@ -114,7 +132,9 @@ impl<'a> Writer<'a> {
 
     /// The frame of the body on which another one stands.
     fn frame_of(&self, parent: Option<usize>) -> String {
-        parent.map_or("ground".to_owned(), |parent| self.called.frames[parent].clone())
+        parent.map_or("ground".to_owned(), |parent| {
+            self.called.frames[parent].clone()
+        })
     }
 
     /// The point from which what stands on a body is placed.
@@ -127,7 +147,10 @@ impl<'a> Writer<'a> {
         let count = self.tree.bodies.len();
         let joints = if count == 1 { "joint" } else { "joints" };
         mechanism.key("name", quoted(name));
-        mechanism.key("title", quoted(&sentence(&format!("{title}, {count} {joints}"))));
+        mechanism.key(
+            "title",
+            quoted(&sentence(&format!("{title}, {count} {joints}"))),
+        );
         mechanism.key("source", quoted(&sentence(file)));
         let mut parameters = Section::default();
         for Parameter {
@@ -142,7 +165,11 @@ impl<'a> Writer<'a> {
                 .raw("value", &crate::letters::plain(*value))
                 .text("unit", unit)
                 .text("about", &sentence(about));
-            let item = if *never_negative { item.raw("at_least", "0") } else { item };
+            let item = if *never_negative {
+                item.raw("at_least", "0")
+            } else {
+                item
+            };
             parameters.add(name, &item);
         }
         mechanism.write("mechanism", text);

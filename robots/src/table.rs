@@ -56,8 +56,13 @@ pub(crate) fn quoted(text: &str) -> String {
 }
 
 fn expression(text: &str) -> String {
-    let is_number = text.parse::<f64>().is_ok() && text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
-    if is_number { text.to_owned() } else { quoted(text) }
+    let is_number =
+        text.parse::<f64>().is_ok() && text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    if is_number {
+        text.to_owned()
+    } else {
+        quoted(text)
+    }
 }
 
 /// A TOML list of expressions.
@@ -81,7 +86,12 @@ impl Section {
         if self.items.is_empty() {
             return;
         }
-        let width = self.items.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
+        let width = self
+            .items
+            .iter()
+            .map(|(name, _)| name.len())
+            .max()
+            .unwrap_or(0);
         let _ = writeln!(to, "\n[{title}]");
         for (name, value) in &self.items {
             let _ = writeln!(to, "{name:width$} = {value}");

@@ -72,7 +72,10 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
         );
         let pose = on.pose.then(link.pose);
         let seat = match &link.joint {
-            None => Seat { body: on.body, pose },
+            None => Seat {
+                body: on.body,
+                pose,
+            },
             Some(joint) => tree.moved_by(joint, index, on.body, pose),
         };
         seats.push(seat);
@@ -136,7 +139,11 @@ impl Tree {
 
     /// A joint with nothing behind it that has inertia has no equation of motion.
     fn refuse_what_has_no_mass(&self, links: &[Link], findings: &Findings) {
-        let mut moves: Vec<bool> = self.bodies.iter().map(|body| !body.inertia.is_nothing()).collect();
+        let mut moves: Vec<bool> = self
+            .bodies
+            .iter()
+            .map(|body| !body.inertia.is_nothing())
+            .collect();
         for index in (0..self.bodies.len()).rev() {
             let body = &self.bodies[index];
             if moves[index] {
@@ -148,7 +155,9 @@ impl Tree {
                 findings.error(
                     Code::SingularMassMatrix,
                     links[body.link].place.clone(),
-                    format!("`{link}` moves by joint `{joint}` but has no mass, nor has anything on it"),
+                    format!(
+                        "`{link}` moves by joint `{joint}` but has no mass, nor has anything on it"
+                    ),
                     "give it a mass and an inertia, or make the joint fixed",
                 );
             }

@@ -52,7 +52,9 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
     for element in elements(root) {
         match element.tag_name().name() {
             "joint" => {
-                let known = ["origin", "parent", "child", "axis", "dynamics", "limit", "mimic"];
+                let known = [
+                    "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",
+                ];
                 left_out.extend(unknown(element, "joint", &known));
             }
             "link" => left_out.extend(unknown(element, "link", &["inertial"])),
@@ -74,13 +76,20 @@ fn name<'x>(element: Element<'x>, findings: &Findings) -> Option<&'x str> {
     if name.is_none() {
         let kind = element.tag_name().name();
         let help = format!("give it one: `<{kind} name=\"…\">`");
-        findings.error(Code::MissingKey, tag(element), format!("a `{kind}` without a name"), help);
+        findings.error(
+            Code::MissingKey,
+            tag(element),
+            format!("a `{kind}` without a name"),
+            help,
+        );
     }
     name
 }
 
 fn omitted(element: Element<'_>, what: String) -> LeftOut {
-    let name = element.attribute("name").or_else(|| element.attribute("reference"));
+    let name = element
+        .attribute("name")
+        .or_else(|| element.attribute("reference"));
     LeftOut {
         what,
         name: name.map(str::to_owned),
@@ -88,7 +97,11 @@ fn omitted(element: Element<'_>, what: String) -> LeftOut {
     }
 }
 
-fn unknown<'x>(element: Element<'x>, within: &'x str, known: &'x [&'x str]) -> impl Iterator<Item = LeftOut> {
+fn unknown<'x>(
+    element: Element<'x>,
+    within: &'x str,
+    known: &'x [&'x str],
+) -> impl Iterator<Item = LeftOut> {
     let unknown = elements(element).filter(|one| !known.contains(&one.tag_name().name()));
     let owner = element.attribute("name");
     unknown.map(move |one| {
@@ -103,11 +116,17 @@ fn unknown<'x>(element: Element<'x>, within: &'x str, known: &'x [&'x str]) -> i
 /// A number of an attribute, and what it is if the file does not say.
 fn number(element: Option<Element<'_>>, key: &str, default: f64, findings: &Findings) -> f64 {
     let attribute = element.and_then(|element| element.attribute_node(key));
-    let read = attribute.and_then(|attribute| exactly::<1>(findings, &attribute, &format!("`{key}`")));
+    let read =
+        attribute.and_then(|attribute| exactly::<1>(findings, &attribute, &format!("`{key}`")));
     read.map_or(default, |[number]| number)
 }
 
-fn vector(element: Option<Element<'_>>, key: &str, what: &str, findings: &Findings) -> Option<Vector> {
+fn vector(
+    element: Option<Element<'_>>,
+    key: &str,
+    what: &str,
+    findings: &Findings,
+) -> Option<Vector> {
     let attribute = element?.attribute_node(key)?;
     exactly(findings, &attribute, what)
 }
@@ -133,11 +152,20 @@ fn inertia(link: Element<'_>, findings: &Findings) -> Inertia {
     let tensor = child(inertial, "inertia");
     for (found, word, example) in [
         (mass, "mass", "<mass value=\"1\"/>"),
-        (tensor, "inertia", "<inertia ixx=\"1e-3\" iyy=\"1e-3\" izz=\"1e-3\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>"),
+        (
+            tensor,
+            "inertia",
+            "<inertia ixx=\"1e-3\" iyy=\"1e-3\" izz=\"1e-3\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>",
+        ),
     ] {
         if found.is_none() {
             let message = format!("`inertial` has no `{word}`");
-            findings.error(Code::MissingKey, tag(inertial), message, format!("write `{example}`"));
+            findings.error(
+                Code::MissingKey,
+                tag(inertial),
+                message,
+                format!("write `{example}`"),
+            );
         }
     }
     let entries = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
@@ -174,7 +202,12 @@ fn joints<'x>(
         };
         if names.insert(name, element).is_some() {
             let message = format!("there are two joints `{name}`");
-            findings.error(Code::DuplicateName, tag(element), message, "rename one of them");
+            findings.error(
+                Code::DuplicateName,
+                tag(element),
+                message,
+                "rename one of them",
+            );
         }
         let ends = ["parent", "child"].map(|end| link_of(element, end, links, findings));
         let joint = joint(element, name, findings);
@@ -205,7 +238,12 @@ fn link_of(
     let name = joint.attribute("name").unwrap_or_default();
     let Some(attribute) = child(joint, end).and_then(|end| end.attribute_node("link")) else {
         let message = format!("joint `{name}` has no {end}");
-        findings.error(Code::MissingKey, tag(joint), message, format!("write `<{end} link=\"…\"/>`"));
+        findings.error(
+            Code::MissingKey,
+            tag(joint),
+            message,
+            format!("write `<{end} link=\"…\"/>`"),
+        );
         return None;
     };
     let link = links.get(attribute.value()).copied();
@@ -214,7 +252,10 @@ fn link_of(
         findings.error(
             Code::UnknownReference,
             attribute.range_value(),
-            format!("there is no link `{}`", appell_spec::shown(attribute.value())),
+            format!(
+                "there is no link `{}`",
+                appell_spec::shown(attribute.value())
+            ),
             did_you_mean(attribute.value(), links.keys().copied(), known),
         );
     }
@@ -226,7 +267,12 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
     let limit = child(element, "limit");
     let Some(kind) = element.attribute_node("type") else {
         let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
-        findings.error(Code::MissingKey, tag(element), format!("joint `{name}` has no type"), help);
+        findings.error(
+            Code::MissingKey,
+            tag(element),
+            format!("joint `{name}` has no type"),
+            help,
+        );
         return None;
     };
     let motion = match kind.value() {
@@ -237,7 +283,10 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
             findings.error(
                 Code::NotAllowedHere,
                 kind.range_value(),
-                format!("joint `{name}` is {}, which `import` does not do yet", kind.value()),
+                format!(
+                    "joint `{name}` is {}, which `import` does not do yet",
+                    kind.value()
+                ),
                 "joints are revolute, continuous, prismatic or fixed so far",
             );
             return None;
@@ -247,7 +296,10 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
             findings.error(
                 Code::UnknownWord,
                 kind.range_value(),
-                format!("there are no joints of type `{}`", appell_spec::shown(other)),
+                format!(
+                    "there are no joints of type `{}`",
+                    appell_spec::shown(other)
+                ),
                 did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
             );
             return None;
@@ -302,7 +354,8 @@ fn range(
         }
         Some(limit) if range[0] >= range[1] => {
             let message = format!("the limits of joint `{name}` leave no range");
-            let help = "they are left out; `lower` has to be less than `upper`, and a missing one is 0";
+            let help =
+                "they are left out; `lower` has to be less than `upper`, and a missing one is 0";
             findings.warning(Code::EmptyRange, tag(limit), message, help);
             None
         }
@@ -333,7 +386,9 @@ fn mimic<'x>(
             Code::UnknownReference,
             other.range_value(),
             format!("there is no joint `{}`", appell_spec::shown(other.value())),
-            did_you_mean(other.value(), moving, || format!("joint `{name}` follows another joint of the file")),
+            did_you_mean(other.value(), moving, || {
+                format!("joint `{name}` follows another joint of the file")
+            }),
         );
         return None;
     }
@@ -345,7 +400,11 @@ fn mimic<'x>(
         joint: name.to_owned(),
         other: follows.then(|| other.value().to_owned()),
         zeros: [0.0; 2],
-        coefficients: if follows { vec![offset, multiplier] } else { vec![offset] },
+        coefficients: if follows {
+            vec![offset, multiplier]
+        } else {
+            vec![offset]
+        },
     })
 }
 
@@ -362,7 +421,11 @@ fn tree(
         let Some(first) = above[connection.child].replace(index) else {
             continue;
         };
-        let (link, first, second) = (name(connection.child), connections[first].name, connection.name);
+        let (link, first, second) = (
+            name(connection.child),
+            connections[first].name,
+            connection.name,
+        );
         findings.error(
             Code::DuplicateName,
             tag(connection.element),
@@ -371,12 +434,19 @@ fn tree(
              (in MJCF: `equality/connect`)",
         );
     }
-    let roots: Vec<usize> = (0..elements.len()).filter(|link| above[*link].is_none()).collect();
-    for extra in roots.iter().skip(1) {
+    let roots: Vec<usize> = (0..elements.len())
+        .filter(|link| above[*link].is_none())
+        .collect();
+    let named = |link: &&usize| elements[**link].has_attribute("name");
+    for extra in roots.iter().skip(1).filter(named) {
         findings.error(
             Code::UnknownReference,
             tag(elements[*extra]),
-            format!("link `{}` is the child of no joint, and so is `{}`", name(*extra), name(roots[0])),
+            format!(
+                "link `{}` is the child of no joint, and so is `{}`",
+                name(*extra),
+                name(roots[0])
+            ),
             "a URDF has one root: connect the link by a joint, or remove it",
         );
     }
@@ -389,7 +459,11 @@ fn tree(
     let mut links: Vec<Link> = Vec::new();
     let mut connections: Vec<Option<Connection<'_>>> = connections.into_iter().map(Some).collect();
     // (link, where its parent stands in the result, the joint to it)
-    let mut open: Vec<(usize, Option<usize>, Option<usize>)> = roots.first().map(|root| (*root, None, None)).into_iter().collect();
+    let mut open: Vec<(usize, Option<usize>, Option<usize>)> = roots
+        .first()
+        .map(|root| (*root, None, None))
+        .into_iter()
+        .collect();
     while let Some((link, parent, by)) = open.pop() {
         let connection = by.and_then(|by| connections[by].take());
         let (pose, joint) = connection.map_or((Pose::IDENTITY, None), |by| (by.pose, by.joint));
@@ -412,7 +486,8 @@ fn tree(
     }
     if links.len() < elements.len() && roots.len() <= 1 {
         let mut reached = vec![false; elements.len()];
-        let names: BTreeMap<&str, usize> = (0..elements.len()).map(|link| (name(link), link)).collect();
+        let names: BTreeMap<&str, usize> =
+            (0..elements.len()).map(|link| (name(link), link)).collect();
         for link in &links {
             if let Some(index) = names.get(link.name.as_str()) {
                 reached[*index] = true;
@@ -422,7 +497,10 @@ fn tree(
             findings.error(
                 Code::ReferenceCycle,
                 tag(elements[lost]),
-                format!("link `{}` is not connected with the root: its joints form a circle", name(lost)),
+                format!(
+                    "link `{}` is not connected with the root: its joints form a circle",
+                    name(lost)
+                ),
                 "a URDF is a tree: each link has one parent, up to one root",
             );
         }

@@ -3,7 +3,7 @@
 use std::cell::RefCell;
 use std::ops::Range;
 
-use appell_spec::{Code, Diagnostic};
+use appell_spec::{Code, Diagnostic, Severity};
 use roxmltree::{Attribute, Document, Node};
 
 /// Places in the text.
@@ -22,17 +22,40 @@ pub(crate) type Element<'x> = Node<'x, 'x>;
 pub(crate) struct Findings(RefCell<Vec<Diagnostic>>);
 
 impl Findings {
+    /// Adds a finding; what is read twice is wrong once.
     pub(crate) fn add(&self, finding: Diagnostic) {
-        self.0.borrow_mut().push(finding);
+        let mut all = self.0.borrow_mut();
+        if !all.contains(&finding) {
+            all.push(finding);
+        }
+    }
+
+    pub(crate) fn has_errors(&self) -> bool {
+        self.0
+            .borrow()
+            .iter()
+            .any(|finding| finding.severity == Severity::Error)
     }
 
     /// An error at a place, with a remedy.
-    pub(crate) fn error(&self, code: Code, at: Span, message: impl Into<String>, help: impl Into<String>) {
+    pub(crate) fn error(
+        &self,
+        code: Code,
+        at: Span,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
         self.add(Diagnostic::error(code, message).at(at, "").help(help));
     }
 
     /// A warning at a place, with a remedy.
-    pub(crate) fn warning(&self, code: Code, at: Span, message: impl Into<String>, help: impl Into<String>) {
+    pub(crate) fn warning(
+        &self,
+        code: Code,
+        at: Span,
+        message: impl Into<String>,
+        help: impl Into<String>,
+    ) {
         self.add(Diagnostic::warning(code, message).at(at, "").help(help));
     }
 
@@ -54,16 +77,20 @@ pub(crate) fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
     Document::parse_with_options(text, options).map_err(|error| {
         let at = offset(text, error.pos());
         let found = error.to_string();
-        let found = found.rsplit_once(" at ").map_or(found.as_str(), |(found, _)| found);
+        let found = found
+            .rsplit_once(" at ")
+            .map_or(found.as_str(), |(found, _)| found);
         let help = match &error {
             roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
-                "this is a xacro file: convert it first, with `xacro FILE.xacro -o FILE.urdf`".to_owned()
+                "this is a xacro file: convert it first, with `xacro FILE.xacro -o FILE.urdf`"
+                    .to_owned()
             }
             roxmltree::Error::UnexpectedCloseTag(expected, ..) => {
                 format!("close `{expected}` first, with `</{expected}>`")
             }
             roxmltree::Error::DtdDetected => "remove the `<!DOCTYPE …>`".to_owned(),
-            _ => "URDF and MJCF are XML: every element is closed, every value is in quotes".to_owned(),
+            _ => "URDF and MJCF are XML: every element is closed, every value is in quotes"
+                .to_owned(),
         };
         Diagnostic::error(Code::WrongType, format!("not XML: {found}"))
             .at(at..(at + 1).min(text.len()), "")
@@ -78,7 +105,12 @@ fn too_deep(text: &str) -> Option<usize> {
     let mut at = 0;
     while let Some(open) = text[at..].find('<').map(|found| at + found) {
         let rest = &text[open..];
-        let skipped = [("<!--", "-->"), ("<![CDATA[", "]]>"), ("<?", "?>"), ("<!", ">")];
+        let skipped = [
+            ("<!--", "-->"),
+            ("<![CDATA[", "]]>"),
+            ("<?", "?>"),
+            ("<!", ">"),
+        ];
         if let Some((_, end)) = skipped.iter().find(|(begin, _)| rest.starts_with(begin)) {
             at = open + rest.find(end).map_or(rest.len(), |found| found + end.len());
             continue;
@@ -98,10 +130,19 @@ fn too_deep(text: &str) -> Option<usize> {
 }
 
 fn offset(text: &str, at: roxmltree::TextPos) -> usize {
-    let (row, column) = (at.row.saturating_sub(1) as usize, at.col.saturating_sub(1) as usize);
+    let (row, column) = (
+        at.row.saturating_sub(1) as usize,
+        at.col.saturating_sub(1) as usize,
+    );
     let start: usize = text.split_inclusive('\n').take(row).map(str::len).sum();
-    let line = text[start.min(text.len())..].lines().next().unwrap_or_default();
-    let within = line.char_indices().nth(column).map_or(line.len(), |(at, _)| at);
+    let line = text[start.min(text.len())..]
+        .lines()
+        .next()
+        .unwrap_or_default();
+    let within = line
+        .char_indices()
+        .nth(column)
+        .map_or(line.len(), |(at, _)| at);
     (start + within).min(text.len())
 }
 
@@ -122,7 +163,10 @@ pub(crate) fn tag(element: Element<'_>) -> Span {
 }
 
 /// The children of an element with a name.
-pub(crate) fn children<'x>(element: Element<'x>, name: &'static str) -> impl Iterator<Item = Element<'x>> {
+pub(crate) fn children<'x>(
+    element: Element<'x>,
+    name: &'static str,
+) -> impl Iterator<Item = Element<'x>> {
     elements(element).filter(move |child| child.tag_name().name() == name)
 }
 
@@ -181,7 +225,11 @@ pub(crate) fn exactly<const N: usize>(
     let numbers = numbers(findings, attribute)?;
     let count = numbers.len();
     <[f64; N]>::try_from(numbers).ok().or_else(|| {
-        let is = if count == 1 { "here is 1" } else { &format!("here are {count}") };
+        let is = if count == 1 {
+            "here is 1"
+        } else {
+            &format!("here are {count}")
+        };
         let plural = if N == 1 { "number" } else { "numbers" };
         findings.error(
             Code::WrongType,

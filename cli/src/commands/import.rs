@@ -48,19 +48,27 @@ fn what(word: &str) -> Result<Without, String> {
     let found = Without::ALL.into_iter().find(|one| one.word() == word);
     found.ok_or_else(|| {
         let words = Without::ALL.map(Without::word);
-        let help = appell_spec::did_you_mean(word, words, || format!("it can be {}", words.join(", ")));
+        let help =
+            appell_spec::did_you_mean(word, words, || format!("it can be {}", words.join(", ")));
         format!("there is nothing called `{word}` to leave out; {help}")
     })
 }
 
 impl Import {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let default = PathBuf::from(self.robot.with_extension("toml").file_name().unwrap_or_default());
+        let default = PathBuf::from(
+            self.robot
+                .with_extension("toml")
+                .file_name()
+                .unwrap_or_default(),
+        );
         let out = self.out.as_ref().unwrap_or(&default);
         if !files::is_stdout(out) && extension(out).is_none_or(|end| end != "toml") {
             let instead = out.with_extension("toml");
             let instead = shell(&instead.to_string_lossy());
-            return Err(Error::Usage(format!("a spec is a TOML file: write `--out {instead}`")));
+            return Err(Error::Usage(format!(
+                "a spec is a TOML file: write `--out {instead}`"
+            )));
         }
         let options = Options {
             letters: Letters::read(&self.parameters),
@@ -68,7 +76,9 @@ impl Import {
             snap: self.snap,
         };
         let robot = robot::read(&self.robot, &options)?;
-        if self.out.is_none() && std::fs::read(out).is_ok_and(|there| there != robot.spec.as_bytes()) {
+        if self.out.is_none()
+            && std::fs::read(out).is_ok_and(|there| there != robot.spec.as_bytes())
+        {
             let file = shell(&out.to_string_lossy());
             return Err(Error::Usage(format!(
                 "{file} exists with other contents; to replace it, name it with `-o {file}`"
@@ -89,16 +99,26 @@ impl Import {
     /// Warnings, what was left out, and angles that might be right ones.
     fn tell(&self, robot: &Imported) {
         let findings = robot.warnings.diagnostics();
-        if findings.iter().any(|finding| finding.severity != Severity::Note) {
+        if findings
+            .iter()
+            .any(|finding| finding.severity != Severity::Note)
+        {
             tell(&format!("{}\n\n", shown(&robot.warnings).trim_end()));
         }
         if !robot.left_out.is_empty() {
             let all: Vec<String> = robot.left_out.iter().map(left_out).collect();
-            tell(&format!("left out, for want of a counterpart:\n{}\n", all.join("\n")));
+            tell(&format!(
+                "left out, for want of a counterpart:\n{}\n",
+                all.join("\n")
+            ));
         }
         if robot.nearly_right > 0 && !self.snap {
             let count = robot.nearly_right;
-            let them = if count == 1 { "orientation or axis is" } else { "orientations and axes are" };
+            let them = if count == 1 {
+                "orientation or axis is"
+            } else {
+                "orientations and axes are"
+            };
             tell(&format!(
                 "{count} {them} within 1e-4 rad of a right angle, but not right; with `--snap` they are, and the \
                  equations shorter\n"
@@ -108,9 +128,18 @@ impl Import {
 }
 
 fn left_out(one: &LeftOut) -> String {
-    let lines: Vec<String> = one.lines.iter().take(MOST_LINES).map(ToString::to_string).collect();
+    let lines: Vec<String> = one
+        .lines
+        .iter()
+        .take(MOST_LINES)
+        .map(ToString::to_string)
+        .collect();
     let more = one.lines.len().saturating_sub(MOST_LINES);
-    let more = if more == 0 { String::new() } else { format!(" and {more} more") };
+    let more = if more == 0 {
+        String::new()
+    } else {
+        format!(" and {more} more")
+    };
     let plural = if one.lines.len() == 1 { "" } else { "s" };
     format!("  {}: line{plural} {}{more}", one.what, lines.join(", "))
 }

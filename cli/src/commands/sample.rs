@@ -51,7 +51,10 @@ impl Sample {
                 let files = appell::sample::robot(folder)?;
                 let at = shell(&folder.to_string_lossy());
                 let first = shell(&folder.join(files[0]).to_string_lossy());
-                format!("wrote {} to {at}; next:\n  appell import {first}\n", files.join(", "))
+                format!(
+                    "wrote {} to {at}; next:\n  appell import {first}\n",
+                    files.join(", ")
+                )
             }
             What::Capture { folder } => {
                 let written = appell_papers::book::euc::sample::capture(folder)?;

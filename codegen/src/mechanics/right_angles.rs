@@ -19,7 +19,10 @@ pub(super) fn sin_cos(algebra: &mut Algebra, angle: Expr) -> [Expr; 2] {
 /// `angle = count · π/2 + rest`, with a count of zero unless π stands there with a multiple of a half.
 fn taken_out(graph: &mut Graph, pi: Expr, angle: Expr) -> (i64, Expr) {
     let terms = match graph.node(angle) {
-        Node::Sum(terms) => terms.iter().find(|term| term.expr == pi).map(|term| term.coefficient.clone()),
+        Node::Sum(terms) => terms
+            .iter()
+            .find(|term| term.expr == pi)
+            .map(|term| term.coefficient.clone()),
         _ if angle == pi => Some(Rational::ONE),
         _ => None,
     };

@@ -27,8 +27,9 @@ struct Class<'x> {
 impl<'x> Defaults<'x> {
     pub(super) fn new(root: Element<'x>, findings: &Findings) -> Self {
         let mut defaults = Self::default();
-        let mut open: Vec<(Element<'x>, Option<&'x str>)> =
-            children(root, "default").map(|default| (default, None)).collect();
+        let mut open: Vec<(Element<'x>, Option<&'x str>)> = children(root, "default")
+            .map(|default| (default, None))
+            .collect();
         open.reverse();
         while let Some((element, parent)) = open.pop() {
             let name = match (element.attribute("class"), parent) {
@@ -36,7 +37,12 @@ impl<'x> Defaults<'x> {
                 (None, None) => MAIN,
                 (None, Some(_)) => {
                     let help = "write `<default class=\"…\">`";
-                    findings.error(Code::MissingKey, tag(element), "a default class without a name", help);
+                    findings.error(
+                        Code::MissingKey,
+                        tag(element),
+                        "a default class without a name",
+                        help,
+                    );
                     continue;
                 }
             };
@@ -47,7 +53,9 @@ impl<'x> Defaults<'x> {
             class.parent = class.parent.or(parent);
             let inner = children(element, "default").map(|inner| (inner, Some(name)));
             let inner: Vec<_> = inner.collect();
-            let own = element.children().filter(|child| child.is_element() && child.tag_name().name() != "default");
+            let own = element
+                .children()
+                .filter(|child| child.is_element() && child.tag_name().name() != "default");
             class.elements.extend(own);
             open.extend(inner.into_iter().rev());
         }
@@ -63,12 +71,21 @@ impl<'x> Defaults<'x> {
     }
 
     /// What a class says of an attribute of a kind of element.
-    pub(super) fn attribute(&self, kind: &str, class: Option<&str>, key: &str) -> Option<Attribute<'x, 'x>> {
+    pub(super) fn attribute(
+        &self,
+        kind: &str,
+        class: Option<&str>,
+        key: &str,
+    ) -> Option<Attribute<'x, 'x>> {
         let mut name = class.or(self.main)?;
         // Classes are nested in the text, so that this ends.
         loop {
             let class = self.classes.get(name)?;
-            let own = class.elements.iter().rev().filter(|element| element.tag_name().name() == kind);
+            let own = class
+                .elements
+                .iter()
+                .rev()
+                .filter(|element| element.tag_name().name() == kind);
             if let Some(found) = own.filter_map(|element| element.attribute_node(key)).next() {
                 return Some(found);
             }

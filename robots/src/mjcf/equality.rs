@@ -42,7 +42,10 @@ fn body(element: Element<'_>, key: &str, reader: &Reader<'_, '_>) -> bool {
         return true;
     };
     let bodies = reader.links.iter().filter(|link| link.written);
-    let known: Vec<&str> = bodies.map(|link| link.name.as_str()).chain(["world"]).collect();
+    let known: Vec<&str> = bodies
+        .map(|link| link.name.as_str())
+        .chain(["world"])
+        .collect();
     let found = known.contains(&given.value());
     if !found {
         let list = || {
@@ -71,7 +74,9 @@ fn coupling(element: Element<'_>, reader: &Reader<'_, '_>, count: usize) -> Opti
                 Code::UnknownReference,
                 given.range_value(),
                 format!("there is no joint `{}`", appell_spec::shown(given.value())),
-                did_you_mean(given.value(), known, || "name a hinge or a slide of the file".to_owned()),
+                did_you_mean(given.value(), known, || {
+                    "name a hinge or a slide of the file".to_owned()
+                }),
             );
         }
         found
@@ -89,7 +94,9 @@ fn coupling(element: Element<'_>, reader: &Reader<'_, '_>, count: usize) -> Opti
     if other.is_none() {
         coefficients.truncate(1);
     }
-    let name = element.attribute("name").map_or_else(|| format!("coupling_{}", count + 1), str::to_owned);
+    let name = element
+        .attribute("name")
+        .map_or_else(|| format!("coupling_{}", count + 1), str::to_owned);
     Some(Coupling {
         name,
         joint: joint.name.clone(),

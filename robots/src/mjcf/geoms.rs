@@ -12,16 +12,37 @@ use super::Reader;
 
 /// Density of what has none, that of water.
 const DENSITY: f64 = 1000.0;
-const SHAPES: [&str; 9] = ["sphere", "capsule", "cylinder", "ellipsoid", "box", "mesh", "plane", "hfield", "sdf"];
+const SHAPES: [&str; 9] = [
+    "sphere",
+    "capsule",
+    "cylinder",
+    "ellipsoid",
+    "box",
+    "mesh",
+    "plane",
+    "hfield",
+    "sdf",
+];
 
 impl<'x> Reader<'x, '_> {
     /// The geoms of a body together, in its frame.
-    pub(super) fn of_geoms(&self, body: Element<'x>, class: Option<&'x str>, matters: bool) -> Inertia {
+    pub(super) fn of_geoms(
+        &self,
+        body: Element<'x>,
+        class: Option<&'x str>,
+        matters: bool,
+    ) -> Inertia {
         self.geoms_within(body, class, Pose::IDENTITY, matters)
     }
 
     /// Geoms stand in a body, or in frames within it.
-    fn geoms_within(&self, holder: Element<'x>, class: Option<&'x str>, pose: Pose, matters: bool) -> Inertia {
+    fn geoms_within(
+        &self,
+        holder: Element<'x>,
+        class: Option<&'x str>,
+        pose: Pose,
+        matters: bool,
+    ) -> Inertia {
         let mut sum = Inertia::NONE;
         for geom in children(holder, "geom") {
             let class = self.class(geom, "class").or(class);
@@ -38,7 +59,12 @@ impl<'x> Reader<'x, '_> {
     }
 
     /// A geom about its own axes, and where it is.
-    fn geom(&self, geom: Element<'x>, class: Option<&'x str>, matters: bool) -> Option<(Inertia, Pose)> {
+    fn geom(
+        &self,
+        geom: Element<'x>,
+        class: Option<&'x str>,
+        matters: bool,
+    ) -> Option<(Inertia, Pose)> {
         let attribute = |key: &str| {
             let own = geom.attribute_node(key);
             own.or_else(|| self.defaults.attribute("geom", class, key))
@@ -47,7 +73,14 @@ impl<'x> Reader<'x, '_> {
             let given = attribute(key)?;
             exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
         };
-        let shape = attribute("type").map_or(if attribute("mesh").is_some() { "mesh" } else { "sphere" }, |given| given.value());
+        let shape = attribute("type").map_or(
+            if attribute("mesh").is_some() {
+                "mesh"
+            } else {
+                "sphere"
+            },
+            |given| given.value(),
+        );
         let given_mass = number("mass");
         let density = number("density").unwrap_or(DENSITY);
         let massless = given_mass == Some(0.0) || (given_mass.is_none() && density == 0.0);
@@ -59,7 +92,10 @@ impl<'x> Reader<'x, '_> {
             let (what, help) = if of_surface {
                 ("with `shellinertia`", "give the body an `inertial`")
             } else {
-                ("made of a mesh", "give the body an `inertial`, or the geom `mass=\"0\"`; meshes are not read")
+                (
+                    "made of a mesh",
+                    "give the body an `inertial`, or the geom `mass=\"0\"`; meshes are not read",
+                )
             };
             self.findings.error(
                 Code::NotAllowedHere,
@@ -104,7 +140,12 @@ impl<'x> Reader<'x, '_> {
         let way = minus(to, from);
         let Some(direction) = unit(way) else {
             let help = "give two different ends, or `pos` and `size`";
-            self.findings.error(Code::VanishingLength, ends.range_value(), "both ends are at one place", help);
+            self.findings.error(
+                Code::VanishingLength,
+                ends.range_value(),
+                "both ends are at one place",
+                help,
+            );
             return None;
         };
         let pose = Pose {
@@ -115,7 +156,13 @@ impl<'x> Reader<'x, '_> {
     }
 
     /// Radii and half lengths along the own axes.
-    fn size(&self, geom: Element<'x>, class: Option<&'x str>, shape: &str, half: Option<f64>) -> Option<Vector> {
+    fn size(
+        &self,
+        geom: Element<'x>,
+        class: Option<&'x str>,
+        shape: &str,
+        half: Option<f64>,
+    ) -> Option<Vector> {
         let own = geom.attribute_node("size");
         let given = own.or_else(|| self.defaults.attribute("geom", class, "size"));
         let sizes = match &given {
@@ -134,7 +181,12 @@ impl<'x> Reader<'x, '_> {
             let at = given.map_or_else(|| tag(geom), |given| given.range_value());
             let plural = if needs == 1 { "number" } else { "numbers" };
             let message = format!("the size of a {shape} has {needs} positive {plural}");
-            self.findings.error(Code::WrongType, at, message, "write `size=\"…\"`: radii and half lengths in m");
+            self.findings.error(
+                Code::WrongType,
+                at,
+                message,
+                "write `size=\"…\"`: radii and half lengths in m",
+            );
             return None;
         }
         let at = |index: usize| sizes.get(index).copied().unwrap_or(sizes[0]);
@@ -142,7 +194,8 @@ impl<'x> Reader<'x, '_> {
             "sphere" => [at(0); 3],
             "capsule" | "cylinder" => [at(0), at(0), half.unwrap_or_else(|| at(1))],
             _ => match half {
-                Some(half) => [at(0), at(1), half],
+                // Between two ends a geom is as wide as it is deep.
+                Some(half) => [at(0), at(0), half],
                 None => [at(0), at(1), at(2)],
             },
         })
@@ -154,7 +207,10 @@ fn homogeneous(shape: &str, [a, b, c]: Vector) -> (f64, Vector) {
     match shape {
         "box" => {
             let [x, y, z] = [a * a, b * b, c * c];
-            (8.0 * a * b * c, [(y + z) / 3.0, (x + z) / 3.0, (x + y) / 3.0])
+            (
+                8.0 * a * b * c,
+                [(y + z) / 3.0, (x + z) / 3.0, (x + y) / 3.0],
+            )
         }
         "cylinder" => {
             let across = (3.0 * a * a + 4.0 * c * c) / 12.0;

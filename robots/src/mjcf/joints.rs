@@ -26,7 +26,12 @@ impl<'x> Reader<'x, '_> {
     }
 
     /// The joints of a body, in the order in which they move it.
-    pub(super) fn joints(&self, body: Element<'x>, name: &str, class: Option<&'x str>) -> Vec<Joint> {
+    pub(super) fn joints(
+        &self,
+        body: Element<'x>,
+        name: &str,
+        class: Option<&'x str>,
+    ) -> Vec<Joint> {
         let elements: Vec<Element<'x>> = children(body, "joint").collect();
         let count = elements.len();
         let joints = elements.into_iter().enumerate();
@@ -64,7 +69,10 @@ impl<'x> Reader<'x, '_> {
             Motion::Sliding => value,
         };
         if let Some(given) = attribute("springdamper")
-            && given.value().split_ascii_whitespace().any(|word| word != "0")
+            && given
+                .value()
+                .split_ascii_whitespace()
+                .any(|word| word != "0")
         {
             self.findings.error(
                 Code::NotAllowedHere,
@@ -77,12 +85,18 @@ impl<'x> Reader<'x, '_> {
         let axis = unit(along).unwrap_or_else(|| {
             let at = attribute("axis").map_or_else(|| tag(element), |given| given.range_value());
             let message = format!("the axis of joint `{name}` has length zero");
-            self.findings.error(Code::VanishingLength, at, message, "give its direction, such as `0 0 1`");
+            self.findings.error(
+                Code::VanishingLength,
+                at,
+                message,
+                "give its direction, such as `0 0 1`",
+            );
             [0.0, 0.0, 1.0]
         });
         let limited = attribute("limited").map(|given| given.value() == "true");
         let range = attribute("range");
-        let range = range.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
+        let range =
+            range.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
         let auto = self.compiler.autolimits && range.is_some_and(|[from, to]| from < to);
         let limited = match attribute("limited").map(|given| given.value()) {
             Some("auto") | None => auto,
@@ -93,7 +107,9 @@ impl<'x> Reader<'x, '_> {
             axis,
             anchor: vector("pos", "a position, x y z,").unwrap_or_default(),
             zero: angle(number("ref").unwrap_or_default()),
-            range: range.filter(|[from, to]| limited && from < to).map(|range| range.map(angle)),
+            range: range
+                .filter(|[from, to]| limited && from < to)
+                .map(|range| range.map(angle)),
             damping: number("damping").unwrap_or_default(),
             armature: number("armature").unwrap_or_default(),
             friction: number("frictionloss").unwrap_or_default(),
@@ -103,19 +119,32 @@ impl<'x> Reader<'x, '_> {
         })
     }
 
-    fn motion(&self, element: Element<'x>, name: &str, kind: Option<Attribute<'_, '_>>) -> Option<Motion> {
+    fn motion(
+        &self,
+        element: Element<'x>,
+        name: &str,
+        kind: Option<Attribute<'_, '_>>,
+    ) -> Option<Motion> {
         let Some(kind) = kind else {
             return Some(Motion::Turning);
         };
         // The type may be that of a class elsewhere.
-        let at = element.attribute_node("type").map_or_else(|| tag(element), |own| own.range_value());
+        let at = element
+            .attribute_node("type")
+            .map_or_else(|| tag(element), |own| own.range_value());
         match kind.value() {
             "hinge" => Some(Motion::Turning),
             "slide" => Some(Motion::Sliding),
             other @ ("free" | "ball") => {
                 let (what, help) = match other {
-                    "free" => ("free: floating bases are", "remove the joint to have the base fixed to the ground"),
-                    _ => ("a ball joint: these are", "three hinges at one place turn likewise, away from their pole"),
+                    "free" => (
+                        "free: floating bases are",
+                        "remove the joint to have the base fixed to the ground",
+                    ),
+                    _ => (
+                        "a ball joint: these are",
+                        "three hinges at one place turn likewise, away from their pole",
+                    ),
                 };
                 let message = format!("joint `{name}` is {what} not imported yet");
                 self.findings.error(Code::NotAllowedHere, at, message, help);
@@ -126,7 +155,10 @@ impl<'x> Reader<'x, '_> {
                 self.findings.error(
                     Code::UnknownWord,
                     at,
-                    format!("there are no joints of type `{}`", appell_spec::shown(other)),
+                    format!(
+                        "there are no joints of type `{}`",
+                        appell_spec::shown(other)
+                    ),
                     did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
                 );
                 None

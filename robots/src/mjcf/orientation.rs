@@ -25,7 +25,11 @@ impl Default for Angles {
 impl Angles {
     /// An angle in radians.
     pub(super) fn radians(&self, angle: f64) -> f64 {
-        if self.degrees { angle.to_radians() } else { angle }
+        if self.degrees {
+            angle.to_radians()
+        } else {
+            angle
+        }
     }
 
     /// Reads `eulerseq`: small letters are axes that turn along, capitals those that stay.
@@ -40,7 +44,10 @@ impl Angles {
             None => findings.error(
                 Code::WrongType,
                 given.range_value(),
-                format!("`eulerseq` cannot be `{}`", appell_spec::shown(given.value())),
+                format!(
+                    "`eulerseq` cannot be `{}`",
+                    appell_spec::shown(given.value())
+                ),
                 "write three axes: x, y, z turn along, X, Y, Z stay; `xyz` is the default",
             ),
         }
@@ -50,7 +57,11 @@ impl Angles {
         let mut rotation = Rotation::IDENTITY;
         for ((axis, stays), angle) in self.sequence.into_iter().zip(angles) {
             let turn = Rotation::about(axis, self.radians(angle));
-            rotation = if stays { turn.then(rotation) } else { rotation.then(turn) };
+            rotation = if stays {
+                turn.then(rotation)
+            } else {
+                rotation.then(turn)
+            };
         }
         rotation
     }
@@ -86,7 +97,8 @@ impl Angles {
             return axis.map(|axis| Rotation::about_vector(axis, self.radians(angle)));
         }
         if let Some(given) = attribute("euler") {
-            return exactly(findings, &given, "a set of Euler angles").map(|angles| self.euler(angles));
+            return exactly(findings, &given, "a set of Euler angles")
+                .map(|angles| self.euler(angles));
         }
         if let Some(given) = attribute("xyaxes") {
             let [a, b, c, d, e, f] = exactly(findings, &given, "the axes x and y")?;

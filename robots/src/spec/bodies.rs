@@ -16,7 +16,14 @@ impl Writer<'_> {
     }
 
     /// Components of a vector, in m.
-    fn components(&mut self, value: Vector, letters: &str, of: &str, about: &str, kind: Kind) -> Vec<String> {
+    fn components(
+        &mut self,
+        value: Vector,
+        letters: &str,
+        of: &str,
+        about: &str,
+        kind: Kind,
+    ) -> Vec<String> {
         let components = value.into_iter().zip(AXES).map(|(value, axis)| {
             let about = format!("{about}, {axis}");
             self.numbers.write(
@@ -35,7 +42,7 @@ impl Writer<'_> {
         components.collect()
     }
 
-    /// The weight. Returns the expressions of the components of gravity.
+    /// The weight. Returns the expressions of the magnitudes of the components of gravity.
     pub(super) fn gravity(&mut self, gravity: Vector) -> [String; 3] {
         let count = gravity.iter().filter(|one| **one != 0.0).count();
         let mut written = [const { String::new() }; 3];
@@ -59,13 +66,17 @@ impl Writer<'_> {
                 kind: Kind::Other,
                 never_negative: false,
             });
-            let down = if component < 0.0 { format!("-{axis}") } else { axis.to_owned() };
+            let down = if component < 0.0 {
+                format!("-{axis}")
+            } else {
+                axis.to_owned()
+            };
             let item = Item::default()
                 .text("kind", "gravity")
                 .text("down", &down)
                 .expression("acceleration", &acceleration);
             self.loads.add(&load, &item);
-            written[index] = if component < 0.0 { format!("-{acceleration}") } else { acceleration };
+            written[index] = acceleration;
         }
         written
     }
@@ -83,7 +94,10 @@ impl Writer<'_> {
         }
         let mut turns: Vec<(String, String)> = Vec::new();
         for (count, turn) in body.turns.iter().enumerate() {
-            let (value, axis) = if turn.angle < 0.0 && turn.angle > -3.0 && crate::rotation::right_angles(turn.angle).is_some() {
+            let (value, axis) = if turn.angle < 0.0
+                && turn.angle > -3.0
+                && crate::rotation::right_angles(turn.angle).is_some()
+            {
                 (-turn.angle, format!("-{}", AXES[turn.axis]))
             } else {
                 (turn.angle, AXES[turn.axis].to_owned())
@@ -106,10 +120,17 @@ impl Writer<'_> {
         }
         if turning {
             let sign = if body.axis.backwards { "-" } else { "" };
-            let by = plus(&self.called.coordinates[index], &quantity(body.offset, "rad"));
+            let by = plus(
+                &self.called.coordinates[index],
+                &quantity(body.offset, "rad"),
+            );
             turns.push((format!("{sign}{}", AXES[body.axis.index]), by));
         }
-        let turn = |(axis, by): &(String, String)| Item::default().text("about_axis", axis).expression("by", by);
+        let turn = |(axis, by): &(String, String)| {
+            Item::default()
+                .text("about_axis", axis)
+                .expression("by", by)
+        };
         let item = Item::default().text("parent", &parent);
         let item = match turns.as_slice() {
             [(axis, by)] => item.text("about_axis", axis).expression("by", by),
@@ -121,7 +142,10 @@ impl Writer<'_> {
         let item = if body.keeps_axes {
             item
         } else {
-            let along = format!("{} points along the axis of the joint, other than in the file", AXES[body.axis.index]);
+            let along = format!(
+                "{} points along the axis of the joint, other than in the file",
+                AXES[body.axis.index]
+            );
             item.text("about", &along)
         };
         self.frames.add(&called, &item);
@@ -134,16 +158,29 @@ impl Writer<'_> {
         let link = self.links[body.link].name.clone();
         let called = self.called.links[body.link].clone();
         let origin = body.joint.motion == Motion::Sliding || body.joint.anchor == [0.0; 3];
-        let name = if origin { called.clone() } else { self.places.new_one(&format!("axis_{called}")) };
+        let name = if origin {
+            called.clone()
+        } else {
+            self.places.new_one(&format!("axis_{called}"))
+        };
         let (parent_frame, mut from) = (self.frame_of(body.parent), self.point_of(body.parent));
         let about = format!("place of {name}");
-        let mut at = self.components(body.position, &format!("#_{called}"), &link, &about, Kind::Other);
+        let mut at = self.components(
+            body.position,
+            &format!("#_{called}"),
+            &link,
+            &about,
+            Kind::Other,
+        );
         let mut frame = parent_frame;
         if body.joint.motion == Motion::Sliding {
             let own = self.called.frames[index].clone();
             if own != frame && body.position != [0.0; 3] {
                 let guide = self.places.new_one(&format!("guide_{called}"));
-                let item = Item::default().text("from", &from).text("in", &frame).expressions("at", &at);
+                let item = Item::default()
+                    .text("from", &from)
+                    .text("in", &frame)
+                    .expressions("at", &at);
                 self.points.add(&guide, &item);
                 from = guide;
                 at = vec!["0".to_owned(); 3];
@@ -153,13 +190,21 @@ impl Writer<'_> {
             let component = &mut at[body.axis.index];
             *component = match (component.as_str(), body.axis.backwards) {
                 ("0", false) => way,
+                ("0", true) if !way.contains(' ') => format!("-{way}"),
                 ("0", true) => format!("-({way})"),
                 (constant, false) => format!("{constant} + {way}"),
                 (constant, true) => format!("{constant} - ({way})"),
             };
         }
-        let item = Item::default().text("from", &from).text("in", &frame).expressions("at", &at);
-        let item = if origin { item } else { item.text("about", "on the axis of the joint") };
+        let item = Item::default()
+            .text("from", &from)
+            .text("in", &frame)
+            .expressions("at", &at);
+        let item = if origin {
+            item
+        } else {
+            item.text("about", "on the axis of the joint")
+        };
         self.points.add(&name, &item);
         self.called.points.push(name);
     }
@@ -175,13 +220,22 @@ impl Writer<'_> {
         let called = self.called.links[body.link].clone();
         let frame = self.called.frames[index].clone();
         let about = format!("centre of mass of {called}");
-        let at = self.components(inertia.centre, &format!("c#_{called}"), &link, &about, Kind::Inertial);
+        let at = self.components(
+            inertia.centre,
+            &format!("c#_{called}"),
+            &link,
+            &about,
+            Kind::Inertial,
+        );
         let centre = if at.iter().all(|one| one == "0") {
             self.called.points[index].clone()
         } else {
             let centre = self.places.new_one(&format!("G_{called}"));
             let from = self.called.points[index].clone();
-            let item = Item::default().text("from", &from).text("in", &frame).expressions("at", &at);
+            let item = Item::default()
+                .text("from", &from)
+                .text("in", &frame)
+                .expressions("at", &at);
             self.points.add(&centre, &item);
             centre
         };
@@ -200,20 +254,26 @@ impl Writer<'_> {
             )
         };
         let mass = inertial(inertia.mass, "kg", format!("m_{called}"), "mass");
-        let entries = ["xx", "yy", "zz", "xy", "xz", "yz"].into_iter().zip(inertia.tensor);
+        let entries = ["xx", "yy", "zz", "xy", "xz", "yz"]
+            .into_iter()
+            .zip(inertia.tensor);
         let entries = entries.map(|(entry, value)| {
             let about = format!("inertia about the centre of mass, {entry},");
             inertial(value, "kg*m^2", format!("I{entry}_{called}"), &about)
         });
         let entries: Vec<String> = entries.collect();
         let item = if entries.iter().all(|entry| entry == "0") {
-            Item::default().text("centre", &centre).expression("mass", &mass)
+            Item::default()
+                .text("centre", &centre)
+                .expression("mass", &mass)
         } else {
             let tensor = Item::default().text("in", &frame);
             let tensor = if entries[3..].iter().all(|entry| entry == "0") {
                 tensor.raw("diagonal", &list(&entries[..3]))
             } else {
-                tensor.raw("moments", &list(&entries[..3])).raw("products", &list(&entries[3..]))
+                tensor
+                    .raw("moments", &list(&entries[..3]))
+                    .raw("products", &list(&entries[3..]))
             };
             Item::default()
                 .text("frame", &frame)
@@ -221,12 +281,20 @@ impl Writer<'_> {
                 .expression("mass", &mass)
                 .raw("inertia", &tensor.table())
         };
-        let merged = body.parts.iter().filter(|part| self.links[part.link].written && part.link != body.link);
-        let merged: Vec<&str> = merged.map(|part| self.called.links[part.link].as_str()).collect();
+        let merged = body
+            .parts
+            .iter()
+            .filter(|part| self.links[part.link].written && part.link != body.link);
+        let merged: Vec<&str> = merged
+            .map(|part| self.called.links[part.link].as_str())
+            .collect();
         let item = if merged.is_empty() {
             item
         } else {
-            item.text("about", &super::sentence(&format!("with {}", merged.join(", "))))
+            item.text(
+                "about",
+                &super::sentence(&format!("with {}", merged.join(", "))),
+            )
         };
         self.bodies.add(&called, &item);
     }
@@ -236,8 +304,14 @@ impl Writer<'_> {
         for part in &self.tree.ground {
             if part.position != [0.0; 3] {
                 let item = Item::default().text("from", "O").text("in", "ground");
-                let at: Vec<String> = part.position.iter().map(|one| quantity(*one, "m")).collect();
-                let item = item.expressions("at", &at).text("about", "fixed to the ground");
+                let at: Vec<String> = part
+                    .position
+                    .iter()
+                    .map(|one| quantity(*one, "m"))
+                    .collect();
+                let item = item
+                    .expressions("at", &at)
+                    .text("about", "fixed to the ground");
                 self.points.add(&self.called.links[part.link], &item);
             }
         }
@@ -251,7 +325,11 @@ impl Writer<'_> {
                 if !self.links[part.link].written || *name == self.called.points[index] {
                     continue;
                 }
-                let at: Vec<String> = part.position.iter().map(|one| quantity(*one, "m")).collect();
+                let at: Vec<String> = part
+                    .position
+                    .iter()
+                    .map(|one| quantity(*one, "m"))
+                    .collect();
                 let item = Item::default()
                     .text("from", &self.called.points[index])
                     .text("in", &self.called.frames[index])
@@ -277,13 +355,14 @@ impl Writer<'_> {
                     .text("in", &self.called.frames[index])
                     .expressions("at", &at);
                 self.points.add(&point, &item);
-                let share = quantity(-link.carried * link.inertia.mass, "kg");
+                let carries =
+                    |component: f64| -component.signum() * link.carried * link.inertia.mass;
                 let force: Vec<String> = gravity
                     .iter()
                     .zip(&letters)
-                    .map(|(component, letter)| match component {
+                    .map(|(component, letter)| match *component {
                         0.0 => "0".to_owned(),
-                        _ => format!("{share}*({letter})"),
+                        component => format!("{}*{letter}", quantity(carries(component), "kg")),
                     })
                     .collect();
                 let item = Item::default()
@@ -300,7 +379,12 @@ impl Writer<'_> {
     /// Positions of the ends of the chains.
     pub(super) fn ends(&mut self) {
         let is_parent = |link: usize| self.links.iter().any(|other| other.parent == Some(link));
-        let carries = |index: usize| self.tree.bodies.iter().any(|body| body.parent == Some(index));
+        let carries = |index: usize| {
+            self.tree
+                .bodies
+                .iter()
+                .any(|body| body.parent == Some(index))
+        };
         for (index, body) in self.tree.bodies.iter().enumerate() {
             let furthest = |part: &&crate::tree::Part| {
                 let from = minus(part.position, scaled(body.inertia.centre, 0.0));

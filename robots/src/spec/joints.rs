@@ -44,7 +44,13 @@ impl Units {
 
 impl Writer<'_> {
     /// A number of a joint, as an expression.
-    fn of_joint(&mut self, joint: &Joint, q: &str, value: f64, (letter, unit, about): (&str, &'static str, &str)) -> String {
+    fn of_joint(
+        &mut self,
+        joint: &Joint,
+        q: &str,
+        value: f64,
+        (letter, unit, about): (&str, &'static str, &str),
+    ) -> String {
         let number = Number {
             value,
             unit,
@@ -64,31 +70,96 @@ impl Writer<'_> {
         let units = Units::of(joint.motion);
         let rate = format!("dot({q})");
         self.coordinate(joint, &q, &units);
-        let input = self.quantities.new_one(&format!("{}_{q}", if joint.motion == Motion::Turning { "tau" } else { "force" }));
-        let what = if joint.motion == Motion::Turning { "torque" } else { "force" };
+        let input = self.quantities.new_one(&format!(
+            "{}_{q}",
+            if joint.motion == Motion::Turning {
+                "tau"
+            } else {
+                "force"
+            }
+        ));
+        let what = if joint.motion == Motion::Turning {
+            "torque"
+        } else {
+            "force"
+        };
         let item = Item::default().text("unit", units.force);
-        self.inputs.add(&input, &item.text("about", &sentence(&format!("{what} at joint {}", joint.name))));
-        let item = Item::default().text("kind", "generalized").text("coordinate", &q);
-        self.loads.add(&format!("drive_{q}"), &item.text("force", &input));
+        self.inputs.add(
+            &input,
+            &item.text(
+                "about",
+                &sentence(&format!("{what} at joint {}", joint.name)),
+            ),
+        );
+        let item = Item::default()
+            .text("kind", "generalized")
+            .text("coordinate", &q);
+        self.loads
+            .add(&format!("drive_{q}"), &item.text("force", &input));
         if joint.damping != 0.0 {
-            let damping = self.of_joint(joint, &q, joint.damping, ("damping", units.damping, "damping"));
-            let item = Item::default().text("kind", "damper").text("coordinate", &q);
-            self.loads.add(&format!("damping_{q}"), &item.expression("damping", &damping));
+            let damping = self.of_joint(
+                joint,
+                &q,
+                joint.damping,
+                ("damping", units.damping, "damping"),
+            );
+            let item = Item::default()
+                .text("kind", "damper")
+                .text("coordinate", &q);
+            self.loads.add(
+                &format!("damping_{q}"),
+                &item.expression("damping", &damping),
+            );
         }
         if joint.stiffness != 0.0 {
-            let stiffness = self.of_joint(joint, &q, joint.stiffness, ("stiffness", units.stiffness, "stiffness of the spring"));
-            let relaxed = self.of_joint(joint, &q, joint.relaxed, ("relaxed", units.coordinate, "coordinate of the relaxed spring"));
-            let item = Item::default().text("kind", "spring").text("coordinate", &q);
+            let stiffness = self.of_joint(
+                joint,
+                &q,
+                joint.stiffness,
+                ("stiffness", units.stiffness, "stiffness of the spring"),
+            );
+            let relaxed = self.of_joint(
+                joint,
+                &q,
+                joint.relaxed,
+                (
+                    "relaxed",
+                    units.coordinate,
+                    "coordinate of the relaxed spring",
+                ),
+            );
+            let item = Item::default()
+                .text("kind", "spring")
+                .text("coordinate", &q);
             let item = item.expression("stiffness", &stiffness);
-            let item = if relaxed == "0" { item } else { item.expression("relaxed", &relaxed) };
+            let item = if relaxed == "0" {
+                item
+            } else {
+                item.expression("relaxed", &relaxed)
+            };
             self.loads.add(&format!("spring_{q}"), &item);
         }
         if joint.friction != 0.0 {
-            let friction = self.of_joint(joint, &q, joint.friction, ("friction", units.force, "dry friction"));
-            let slow = quantity(SLOW, if joint.motion == Motion::Turning { "rad/s" } else { units.rate });
+            let friction = self.of_joint(
+                joint,
+                &q,
+                joint.friction,
+                ("friction", units.force, "dry friction"),
+            );
+            let slow = quantity(
+                SLOW,
+                if joint.motion == Motion::Turning {
+                    "rad/s"
+                } else {
+                    units.rate
+                },
+            );
             let force = format!("-{friction}*smooth_sign({rate}, {slow})");
-            let item = Item::default().text("kind", "generalized").text("coordinate", &q);
-            self.loads.add(&format!("friction_{q}"), &item.text("force", &force));
+            let item = Item::default()
+                .text("kind", "generalized")
+                .text("coordinate", &q);
+            self.loads
+                .add(&format!("friction_{q}"), &item.text("force", &force));
         }
         if joint.armature != 0.0 {
             self.armature(joint, &q, &units);
@@ -110,35 +181,60 @@ impl Writer<'_> {
             Some([from, to]) if !(from..=to).contains(&joint.zero) => f64::midpoint(from, to),
             _ => joint.zero,
         };
-        let item = if start == 0.0 { item } else { item.raw("initial", &plain(start)) };
+        let item = if start == 0.0 {
+            item
+        } else {
+            item.raw("initial", &plain(start))
+        };
         self.coordinates.add(q, &item);
     }
 
     /// Inertia of a drive that turns with its joint alone: a body at rest on the ground but for that turn.
     fn armature(&mut self, joint: &Joint, q: &str, units: &Units) {
-        let inertia = self.of_joint(joint, q, joint.armature, ("armature", units.inertia, "inertia of the drive"));
+        let inertia = self.of_joint(
+            joint,
+            q,
+            joint.armature,
+            ("armature", units.inertia, "inertia of the drive"),
+        );
         let rotor = self.places.new_one(&format!("rotor_{q}"));
         let (by, inertia) = match joint.motion {
             Motion::Turning => (q.to_owned(), inertia),
             // A turn of a radian a metre.
             Motion::Sliding => (format!("{q}/(1 [m])"), format!("{inertia}*(1 [m])^2")),
         };
-        let item = Item::default().text("parent", "ground").text("about_axis", "z");
+        let item = Item::default()
+            .text("parent", "ground")
+            .text("about_axis", "z");
         self.frames.add(&rotor, &item.text("by", &by));
         let tensor = Item::default().text("in", &rotor);
-        let tensor = tensor.raw("diagonal", &list(&[inertia.clone(), inertia.clone(), inertia]));
+        let tensor = tensor.raw(
+            "diagonal",
+            &list(&[inertia.clone(), inertia.clone(), inertia]),
+        );
         let item = Item::default()
             .text("frame", &rotor)
             .text("centre", "O")
             .raw("mass", "0")
             .raw("inertia", &tensor.table())
-            .text("about", &sentence(&format!("inertia of the drive of joint {} (armature)", joint.name)));
+            .text(
+                "about",
+                &sentence(&format!(
+                    "inertia of the drive of joint {} (armature)",
+                    joint.name
+                )),
+            );
         self.bodies.add(&rotor, &item);
     }
 
     /// Speeds of the coordinates that are free, and the equations of the others.
     pub(super) fn couplings(&mut self, couplings: &[Coupling]) {
-        let find = |name: &str| self.tree.bodies.iter().position(|body| body.joint.name == name);
+        let find = |name: &str| {
+            self.tree
+                .bodies
+                .iter()
+                .position(|body| body.joint.name == name)
+        };
         let mut follows = vec![false; self.tree.bodies.len()];
         for coupling in couplings {
             let Some(own) = find(&coupling.joint) else {
@@ -162,32 +258,48 @@ impl Writer<'_> {
                     (_, Some(other)) => {
                         let x = shifted(other, coupling.zeros[1]);
                         let x = if x.contains(' ') { format!("({x})") } else { x };
-                        let x = if power == 1 { x } else { format!("{x}^{power}") };
+                        let x = if power == 1 {
+                            x
+                        } else {
+                            format!("{x}^{power}")
+                        };
                         let factor = match (unit(own), unit(other)) {
                             (y, x) if y == x && (power == 1 || y == "rad") => plain(*coefficient),
                             ("m", "m") => format!("{} [1/m^{}]", plain(*coefficient), power - 1),
                             ("m", _) => format!("{} [m]", plain(*coefficient)),
                             _ => format!("{} [1/m^{power}]", plain(*coefficient)),
                         };
-                        if factor == "1" { x } else { format!("{factor}*{x}") }
+                        if factor == "1" {
+                            x
+                        } else {
+                            format!("{factor}*{x}")
+                        }
                     }
                 };
                 value = plus(&value, &term);
             }
             let zero = shifted(own, coupling.zeros[0]);
-            let zero = if value == "0" { zero } else { format!("{zero} - ({value})") };
+            let zero = if value == "0" {
+                zero
+            } else {
+                format!("{zero} - ({value})")
+            };
             let item = Item::default()
                 .text("kind", "position")
                 .text("zero", &zero)
                 .text("dependent", &self.called.coordinates[own]);
-            self.constraints.add(&crate::names::Names::default().new_one(&coupling.name), &item);
+            self.constraints.add(
+                &crate::names::Names::default().new_one(&coupling.name),
+                &item,
+            );
         }
         for (index, body) in self.tree.bodies.iter().enumerate() {
             if !follows[index] {
                 let q = &self.called.coordinates[index];
                 let name = self.quantities.new_one(&format!("v_{q}"));
                 let item = Item::default().text("value", &format!("dot({q})"));
-                self.speeds.add(&name, &item.text("unit", Units::of(body.joint.motion).rate));
+                self.speeds
+                    .add(&name, &item.text("unit", Units::of(body.joint.motion).rate));
             }
         }
     }

@@ -24,7 +24,11 @@ pub(super) fn head(file: &str, kind: &str, robot: &Robot, tree: &Tree) -> String
         "# Links that are fixed together are one body; each link's name is that of the point at its origin.\n\
          # Lengths are in m, angles in rad.\n",
     );
-    let ground: Vec<&str> = tree.ground.iter().map(|part| robot.links[part.link].name.as_str()).collect();
+    let ground: Vec<&str> = tree
+        .ground
+        .iter()
+        .map(|part| robot.links[part.link].name.as_str())
+        .collect();
     if !ground.is_empty() {
         let _ = writeln!(head, "# Fixed to the ground: {}.", line(&some(&ground)));
     }
@@ -43,7 +47,11 @@ pub(super) fn left_out(left_out: &[LeftOut], options: &Options, text: &mut Strin
     text.push_str("\n# The file also has, without a counterpart here:\n");
     for (what, all) in grouped(left_out) {
         let names: Vec<&str> = all.iter().filter_map(|one| one.name.as_deref()).collect();
-        let names = if names.is_empty() { String::new() } else { format!(": {}", line(&some(&names))) };
+        let names = if names.is_empty() {
+            String::new()
+        } else {
+            format!(": {}", line(&some(&names)))
+        };
         let _ = writeln!(text, "# - {} {what}{names}", all.len());
     }
 }
@@ -57,11 +65,23 @@ fn some(names: &[&str]) -> String {
         }
     }
     let more = unique.len().saturating_sub(MOST_NAMES);
-    let shown = unique.iter().take(MOST_NAMES).copied().collect::<Vec<_>>().join(", ");
-    if more == 0 { shown } else { format!("{shown} and {more} more") }
+    let shown = unique
+        .iter()
+        .take(MOST_NAMES)
+        .copied()
+        .collect::<Vec<_>>()
+        .join(", ");
+    if more == 0 {
+        shown
+    } else {
+        format!("{shown} and {more} more")
+    }
 }
 
 /// A text that stays in one line of a comment.
 fn line(text: &str) -> String {
-    text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(400).collect()
+    text.chars()
+        .map(|c| if c.is_control() { ' ' } else { c })
+        .take(400)
+        .collect()
 }

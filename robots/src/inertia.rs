@@ -84,7 +84,7 @@ impl Inertia {
 
     /// Whether there is neither mass nor moment.
     pub(crate) fn is_nothing(&self) -> bool {
-        self.mass == 0.0 && self.tensor == [0.0; 6]
+        self.mass == 0.0 && self.tensor.iter().all(|entry| *entry == 0.0)
     }
 
     /// The same body in the frame in which `pose` places the present one.

@@ -48,6 +48,10 @@ pub(crate) fn add(a: Vector, b: Vector) -> Vector {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
+pub(crate) fn is_zero(a: Vector) -> bool {
+    a.iter().all(|component| *component == 0.0)
+}
+
 pub(crate) fn scaled(a: Vector, factor: f64) -> Vector {
     a.map(|component| component * factor)
 }
@@ -169,7 +173,7 @@ impl Rotation {
             None if angle < 1.0 => Self::IDENTITY,
             // Opposite: half a turn about anything perpendicular.
             None => {
-                let other = if from[0].abs() < 0.5 { 0 } else { 1 };
+                let other = usize::from(from[0].abs() >= 0.5);
                 let mut helper = [0.0; 3];
                 helper[other] = 1.0;
                 let axis = unit(cross(from, helper)).unwrap_or([1.0, 0.0, 0.0]);
@@ -289,9 +293,9 @@ fn is_right(angle: f64) -> bool {
 
 /// A right angle as the machine has it; a zero without a sign.
 fn clean(angle: f64) -> f64 {
-    right_angles(angle).map_or(angle, |count| match count as i32 {
+    right_angles(angle).map_or(angle, |count| match count {
         // One way to write half a turn.
-        -2 => std::f64::consts::PI,
+        -2.0 => std::f64::consts::PI,
         _ => count * std::f64::consts::FRAC_PI_2 + 0.0,
     })
 }
@@ -373,7 +377,7 @@ mod tests {
         let mut numbers = Numbers(7);
         for round in 0..2000 {
             let scale = [3.0, 1e-3, 1e-7, 1e-11][round % 4];
-            let mut angle = || (numbers.next() * 2.0).round() * 1.5708 + scale * numbers.next();
+            let mut angle = || (numbers.next() * 2.0).round() * 1.570_75 + scale * numbers.next();
             let rotation = Rotation::roll_pitch_yaw([angle(), angle(), angle()]);
             for last in [None, Some(0), Some(1), Some(2)] {
                 let turns = rotation.turns(last);
@@ -406,7 +410,7 @@ mod tests {
                 angle: half
             }]
         );
-        let quaternion = Rotation::quaternion([0.0, 0.0, 0.707_107, 0.707_107]);
+        let quaternion = Rotation::quaternion([0.0, 0.0, 0.3, 0.3]);
         assert_eq!(
             quaternion.map(|r| r.0),
             Some([[-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 1.0, 0.0]])

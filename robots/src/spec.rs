@@ -73,7 +73,7 @@ pub(crate) fn write(
     }
     writer.links_on_the_ground();
     writer.links_on_bodies();
-    writer.carried(robot.gravity, letters);
+    writer.carried(robot.gravity, &letters);
     writer.couplings(&robot.couplings);
     writer.ends();
     let name = Names::default().new_one(&robot.name);

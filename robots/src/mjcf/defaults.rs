@@ -81,12 +81,12 @@ impl<'x> Defaults<'x> {
         // Classes are nested in the text, so that this ends.
         loop {
             let class = self.classes.get(name)?;
-            let own = class
+            let mut own = class
                 .elements
                 .iter()
                 .rev()
                 .filter(|element| element.tag_name().name() == kind);
-            if let Some(found) = own.filter_map(|element| element.attribute_node(key)).next() {
+            if let Some(found) = own.find_map(|element| element.attribute_node(key)) {
                 return Some(found);
             }
             name = class.parent.filter(|parent| *parent != name)?;

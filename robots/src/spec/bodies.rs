@@ -2,7 +2,7 @@
 
 use crate::letters::{Kind, Number, quantity};
 use crate::model::Motion;
-use crate::rotation::{Vector, minus, scaled};
+use crate::rotation::{Vector, dot, is_zero, right_angles};
 use crate::table::{Item, list};
 
 use super::{Writer, plus};
@@ -94,16 +94,14 @@ impl Writer<'_> {
         }
         let mut turns: Vec<(String, String)> = Vec::new();
         for (count, turn) in body.turns.iter().enumerate() {
-            let (value, axis) = if turn.angle < 0.0
-                && turn.angle > -3.0
-                && crate::rotation::right_angles(turn.angle).is_some()
-            {
-                (-turn.angle, format!("-{}", AXES[turn.axis]))
-            } else {
-                (turn.angle, AXES[turn.axis].to_owned())
-            };
+            let (value, axis) =
+                if turn.angle < 0.0 && turn.angle > -3.0 && right_angles(turn.angle).is_some() {
+                    (-turn.angle, format!("-{}", AXES[turn.axis]))
+                } else {
+                    (turn.angle, AXES[turn.axis].to_owned())
+                };
             // A right angle is not a number that anyone measures.
-            let by = if crate::rotation::right_angles(value).is_some() {
+            let by = if right_angles(value).is_some() {
                 quantity(value, "rad")
             } else {
                 self.number(Number {
@@ -157,7 +155,7 @@ impl Writer<'_> {
         let body = self.at(index);
         let link = self.links[body.link].name.clone();
         let called = self.called.links[body.link].clone();
-        let origin = body.joint.motion == Motion::Sliding || body.joint.anchor == [0.0; 3];
+        let origin = body.joint.motion == Motion::Sliding || is_zero(body.joint.anchor);
         let name = if origin {
             called.clone()
         } else {
@@ -175,7 +173,7 @@ impl Writer<'_> {
         let mut frame = parent_frame;
         if body.joint.motion == Motion::Sliding {
             let own = self.called.frames[index].clone();
-            if own != frame && body.position != [0.0; 3] {
+            if own != frame && !is_zero(body.position) {
                 let guide = self.places.new_one(&format!("guide_{called}"));
                 let item = Item::default()
                     .text("from", &from)
@@ -302,7 +300,7 @@ impl Writer<'_> {
     /// Origins of links that the ground carries.
     pub(super) fn links_on_the_ground(&mut self) {
         for part in &self.tree.ground {
-            if part.position != [0.0; 3] {
+            if !is_zero(part.position) {
                 let item = Item::default().text("from", "O").text("in", "ground");
                 let at: Vec<String> = part
                     .position
@@ -340,7 +338,7 @@ impl Writer<'_> {
     }
 
     /// Forces that carry a share of the weight of links.
-    pub(super) fn carried(&mut self, gravity: Vector, letters: [String; 3]) {
+    pub(super) fn carried(&mut self, gravity: Vector, letters: &[String; 3]) {
         for (index, body) in self.tree.bodies.iter().enumerate() {
             for part in &body.parts {
                 let link = &self.links[part.link];
@@ -359,7 +357,7 @@ impl Writer<'_> {
                     |component: f64| -component.signum() * link.carried * link.inertia.mass;
                 let force: Vec<String> = gravity
                     .iter()
-                    .zip(&letters)
+                    .zip(letters)
                     .map(|(component, letter)| match *component {
                         0.0 => "0".to_owned(),
                         component => format!("{}*{letter}", quantity(carries(component), "kg")),
@@ -386,10 +384,7 @@ impl Writer<'_> {
                 .any(|body| body.parent == Some(index))
         };
         for (index, body) in self.tree.bodies.iter().enumerate() {
-            let furthest = |part: &&crate::tree::Part| {
-                let from = minus(part.position, scaled(body.inertia.centre, 0.0));
-                from.iter().map(|one| one * one).sum::<f64>()
-            };
+            let furthest = |part: &&crate::tree::Part| dot(part.position, part.position);
             let ends = body.parts.iter().filter(|part| !is_parent(part.link));
             let Some(end) = ends.max_by(|a, b| furthest(a).total_cmp(&furthest(b))) else {
                 continue;

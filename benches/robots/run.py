@@ -4,8 +4,8 @@
     python3 benches/robots/run.py VECTORS [NAME.FORMAT ...] [--appell PROGRAM] [--env DIR] [--out FILE]
 
 VECTORS is a folder of `NAME.FORMAT.json`. Each names the package and the path of a robot file, or a file beside it,
-and holds states with M, bias, energies, positions and accelerations by another program, in the blocks `rigid` and
-`as_written`. Packages are looked for in the virtual environment DIR. README.md tells how to make both.
+and holds states with M, bias, energies, positions and accelerations by another program, in the blocks `rigid`,
+`as_written` and `mimic`. Packages are looked for in the virtual environment DIR. README.md tells how to make both.
 """
 
 import argparse
@@ -87,7 +87,7 @@ class Differences(dict):
 
 def compare(vectors, block, robot, appell, folder):
     """Imports a robot and evaluates it at the states of a block."""
-    without = ALWAYS + ["couplings"] + (RIGID if block == "rigid" else [])
+    without = ALWAYS + ([] if block == "mimic" else ["couplings"]) + ([] if block == "as_written" else RIGID)
     imported = folder / "imported.toml"
     _, seconds = run([appell, "import", robot, "-o", imported, "--without", ",".join(without)])
     joints = [legal(joint["name"]) for joint in vectors["joints"]]
@@ -98,12 +98,14 @@ def compare(vectors, block, robot, appell, folder):
     tested = folder / "tested.toml"
     tested.write_text(with_outputs(spec, sorted(set(points))))
     order = [joint for joint in re.findall(r'^v_\w+ += \{ value = "dot\((\w+)\)"', spec, re.M)]
-    if sorted(order) != sorted(joints):
+    # In the block `mimic`, joints that follow others have no speed of their own.
+    free = [joint for joint in joints if joint in order] if block == "mimic" else joints
+    if sorted(order) != sorted(free):
         raise RuntimeError(f"joints are {order}, not {joints}")
     cases = []
     for state in states:
         q, v = dict(zip(joints, state["q"])), dict(zip(joints, state["v"]))
-        values = {**q, **{f"v_{joint}": v[joint] for joint in joints}}
+        values = {**q, **{f"v_{joint}": v[joint] for joint in free}}
         inputs = {}
         for joint, tau in zip(joints, state["tau"]):
             inputs[f"tau_{joint}" if f"tau_{joint} " in spec else f"force_{joint}"] = tau
@@ -111,23 +113,25 @@ def compare(vectors, block, robot, appell, folder):
     (folder / "cases.json").write_text(json.dumps({"cases": cases}))
     answer, evaluation = run([appell, "evaluate", tested, "--cases", folder / "cases.json"])
     answers = json.loads(answer)["cases"]
-    place = [order.index(joint) for joint in joints]
+    place = [order.index(joint) for joint in free]
     differences = Differences()
     # Some programs count the links that stand still, so that energies compare up to a constant.
-    heights = [[at_rest["potential_energy"] for at_rest in answers[::2]], [state[block]["potential_energy"] for state in states]]
-    ours, theirs = ([value - values[0] for value in values] for values in heights)
-    differences.add("V", ours, theirs, largest(heights[1]))
+    heights = [[at_rest["potential_energy"] for at_rest in answers[::2]], [state[block].get("potential_energy") for state in states]]
+    if None not in heights[1]:
+        ours, theirs = ([value - values[0] for value in values] for values in heights)
+        differences.add("V", ours, theirs, largest(heights[1]))
     for state, at_rest, driven in zip(states, answers[::2], answers[1::2]):
         rigid, here = state["rigid"], state.get(block, {})
         mass = [[at_rest["mass_matrix"][i][j] for j in place] for i in place]
-        theirs = [list(row) for row in rigid["mass_matrix_lower"]]
+        theirs = [list(row) for row in here.get("mass_matrix_lower", rigid["mass_matrix_lower"])]
         for index, added in enumerate(here.get("mass_matrix_added_diagonal", [])):
             theirs[index][index] += added
         differences.add("M", [mass[i][j] for i in range(len(place)) for j in range(i + 1)], [x for row in theirs for x in row])
         bias = [at_rest["bias"][i] - at_rest["generalized_forces"][i] for i in place]
         differences.add("bias", bias, here["bias"])
-        differences.add("T", [at_rest["kinetic_energy"]], [here["kinetic_energy"]])
-        differences.add("qdd", [driven["rates"][f"v_{joint}"] for joint in joints], here["qdd"])
+        if "kinetic_energy" in here:
+            differences.add("T", [at_rest["kinetic_energy"]], [here["kinetic_energy"]])
+        differences.add("qdd", [driven["rates"][f"v_{joint}"] for joint in free], here["qdd"])
         positions = {**rigid["leaf_positions"], vectors["last_link"]: rigid["last_link_position"]}
         for name, position in positions.items():
             if legal(name) in points:
@@ -149,7 +153,7 @@ def main():
         if (options.names and path.stem not in options.names) or (not options.names and vectors["base"] != "fixed"):
             continue
         robot = robot_file(vectors, path.parent, options.env)
-        for block in ["rigid", "as_written"]:
+        for block in ["rigid", "as_written", *(["mimic"] if "mimic" in vectors["states"][0] else [])]:
             with tempfile.TemporaryDirectory() as folder:
                 try:
                     differences, seconds, evaluation, joints = compare(vectors, block, robot, options.appell, Path(folder))

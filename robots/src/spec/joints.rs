@@ -281,8 +281,10 @@ impl Writer<'_> {
             let zero = shifted(own, coupling.zeros[0]);
             let zero = if value == "0" {
                 zero
-            } else {
+            } else if value.contains([' ', '-']) {
                 format!("{zero} - ({value})")
+            } else {
+                format!("{zero} - {value}")
             };
             let item = Item::default()
                 .text("kind", "position")

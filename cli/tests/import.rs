@@ -19,9 +19,18 @@ fn an_imported_arm_goes_through_the_other_commands() {
     );
     folder.done(&["check", "arm.toml"]);
     folder.done(&["draw", "arm.toml"]);
+    let free = [
+        "import",
+        "robot/arm.urdf",
+        "-o",
+        "free.toml",
+        "--without",
+        "limits",
+    ];
+    folder.done(&free);
     let simulated = [
         "simulate",
-        "arm.toml",
+        "free.toml",
         "--t-end-s",
         "0.2",
         "--csv",

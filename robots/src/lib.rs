@@ -14,6 +14,7 @@
 //! | `rotation.rs`, `inertia.rs` | rotations and their turns; inertias turned, shifted, put together |
 //! | `tree.rs` | links that are fixed together become one body |
 //! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
+//! | `options.rs`, `without.rs`, `snap.rs` | requests; what is left out; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
 mod inertia;
@@ -21,6 +22,7 @@ mod letters;
 mod mjcf;
 mod model;
 mod names;
+mod options;
 mod rotation;
 mod snap;
 mod spec;
@@ -33,23 +35,12 @@ mod xml;
 use appell_spec::{Code, Diagnostic, Report, did_you_mean};
 
 pub use letters::Letters;
+pub use options::Options;
+pub use snap::SNAP;
 pub use without::Without;
 
 /// Largest file, in bytes.
 pub const MAX_FILE: u64 = 1 << 24;
-
-/// How a robot becomes a spec.
-#[derive(Debug, Clone, Default)]
-pub struct Options {
-    /// Which numbers become parameters.
-    pub letters: Letters,
-    /// What is left out.
-    pub without: Vec<Without>,
-    /// Makes angles right that differ from a right angle by less than [`SNAP`].
-    pub snap: bool,
-}
-
-pub use snap::SNAP;
 
 /// A robot as a spec.
 #[derive(Debug)]

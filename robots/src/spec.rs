@@ -6,10 +6,10 @@ mod remarks;
 
 use appell_spec::limits::MAX_SENTENCE;
 
-use crate::Options;
 use crate::letters::{Numbers, Parameter};
 use crate::model::{LeftOut, Link, Robot};
 use crate::names::{Names, short};
+use crate::options::Options;
 use crate::table::{Item, Section, quoted};
 use crate::tree::{Body, Tree};
 

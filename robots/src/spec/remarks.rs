@@ -2,8 +2,8 @@
 
 use std::fmt::Write as _;
 
-use crate::Options;
 use crate::model::{LeftOut, Robot};
+use crate::options::Options;
 use crate::tree::Tree;
 
 use super::grouped;

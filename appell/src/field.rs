@@ -61,6 +61,7 @@ fields! {
     Hypothesis "hypothesis" "Hypothesis of a gap report.",
     Sources "sources" "Sources of an FMU without machine code.",
     Bias "bias" "Columns with a constant bias.",
+    Letters "parameters" "Numbers of a robot that become parameters.",
 }
 
 impl fmt::Display for Field {

@@ -18,7 +18,8 @@
 //! | [`recording::read`], [`Model::identify`] | `appell recording`, `appell identify` |
 //! | [`Model::inverse`] | `appell inverse` |
 //! | [`diagnose()`], [`diagnosis::Library`] | `appell diagnose` |
-//! | [`sample::rig`] | `appell sample` |
+//! | [`sample::rig`], [`sample::robot`] | `appell sample` |
+//! | [`robot::read`], [`robot::import`] | `appell import` |
 //! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
@@ -50,6 +51,7 @@ pub mod json;
 mod model;
 mod motion;
 pub mod recording;
+pub mod robot;
 pub mod sample;
 pub mod setup;
 pub mod source;

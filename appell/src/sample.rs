@@ -51,6 +51,18 @@ pub fn rig(folder: &Path) -> Result<Vec<&'static str>, Error> {
     Ok(written.into_iter().map(|(name, _)| name).collect())
 }
 
+/// An arm with four joints, as URDF and as MJCF.
+const ROBOT: [(&str, &str); 2] = [
+    ("arm.urdf", include_str!("../robot/arm.urdf")),
+    ("arm.xml", include_str!("../robot/arm.xml")),
+];
+
+/// Writes a folder with a small robot arm as URDF and as MJCF; returns the names of the files.
+pub fn robot(folder: &Path) -> Result<Vec<&'static str>, Error> {
+    write(folder, &ROBOT.map(|(name, text)| (name, text.to_owned())))?;
+    Ok(ROBOT.map(|(name, _)| name).into())
+}
+
 /// Writes files by their names to a folder that has none of them.
 pub fn write<S: AsRef<str>>(folder: &Path, texts: &[(S, String)]) -> Result<(), Error> {
     files::make_folder(folder)?;

@@ -11,6 +11,7 @@ mod draw;
 mod evaluate;
 mod export;
 mod identify;
+mod import;
 mod inverse;
 mod list;
 mod lsp;
@@ -45,6 +46,7 @@ pub(crate) struct Arguments {
 pub(crate) enum Command {
     List(list::List),
     New(new::New),
+    Import(import::Import),
     Check(check::Check),
     Derive(derive::Derive),
     Draw(draw::Draw),
@@ -75,6 +77,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
     match command {
         Command::List(command) => command.run(),
         Command::New(command) => command.run(),
+        Command::Import(command) => command.run(),
         Command::Check(command) => command.run(),
         Command::Derive(command) => command.run(),
         Command::Draw(command) => command.run(),

@@ -36,6 +36,7 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Effects => "--without",
         Field::Hypothesis => "--hypothesis",
         Field::Bias => "--bias",
+        Field::Letters => "--parameters",
         Field::Sources => "--sources-only",
         _ => return None,
     })

@@ -4,7 +4,7 @@ use crate::documents::shell;
 use crate::support::Folder;
 
 /// Commands that others of the list need, in the order of their needs; then the rest.
-const FIRST: &[&str] = &["new", "sample", "motion", "diagnose"];
+const FIRST: &[&str] = &["new", "sample", "import", "motion", "diagnose"];
 /// Commands that never end, write to the home folder, or are run by tests of their own.
 const ELSEWHERE: &[&str] = &["watch", "lsp", "completions", "reproduce", "help"];
 

@@ -28,6 +28,7 @@ mod handout;
 mod help;
 mod identify;
 mod imperfection;
+mod import;
 mod language_server;
 mod languages;
 mod late;

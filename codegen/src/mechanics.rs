@@ -41,6 +41,7 @@ pub mod reactions;
 pub mod redundancy;
 pub mod relations;
 pub mod responses;
+mod right_angles;
 pub mod row;
 pub mod switches;
 pub mod symbols;

@@ -31,7 +31,7 @@ pub mod units;
 
 pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
-pub use resolve::{Scope, Snippet, formula};
+pub use resolve::{Scope, Snippet, formula, is_reserved};
 pub use starter::{NameError, starter};
 pub use suggest::{closest, did_you_mean, shown};
 

@@ -27,7 +27,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::mechanism::{Coordinate, Mechanism};
 
 pub use formula::{Scope, Snippet, formula};
-pub(crate) use names::is_reserved;
+pub use names::is_reserved;
 
 use resolver::Resolver;
 

@@ -33,6 +33,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-recordings",
         ],
     ),
+    ("robots", &["appell-spec"]),
     (
         "report",
         &[
@@ -58,6 +59,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-recordings",
             "appell-gap",
             "appell-report",
+            "appell-robots",
         ],
     ),
     ("lsp", &["appell-spec", "appell-codegen"]),
@@ -110,7 +112,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 13] = [
+const NAME_NO_MECHANISM: [&str; 14] = [
     "model_spec",
     "codegen",
     "runtime",
@@ -119,6 +121,7 @@ const NAME_NO_MECHANISM: [&str; 13] = [
     "estimate",
     "recordings",
     "gap",
+    "robots",
     "report",
     "appell",
     "lsp",

@@ -10,7 +10,8 @@ use crate::output::{self, shell};
 #[command(after_long_help = "\
 Examples:
   appell sample rig rig
-  appell sample capture capture")]
+  appell sample capture capture
+  appell sample robot robot")]
 pub(crate) struct Sample {
     #[command(subcommand)]
     what: What,
@@ -29,6 +30,11 @@ enum What {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,
     },
+    /// A small robot arm, as URDF and as MJCF
+    Robot {
+        /// The folder, which is made if it is not there; nothing is overwritten
+        folder: PathBuf,
+    },
 }
 
 impl Sample {
@@ -39,6 +45,15 @@ impl Sample {
                 let at = shell(&folder.to_string_lossy());
                 format!(
                     "wrote {files} to {at}; next:\n  appell recording {at}\n  appell diagnose --data {at} --html gap.html\n"
+                )
+            }
+            What::Robot { folder } => {
+                let files = appell::sample::robot(folder)?;
+                let at = shell(&folder.to_string_lossy());
+                let first = shell(&folder.join(files[0]).to_string_lossy());
+                format!(
+                    "wrote {} to {at}; next:\n  appell import {first}\n",
+                    files.join(", ")
                 )
             }
             What::Capture { folder } => {

@@ -38,6 +38,8 @@ pub struct Algebra {
     pub graph: Graph,
     /// Decides equality across spellings.
     pub test: IdentityTest,
+    /// The circle constant.
+    pub(super) pi: Expr,
     coordinates: Vec<SymbolId>,
     derivatives: Vec<(SymbolId, Derivatives)>,
     /// What is known of unknowns that no formula gives; taken out while it serves.
@@ -55,6 +57,7 @@ impl Algebra {
         Self {
             graph,
             test,
+            pi: symbols.pi,
             coordinates,
             derivatives: Vec::new(),
             relations: Vec::new(),

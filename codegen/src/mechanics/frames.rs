@@ -5,6 +5,7 @@ use appell_spec::mechanism::{FrameId, List, Mechanism};
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
+use super::right_angles::sin_cos;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -62,11 +63,12 @@ impl Frames {
                     angle = algebra.graph.neg(angle);
                 }
                 let axis = turn.axis.index();
+                let [sin, cos] = sin_cos(algebra, angle);
                 let elementary = Turn {
                     axis,
                     rate: time.of(algebra, angle),
-                    sin: algebra.graph.sin(angle),
-                    cos: algebra.graph.cos(angle),
+                    sin,
+                    cos,
                 };
                 w = elementary.into_child(&mut algebra.graph, w);
                 w[axis] = algebra.graph.add(w[axis], elementary.rate);

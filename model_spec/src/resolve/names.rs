@@ -43,7 +43,7 @@ impl Referred for LoadId {
 }
 
 /// Names that the language keeps for itself.
-pub(crate) fn is_reserved(name: &str) -> bool {
+pub fn is_reserved(name: &str) -> bool {
     matches!(name, "t" | "pi" | "dot" | "if") || Function::from_name(name).is_some()
 }
 

@@ -1,0 +1,145 @@
+//! `appell import`
+
+use std::path::PathBuf;
+
+use appell::robot::{self, Imported, LeftOut, Letters, Options, Without};
+use appell::{Severity, files};
+
+use crate::destinations::extension;
+use crate::failure::{Error, shown, tell};
+use crate::output::{self, shell};
+
+/// Most lines of the file that are named for one kind of element.
+const MOST_LINES: usize = 6;
+
+/// Turns a robot file, URDF or MJCF, into a spec.
+///
+/// Links and joints keep their names. Links that are fixed together become one body, each joint a coordinate with
+/// its range, its damping, spring, dry friction and armature, and an input that drives it. What has no counterpart in a
+/// spec is listed with its lines.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell import robot/arm.urdf -o arm.toml
+  appell import robot/arm.xml -o arm_to_identify.toml --parameters inertias --without limits")]
+pub(crate) struct Import {
+    /// The robot: a URDF or an MJCF file
+    robot: PathBuf,
+    /// The spec, `-` is standard output [default: name of the robot file with `.toml`; an existing file is not
+    /// overwritten]
+    #[arg(long, short, value_name = "FILE.toml")]
+    out: Option<PathBuf>,
+    /// Numbers that become parameters: `none`, `inertias`, `all`, or names of links, joints and parameters
+    ///
+    /// The other numbers are written out, so that zeros and right angles simplify the equations.
+    #[arg(long, value_name = "WHICH", default_value = "none")]
+    parameters: String,
+    /// What is left out, separated by commas
+    ///
+    /// One or several of `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`, `compensation`.
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = what)]
+    without: Vec<Without>,
+    /// Take angles within 1e-4 rad of a right angle for right angles
+    #[arg(long)]
+    snap: bool,
+}
+
+fn what(word: &str) -> Result<Without, String> {
+    let found = Without::ALL.into_iter().find(|one| one.word() == word);
+    found.ok_or_else(|| {
+        let words = Without::ALL.map(Without::word);
+        let help =
+            appell_spec::did_you_mean(word, words, || format!("it can be {}", words.join(", ")));
+        format!("there is nothing called `{word}` to leave out; {help}")
+    })
+}
+
+impl Import {
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let default = PathBuf::from(
+            self.robot
+                .with_extension("toml")
+                .file_name()
+                .unwrap_or_default(),
+        );
+        let out = self.out.as_ref().unwrap_or(&default);
+        if !files::is_stdout(out) && extension(out).is_none_or(|end| end != "toml") {
+            let instead = out.with_extension("toml");
+            let instead = shell(&instead.to_string_lossy());
+            return Err(Error::Usage(format!(
+                "a spec is a TOML file: write `--out {instead}`"
+            )));
+        }
+        let options = Options {
+            letters: Letters::read(&self.parameters),
+            without: self.without.clone(),
+            snap: self.snap,
+        };
+        let robot = robot::read(&self.robot, &options)?;
+        if self.out.is_none()
+            && std::fs::read(out).is_ok_and(|there| there != robot.spec.as_bytes())
+        {
+            let file = shell(&out.to_string_lossy());
+            return Err(Error::Usage(format!(
+                "{file} exists with other contents; to replace it, name it with `-o {file}`"
+            )));
+        }
+        files::write(out, &robot.spec)?;
+        self.tell(&robot);
+        let file = shell(&out.to_string_lossy());
+        let bodies = if robot.bodies == 1 { "body" } else { "bodies" };
+        let joints = if robot.joints == 1 { "joint" } else { "joints" };
+        let told = format!(
+            "wrote {file}: {} {bodies}, {} {joints}; next:\n  appell check {file}\n",
+            robot.bodies, robot.joints
+        );
+        output::print_beside(&told, &[&Some(out.clone())])
+    }
+
+    /// Warnings, what was left out, and angles that might be right ones.
+    fn tell(&self, robot: &Imported) {
+        let findings = robot.warnings.diagnostics();
+        if findings
+            .iter()
+            .any(|finding| finding.severity != Severity::Note)
+        {
+            tell(&format!("{}\n\n", shown(&robot.warnings).trim_end()));
+        }
+        if !robot.left_out.is_empty() {
+            let all: Vec<String> = robot.left_out.iter().map(left_out).collect();
+            tell(&format!(
+                "left out, for want of a counterpart:\n{}\n",
+                all.join("\n")
+            ));
+        }
+        if robot.nearly_right > 0 && !self.snap {
+            let count = robot.nearly_right;
+            let them = if count == 1 {
+                "orientation or axis is"
+            } else {
+                "orientations and axes are"
+            };
+            tell(&format!(
+                "{count} {them} within 1e-4 rad of a right angle, but not right; with `--snap` they are, and the \
+                 equations shorter\n"
+            ));
+        }
+    }
+}
+
+fn left_out(one: &LeftOut) -> String {
+    let lines: Vec<String> = one
+        .lines
+        .iter()
+        .take(MOST_LINES)
+        .map(ToString::to_string)
+        .collect();
+    let more = one.lines.len().saturating_sub(MOST_LINES);
+    let more = if more == 0 {
+        String::new()
+    } else {
+        format!(" and {more} more")
+    };
+    let plural = if one.lines.len() == 1 { "" } else { "s" };
+    format!("  {}: line{plural} {}{more}", one.what, lines.join(", "))
+}

@@ -1,0 +1,213 @@
+//! Mass, centre of mass and inertia: turned, shifted, put together.
+
+use crate::letters::plain;
+use crate::rotation::{Pose, Rotation, Vector, add, dot, minus, scaled};
+
+/// A symmetric tensor: xx, yy, zz, xy, xz, yz.
+pub(crate) type Tensor = [f64; 6];
+
+/// What rounding leaves of the entries that vanish, against the largest one.
+const ROUNDING: f64 = 1e-15;
+/// How far the largest moment may exceed the sum of the others by the rounding of a file.
+const WRITTEN: f64 = 1e-4;
+
+/// The inertia of a rigid body, in some frame.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Inertia {
+    pub(crate) mass: f64,
+    pub(crate) centre: Vector,
+    /// About the centre of mass, along the axes of the frame.
+    pub(crate) tensor: Tensor,
+}
+
+/// Row and column of the entries of a [`Tensor`].
+const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)];
+
+fn rows([xx, yy, zz, xy, xz, yz]: Tensor) -> [Vector; 3] {
+    [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
+/// The tensor along the axes from which those of `tensor` are turned.
+pub(crate) fn turned(rotation: Rotation, tensor: Tensor) -> Tensor {
+    if rotation.is_identity() {
+        return tensor;
+    }
+    let inner = rows(tensor);
+    let entry = |(i, j): (usize, usize)| -> f64 {
+        let left = [0, 1, 2].map(|k| dot(rotation.0[i], [0, 1, 2].map(|l| inner[l][k])));
+        dot(left, rotation.0[j])
+    };
+    without_rounding(PLACES.map(entry))
+}
+
+fn without_rounding(tensor: Tensor) -> Tensor {
+    let largest = tensor.iter().fold(0.0_f64, |most, one| most.max(one.abs()));
+    tensor.map(|entry| {
+        if entry.abs() <= ROUNDING * largest {
+            0.0
+        } else {
+            entry
+        }
+    })
+}
+
+/// A position whose components that vanish up to rounding are zero.
+pub(crate) fn position_without_rounding(position: Vector) -> Vector {
+    let largest = position
+        .iter()
+        .fold(0.0_f64, |most, one| most.max(one.abs()));
+    position.map(|entry| {
+        if entry.abs() <= ROUNDING * largest {
+            0.0
+        } else {
+            entry
+        }
+    })
+}
+
+/// The tensor of a mass at a distance from the point about which it is taken.
+fn of_point(mass: f64, at: Vector) -> Tensor {
+    let square = dot(at, at);
+    PLACES.map(|(i, j)| mass * (if i == j { square } else { 0.0 } - at[i] * at[j]))
+}
+
+fn sum(a: Tensor, b: Tensor) -> Tensor {
+    [0, 1, 2, 3, 4, 5].map(|i| a[i] + b[i])
+}
+
+impl Inertia {
+    pub(crate) const NONE: Self = Self {
+        mass: 0.0,
+        centre: [0.0; 3],
+        tensor: [0.0; 6],
+    };
+
+    /// Whether there is neither mass nor moment.
+    pub(crate) fn is_nothing(&self) -> bool {
+        self.mass == 0.0 && self.tensor.iter().all(|entry| *entry == 0.0)
+    }
+
+    /// The same body in the frame in which `pose` places the present one.
+    pub(crate) fn placed(&self, pose: Pose) -> Self {
+        Self {
+            mass: self.mass,
+            centre: position_without_rounding(pose.of(self.centre)),
+            tensor: turned(pose.rotation, self.tensor),
+        }
+    }
+
+    /// Two bodies as one.
+    pub(crate) fn with(&self, other: &Self) -> Self {
+        if self.is_nothing() {
+            return *other;
+        }
+        if other.is_nothing() {
+            return *self;
+        }
+        let mass = self.mass + other.mass;
+        let centre = if mass == 0.0 {
+            self.centre
+        } else {
+            let moment = add(
+                scaled(self.centre, self.mass),
+                scaled(other.centre, other.mass),
+            );
+            position_without_rounding(scaled(moment, 1.0 / mass))
+        };
+        let about = |body: &Self| sum(body.tensor, of_point(body.mass, minus(body.centre, centre)));
+        Self {
+            mass,
+            centre,
+            tensor: without_rounding(sum(about(self), about(other))),
+        }
+    }
+
+    /// What no body has, in words; `None` if there can be such a body.
+    pub(crate) fn impossible(&self) -> Option<String> {
+        let moments = principal(self.tensor);
+        let [small, middle, large] = moments;
+        let number = |x: f64| plain(format!("{x:.3e}").parse().unwrap_or(x));
+        if self.mass < 0.0 {
+            return Some(format!("its mass, {} kg, is negative", self.mass));
+        }
+        if large > 0.0 && small < -WRITTEN * large {
+            return Some("its inertia has a negative principal moment".to_owned());
+        }
+        if large > (small + middle) * (1.0 + WRITTEN) {
+            return Some(format!(
+                "its largest principal moment, {}, exceeds the sum of the other two, {} and {} (kg m²)",
+                number(large),
+                number(small),
+                number(middle)
+            ));
+        }
+        None
+    }
+}
+
+/// Principal moments in increasing order, by Jacobi's rotations.
+fn principal(tensor: Tensor) -> Vector {
+    let mut a = rows(tensor);
+    for _ in 0..50 {
+        let (p, q) = [(0, 1), (0, 2), (1, 2)]
+            .into_iter()
+            .max_by(|x, y| a[x.0][x.1].abs().total_cmp(&a[y.0][y.1].abs()))
+            .unwrap_or((0, 1));
+        if a[p][q] == 0.0 {
+            break;
+        }
+        let angle = 0.5 * (2.0 * a[p][q]).atan2(a[q][q] - a[p][p]);
+        let (s, c) = angle.sin_cos();
+        for k in 0..3 {
+            let (x, y) = (a[k][p], a[k][q]);
+            a[k][p] = c * x - s * y;
+            a[k][q] = s * x + c * y;
+        }
+        for k in 0..3 {
+            let (x, y) = (a[p][k], a[q][k]);
+            a[p][k] = c * x - s * y;
+            a[q][k] = s * x + c * y;
+        }
+        let largest = a
+            .iter()
+            .flatten()
+            .fold(0.0_f64, |most, one| most.max(one.abs()));
+        for (i, j) in [(p, q), (q, p)] {
+            if a[i][j].abs() <= 1e-16 * largest {
+                a[i][j] = 0.0;
+            }
+        }
+    }
+    let mut moments = [a[0][0], a[1][1], a[2][2]];
+    moments.sort_by(f64::total_cmp);
+    moments
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn principal_moments_do_not_depend_on_the_frame() {
+        let rotation = Rotation::roll_pitch_yaw([0.3, -0.7, 1.9]);
+        let moments = principal(turned(rotation, [1.0, 2.0, 2.5, 0.0, 0.0, 0.0]));
+        assert!(
+            minus(moments, [1.0, 2.0, 2.5])
+                .iter()
+                .all(|d| d.abs() < 1e-14),
+            "{moments:?}"
+        );
+    }
+
+    #[test]
+    fn two_halves_of_a_rod_are_the_rod() {
+        let half = |x: f64| Inertia {
+            mass: 1.0,
+            centre: [x, 0.0, 0.0],
+            tensor: [0.0, 1.0 / 12.0, 1.0 / 12.0, 0.0, 0.0, 0.0],
+        };
+        let rod = half(-0.5).with(&half(0.5));
+        assert_eq!((rod.mass, rod.centre), (2.0, [0.0; 3]));
+        assert!((rod.tensor[1] - 2.0 * 4.0 / 12.0).abs() < 1e-15);
+    }
+}

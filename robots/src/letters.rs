@@ -1,0 +1,232 @@
+//! Numbers of a spec: written out, or as parameters with a letter.
+
+use std::collections::BTreeSet;
+
+use crate::names::Names;
+
+/// Which numbers become parameters of the spec. The others are written out, so that zeros simplify the equations.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub enum Letters {
+    /// None.
+    #[default]
+    None,
+    /// Masses, centres of mass and inertias.
+    Inertias,
+    /// All that are not zero, and the inertias.
+    All,
+    /// Those of links, joints or parameters with these names.
+    Of(Vec<String>),
+}
+
+impl Letters {
+    /// Reads `none`, `inertias`, `all` or names separated by commas.
+    pub fn read(text: &str) -> Self {
+        match text.trim() {
+            "none" => Self::None,
+            "inertias" => Self::Inertias,
+            "all" => Self::All,
+            names => {
+                let names = names
+                    .split(',')
+                    .map(str::trim)
+                    .filter(|name| !name.is_empty());
+                Self::Of(names.map(str::to_owned).collect())
+            }
+        }
+    }
+}
+
+/// What a number is, which decides whether it becomes a letter.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Of a mass, a centre of mass or an inertia.
+    Inertial,
+    /// Anything else.
+    Other,
+}
+
+/// A number of the robot.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Number<'a> {
+    pub(crate) value: f64,
+    pub(crate) unit: &'static str,
+    /// The name that it has as a parameter.
+    pub(crate) letter: &'a str,
+    /// The link or joint that it belongs to, as the file calls it.
+    pub(crate) of: &'a str,
+    pub(crate) about: &'a str,
+    pub(crate) kind: Kind,
+    pub(crate) never_negative: bool,
+}
+
+/// A parameter of the spec.
+#[derive(Debug)]
+pub(crate) struct Parameter {
+    pub(crate) name: String,
+    pub(crate) value: f64,
+    pub(crate) unit: &'static str,
+    pub(crate) about: String,
+    pub(crate) never_negative: bool,
+}
+
+/// Decides for each number, and keeps the parameters.
+#[derive(Debug)]
+pub(crate) struct Numbers<'a> {
+    letters: &'a Letters,
+    pub(crate) parameters: Vec<Parameter>,
+    /// Names that chose a number.
+    used: BTreeSet<String>,
+    /// All names that could.
+    known: BTreeSet<String>,
+}
+
+impl<'a> Numbers<'a> {
+    pub(crate) fn new(letters: &'a Letters) -> Self {
+        Self {
+            letters,
+            parameters: Vec::new(),
+            used: BTreeSet::new(),
+            known: BTreeSet::new(),
+        }
+    }
+
+    /// The expression of a number.
+    pub(crate) fn write(&mut self, number: Number<'_>, names: &mut Names) -> String {
+        let names_of = [number.letter, number.of];
+        self.known.extend(names_of.map(str::to_owned));
+        let chosen = match self.letters {
+            Letters::None => false,
+            Letters::Inertias => number.kind == Kind::Inertial,
+            Letters::All => number.kind == Kind::Inertial || number.value != 0.0,
+            Letters::Of(chosen) => {
+                let of_it: Vec<&String> = chosen
+                    .iter()
+                    .filter(|one| names_of.contains(&one.as_str()))
+                    .collect();
+                self.used.extend(of_it.iter().map(|one| (*one).clone()));
+                // A name alone means what is there; a letter means this number, whatever its value.
+                of_it.iter().any(|one| *one == number.letter)
+                    || (!of_it.is_empty() && (number.kind == Kind::Inertial || number.value != 0.0))
+            }
+        };
+        if !chosen {
+            return quantity(number.value, number.unit);
+        }
+        let name = names.new_one(number.letter);
+        self.parameters.push(Parameter {
+            name: name.clone(),
+            value: number.value,
+            unit: number.unit,
+            about: number.about.to_owned(),
+            never_negative: number.never_negative,
+        });
+        name
+    }
+
+    /// Names that chose nothing.
+    pub(crate) fn unused(&self) -> Vec<&str> {
+        match self.letters {
+            Letters::Of(chosen) => {
+                let unused = chosen.iter().filter(|one| !self.used.contains(*one));
+                unused.map(String::as_str).collect()
+            }
+            _ => Vec::new(),
+        }
+    }
+
+    /// Names that would have chosen something.
+    pub(crate) fn known(&self) -> impl Iterator<Item = &str> {
+        self.known.iter().map(String::as_str)
+    }
+}
+
+/// A number without what rounding adds to it: 0.3, not 0.30000000000000004.
+pub(crate) fn tidy(x: f64) -> f64 {
+    const ROUNDING: f64 = 4.0 * f64::EPSILON;
+    let rounded: f64 = format!("{x:.13e}").parse().unwrap_or(x);
+    let short = if (rounded - x).abs() <= ROUNDING * x.abs() {
+        rounded
+    } else {
+        x
+    };
+    // A zero has no sign.
+    short + 0.0
+}
+
+/// A number as TOML and expressions have it.
+pub(crate) fn plain(x: f64) -> String {
+    let x = tidy(x);
+    if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {
+        format!("{x:e}")
+    } else {
+        format!("{x}")
+    }
+}
+
+/// A number with its unit, as an expression; zero has none.
+pub(crate) fn quantity(x: f64, unit: &str) -> String {
+    match (plain(x), unit) {
+        (zero, _) if zero == "0" => zero,
+        (number, "1") => number,
+        (number, "rad") => angle(x).unwrap_or(number),
+        (number, unit) => format!("{number} [{unit}]"),
+    }
+}
+
+/// An angle that is a simple part of π.
+fn angle(x: f64) -> Option<String> {
+    use std::f64::consts::PI;
+    for parts in [1_u8, 2, 3, 4, 6] {
+        let count = (x * f64::from(parts) / PI).round();
+        let exact = count * PI / f64::from(parts);
+        let same = (x - exact).abs() <= 2.0 * f64::EPSILON * x.abs();
+        if count == 0.0 || count.abs() > 12.0 || !same {
+            continue;
+        }
+        let head = match count {
+            1.0 => "pi".to_owned(),
+            -1.0 => "-pi".to_owned(),
+            count => format!("{count}*pi"),
+        };
+        return Some(if parts == 1 {
+            head
+        } else {
+            format!("{head}/{parts}")
+        });
+    }
+    None
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_are_as_short_as_they_were_written() {
+        for (x, expected) in [
+            (0.1 + 0.2, "0.3"),
+            (0.1, "0.1"),
+            (1.0 / 3.0, "0.3333333333333333"),
+            (-0.0, "0"),
+            (1e-7, "1e-7"),
+            (12345.678, "12345.678"),
+        ] {
+            assert_eq!(plain(x), expected);
+        }
+    }
+
+    #[test]
+    fn angles_that_are_parts_of_a_turn_are_told_by_pi() {
+        use std::f64::consts::PI;
+        for (x, expected) in [
+            (PI / 2.0, "pi/2"),
+            (-PI, "-pi"),
+            (0.75 * PI, "3*pi/4"),
+            (PI / 2.0 + 1e-11, "1.5707963268048966"),
+            (0.3, "0.3"),
+            (0.0, "0"),
+        ] {
+            assert_eq!(quantity(x, "rad"), expected);
+        }
+    }
+}

@@ -1,0 +1,168 @@
+//! Robot descriptions as specs.
+//!
+//! ```text
+//! URDF ─┐
+//!       ├─> Robot (links, joints) ─> Tree (bodies) ─> text of a spec
+//! MJCF ─┘
+//! ```
+//!
+//! | file | does |
+//! |---|---|
+//! | `xml.rs` | elements and numbers with their places, and findings about them |
+//! | `urdf.rs`, `mjcf.rs` | the formats, each to a `Robot` |
+//! | `model.rs` | what a robot is: links in a tree, joints with their properties |
+//! | `rotation.rs`, `inertia.rs` | rotations and their turns; inertias turned, shifted, put together |
+//! | `tree.rs` | links that are fixed together become one body |
+//! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
+//! | `options.rs`, `without.rs`, `snap.rs` | requests; what is left out; nearly right angles |
+//! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
+
+mod inertia;
+mod letters;
+mod mjcf;
+mod model;
+mod names;
+mod options;
+mod rotation;
+mod snap;
+mod spec;
+mod table;
+mod tree;
+mod urdf;
+mod without;
+mod xml;
+
+use appell_spec::{Code, Diagnostic, Report, did_you_mean};
+
+pub use letters::Letters;
+pub use options::Options;
+pub use snap::SNAP;
+pub use without::Without;
+
+/// Largest file, in bytes.
+pub const MAX_FILE: u64 = 1 << 24;
+
+/// A robot as a spec.
+#[derive(Debug)]
+pub struct Imported {
+    /// The spec.
+    pub spec: String,
+    /// Name of the robot in its file.
+    pub name: String,
+    /// Number of joints that move.
+    pub joints: usize,
+    /// Number of bodies: links that are fixed together count once.
+    pub bodies: usize,
+    /// Warnings about the file.
+    pub warnings: Report,
+    /// What has no counterpart in the spec.
+    pub left_out: Vec<LeftOut>,
+    /// Orientations and axes that are nearly along the axes of their parents.
+    pub nearly_right: usize,
+}
+
+/// Elements of one kind that have no counterpart in a spec.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct LeftOut {
+    /// The element, such as `actuator/motor`.
+    pub what: String,
+    /// Their lines, from 1.
+    pub lines: Vec<usize>,
+}
+
+/// Why a robot cannot be imported.
+#[derive(Debug)]
+pub enum Failure {
+    /// Its file is wrong, or has what cannot be imported.
+    File(Box<Report>),
+    /// Names that are to become parameters but name nothing.
+    Unknown {
+        /// The first one.
+        name: String,
+        /// What may be meant.
+        help: String,
+    },
+}
+
+/// Turns the text of a URDF or an MJCF file into that of a spec.
+///
+/// ```
+/// let urdf = r#"<robot name="door"><link name="wall"/>
+///   <link name="leaf"><inertial><origin xyz="0.4 0 0"/><mass value="20"/>
+///     <inertia ixx="0.1" iyy="1.1" izz="1.1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+///   <joint name="hinge" type="continuous"><parent link="wall"/><child link="leaf"/>
+///     <axis xyz="0 0 1"/></joint></robot>"#;
+/// let door = appell_robots::import("door.urdf", urdf, &appell_robots::Options::default()).unwrap();
+/// assert!(door.spec.contains("leaf = { parent = \"ground\", about_axis = \"z\", by = \"hinge\" }"));
+/// ```
+pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Failure> {
+    let fail =
+        |findings: Vec<Diagnostic>| Failure::File(Box::new(Report::new(file, text, findings)));
+    let document = xml::parse(text).map_err(|error| fail(vec![error]))?;
+    let findings = xml::Findings::default();
+    let root = document.root_element();
+    let (kind, mut robot) = match root.tag_name().name() {
+        "robot" => ("URDF", urdf::read(root, &findings)),
+        "mujoco" => ("MJCF", mjcf::read(root, &findings)),
+        other => {
+            let message = format!("the file begins with `<{}>`", appell_spec::shown(other));
+            let error = Diagnostic::error(Code::UnknownWord, message).at(xml::tag(root), "");
+            let help = did_you_mean(other, ["robot", "mujoco"], || {
+                "a URDF begins with `<robot>`, an MJCF with `<mujoco>`".to_owned()
+            });
+            return Err(fail(vec![error.help(help)]));
+        }
+    };
+    for one in &options.without {
+        one.apply(&mut robot);
+    }
+    let nearly_right = snap::snap(&mut robot, options.snap);
+    let tree = tree::merged(&robot.links, &findings);
+    if tree.bodies.is_empty() && !findings.has_errors() {
+        let help = "joints are revolute, continuous or prismatic (URDF), hinge or slide (MJCF)";
+        findings.error(
+            Code::MissingSection,
+            xml::tag(root),
+            "the robot has no joint that moves",
+            help,
+        );
+    }
+    if findings.has_errors() {
+        return Err(fail(findings.into_inner()));
+    }
+    let findings = findings.into_inner();
+    let written = spec::write(file, kind, &robot, &tree, options);
+    if let Some(name) = written.unused.first() {
+        let known = written.known.iter().map(String::as_str);
+        let help = did_you_mean(name, known, || {
+            "name links, joints or parameters of the robot".to_owned()
+        });
+        return Err(Failure::Unknown {
+            name: name.clone(),
+            help,
+        });
+    }
+    let warnings = Report::new(file, text, findings);
+    let left_out = spec::grouped(&robot.left_out)
+        .into_iter()
+        .map(|(what, all)| LeftOut {
+            what: what.to_owned(),
+            lines: all
+                .iter()
+                .map(|one| warnings.line_column(one.place.start).0)
+                .collect(),
+        });
+    Ok(Imported {
+        spec: written.text,
+        name: robot.name.clone(),
+        joints: tree.bodies.len(),
+        bodies: tree
+            .bodies
+            .iter()
+            .filter(|body| !body.inertia.is_nothing())
+            .count(),
+        left_out: left_out.collect(),
+        nearly_right,
+        warnings,
+    })
+}

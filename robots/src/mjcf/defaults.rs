@@ -1,0 +1,95 @@
+//! Defaults by class: what an element does not say, its class says, or the class around that.
+
+use std::collections::BTreeMap;
+
+use appell_spec::Code;
+use roxmltree::Attribute;
+
+use crate::xml::{Element, Findings, children, tag};
+
+/// The class of what names none.
+const MAIN: &str = "main";
+
+/// The classes of a file.
+#[derive(Default)]
+pub(super) struct Defaults<'x> {
+    classes: BTreeMap<&'x str, Class<'x>>,
+    /// Name of the outermost class.
+    main: Option<&'x str>,
+}
+
+#[derive(Default)]
+struct Class<'x> {
+    parent: Option<&'x str>,
+    elements: Vec<Element<'x>>,
+}
+
+impl<'x> Defaults<'x> {
+    pub(super) fn new(root: Element<'x>, findings: &Findings) -> Self {
+        let mut defaults = Self::default();
+        let mut open: Vec<(Element<'x>, Option<&'x str>)> = children(root, "default")
+            .map(|default| (default, None))
+            .collect();
+        open.reverse();
+        while let Some((element, parent)) = open.pop() {
+            let name = match (element.attribute("class"), parent) {
+                (Some(name), _) => name,
+                (None, None) => MAIN,
+                (None, Some(_)) => {
+                    let help = "write `<default class=\"…\">`";
+                    findings.error(
+                        Code::MissingKey,
+                        tag(element),
+                        "a default class without a name",
+                        help,
+                    );
+                    continue;
+                }
+            };
+            if parent.is_none() && defaults.main.is_none() {
+                defaults.main = Some(name);
+            }
+            let class = defaults.classes.entry(name).or_default();
+            class.parent = class.parent.or(parent);
+            let inner = children(element, "default").map(|inner| (inner, Some(name)));
+            let inner: Vec<_> = inner.collect();
+            let own = element
+                .children()
+                .filter(|child| child.is_element() && child.tag_name().name() != "default");
+            class.elements.extend(own);
+            open.extend(inner.into_iter().rev());
+        }
+        defaults
+    }
+
+    pub(super) fn knows(&self, class: &str) -> bool {
+        class == MAIN || self.classes.contains_key(class)
+    }
+
+    pub(super) fn names(&self) -> impl Iterator<Item = &'x str> {
+        self.classes.keys().copied()
+    }
+
+    /// What a class says of an attribute of a kind of element.
+    pub(super) fn attribute(
+        &self,
+        kind: &str,
+        class: Option<&str>,
+        key: &str,
+    ) -> Option<Attribute<'x, 'x>> {
+        let mut name = class.or(self.main)?;
+        // Classes are nested in the text, so that this ends.
+        loop {
+            let class = self.classes.get(name)?;
+            let mut own = class
+                .elements
+                .iter()
+                .rev()
+                .filter(|element| element.tag_name().name() == kind);
+            if let Some(found) = own.find_map(|element| element.attribute_node(key)) {
+                return Some(found);
+            }
+            name = class.parent.filter(|parent| *parent != name)?;
+        }
+    }
+}

@@ -1,0 +1,235 @@
+//! Mass and inertia of homogeneous geoms.
+
+use std::f64::consts::PI;
+
+use appell_spec::{Code, did_you_mean};
+
+use crate::inertia::Inertia;
+use crate::rotation::{Pose, Rotation, Vector, add, dot, minus, scaled, unit};
+use crate::xml::{Element, children, elements, exactly, numbers, tag};
+
+use super::Reader;
+
+/// Density of what has none, that of water.
+const DENSITY: f64 = 1000.0;
+const SHAPES: [&str; 9] = [
+    "sphere",
+    "capsule",
+    "cylinder",
+    "ellipsoid",
+    "box",
+    "mesh",
+    "plane",
+    "hfield",
+    "sdf",
+];
+
+impl<'x> Reader<'x, '_> {
+    /// The geoms of a body together, in its frame.
+    pub(super) fn of_geoms(
+        &self,
+        body: Element<'x>,
+        class: Option<&'x str>,
+        matters: bool,
+    ) -> Inertia {
+        self.geoms_within(body, class, Pose::IDENTITY, matters)
+    }
+
+    /// Geoms stand in a body, or in frames within it.
+    fn geoms_within(
+        &self,
+        holder: Element<'x>,
+        class: Option<&'x str>,
+        pose: Pose,
+        matters: bool,
+    ) -> Inertia {
+        let mut sum = Inertia::NONE;
+        for geom in children(holder, "geom") {
+            let class = self.class(geom, "class").or(class);
+            if let Some((own, within)) = self.geom(geom, class, matters) {
+                sum = sum.with(&own.placed(pose.then(within)));
+            }
+        }
+        for frame in elements(holder).filter(|inner| inner.tag_name().name() == "frame") {
+            let class = self.class(frame, "childclass").or(class);
+            let pose = pose.then(self.pose(frame, None));
+            sum = sum.with(&self.geoms_within(frame, class, pose, matters));
+        }
+        sum
+    }
+
+    /// A geom about its own axes, and where it is.
+    fn geom(
+        &self,
+        geom: Element<'x>,
+        class: Option<&'x str>,
+        matters: bool,
+    ) -> Option<(Inertia, Pose)> {
+        let attribute = |key: &str| {
+            let own = geom.attribute_node(key);
+            own.or_else(|| self.defaults.attribute("geom", class, key))
+        };
+        let number = |key: &str| {
+            let given = attribute(key)?;
+            exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
+        };
+        let shape = attribute("type").map_or(
+            if attribute("mesh").is_some() {
+                "mesh"
+            } else {
+                "sphere"
+            },
+            |given| given.value(),
+        );
+        let given_mass = number("mass");
+        let density = number("density").unwrap_or(DENSITY);
+        let massless = given_mass == Some(0.0) || (given_mass.is_none() && density == 0.0);
+        if massless || ["plane", "hfield"].contains(&shape) {
+            return None;
+        }
+        let of_surface = attribute("shellinertia").is_some_and(|given| given.value() == "true");
+        if (["mesh", "sdf"].contains(&shape) || of_surface) && matters {
+            let (what, help) = if of_surface {
+                ("with `shellinertia`", "give the body an `inertial`")
+            } else {
+                (
+                    "made of a mesh",
+                    "give the body an `inertial`, or the geom `mass=\"0\"`; meshes are not read",
+                )
+            };
+            self.findings.error(
+                Code::NotAllowedHere,
+                tag(geom),
+                format!("the mass of a geom {what} is not known"),
+                help,
+            );
+        }
+        if ["mesh", "sdf"].contains(&shape) || of_surface {
+            return None;
+        }
+        if !SHAPES.contains(&shape) {
+            self.findings.error(
+                Code::UnknownWord,
+                attribute("type").map_or_else(|| tag(geom), |given| given.range_value()),
+                format!("there are no geoms of type `{}`", appell_spec::shown(shape)),
+                did_you_mean(shape, SHAPES, || format!("types are {}", SHAPES.join(", "))),
+            );
+            return None;
+        }
+        let (pose, half) = self.placed(geom, class)?;
+        let size = self.size(geom, class, shape, half)?;
+        let (volume, moments) = homogeneous(shape, size);
+        let mass = given_mass.unwrap_or(density * volume);
+        let [xx, yy, zz] = moments.map(|moment| moment * mass);
+        let inertia = Inertia {
+            mass,
+            centre: [0.0; 3],
+            tensor: [xx, yy, zz, 0.0, 0.0, 0.0],
+        };
+        Some((inertia, pose))
+    }
+
+    /// Where a geom is, and half its length if it is given by its ends.
+    fn placed(&self, geom: Element<'x>, class: Option<&'x str>) -> Option<(Pose, Option<f64>)> {
+        let ends = geom.attribute_node("fromto");
+        let Some(ends) = ends.or_else(|| self.defaults.attribute("geom", class, "fromto")) else {
+            return Some((self.pose(geom, Some(("geom", class))), None));
+        };
+        let [a, b, c, d, e, f] = exactly(self.findings, &ends, "two ends, x y z x y z,")?;
+        let (from, to): (Vector, Vector) = ([a, b, c], [d, e, f]);
+        let way = minus(to, from);
+        let Some(direction) = unit(way) else {
+            let help = "give two different ends, or `pos` and `size`";
+            self.findings.error(
+                Code::VanishingLength,
+                ends.range_value(),
+                "both ends are at one place",
+                help,
+            );
+            return None;
+        };
+        let pose = Pose {
+            rotation: Rotation::between([0.0, 0.0, 1.0], direction),
+            position: scaled(add(from, to), 0.5),
+        };
+        Some((pose, Some(0.5 * dot(way, way).sqrt())))
+    }
+
+    /// Radii and half lengths along the own axes.
+    fn size(
+        &self,
+        geom: Element<'x>,
+        class: Option<&'x str>,
+        shape: &str,
+        half: Option<f64>,
+    ) -> Option<Vector> {
+        let own = geom.attribute_node("size");
+        let given = own.or_else(|| self.defaults.attribute("geom", class, "size"));
+        let sizes = match &given {
+            Some(given) => numbers(self.findings, given)?,
+            None => Vec::new(),
+        };
+        let needs = match shape {
+            "sphere" => 1,
+            "capsule" | "cylinder" if half.is_some() => 1,
+            "capsule" | "cylinder" => 2,
+            _ if half.is_some() => 1,
+            _ => 3,
+        };
+        let whole = sizes.len() >= needs && sizes.iter().take(needs).all(|size| *size > 0.0);
+        if !whole {
+            let at = given.map_or_else(|| tag(geom), |given| given.range_value());
+            let plural = if needs == 1 { "number" } else { "numbers" };
+            let message = format!("the size of a {shape} has {needs} positive {plural}");
+            self.findings.error(
+                Code::WrongType,
+                at,
+                message,
+                "write `size=\"…\"`: radii and half lengths in m",
+            );
+            return None;
+        }
+        let at = |index: usize| sizes.get(index).copied().unwrap_or(sizes[0]);
+        Some(match shape {
+            "sphere" => [at(0); 3],
+            "capsule" | "cylinder" => [at(0), at(0), half.unwrap_or_else(|| at(1))],
+            _ => match half {
+                // Between two ends a geom is as wide as it is deep.
+                Some(half) => [at(0), at(0), half],
+                None => [at(0), at(1), at(2)],
+            },
+        })
+    }
+}
+
+/// Volume, and principal moments over the mass.
+fn homogeneous(shape: &str, [a, b, c]: Vector) -> (f64, Vector) {
+    match shape {
+        "box" => {
+            let [x, y, z] = [a * a, b * b, c * c];
+            (
+                8.0 * a * b * c,
+                [(y + z) / 3.0, (x + z) / 3.0, (x + y) / 3.0],
+            )
+        }
+        "cylinder" => {
+            let across = (3.0 * a * a + 4.0 * c * c) / 12.0;
+            (2.0 * PI * a * a * c, [across, across, a * a / 2.0])
+        }
+        "capsule" => {
+            let (ball, rod) = (4.0 / 3.0 * PI * a * a * a, 2.0 * PI * a * a * c);
+            let volume = ball + rod;
+            let along = (ball * 0.4 * a * a + rod * 0.5 * a * a) / volume;
+            let of_rod = rod * (3.0 * a * a + 4.0 * c * c) / 12.0;
+            let of_ball = ball * (0.4 * a * a + c * c + 0.75 * a * c);
+            let across = (of_rod + of_ball) / volume;
+            (volume, [across, across, along])
+        }
+        // A sphere is an ellipsoid.
+        _ => {
+            let [x, y, z] = [a * a, b * b, c * c];
+            let moments = [(y + z) / 5.0, (x + z) / 5.0, (x + y) / 5.0];
+            (4.0 / 3.0 * PI * a * b * c, moments)
+        }
+    }
+}

@@ -1,0 +1,89 @@
+//! A robot as its file has it: links in a tree, each with at most one joint.
+
+use crate::inertia::Inertia;
+use crate::rotation::{Pose, Vector};
+use crate::xml::Span;
+
+/// The robot of a file.
+#[derive(Debug)]
+pub(crate) struct Robot {
+    pub(crate) name: String,
+    pub(crate) gravity: Vector,
+    /// Parents stand before their children.
+    pub(crate) links: Vec<Link>,
+    pub(crate) couplings: Vec<Coupling>,
+    pub(crate) left_out: Vec<LeftOut>,
+}
+
+/// A link, or a step on the way to one that has several joints.
+#[derive(Debug)]
+pub(crate) struct Link {
+    pub(crate) name: String,
+    /// The ground, where there is none.
+    pub(crate) parent: Option<usize>,
+    /// Where its frame is in that of the parent while the joint is at zero.
+    pub(crate) pose: Pose,
+    /// Fixed to the parent, where there is none.
+    pub(crate) joint: Option<Joint>,
+    pub(crate) inertia: Inertia,
+    /// The share of its weight that something carries.
+    pub(crate) carried: f64,
+    /// Whether the file has such a link: a step on the way to one is not.
+    pub(crate) written: bool,
+    pub(crate) place: Span,
+}
+
+/// How a joint moves.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Motion {
+    /// It turns about its axis.
+    Turning,
+    /// It slides along its axis.
+    Sliding,
+}
+
+/// A joint.
+#[derive(Debug, Clone)]
+pub(crate) struct Joint {
+    pub(crate) name: String,
+    pub(crate) motion: Motion,
+    /// A unit vector in the link's frame.
+    pub(crate) axis: Vector,
+    /// A point of the axis in the link's frame.
+    pub(crate) anchor: Vector,
+    /// The coordinate at which the link is as drawn.
+    pub(crate) zero: f64,
+    pub(crate) range: Option<[f64; 2]>,
+    /// Damping, with the rate.
+    pub(crate) damping: f64,
+    /// Inertia of what turns with the joint alone.
+    pub(crate) armature: f64,
+    /// Dry friction.
+    pub(crate) friction: f64,
+    pub(crate) stiffness: f64,
+    /// The coordinate at which the spring is relaxed.
+    pub(crate) relaxed: f64,
+}
+
+/// A coordinate that follows from another one, or has one value.
+#[derive(Debug)]
+pub(crate) struct Coupling {
+    pub(crate) name: String,
+    /// The joint that follows.
+    pub(crate) joint: String,
+    /// The joint that it follows.
+    pub(crate) other: Option<String>,
+    /// Values of the two at which `coefficients` are taken.
+    pub(crate) zeros: [f64; 2],
+    /// The polynomial, from its constant on.
+    pub(crate) coefficients: Vec<f64>,
+}
+
+/// What has no place in a spec.
+#[derive(Debug)]
+pub(crate) struct LeftOut {
+    /// Its element, such as `actuator/motor`.
+    pub(crate) what: String,
+    pub(crate) name: Option<String>,
+    pub(crate) place: Span,
+}

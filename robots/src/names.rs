@@ -1,0 +1,72 @@
+//! Names of a file as names of a spec.
+
+use std::collections::BTreeSet;
+
+use appell_spec::limits::MAX_NAME;
+
+/// What stands before or after a name when it is part of another one, at most.
+const ROOM: usize = 16;
+
+/// The names of one namespace.
+#[derive(Debug, Default)]
+pub(crate) struct Names(BTreeSet<String>);
+
+impl Names {
+    /// A namespace in which some names are taken.
+    pub(crate) fn without(taken: &[&str]) -> Self {
+        Self(taken.iter().map(|name| (*name).to_owned()).collect())
+    }
+
+    /// A valid name, as close to `name` as possible, that nothing else has.
+    pub(crate) fn new_one(&mut self, name: &str) -> String {
+        let valid = legal(name);
+        let mut candidate = valid.clone();
+        let mut count = 1;
+        while appell_spec::is_reserved(&candidate) || !self.0.insert(candidate.clone()) {
+            count += 1;
+            candidate = format!("{valid}_{count}");
+        }
+        candidate
+    }
+}
+
+/// The characters of a name that may stand in one.
+fn legal(name: &str) -> String {
+    let kept = name
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c } else { '_' });
+    let mut kept: String = kept.collect();
+    if !kept.starts_with(|c: char| c.is_ascii_alphabetic()) {
+        kept.insert(0, 'n');
+    }
+    kept.truncate(MAX_NAME);
+    kept
+}
+
+/// A name that leaves room for what stands before it in other names.
+pub(crate) fn short(name: &str) -> String {
+    name.chars().take(MAX_NAME - ROOM).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_are_kept_as_far_as_a_spec_allows() {
+        let mut names = Names::without(&["ground"]);
+        for (name, expected) in [
+            ("elbow", "elbow"),
+            ("elbow", "elbow_2"),
+            ("left-arm/1", "left_arm_1"),
+            ("2nd", "n2nd"),
+            ("ground", "ground_2"),
+            ("sin", "sin_2"),
+            ("", "n"),
+            ("é", "n_"),
+        ] {
+            assert_eq!(names.new_one(name), expected);
+        }
+        assert!(names.new_one(&"x".repeat(500)).len() <= MAX_NAME);
+    }
+}

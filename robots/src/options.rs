@@ -1,0 +1,15 @@
+//! What can be asked for.
+
+use crate::letters::Letters;
+use crate::without::Without;
+
+/// How a robot becomes a spec.
+#[derive(Debug, Clone, Default)]
+pub struct Options {
+    /// Which numbers become parameters.
+    pub letters: Letters,
+    /// What is left out.
+    pub without: Vec<Without>,
+    /// Makes angles right that differ from a right angle by less than [`SNAP`](crate::SNAP).
+    pub snap: bool,
+}

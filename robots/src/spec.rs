@@ -1,0 +1,228 @@
+//! The spec of a robot.
+
+mod bodies;
+mod joints;
+mod remarks;
+
+use appell_spec::limits::MAX_SENTENCE;
+
+use crate::letters::{Numbers, Parameter};
+use crate::model::{LeftOut, Link, Robot};
+use crate::names::{Names, short};
+use crate::options::Options;
+use crate::table::{Item, Section, quoted};
+use crate::tree::{Body, Tree};
+
+/// What bodies and joints are called in the spec.
+struct Called {
+    /// By link.
+    links: Vec<String>,
+    /// The coordinate, by body.
+    coordinates: Vec<String>,
+    /// The frame, by body.
+    frames: Vec<String>,
+    /// The point that the body is placed by.
+    points: Vec<String>,
+}
+
+/// The text of a spec while it is written.
+pub(crate) struct Writer<'a> {
+    links: &'a [Link],
+    tree: &'a Tree,
+    called: Called,
+    /// The namespace of what expressions name.
+    quantities: Names,
+    /// That of frames, points and bodies, which are called by their links.
+    places: Names,
+    numbers: Numbers<'a>,
+    coordinates: Section,
+    inputs: Section,
+    frames: Section,
+    points: Section,
+    bodies: Section,
+    constraints: Section,
+    speeds: Section,
+    loads: Section,
+    outputs: Section,
+}
+
+/// A spec, and what was chosen in vain.
+pub(crate) struct Written {
+    pub(crate) text: String,
+    pub(crate) unused: Vec<String>,
+    pub(crate) known: Vec<String>,
+}
+
+/// Writes the spec of a robot.
+pub(crate) fn write(
+    file: &str,
+    kind: &str,
+    robot: &Robot,
+    tree: &Tree,
+    options: &Options,
+) -> Written {
+    // The folder may be another one where the spec is read.
+    let file = file.rsplit('/').next().unwrap_or(file);
+    let mut writer = Writer::new(robot, tree, options);
+    let letters = writer.gravity(robot.gravity);
+    for index in 0..tree.bodies.len() {
+        writer.frame(index);
+        writer.point(index);
+        writer.body(index);
+        writer.joint(index);
+    }
+    writer.links_on_the_ground();
+    writer.links_on_bodies();
+    writer.carried(robot.gravity, &letters);
+    writer.couplings(&robot.couplings);
+    writer.ends();
+    let name = Names::default().new_one(&robot.name);
+    let mut text = remarks::head(file, kind, robot, tree);
+    writer.mechanism(&name, &robot.name, file, &mut text);
+    remarks::left_out(&robot.left_out, options, &mut text);
+    Written {
+        text,
+        unused: writer
+            .numbers
+            .unused()
+            .into_iter()
+            .map(str::to_owned)
+            .collect(),
+        known: writer.numbers.known().map(str::to_owned).collect(),
+    }
+}
+
+impl<'a> Writer<'a> {
+    fn new(robot: &'a Robot, tree: &'a Tree, options: &'a Options) -> Self {
+        let mut places = Names::without(&["ground", "O"]);
+        let mut quantities = Names::default();
+        let links: Vec<String> = robot
+            .links
+            .iter()
+            .map(|link| places.new_one(&short(&link.name)))
+            .collect();
+        let joints = tree
+            .bodies
+            .iter()
+            .map(|body| quantities.new_one(&short(&body.joint.name)));
+        let coordinates = joints.collect();
+        Self {
+            links: &robot.links,
+            tree,
+            called: Called {
+                links,
+                coordinates,
+                frames: Vec::new(),
+                points: Vec::new(),
+            },
+            quantities,
+            places,
+            numbers: Numbers::new(&options.letters),
+            coordinates: Section::default(),
+            inputs: Section::default(),
+            frames: Section::default(),
+            points: Section::default(),
+            bodies: Section::default(),
+            constraints: Section::default(),
+            speeds: Section::default(),
+            loads: Section::default(),
+            outputs: Section::default(),
+        }
+    }
+
+    /// The frame of the body on which another one stands.
+    fn frame_of(&self, parent: Option<usize>) -> String {
+        parent.map_or("ground".to_owned(), |parent| {
+            self.called.frames[parent].clone()
+        })
+    }
+
+    /// The point from which what stands on a body is placed.
+    fn point_of(&self, parent: Option<usize>) -> String {
+        parent.map_or("O".to_owned(), |parent| self.called.points[parent].clone())
+    }
+
+    fn mechanism(&self, name: &str, title: &str, file: &str, text: &mut String) {
+        let mut mechanism = Section::default();
+        let count = self.tree.bodies.len();
+        let joints = if count == 1 { "joint" } else { "joints" };
+        mechanism.key("name", quoted(name));
+        mechanism.key(
+            "title",
+            quoted(&sentence(&format!("{title}, {count} {joints}"))),
+        );
+        mechanism.key("source", quoted(&sentence(file)));
+        let mut parameters = Section::default();
+        for Parameter {
+            name,
+            value,
+            unit,
+            about,
+            never_negative,
+        } in &self.numbers.parameters
+        {
+            let item = Item::default()
+                .raw("value", &crate::letters::plain(*value))
+                .text("unit", unit)
+                .text("about", &sentence(about));
+            let item = if *never_negative {
+                item.raw("at_least", "0")
+            } else {
+                item
+            };
+            parameters.add(name, &item);
+        }
+        mechanism.write("mechanism", text);
+        for (title, section) in [
+            ("parameters", &parameters),
+            ("coordinates", &self.coordinates),
+            ("inputs", &self.inputs),
+            ("frames", &self.frames),
+            ("points", &self.points),
+            ("bodies", &self.bodies),
+            ("constraints", &self.constraints),
+            ("pseudo_velocities", &self.speeds),
+            ("loads", &self.loads),
+            ("outputs", &self.outputs),
+        ] {
+            section.write(title, text);
+        }
+    }
+
+    fn at(&self, index: usize) -> &'a Body {
+        &self.tree.bodies[index]
+    }
+}
+
+/// A sentence that is not too long.
+fn sentence(text: &str) -> String {
+    let mut end = text.len().min(MAX_SENTENCE);
+    while !text.is_char_boundary(end) {
+        end -= 1;
+    }
+    text[..end].chars().filter(|c| !c.is_control()).collect()
+}
+
+/// An expression plus a number that is written with its sign.
+fn plus(expression: &str, number: &str) -> String {
+    match (expression, number) {
+        (_, "0") => expression.to_owned(),
+        ("0", _) => number.to_owned(),
+        _ => number.strip_prefix('-').map_or_else(
+            || format!("{expression} + {number}"),
+            |number| format!("{expression} - {number}"),
+        ),
+    }
+}
+
+/// Kinds of what was left out, in the order of the file, with where.
+pub(crate) fn grouped(left_out: &[LeftOut]) -> Vec<(&str, Vec<&LeftOut>)> {
+    let mut groups: Vec<(&str, Vec<&LeftOut>)> = Vec::new();
+    for one in left_out {
+        match groups.iter_mut().find(|(what, _)| *what == one.what) {
+            Some((_, all)) => all.push(one),
+            None => groups.push((&one.what, vec![one])),
+        }
+    }
+    groups
+}

@@ -1,0 +1,405 @@
+//! Frames, points, bodies and weights.
+
+use crate::letters::{Kind, Number, quantity};
+use crate::model::Motion;
+use crate::rotation::{Vector, dot, is_zero, right_angles};
+use crate::table::{Item, list};
+
+use super::{Writer, plus};
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Writer<'_> {
+    /// A number that belongs to a link or a joint, as an expression.
+    fn number(&mut self, number: Number<'_>) -> String {
+        self.numbers.write(number, &mut self.quantities)
+    }
+
+    /// Components of a vector, in m.
+    fn components(
+        &mut self,
+        value: Vector,
+        letters: &str,
+        of: &str,
+        about: &str,
+        kind: Kind,
+    ) -> Vec<String> {
+        let components = value.into_iter().zip(AXES).map(|(value, axis)| {
+            let about = format!("{about}, {axis}");
+            self.numbers.write(
+                Number {
+                    value,
+                    unit: "m",
+                    letter: &letters.replace('#', axis),
+                    of,
+                    about: &about,
+                    kind,
+                    never_negative: false,
+                },
+                &mut self.quantities,
+            )
+        });
+        components.collect()
+    }
+
+    /// The weight. Returns the expressions of the magnitudes of the components of gravity.
+    pub(super) fn gravity(&mut self, gravity: Vector) -> [String; 3] {
+        let count = gravity.iter().filter(|one| **one != 0.0).count();
+        let mut written = [const { String::new() }; 3];
+        for (index, component) in gravity.into_iter().enumerate() {
+            let axis = AXES[index];
+            if component == 0.0 {
+                "0".clone_into(&mut written[index]);
+                continue;
+            }
+            let (letter, load) = if count == 1 {
+                ("g".to_owned(), "weight".to_owned())
+            } else {
+                (format!("g_{axis}"), format!("weight_{axis}"))
+            };
+            let acceleration = self.number(Number {
+                value: component.abs(),
+                unit: "m/s^2",
+                letter: &letter,
+                of: "gravity",
+                about: "gravitational acceleration",
+                kind: Kind::Other,
+                never_negative: false,
+            });
+            let down = if component < 0.0 {
+                format!("-{axis}")
+            } else {
+                axis.to_owned()
+            };
+            let item = Item::default()
+                .text("kind", "gravity")
+                .text("down", &down)
+                .expression("acceleration", &acceleration);
+            self.loads.add(&load, &item);
+            written[index] = acceleration;
+        }
+        written
+    }
+
+    /// The frame of a body. One that does not turn against its parent has that of the parent.
+    pub(super) fn frame(&mut self, index: usize) {
+        let body = self.at(index);
+        let link = self.links[body.link].name.clone();
+        let called = self.called.links[body.link].clone();
+        let parent = self.frame_of(body.parent);
+        let turning = body.joint.motion == Motion::Turning;
+        if body.turns.is_empty() && !turning {
+            self.called.frames.push(parent);
+            return;
+        }
+        let mut turns: Vec<(String, String)> = Vec::new();
+        for (count, turn) in body.turns.iter().enumerate() {
+            let (value, axis) =
+                if turn.angle < 0.0 && turn.angle > -3.0 && right_angles(turn.angle).is_some() {
+                    (-turn.angle, format!("-{}", AXES[turn.axis]))
+                } else {
+                    (turn.angle, AXES[turn.axis].to_owned())
+                };
+            // A right angle is not a number that anyone measures.
+            let by = if right_angles(value).is_some() {
+                quantity(value, "rad")
+            } else {
+                self.number(Number {
+                    value,
+                    unit: "rad",
+                    letter: &format!("angle_{called}_{}", count + 1),
+                    of: &link,
+                    about: &format!("angle between the frames of {called} and {parent}"),
+                    kind: Kind::Other,
+                    never_negative: false,
+                })
+            };
+            turns.push((axis, by));
+        }
+        if turning {
+            let sign = if body.axis.backwards { "-" } else { "" };
+            let by = plus(
+                &self.called.coordinates[index],
+                &quantity(body.offset, "rad"),
+            );
+            turns.push((format!("{sign}{}", AXES[body.axis.index]), by));
+        }
+        let turn = |(axis, by): &(String, String)| {
+            Item::default()
+                .text("about_axis", axis)
+                .expression("by", by)
+        };
+        let item = Item::default().text("parent", &parent);
+        let item = match turns.as_slice() {
+            [(axis, by)] => item.text("about_axis", axis).expression("by", by),
+            several => {
+                let tables: Vec<String> = several.iter().map(|one| turn(one).table()).collect();
+                item.raw("turns", &format!("[{}]", tables.join(", ")))
+            }
+        };
+        let item = if body.keeps_axes {
+            item
+        } else {
+            let along = format!(
+                "{} points along the axis of the joint, other than in the file",
+                AXES[body.axis.index]
+            );
+            item.text("about", &along)
+        };
+        self.frames.add(&called, &item);
+        self.called.frames.push(called);
+    }
+
+    /// The point of a body: the origin of its link, or a point of the axis.
+    pub(super) fn point(&mut self, index: usize) {
+        let body = self.at(index);
+        let link = self.links[body.link].name.clone();
+        let called = self.called.links[body.link].clone();
+        let origin = body.joint.motion == Motion::Sliding || is_zero(body.joint.anchor);
+        let name = if origin {
+            called.clone()
+        } else {
+            self.places.new_one(&format!("axis_{called}"))
+        };
+        let (parent_frame, mut from) = (self.frame_of(body.parent), self.point_of(body.parent));
+        let about = format!("place of {name}");
+        let mut at = self.components(
+            body.position,
+            &format!("#_{called}"),
+            &link,
+            &about,
+            Kind::Other,
+        );
+        let mut frame = parent_frame;
+        if body.joint.motion == Motion::Sliding {
+            let own = self.called.frames[index].clone();
+            if own != frame && !is_zero(body.position) {
+                let guide = self.places.new_one(&format!("guide_{called}"));
+                let item = Item::default()
+                    .text("from", &from)
+                    .text("in", &frame)
+                    .expressions("at", &at);
+                self.points.add(&guide, &item);
+                from = guide;
+                at = vec!["0".to_owned(); 3];
+            }
+            frame = own;
+            let way = plus(&self.called.coordinates[index], &quantity(body.offset, "m"));
+            let component = &mut at[body.axis.index];
+            *component = match (component.as_str(), body.axis.backwards) {
+                ("0", false) => way,
+                ("0", true) if !way.contains(' ') => format!("-{way}"),
+                ("0", true) => format!("-({way})"),
+                (constant, false) => format!("{constant} + {way}"),
+                (constant, true) => format!("{constant} - ({way})"),
+            };
+        }
+        let item = Item::default()
+            .text("from", &from)
+            .text("in", &frame)
+            .expressions("at", &at);
+        let item = if origin {
+            item
+        } else {
+            item.text("about", "on the axis of the joint")
+        };
+        self.points.add(&name, &item);
+        self.called.points.push(name);
+    }
+
+    /// The body, unless it has neither mass nor inertia, with its centre of mass.
+    pub(super) fn body(&mut self, index: usize) {
+        let body = self.at(index);
+        let inertia = body.inertia;
+        if inertia.is_nothing() {
+            return;
+        }
+        let link = self.links[body.link].name.clone();
+        let called = self.called.links[body.link].clone();
+        let frame = self.called.frames[index].clone();
+        let about = format!("centre of mass of {called}");
+        let at = self.components(
+            inertia.centre,
+            &format!("c#_{called}"),
+            &link,
+            &about,
+            Kind::Inertial,
+        );
+        let centre = if at.iter().all(|one| one == "0") {
+            self.called.points[index].clone()
+        } else {
+            let centre = self.places.new_one(&format!("G_{called}"));
+            let from = self.called.points[index].clone();
+            let item = Item::default()
+                .text("from", &from)
+                .text("in", &frame)
+                .expressions("at", &at);
+            self.points.add(&centre, &item);
+            centre
+        };
+        let mut inertial = |value: f64, unit: &'static str, letter: String, about: &str| {
+            self.numbers.write(
+                Number {
+                    value,
+                    unit,
+                    letter: &letter,
+                    of: &link,
+                    about: &format!("{about} of {called}"),
+                    kind: Kind::Inertial,
+                    never_negative: unit == "kg",
+                },
+                &mut self.quantities,
+            )
+        };
+        let mass = inertial(inertia.mass, "kg", format!("m_{called}"), "mass");
+        let entries = ["xx", "yy", "zz", "xy", "xz", "yz"]
+            .into_iter()
+            .zip(inertia.tensor);
+        let entries = entries.map(|(entry, value)| {
+            let about = format!("inertia about the centre of mass, {entry},");
+            inertial(value, "kg*m^2", format!("I{entry}_{called}"), &about)
+        });
+        let entries: Vec<String> = entries.collect();
+        let item = if entries.iter().all(|entry| entry == "0") {
+            Item::default()
+                .text("centre", &centre)
+                .expression("mass", &mass)
+        } else {
+            let tensor = Item::default().text("in", &frame);
+            let tensor = if entries[3..].iter().all(|entry| entry == "0") {
+                tensor.raw("diagonal", &list(&entries[..3]))
+            } else {
+                tensor
+                    .raw("moments", &list(&entries[..3]))
+                    .raw("products", &list(&entries[3..]))
+            };
+            Item::default()
+                .text("frame", &frame)
+                .text("centre", &centre)
+                .expression("mass", &mass)
+                .raw("inertia", &tensor.table())
+        };
+        let merged = body
+            .parts
+            .iter()
+            .filter(|part| self.links[part.link].written && part.link != body.link);
+        let merged: Vec<&str> = merged
+            .map(|part| self.called.links[part.link].as_str())
+            .collect();
+        let item = if merged.is_empty() {
+            item
+        } else {
+            item.text(
+                "about",
+                &super::sentence(&format!("with {}", merged.join(", "))),
+            )
+        };
+        self.bodies.add(&called, &item);
+    }
+
+    /// Origins of links that the ground carries.
+    pub(super) fn links_on_the_ground(&mut self) {
+        for part in &self.tree.ground {
+            if !is_zero(part.position) {
+                let item = Item::default().text("from", "O").text("in", "ground");
+                let at: Vec<String> = part
+                    .position
+                    .iter()
+                    .map(|one| quantity(*one, "m"))
+                    .collect();
+                let item = item
+                    .expressions("at", &at)
+                    .text("about", "fixed to the ground");
+                self.points.add(&self.called.links[part.link], &item);
+            }
+        }
+    }
+
+    /// Origins of links that are fixed to others.
+    pub(super) fn links_on_bodies(&mut self) {
+        for (index, body) in self.tree.bodies.iter().enumerate() {
+            for part in &body.parts {
+                let name = &self.called.links[part.link];
+                if !self.links[part.link].written || *name == self.called.points[index] {
+                    continue;
+                }
+                let at: Vec<String> = part
+                    .position
+                    .iter()
+                    .map(|one| quantity(*one, "m"))
+                    .collect();
+                let item = Item::default()
+                    .text("from", &self.called.points[index])
+                    .text("in", &self.called.frames[index])
+                    .expressions("at", &at);
+                self.points.add(name, &item);
+            }
+        }
+    }
+
+    /// Forces that carry a share of the weight of links.
+    pub(super) fn carried(&mut self, gravity: Vector, letters: &[String; 3]) {
+        for (index, body) in self.tree.bodies.iter().enumerate() {
+            for part in &body.parts {
+                let link = &self.links[part.link];
+                if link.carried == 0.0 || link.inertia.mass == 0.0 {
+                    continue;
+                }
+                let called = &self.called.links[part.link];
+                let point = self.places.new_one(&format!("carried_{called}"));
+                let at: Vec<String> = part.centre.iter().map(|one| quantity(*one, "m")).collect();
+                let item = Item::default()
+                    .text("from", &self.called.points[index])
+                    .text("in", &self.called.frames[index])
+                    .expressions("at", &at);
+                self.points.add(&point, &item);
+                let carries =
+                    |component: f64| -component.signum() * link.carried * link.inertia.mass;
+                let force: Vec<String> = gravity
+                    .iter()
+                    .zip(letters)
+                    .map(|(component, letter)| match *component {
+                        0.0 => "0".to_owned(),
+                        component => format!("{}*{letter}", quantity(carries(component), "kg")),
+                    })
+                    .collect();
+                let item = Item::default()
+                    .text("kind", "force")
+                    .text("on", &point)
+                    .text("in", "ground")
+                    .expressions("vector", &force)
+                    .text("about", "gravity compensation");
+                self.loads.add(&format!("carried_{called}"), &item);
+            }
+        }
+    }
+
+    /// Positions of the ends of the chains.
+    pub(super) fn ends(&mut self) {
+        let is_parent = |link: usize| self.links.iter().any(|other| other.parent == Some(link));
+        let carries = |index: usize| {
+            self.tree
+                .bodies
+                .iter()
+                .any(|body| body.parent == Some(index))
+        };
+        for (index, body) in self.tree.bodies.iter().enumerate() {
+            let furthest = |part: &&crate::tree::Part| dot(part.position, part.position);
+            let ends = body.parts.iter().filter(|part| !is_parent(part.link));
+            let Some(end) = ends.max_by(|a, b| furthest(a).total_cmp(&furthest(b))) else {
+                continue;
+            };
+            if carries(index) {
+                continue;
+            }
+            let called = self.called.links[end.link].clone();
+            for axis in AXES {
+                let name = self.quantities.new_one(&format!("{axis}_of_{called}"));
+                let item = Item::default()
+                    .text("value", &format!("position({called}, {axis})"))
+                    .text("unit", "m");
+                self.outputs.add(&name, &item);
+            }
+        }
+    }
+}

@@ -1,0 +1,100 @@
+//! Sections of a spec as TOML, one item a line.
+
+use std::fmt::Write as _;
+
+/// A section with its items.
+#[derive(Debug, Default)]
+pub(crate) struct Section {
+    items: Vec<(String, String)>,
+}
+
+/// Keys of an item, in order.
+#[derive(Debug, Default)]
+pub(crate) struct Item(Vec<String>);
+
+impl Item {
+    /// A key with a sentence or a name.
+    pub(crate) fn text(self, key: &str, value: &str) -> Self {
+        self.raw(key, &quoted(value))
+    }
+
+    /// A key with a TOML value.
+    pub(crate) fn raw(mut self, key: &str, value: &str) -> Self {
+        self.0.push(format!("{key} = {value}"));
+        self
+    }
+
+    /// A key with an expression; a plain number needs no quotes.
+    pub(crate) fn expression(self, key: &str, value: &str) -> Self {
+        self.raw(key, &expression(value))
+    }
+
+    /// A key with a list of expressions.
+    pub(crate) fn expressions(self, key: &str, values: &[String]) -> Self {
+        self.raw(key, &list(values))
+    }
+
+    /// The inline table.
+    pub(crate) fn table(&self) -> String {
+        format!("{{ {} }}", self.0.join(", "))
+    }
+}
+
+/// A TOML string.
+pub(crate) fn quoted(text: &str) -> String {
+    let mut quoted = String::from('"');
+    for c in text.chars() {
+        match c {
+            '"' => quoted.push_str("\\\""),
+            '\\' => quoted.push_str("\\\\"),
+            c if c.is_control() => quoted.push(' '),
+            c => quoted.push(c),
+        }
+    }
+    quoted.push('"');
+    quoted
+}
+
+fn expression(text: &str) -> String {
+    let is_number =
+        text.parse::<f64>().is_ok() && text.starts_with(|c: char| c.is_ascii_digit() || c == '-');
+    if is_number {
+        text.to_owned()
+    } else {
+        quoted(text)
+    }
+}
+
+/// A TOML list of expressions.
+pub(crate) fn list(values: &[String]) -> String {
+    let values: Vec<String> = values.iter().map(|value| expression(value)).collect();
+    format!("[{}]", values.join(", "))
+}
+
+impl Section {
+    pub(crate) fn add(&mut self, name: &str, item: &Item) {
+        self.items.push((name.to_owned(), item.table()));
+    }
+
+    /// Adds a key whose value is no table.
+    pub(crate) fn key(&mut self, name: &str, value: String) {
+        self.items.push((name.to_owned(), value));
+    }
+
+    /// Writes the section, unless it is empty.
+    pub(crate) fn write(&self, title: &str, to: &mut String) {
+        if self.items.is_empty() {
+            return;
+        }
+        let width = self
+            .items
+            .iter()
+            .map(|(name, _)| name.len())
+            .max()
+            .unwrap_or(0);
+        let _ = writeln!(to, "\n[{title}]");
+        for (name, value) in &self.items {
+            let _ = writeln!(to, "{name:width$} = {value}");
+        }
+    }
+}

@@ -1,0 +1,166 @@
+//! From links to bodies: what is fixed together is one, and its frame has an axis along the axis of its joint.
+
+use appell_spec::Code;
+
+use crate::inertia::{Inertia, position_without_rounding};
+use crate::model::{Joint, Link, Motion};
+use crate::rotation::{Axis, Pose, Rotation, Turn, Vector, scaled};
+use crate::xml::Findings;
+
+/// Bodies in the order of the tree, and what stands on the ground.
+#[derive(Debug)]
+pub(crate) struct Tree {
+    pub(crate) bodies: Vec<Body>,
+    /// Links that are fixed to the ground.
+    pub(crate) ground: Vec<Part>,
+}
+
+/// A link that belongs to a body.
+#[derive(Debug)]
+pub(crate) struct Part {
+    /// Its index among the links.
+    pub(crate) link: usize,
+    /// Its origin from the body's point, in the body's frame.
+    pub(crate) position: Vector,
+    /// Its centre of mass likewise.
+    pub(crate) centre: Vector,
+}
+
+/// A joint with all links that it moves as one.
+#[derive(Debug)]
+pub(crate) struct Body {
+    pub(crate) parent: Option<usize>,
+    pub(crate) joint: Joint,
+    /// The link that the joint moves.
+    pub(crate) link: usize,
+    /// Constant turns from the parent's frame before that of the joint.
+    pub(crate) turns: Vec<Turn>,
+    /// Axis of the joint in the body's frame.
+    pub(crate) axis: Axis,
+    /// What is added to the coordinate: the angle or the way at which the coordinate is zero.
+    pub(crate) offset: f64,
+    /// The body's point from that of the parent, in the parent's frame, before a joint slides.
+    pub(crate) position: Vector,
+    /// In the body's frame, from the body's point.
+    pub(crate) inertia: Inertia,
+    pub(crate) parts: Vec<Part>,
+    /// Whether the frame has the axes of the link in the file.
+    pub(crate) keeps_axes: bool,
+}
+
+/// The body of a link, and where the link is in it.
+#[derive(Clone, Copy)]
+struct Seat {
+    body: Option<usize>,
+    pose: Pose,
+}
+
+/// Merges what is fixed together.
+pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
+    let mut tree = Tree {
+        bodies: Vec::new(),
+        ground: Vec::new(),
+    };
+    let mut seats: Vec<Seat> = Vec::new();
+    for (index, link) in links.iter().enumerate() {
+        let on = link.parent.map_or(
+            Seat {
+                body: None,
+                pose: Pose::IDENTITY,
+            },
+            |parent| seats[parent],
+        );
+        let pose = on.pose.then(link.pose);
+        let seat = match &link.joint {
+            None => Seat {
+                body: on.body,
+                pose,
+            },
+            Some(joint) => tree.moved_by(joint, index, on.body, pose),
+        };
+        seats.push(seat);
+        let inertia = link.inertia.placed(seat.pose);
+        let part = Part {
+            link: index,
+            position: position_without_rounding(seat.pose.position),
+            centre: inertia.centre,
+        };
+        match seat.body {
+            None => tree.ground.push(part),
+            Some(body) => {
+                let body = &mut tree.bodies[body];
+                body.inertia = body.inertia.with(&inertia);
+                body.parts.push(part);
+            }
+        }
+    }
+    tree.refuse_what_has_no_mass(links, findings);
+    tree
+}
+
+impl Tree {
+    /// A new body, moved by a joint at a pose in the frame of its parent.
+    fn moved_by(&mut self, joint: &Joint, link: usize, parent: Option<usize>, pose: Pose) -> Seat {
+        let (axis, own) = Axis::nearest(joint.axis);
+        let rotation = pose.rotation.then(own);
+        let (last, anchor) = match joint.motion {
+            Motion::Turning => (Some(axis.index), joint.anchor),
+            Motion::Sliding => (None, [0.0; 3]),
+        };
+        let mut turns = rotation.turns(last);
+        let mut offset = -joint.zero;
+        if let (Some(last), Some(turn)) = (last, turns.last())
+            && turn.axis == last
+        {
+            offset += axis.sign() * turn.angle;
+            turns.pop();
+        }
+        let within = Pose {
+            rotation: own.inverse(),
+            position: own.inverse().of(scaled(anchor, -1.0)),
+        };
+        self.bodies.push(Body {
+            parent,
+            joint: joint.clone(),
+            link,
+            turns,
+            axis,
+            offset,
+            position: position_without_rounding(pose.of(anchor)),
+            inertia: Inertia::NONE,
+            parts: Vec::new(),
+            keeps_axes: own == Rotation::IDENTITY,
+        });
+        Seat {
+            body: Some(self.bodies.len() - 1),
+            pose: within,
+        }
+    }
+
+    /// A joint with nothing behind it that has inertia has no equation of motion.
+    fn refuse_what_has_no_mass(&self, links: &[Link], findings: &Findings) {
+        let mut moves: Vec<bool> = self
+            .bodies
+            .iter()
+            .map(|body| !body.inertia.is_nothing())
+            .collect();
+        for index in (0..self.bodies.len()).rev() {
+            let body = &self.bodies[index];
+            if moves[index] {
+                if let Some(parent) = body.parent {
+                    moves[parent] = true;
+                }
+            } else if body.joint.armature == 0.0 {
+                let (link, joint) = (&links[body.link].name, &body.joint.name);
+                findings.error(
+                    Code::SingularMassMatrix,
+                    links[body.link].place.clone(),
+                    format!(
+                        "`{link}` moves by joint `{joint}` but has no mass, nor has anything on it"
+                    ),
+                    "give it a mass and an inertia, or make the joint fixed",
+                );
+            }
+        }
+    }
+}

@@ -1,0 +1,509 @@
+//! URDF: links, and joints that name their parent and child.
+
+use std::collections::BTreeMap;
+
+use appell_spec::{Code, did_you_mean};
+
+use crate::inertia::Inertia;
+use crate::model::{Coupling, Joint, LeftOut, Link, Motion, Robot};
+use crate::rotation::{Pose, Rotation, Vector, unit};
+use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
+
+const GRAVITY: Vector = [0.0, 0.0, -9.81];
+
+/// A joint with what it connects.
+struct Connection<'x> {
+    element: Element<'x>,
+    name: &'x str,
+    parent: usize,
+    child: usize,
+    pose: Pose,
+    joint: Option<Joint>,
+}
+
+/// Reads `<robot>`.
+pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
+    let mut left_out = Vec::new();
+    let links: Vec<Element<'_>> = children(root, "link").collect();
+    let mut by_name = BTreeMap::new();
+    for (index, link) in links.iter().enumerate() {
+        let Some(name) = name(*link, findings) else {
+            continue;
+        };
+        if by_name.insert(name, index).is_some() {
+            findings.error(
+                Code::DuplicateName,
+                tag(*link),
+                format!("there are two links `{name}`"),
+                "rename one of them",
+            );
+        }
+    }
+    if links.is_empty() {
+        findings.error(
+            Code::MissingSection,
+            tag(root),
+            "the robot has no link",
+            "a URDF has `<link>`s, connected by `<joint>`s",
+        );
+    }
+    let inertias: Vec<Inertia> = links.iter().map(|link| inertia(*link, findings)).collect();
+    let (connections, couplings) = joints(root, &by_name, findings);
+    for element in elements(root) {
+        match element.tag_name().name() {
+            "joint" => {
+                let known = [
+                    "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",
+                ];
+                left_out.extend(unknown(element, "joint", &known));
+            }
+            "link" => left_out.extend(unknown(element, "link", &["inertial"])),
+            other => left_out.push(omitted(element, other.to_owned())),
+        }
+    }
+    Robot {
+        name: root.attribute("name").unwrap_or("robot").to_owned(),
+        gravity: GRAVITY,
+        links: tree(&links, &inertias, connections, findings),
+        couplings,
+        left_out,
+    }
+}
+
+/// The name of an element, which it must have.
+fn name<'x>(element: Element<'x>, findings: &Findings) -> Option<&'x str> {
+    let name = element.attribute("name");
+    if name.is_none() {
+        let kind = element.tag_name().name();
+        let help = format!("give it one: `<{kind} name=\"…\">`");
+        findings.error(
+            Code::MissingKey,
+            tag(element),
+            format!("a `{kind}` without a name"),
+            help,
+        );
+    }
+    name
+}
+
+fn omitted(element: Element<'_>, what: String) -> LeftOut {
+    let name = element
+        .attribute("name")
+        .or_else(|| element.attribute("reference"));
+    LeftOut {
+        what,
+        name: name.map(str::to_owned),
+        place: tag(element),
+    }
+}
+
+fn unknown<'x>(
+    element: Element<'x>,
+    within: &'x str,
+    known: &'x [&'x str],
+) -> impl Iterator<Item = LeftOut> {
+    let unknown = elements(element).filter(|one| !known.contains(&one.tag_name().name()));
+    let owner = element.attribute("name");
+    unknown.map(move |one| {
+        let what = format!("{within}/{}", one.tag_name().name());
+        LeftOut {
+            name: owner.map(str::to_owned),
+            ..omitted(one, what)
+        }
+    })
+}
+
+/// A number of an attribute, and what it is if the file does not say.
+fn number(element: Option<Element<'_>>, key: &str, default: f64, findings: &Findings) -> f64 {
+    let attribute = element.and_then(|element| element.attribute_node(key));
+    let read =
+        attribute.and_then(|attribute| exactly::<1>(findings, &attribute, &format!("`{key}`")));
+    read.map_or(default, |[number]| number)
+}
+
+fn vector(
+    element: Option<Element<'_>>,
+    key: &str,
+    what: &str,
+    findings: &Findings,
+) -> Option<Vector> {
+    let attribute = element?.attribute_node(key)?;
+    exactly(findings, &attribute, what)
+}
+
+/// `<origin xyz rpy>`
+fn origin(element: Element<'_>, findings: &Findings) -> Pose {
+    let origin = child(element, "origin");
+    let position = vector(origin, "xyz", "a position, x y z,", findings);
+    let angles = vector(origin, "rpy", "an orientation, roll pitch yaw,", findings);
+    Pose {
+        rotation: angles.map_or(Rotation::IDENTITY, Rotation::roll_pitch_yaw),
+        position: position.unwrap_or_default(),
+    }
+}
+
+/// `<inertial>` of a link, in the frame of the link.
+fn inertia(link: Element<'_>, findings: &Findings) -> Inertia {
+    let Some(inertial) = child(link, "inertial") else {
+        return Inertia::NONE;
+    };
+    let pose = origin(inertial, findings);
+    let mass = child(inertial, "mass");
+    let tensor = child(inertial, "inertia");
+    for (found, word, example) in [
+        (mass, "mass", "<mass value=\"1\"/>"),
+        (
+            tensor,
+            "inertia",
+            "<inertia ixx=\"1e-3\" iyy=\"1e-3\" izz=\"1e-3\" ixy=\"0\" ixz=\"0\" iyz=\"0\"/>",
+        ),
+    ] {
+        if found.is_none() {
+            let message = format!("`inertial` has no `{word}`");
+            findings.error(
+                Code::MissingKey,
+                tag(inertial),
+                message,
+                format!("write `{example}`"),
+            );
+        }
+    }
+    let entries = ["ixx", "iyy", "izz", "ixy", "ixz", "iyz"];
+    let own = Inertia {
+        mass: number(mass, "value", 0.0, findings),
+        centre: [0.0; 3],
+        tensor: entries.map(|key| number(tensor, key, 0.0, findings)),
+    };
+    if let Some(reason) = own.impossible() {
+        let link = link.attribute("name").unwrap_or_default();
+        let at = if own.mass < 0.0 { mass } else { tensor };
+        findings.warning(
+            Code::NotPhysical,
+            tag(at.unwrap_or(inertial)),
+            format!("no body can have the inertia of link `{link}`: {reason}"),
+            "it is taken as it is; the motion is right wherever the mass matrix is positive definite",
+        );
+    }
+    own.placed(pose)
+}
+
+/// The joints, and the couplings that they mention.
+fn joints<'x>(
+    root: Element<'x>,
+    links: &BTreeMap<&str, usize>,
+    findings: &Findings,
+) -> (Vec<Connection<'x>>, Vec<Coupling>) {
+    let mut connections = Vec::new();
+    let mut couplings = Vec::new();
+    let mut names = BTreeMap::new();
+    for element in children(root, "joint") {
+        let Some(name) = name(element, findings) else {
+            continue;
+        };
+        if names.insert(name, element).is_some() {
+            let message = format!("there are two joints `{name}`");
+            findings.error(
+                Code::DuplicateName,
+                tag(element),
+                message,
+                "rename one of them",
+            );
+        }
+        let ends = ["parent", "child"].map(|end| link_of(element, end, links, findings));
+        let joint = joint(element, name, findings);
+        if let [Some(parent), Some(child)] = ends {
+            connections.push(Connection {
+                element,
+                name,
+                parent,
+                child,
+                pose: origin(element, findings),
+                joint,
+            });
+        }
+    }
+    for element in children(root, "joint") {
+        couplings.extend(mimic(element, &names, findings));
+    }
+    (connections, couplings)
+}
+
+/// The link that a joint names.
+fn link_of(
+    joint: Element<'_>,
+    end: &'static str,
+    links: &BTreeMap<&str, usize>,
+    findings: &Findings,
+) -> Option<usize> {
+    let name = joint.attribute("name").unwrap_or_default();
+    let Some(attribute) = child(joint, end).and_then(|end| end.attribute_node("link")) else {
+        let message = format!("joint `{name}` has no {end}");
+        findings.error(
+            Code::MissingKey,
+            tag(joint),
+            message,
+            format!("write `<{end} link=\"…\"/>`"),
+        );
+        return None;
+    };
+    let link = links.get(attribute.value()).copied();
+    if link.is_none() {
+        let known = || format!("the file has {} links, none of that name", links.len());
+        findings.error(
+            Code::UnknownReference,
+            attribute.range_value(),
+            format!(
+                "there is no link `{}`",
+                appell_spec::shown(attribute.value())
+            ),
+            did_you_mean(attribute.value(), links.keys().copied(), known),
+        );
+    }
+    link
+}
+
+/// What a joint does, unless it is fixed.
+fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint> {
+    let limit = child(element, "limit");
+    let Some(kind) = element.attribute_node("type") else {
+        let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
+        findings.error(
+            Code::MissingKey,
+            tag(element),
+            format!("joint `{name}` has no type"),
+            help,
+        );
+        return None;
+    };
+    let motion = match kind.value() {
+        "fixed" => return None,
+        "revolute" | "continuous" => Motion::Turning,
+        "prismatic" => Motion::Sliding,
+        "floating" | "planar" | "spherical" | "ball" => {
+            findings.error(
+                Code::NotAllowedHere,
+                kind.range_value(),
+                format!(
+                    "joint `{name}` is {}, which `import` does not do yet",
+                    kind.value()
+                ),
+                "joints are revolute, continuous, prismatic or fixed so far",
+            );
+            return None;
+        }
+        other => {
+            let kinds = ["revolute", "continuous", "prismatic", "fixed"];
+            findings.error(
+                Code::UnknownWord,
+                kind.range_value(),
+                format!(
+                    "there are no joints of type `{}`",
+                    appell_spec::shown(other)
+                ),
+                did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
+            );
+            return None;
+        }
+    };
+    let given = child(element, "axis");
+    let along = vector(given, "xyz", "a direction, x y z,", findings).unwrap_or([1.0, 0.0, 0.0]);
+    let axis = unit(along).unwrap_or_else(|| {
+        findings.error(
+            Code::VanishingLength,
+            tag(given.unwrap_or(element)),
+            format!("the axis of joint `{name}` has length zero"),
+            "give its direction, such as `0 0 1`",
+        );
+        [1.0, 0.0, 0.0]
+    });
+    let dynamics = child(element, "dynamics");
+    Some(Joint {
+        name: name.to_owned(),
+        motion,
+        axis,
+        anchor: [0.0; 3],
+        zero: 0.0,
+        range: range(element, kind.value(), limit, name, findings),
+        damping: number(dynamics, "damping", 0.0, findings),
+        armature: 0.0,
+        friction: number(dynamics, "friction", 0.0, findings),
+        stiffness: 0.0,
+        relaxed: 0.0,
+    })
+}
+
+/// The limits of a joint; attributes that are not there are zero.
+fn range(
+    element: Element<'_>,
+    kind: &str,
+    limit: Option<Element<'_>>,
+    name: &str,
+    findings: &Findings,
+) -> Option<[f64; 2]> {
+    let range = ["lower", "upper"].map(|key| number(limit, key, 0.0, findings));
+    match limit {
+        _ if kind == "continuous" => None,
+        None => {
+            let instead = match kind {
+                "revolute" => "write `type=\"continuous\"` if it has none",
+                _ => "write `<limit lower=\"…\" upper=\"…\" effort=\"…\" velocity=\"…\"/>`",
+            };
+            let message = format!("URDF asks for `<limit>` on the {kind} joint `{name}`");
+            findings.warning(Code::MissingKey, tag(element), message, instead);
+            None
+        }
+        Some(limit) if range[0] >= range[1] => {
+            let message = format!("the limits of joint `{name}` leave no range");
+            let help =
+                "they are left out; `lower` has to be less than `upper`, and a missing one is 0";
+            findings.warning(Code::EmptyRange, tag(limit), message, help);
+            None
+        }
+        Some(_) => Some(range),
+    }
+}
+
+/// `<mimic>`: this joint follows another one.
+fn mimic<'x>(
+    element: Element<'x>,
+    joints: &BTreeMap<&'x str, Element<'x>>,
+    findings: &Findings,
+) -> Option<Coupling> {
+    let mimic = child(element, "mimic")?;
+    let name = element.attribute("name")?;
+    let Some(other) = mimic.attribute_node("joint") else {
+        let help = "write `<mimic joint=\"…\" multiplier=\"1\" offset=\"0\"/>`";
+        findings.error(Code::MissingKey, tag(mimic), "`mimic` names no joint", help);
+        return None;
+    };
+    let moves = |name: &str| {
+        let kind = joints.get(name).and_then(|joint| joint.attribute("type"));
+        kind.is_some_and(|kind| kind != "fixed")
+    };
+    if !joints.contains_key(other.value()) {
+        let moving = joints.keys().copied().filter(|name| moves(name));
+        findings.error(
+            Code::UnknownReference,
+            other.range_value(),
+            format!("there is no joint `{}`", appell_spec::shown(other.value())),
+            did_you_mean(other.value(), moving, || {
+                format!("joint `{name}` follows another joint of the file")
+            }),
+        );
+        return None;
+    }
+    let offset = number(Some(mimic), "offset", 0.0, findings);
+    let multiplier = number(Some(mimic), "multiplier", 1.0, findings);
+    let follows = moves(other.value()) && other.value() != name;
+    moves(name).then(|| Coupling {
+        name: format!("{name}_follows"),
+        joint: name.to_owned(),
+        other: follows.then(|| other.value().to_owned()),
+        zeros: [0.0; 2],
+        coefficients: if follows {
+            vec![offset, multiplier]
+        } else {
+            vec![offset]
+        },
+    })
+}
+
+/// The links in the order of the tree, parents first.
+fn tree(
+    elements: &[Element<'_>],
+    inertias: &[Inertia],
+    connections: Vec<Connection<'_>>,
+    findings: &Findings,
+) -> Vec<Link> {
+    let name = |link: usize| elements[link].attribute("name").unwrap_or_default();
+    let mut above: Vec<Option<usize>> = vec![None; elements.len()];
+    for (index, connection) in connections.iter().enumerate() {
+        let Some(first) = above[connection.child].replace(index) else {
+            continue;
+        };
+        let (link, first, second) = (
+            name(connection.child),
+            connections[first].name,
+            connection.name,
+        );
+        findings.error(
+            Code::DuplicateName,
+            tag(connection.element),
+            format!("link `{link}` has two parents, by joint `{first}` and by joint `{second}`"),
+            "a URDF is a tree: remove one of the joints; to close a loop, keep the tree and add a connection \
+             (in MJCF: `equality/connect`)",
+        );
+    }
+    let roots: Vec<usize> = (0..elements.len())
+        .filter(|link| above[*link].is_none())
+        .collect();
+    let named = |link: &&usize| elements[**link].has_attribute("name");
+    for extra in roots.iter().skip(1).filter(named) {
+        findings.error(
+            Code::UnknownReference,
+            tag(elements[*extra]),
+            format!(
+                "link `{}` is the child of no joint, and so is `{}`",
+                name(*extra),
+                name(roots[0])
+            ),
+            "a URDF has one root: connect the link by a joint, or remove it",
+        );
+    }
+    let mut below: Vec<Vec<usize>> = vec![Vec::new(); elements.len()];
+    for (index, connection) in connections.iter().enumerate() {
+        if above[connection.child] == Some(index) {
+            below[connection.parent].push(index);
+        }
+    }
+    let mut links: Vec<Link> = Vec::new();
+    let mut connections: Vec<Option<Connection<'_>>> = connections.into_iter().map(Some).collect();
+    // (link, where its parent stands in the result, the joint to it)
+    let mut open: Vec<(usize, Option<usize>, Option<usize>)> = roots
+        .first()
+        .map(|root| (*root, None, None))
+        .into_iter()
+        .collect();
+    while let Some((link, parent, by)) = open.pop() {
+        let connection = by.and_then(|by| connections[by].take());
+        let (pose, joint) = connection.map_or((Pose::IDENTITY, None), |by| (by.pose, by.joint));
+        let here = links.len();
+        links.push(Link {
+            name: name(link).to_owned(),
+            parent,
+            pose,
+            joint,
+            inertia: inertias[link],
+            carried: 0.0,
+            written: true,
+            place: tag(elements[link]),
+        });
+        for next in below[link].iter().rev() {
+            if let Some(connection) = &connections[*next] {
+                open.push((connection.child, Some(here), Some(*next)));
+            }
+        }
+    }
+    if links.len() < elements.len() && roots.len() <= 1 {
+        let mut reached = vec![false; elements.len()];
+        let names: BTreeMap<&str, usize> =
+            (0..elements.len()).map(|link| (name(link), link)).collect();
+        for link in &links {
+            if let Some(index) = names.get(link.name.as_str()) {
+                reached[*index] = true;
+            }
+        }
+        if let Some(lost) = (0..elements.len()).find(|link| !reached[*link]) {
+            findings.error(
+                Code::ReferenceCycle,
+                tag(elements[lost]),
+                format!(
+                    "link `{}` is not connected with the root: its joints form a circle",
+                    name(lost)
+                ),
+                "a URDF is a tree: each link has one parent, up to one root",
+            );
+        }
+    }
+    links
+}

@@ -1,0 +1,69 @@
+//! What is left out of a robot on request.
+
+use crate::model::Robot;
+
+/// A property of robots that a spec can do without.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Without {
+    /// Damping in proportion to rates.
+    Damping,
+    /// Inertia of drives (armature).
+    Armature,
+    /// Springs of joints.
+    Springs,
+    /// Dry friction.
+    Friction,
+    /// Ranges of coordinates.
+    Limits,
+    /// Joints that follow others, which then move freely.
+    Couplings,
+    /// Forces that carry the weight of links (`gravcomp`).
+    Compensation,
+}
+
+impl Without {
+    /// All of them.
+    pub const ALL: [Self; 7] = [
+        Self::Damping,
+        Self::Armature,
+        Self::Springs,
+        Self::Friction,
+        Self::Limits,
+        Self::Couplings,
+        Self::Compensation,
+    ];
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        match self {
+            Self::Damping => "damping",
+            Self::Armature => "armature",
+            Self::Springs => "springs",
+            Self::Friction => "friction",
+            Self::Limits => "limits",
+            Self::Couplings => "couplings",
+            Self::Compensation => "compensation",
+        }
+    }
+
+    pub(crate) fn apply(self, robot: &mut Robot) {
+        if self == Self::Couplings {
+            robot.couplings.clear();
+        }
+        for link in &mut robot.links {
+            if self == Self::Compensation {
+                link.carried = 0.0;
+            }
+            if let Some(joint) = &mut link.joint {
+                match self {
+                    Self::Damping => joint.damping = 0.0,
+                    Self::Armature => joint.armature = 0.0,
+                    Self::Springs => joint.stiffness = 0.0,
+                    Self::Friction => joint.friction = 0.0,
+                    Self::Limits => joint.range = None,
+                    Self::Couplings | Self::Compensation => {}
+                }
+            }
+        }
+    }
+}

@@ -30,6 +30,12 @@ INTERVAL = 0.05
 # Steps of the model-exchange driver in an interval.
 STEPS = 40
 
+# An arm as people get one: from a robot file.
+ARM = FOLDER / "arm.toml"
+FOLDER.mkdir(parents=True, exist_ok=True)
+for command in (["sample", "robot", FOLDER / "robot"], ["import", FOLDER / "robot" / "arm.urdf", "-o", ARM, "--without", "friction"]):
+    subprocess.run([APPELL, *command], check=True, capture_output=True)
+
 # Model, initial values and rows of held inputs in the units of the spec, end in s.
 CASES = [
     ("unicycle", {"theta": 0.03, "omega_2": 4, "r": 0.01}, ["u"], [[0, 0.2], [0.5, -0.1]], 1.0),
@@ -37,6 +43,13 @@ CASES = [
     ("bicycle", {"omega_R": -15, "phi": 0.02}, ["T_phi", "T_delta"], [[0, 0, 0.2], [0.6, 1, 0]], 1.5),
     ("four_bar", {}, ["tau"], [[0, 0.1], [0.5, -0.2]], 1.5),
     ("cart_pole", {"theta": 0.4}, ["F"], [[0, 1], [0.7, 0]], 1.5),
+    (
+        str(ARM),
+        {"shoulder": 0.5, "elbow": 0.3, "reach": 0.1},
+        ["tau_turn", "tau_shoulder", "tau_elbow", "force_reach"],
+        [[0, 0.2, 12, 4, 1], [0.3, -0.1, 10, 3, -1]],
+        0.5,
+    ),
     (str(HERE / "timed.toml"), {"v": 30}, ["F"], [[0, 0.001], [0.5, -0.002]], 2.0),
 ]
 
@@ -413,7 +426,6 @@ def compiled_by_the_importer(case):
 
 
 def main():
-    FOLDER.mkdir(parents=True, exist_ok=True)
     cases = [Case(*case) for case in CASES]
     for case in cases:
         case.co_simulation()

@@ -11,7 +11,8 @@
 //! the same bits. Other models go through their blocks place by place.
 //!
 //! The files: [`dispatch`] finds the processor's vectors, [`lane`] takes numbers from lanes and puts
-//! them there, [`fast`] is the scalar of a lane, and [`evaluate`] runs equations over blocks and places.
+//! them there, [`fast`] is the scalar of a lane, [`evaluate`] runs equations over blocks and places, and
+//! [`plain`] goes place by place.
 
 // What is not inlined is not compiled for the vectors of the processor.
 #![allow(clippy::inline_always)]
@@ -23,12 +24,16 @@ mod evaluate;
 #[cfg(any(feature = "std", feature = "libm"))]
 mod fast;
 mod lane;
+#[cfg(feature = "std")]
+mod plain;
 
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use dispatch::{Level, dispatch};
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use evaluate::Equations;
 pub use lane::Lane;
+#[cfg(feature = "std")]
+pub use plain::place_by_place;
 
 /// How many places a block has.
 pub const LANES: usize = 8;

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::differences;
+use crate::lanes::{AtLanes, LANES, place_by_place};
 
 /// A text that is static in emitted models and owned in models made at run time.
 pub type Text = Cow<'static, str>;
@@ -341,6 +342,46 @@ pub trait Model: Sync {
     }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
+    /// [`Model::rates`] at every place of a block, see [`crate::lanes`]; `rates` are component by
+    /// component as the arguments are. Emitted models compute with the functions of
+    /// [`crate::elementary`]. The answer of this trait is the *plain mode*: it goes place by place with
+    /// [`Model::rates`], bit for bit.
+    fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
+        place_by_place(at, [rates], |t, [x, u, p], [rates]| {
+            self.rates(At { t, x, u, p }, rates);
+        });
+    }
+    /// [`Model::jacobians`] at every place of a block, as [`Model::rates_lanes`].
+    fn jacobians_lanes(
+        &self,
+        at: AtLanes<'_>,
+        rates: &mut [[f64; LANES]],
+        a: &mut [[f64; LANES]],
+        b: &mut [[f64; LANES]],
+    ) {
+        place_by_place(at, [rates, a, b], |t, [x, u, p], [rates, a, b]| {
+            self.jacobians(At { t, x, u, p }, rates, a, b);
+        });
+    }
+    /// [`Model::outputs`] at every place of a block, as [`Model::rates_lanes`].
+    fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
+        place_by_place(at, [outputs], |t, [x, u, p], [outputs]| {
+            self.outputs(At { t, x, u, p }, outputs);
+        });
+    }
+    /// ẋ with the elementary functions of [`Model::rates_lanes`]: what it gives at one place, bit for
+    /// bit.
+    fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
+        self.rates(at, rates);
+    }
+    /// ẋ, A, B with the elementary functions of [`Model::jacobians_lanes`], bit for bit.
+    fn jacobians_own(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+        self.jacobians(at, rates, a, b);
+    }
+    /// Outputs with the elementary functions of [`Model::outputs_lanes`], bit for bit.
+    fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
+        self.outputs(at, outputs);
+    }
     /// Whether the derivatives below are formulas. The answers of this trait are differences of the
     /// functions above: slower, and right to some nine digits.
     fn has_adjoint(&self) -> bool {

@@ -3,6 +3,7 @@
 //! With the feature `std`, the default:
 //!
 //! - [`model`]: the trait that emitted models and models made at run time implement;
+//! - [`lanes`]: models at eight places at once;
 //! - [`signal`]: tabulated functions of time;
 //! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
@@ -35,6 +36,8 @@ pub mod differences;
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
+#[cfg(feature = "std")]
+pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;
 #[cfg(feature = "std")]

@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::differences;
+use crate::lanes::{AtLanes, LANES, place_by_place};
 
 /// A text that is static in emitted models and owned in models made at run time.
 pub type Text = Cow<'static, str>;
@@ -341,6 +342,26 @@ pub trait Model: Sync {
     }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
+    /// [`Model::rates`] at eight places.
+    fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
+        place_by_place(at, [rates], |_, at, [rates]| self.rates(at, rates));
+    }
+    /// [`Model::jacobians`] at eight places.
+    fn jacobians_lanes(
+        &self,
+        at: AtLanes<'_>,
+        rates: &mut [[f64; LANES]],
+        a: &mut [[f64; LANES]],
+        b: &mut [[f64; LANES]],
+    ) {
+        place_by_place(at, [rates, a, b], |_, at, [rates, a, b]| {
+            self.jacobians(at, rates, a, b);
+        });
+    }
+    /// [`Model::outputs`] at eight places.
+    fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
+        place_by_place(at, [outputs], |_, at, [outputs]| self.outputs(at, outputs));
+    }
     /// Whether the derivatives below are formulas. The answers of this trait are differences of the
     /// functions above: slower, and right to some nine digits.
     fn has_adjoint(&self) -> bool {

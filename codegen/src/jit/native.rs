@@ -1,13 +1,11 @@
 //! Machine code and its life.
 
-use std::fmt;
-use std::sync::Mutex;
-
 use appell_runtime::model::At;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
 use super::check::{Sizes, check};
+use super::memory::Code;
 use super::on_demand::lengths;
 use super::translate::{signature, translate};
 use super::{JitError, host};
@@ -43,7 +41,7 @@ impl NativeFunction {
         translate(&checked, config, &mut context.func);
         let defined = define(&mut module, &mut context);
         // From here on the memory is freed, also where something failed.
-        let code = Code(Mutex::new(Some(Box::new(module))));
+        let code = Code::new(module);
         let entry = defined?;
         Ok(Self {
             // SAFETY: the code was compiled with `signature`, which is that of `Entry`.
@@ -138,25 +136,4 @@ fn define(
     module.define_function(id, context)?;
     module.finalize_definitions()?;
     Ok(module.get_finalized_function(id))
-}
-
-/// Owner of the memory that holds the code. The lock is never contended: it only makes the
-/// compiler's state, which nobody uses after compilation, shareable between threads.
-struct Code(Mutex<Option<Box<JITModule>>>);
-
-impl Drop for Code {
-    fn drop(&mut self) {
-        let module = self.0.get_mut().map(Option::take);
-        if let Ok(Some(module)) = module {
-            // SAFETY: a `NativeFunction` owns its code and only runs it during `call`, which
-            // borrows it, so no code runs now and none will.
-            unsafe { module.free_memory() }
-        }
-    }
-}
-
-impl fmt::Debug for Code {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Code")
-    }
 }

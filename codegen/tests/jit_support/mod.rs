@@ -2,11 +2,12 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop here")]
 
-use appell_codegen::jit::{NativeFunction, Sizes};
+use appell_codegen::jit::{Elementary, Instructions, NativeFunction, Sizes, Target, VectorFunction};
 use appell_codegen::schedule::{
     Argument, Operation, ResultArray, Schedule, Step, Tree, Value, interpret,
 };
 use appell_codegen::symbolic::{Function, Rational};
+use appell_runtime::lanes::{AtLanes, LANES, lane};
 use appell_runtime::model::At;
 
 /// Arguments of all test schedules: three states, two inputs, two parameters.
@@ -102,7 +103,7 @@ pub(crate) fn same(a: &[f64], b: &[f64]) -> bool {
             .all(|(a, b)| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan()))
 }
 
-/// Both routes give the same bits.
+/// All routes give the same bits.
 #[track_caller]
 pub(crate) fn agrees(schedule: &Schedule, point: &Point) {
     let (found, expected) = (compiled(schedule, point), interpreted(schedule, point));
@@ -110,6 +111,92 @@ pub(crate) fn agrees(schedule: &Schedule, point: &Point) {
         same(&found, &expected),
         "{found:?}\n{expected:?}\nat {point:?}\n{schedule:#?}"
     );
+    agrees_in_lanes(schedule, &around(point));
+}
+
+/// Vector code for every kind of instructions that this processor has, and scalar code.
+pub(crate) fn targets() -> impl Iterator<Item = Target> {
+    let all = [
+        Instructions::Avx512,
+        Instructions::Avx2,
+        Instructions::Scalar,
+    ];
+    let exist = all.into_iter().filter(|instructions| instructions.exist());
+    exist.map(|instructions| Target {
+        instructions,
+        elementary: Elementary::Standard,
+    })
+}
+
+/// Every lane has the bits of the interpreter, whatever instructions compute it.
+#[track_caller]
+pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
+    let expected = points.each_ref().map(|point| interpreted(schedule, point));
+    for target in targets() {
+        let found = in_lanes(schedule, points, target);
+        for (l, expected) in expected.iter().enumerate() {
+            let found = lane(&found, l);
+            assert!(
+                same(&found, expected),
+                "{found:?}\n{expected:?}\nin lane {l} at {:?}\n{target:?}\n{schedule:#?}",
+                points[l]
+            );
+        }
+    }
+}
+
+/// The result of a schedule at eight points. The buffer starts with numbers that must not survive.
+pub(crate) fn in_lanes(
+    schedule: &Schedule,
+    points: &[Point; LANES],
+    target: Target,
+) -> Vec<[f64; LANES]> {
+    let function = VectorFunction::compile_for(schedule, SIZES, target).unwrap();
+    assert_eq!(
+        function.is_vector(),
+        target.instructions != Instructions::Scalar,
+        "{target:?}"
+    );
+    let block = |number: &dyn Fn(&Point) -> f64| points.each_ref().map(number);
+    let blocks = |numbers: &dyn Fn(&Point) -> Vec<f64>| -> Vec<[f64; LANES]> {
+        let len = numbers(&points[0]).len();
+        (0..len)
+            .map(|i| points.each_ref().map(|point| numbers(point)[i]))
+            .collect()
+    };
+    let at = AtLanes {
+        t: &block(&|point| point.t),
+        x: &blocks(&|point| point.x.to_vec()),
+        u: &blocks(&|point| point.u.to_vec()),
+        p: &blocks(&|point| point.p.to_vec()),
+    };
+    let mut result = vec![[1.0e300; LANES]; schedule.results[0].entries.len()];
+    function.call(at, [&mut result]);
+    result
+}
+
+/// A point, and seven others made of its numbers.
+pub(crate) fn around(point: &Point) -> [Point; LANES] {
+    std::array::from_fn(|l| {
+        let Point {
+            mut t,
+            mut x,
+            mut u,
+            mut p,
+        } = *point;
+        x.rotate_left(l % 3);
+        if l % 2 == 1 {
+            u.reverse();
+            t = -t;
+        }
+        if l / 2 == 1 {
+            p.reverse();
+        }
+        if l > 3 {
+            x[0] = -x[0];
+        }
+        Point { t, x, u, p }
+    })
 }
 
 pub(crate) fn function(function: Function, argument: Tree) -> Tree {

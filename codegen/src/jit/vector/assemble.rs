@@ -63,7 +63,7 @@ impl Width {
 }
 
 /// The bytes of a function.
-pub(super) fn assemble(allocated: &Allocated, width: Width, routines: &Routines) -> Vec<u8> {
+pub(super) fn assemble(allocated: &Allocated, width: Width, routines: Routines) -> Vec<u8> {
     let is_call = |instruction: &Instruction| matches!(instruction, Instruction::Call { .. });
     let mut assembler = Assembler {
         code: Code::default(),
@@ -94,10 +94,10 @@ pub(super) fn assemble(allocated: &Allocated, width: Width, routines: &Routines)
     code.bytes
 }
 
-struct Assembler<'a> {
+struct Assembler {
     code: Code,
     width: Width,
-    routines: &'a Routines,
+    routines: Routines,
     /// Whether it calls anything.
     calls: bool,
     /// Blocks of the frame.
@@ -109,7 +109,7 @@ struct Assembler<'a> {
     holders: [Option<u32>; HOLDERS.len()],
 }
 
-impl Assembler<'_> {
+impl Assembler {
     fn has_frame(&self) -> bool {
         self.calls || self.slots > 0
     }

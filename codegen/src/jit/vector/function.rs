@@ -2,7 +2,7 @@
 
 use appell_runtime::lanes::{self, AtLanes, LANES};
 
-use super::super::check::check;
+use super::super::check::{Checked, check};
 use super::super::native::NativeFunction;
 use super::super::on_demand::lengths;
 use super::super::{JitError, Sizes};
@@ -43,17 +43,32 @@ impl VectorFunction {
         sizes: Sizes,
         target: Target,
     ) -> Result<Self, JitError> {
+        if let Some(vector) = Self::all_at_once(schedule, sizes, target)? {
+            return Ok(vector);
+        }
+        let native = NativeFunction::compile(schedule, sizes)?;
         let checked = check(schedule, sizes)?;
-        let how = match Machine::compile(&checked, target)? {
-            Some(machine) => How::Vector(machine),
-            None => How::PlaceByPlace(NativeFunction::compile(schedule, sizes)?),
-        };
-        Ok(Self {
+        Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
+    }
+
+    /// [`Self::compile_for`], but nothing where places would be evaluated one by one.
+    pub(in crate::jit) fn all_at_once(
+        schedule: &Schedule,
+        sizes: Sizes,
+        target: Target,
+    ) -> Result<Option<Self>, JitError> {
+        let checked = check(schedule, sizes)?;
+        let machine = Machine::compile(&checked, target)?;
+        Ok(machine.map(|machine| Self::new(How::Vector(machine), &checked, sizes)))
+    }
+
+    fn new(how: How, checked: &Checked<'_>, sizes: Sizes) -> Self {
+        Self {
             how,
             sizes,
             weights: checked.weights,
-            results: lengths(schedule),
-        })
+            results: lengths(checked.schedule),
+        }
     }
 
     /// Whether all lanes are computed at once.

@@ -61,7 +61,8 @@ enum System {
 /// Factors of `appell_runtime::dense::Lu`.
 struct Factors {
     rows: usize,
-    factors: Vec<Id>,
+    /// U on and above the diagonal, the multipliers of L below it.
+    entries: Vec<Id>,
     /// Entry (i, k) is 1 where rows k and i > k were exchanged in column k, and 0 elsewhere.
     exchanged: Vec<Id>,
 }
@@ -280,7 +281,7 @@ impl Lowering {
         }
         Factors {
             rows,
-            factors: a,
+            entries: a,
             exchanged,
         }
     }
@@ -320,14 +321,14 @@ impl Lowering {
         }
         for i in 1..rows {
             for k in 0..i {
-                x[i] = self.reduced(x[i], lu.factors[at(i, k)], x[k]);
+                x[i] = self.reduced(x[i], lu.entries[at(i, k)], x[k]);
             }
         }
         for i in (0..rows).rev() {
             for k in i + 1..rows {
-                x[i] = self.reduced(x[i], lu.factors[at(i, k)], x[k]);
+                x[i] = self.reduced(x[i], lu.entries[at(i, k)], x[k]);
             }
-            x[i] = self.arithmetic(Operation::Divide, x[i], lu.factors[at(i, i)]);
+            x[i] = self.arithmetic(Operation::Divide, x[i], lu.entries[at(i, i)]);
         }
         x
     }

@@ -113,7 +113,7 @@ impl Machine {
             return Ok(None);
         }
         let elementary = target.elementary;
-        let bytes = assemble(&allocated, width, &Routines { elementary });
+        let bytes = assemble(&allocated, width, Routines { elementary });
         let isa = host::target(0)?;
         let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
         let defined = define(&mut module, &bytes);

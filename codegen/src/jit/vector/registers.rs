@@ -88,7 +88,7 @@ impl Allocator<'_> {
             Action::Compute(id) => self.compute(id),
             Action::Call(call) => self.call(call),
             Action::Store(id, result, entry) => {
-                let from = self.into_register(id, &[]);
+                let from = self.load(id, &[]);
                 self.used(id);
                 let store = Instruction::Store {
                     result,
@@ -148,7 +148,7 @@ impl Allocator<'_> {
     }
 
     fn pair(&mut self, left: Id, right: Id) -> (Register, Operand) {
-        let left_register = self.into_register(left, &[right]);
+        let left_register = self.load(left, &[right]);
         (left_register, self.operand(right, &[left]))
     }
 
@@ -189,7 +189,7 @@ impl Allocator<'_> {
         let call = &self.line.calls[call as usize];
         let given = if let Routine::System(_) = call.routine {
             for (slot, &id) in (0..).zip(&call.given) {
-                let from = self.into_register(id, &[]);
+                let from = self.load(id, &[]);
                 self.write(Instruction::Keep { slot, from });
             }
             vec![Memory::Slot(0)]
@@ -226,14 +226,14 @@ impl Allocator<'_> {
             Some(memory @ (Memory::Argument(..) | Memory::Slot(_))) => memory,
             // Constants lie there once for all lanes.
             Some(Memory::Constant(_)) => {
-                let from = self.into_register(id, &[]);
+                let from = self.load(id, &[]);
                 let slot = self.slots.take(1);
                 self.dead.push(slot);
                 self.instructions.push(Instruction::Keep { slot, from });
                 Memory::Slot(slot)
             }
             None => {
-                let from = self.into_register(id, &[]);
+                let from = self.load(id, &[]);
                 Memory::Slot(self.keep(id, from))
             }
         }
@@ -246,7 +246,7 @@ impl Allocator<'_> {
         }
         match self.home[id.index()] {
             Some(memory) if !self.is_worth_a_register(id) => Operand::Memory(memory),
-            _ => Operand::Register(self.into_register(id, pinned)),
+            _ => Operand::Register(self.load(id, pinned)),
         }
     }
 
@@ -255,7 +255,7 @@ impl Allocator<'_> {
         self.uses.after(id) != NEVER && self.held.contains(&None)
     }
 
-    fn into_register(&mut self, id: Id, pinned: &[Id]) -> Register {
+    fn load(&mut self, id: Id, pinned: &[Id]) -> Register {
         if let Some(register) = self.register[id.index()] {
             return register;
         }

@@ -187,9 +187,8 @@ fn each_result_goes_to_its_own_slice() {
     }
     for target in targets() {
         let function = VectorFunction::compile_for(&schedule, SIZES, target).unwrap();
-        let [t, x0, x1, x2] = [1.0, 2.0, 3.0, 4.0].map(|first: f64| {
-            std::array::from_fn(|l| first + l as f64 / 8.0)
-        });
+        let [t, x0, x1, x2] =
+            [1.0, 2.0, 3.0, 4.0].map(|first: f64| std::array::from_fn(|l| first + l as f64 / 8.0));
         let at = AtLanes {
             t: &t,
             x: &[x0, x1, x2],
@@ -288,7 +287,8 @@ fn an_empty_function_does_nothing() {
         parameters: 0,
     };
     for target in targets() {
-        let function = VectorFunction::compile_for(&schedule(vec![], vec![]), none, target).unwrap();
+        let function =
+            VectorFunction::compile_for(&schedule(vec![], vec![]), none, target).unwrap();
         let at = AtLanes {
             t: &[0.0; LANES],
             x: &[],

@@ -23,6 +23,7 @@ mod gallery;
 mod gallery_unicycles;
 mod inverse;
 mod kinematic_names;
+mod lanes;
 mod laws;
 mod manoeuvres;
 mod papers_euc;

@@ -2,7 +2,9 @@
 
 #![expect(clippy::unwrap_used, reason = "a test may stop here")]
 
-use appell_codegen::jit::{Elementary, Instructions, NativeFunction, Sizes, Target, VectorFunction};
+use appell_codegen::jit::{
+    Elementary, Instructions, NativeFunction, Sizes, Target, VectorFunction,
+};
 use appell_codegen::schedule::{
     Argument, Operation, ResultArray, Schedule, Step, Tree, Value, interpret,
 };

@@ -277,9 +277,7 @@ impl Assembler {
 
     fn memory(&mut self, memory: Memory) -> Place {
         match memory {
-            Memory::Argument(array, index) => {
-                Place::At(self.base(array), distance(index, BLOCK))
-            }
+            Memory::Argument(array, index) => Place::At(self.base(array), distance(index, BLOCK)),
             Memory::Constant(bits) => {
                 let next = u32::try_from(self.constants.len()).unwrap_or(u32::MAX);
                 let number = *self.known.entry(bits).or_insert(next);

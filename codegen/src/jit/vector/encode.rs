@@ -114,7 +114,13 @@ impl Code {
         self.place(register, place, unit, options.immediate);
     }
 
-    fn vex(&mut self, Opcode(map, _, wide): Opcode, register: u8, place: Place, o: Options) -> Unit {
+    fn vex(
+        &mut self,
+        Opcode(map, _, wide): Opcode,
+        register: u8,
+        place: Place,
+        o: Options,
+    ) -> Unit {
         let base = match place {
             Place::Vector(number) | Place::At(General(number), _) => number,
             Place::Constant(_) => 0,
@@ -146,7 +152,11 @@ impl Code {
         let second = u8::from(wide) << 7 | bits(!o.first & 15, 3) | 1 << 2 | 1;
         let third = 0b10 << 5 | u8::from(spreads) << 4 | inverse(o.first, 4, 3) | o.mask;
         self.bytes.extend([0x62, first, second, third]);
-        if spreads || opcode == Opcode::SPREAD { 8 } else { 64 }
+        if spreads || opcode == Opcode::SPREAD {
+            8
+        } else {
+            64
+        }
     }
 
     /// The bytes that name a register and a place.
@@ -272,7 +282,8 @@ impl Code {
     /// Constants behind the code, each as often as `repeated` says; then nothing can follow.
     pub(super) fn constants(&mut self, constants: &[u64], repeated: usize) {
         let stride = repeated * size_of::<u64>();
-        self.bytes.resize(self.bytes.len().next_multiple_of(64), 0xcc);
+        self.bytes
+            .resize(self.bytes.len().next_multiple_of(64), 0xcc);
         let start = self.bytes.len();
         for constant in constants {
             self.bytes.extend(constant.to_le_bytes().repeat(repeated));

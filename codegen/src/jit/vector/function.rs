@@ -99,7 +99,11 @@ impl VectorFunction {
         weights: &[[f64; LANES]],
         results: [&mut [[f64; LANES]]; N],
     ) {
-        self.check_lengths(at, weights.len(), results.each_ref().map(|result| result.len()));
+        self.check_lengths(
+            at,
+            weights.len(),
+            results.each_ref().map(|result| result.len()),
+        );
         match &self.how {
             // SAFETY: the lengths were compared.
             How::Vector(machine) => unsafe { machine.call(at, weights, results) },

@@ -94,10 +94,7 @@ pub(super) struct Machine {
 impl Machine {
     /// Compiles a schedule; `None` where this processor lacks the instructions, or where it would be
     /// too long.
-    pub(super) fn compile(
-        checked: &Checked<'_>,
-        target: Target,
-    ) -> Result<Option<Self>, JitError> {
+    pub(super) fn compile(checked: &Checked<'_>, target: Target) -> Result<Option<Self>, JitError> {
         let width = match target.instructions {
             _ if !target.instructions.exist() => return Ok(None),
             Instructions::Avx512 => Width::Zmm,

@@ -43,7 +43,9 @@ pub(super) fn order(nodes: Vec<Node>, calls: Vec<Call>, mut stores: Vec<Action>)
                 _ => actions.push(Action::Compute(id)),
             }
             let first = stores_of.partition_point(|(other, _)| *other < id);
-            let of = stores_of[first..].iter().take_while(|(other, _)| *other == id);
+            let of = stores_of[first..]
+                .iter()
+                .take_while(|(other, _)| *other == id);
             actions.extend(of.map(|(_, store)| *store));
         }
     }

@@ -5,6 +5,9 @@
 //! virtual-storage computer*, 1966). What lies in memory already, such as arguments and constants,
 //! is read there again; other values are written to the frame once.
 
+#[cfg(test)]
+mod tests;
+
 use super::instruction::{Instruction, Memory, Operand, Register};
 use super::line::{Action, Binary, Id, Line, Node, Routine};
 use super::slots::Slots;

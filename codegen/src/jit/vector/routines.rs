@@ -34,8 +34,7 @@ impl Routines {
 /// From a block to a block. The last address is that of the result.
 type Unary<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [f64; N]);
 /// From two blocks to a block.
-type Binary<const N: usize> =
-    unsafe extern "C" fn(*const [f64; N], *const [f64; N], *mut [f64; N]);
+type Binary<const N: usize> = unsafe extern "C" fn(*const [f64; N], *const [f64; N], *mut [f64; N]);
 /// From a block to two in a row.
 type Pair<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [[f64; N]; 2]);
 /// From the blocks of a matrix and a right-hand side to those of the unknowns, for so many rows.
@@ -122,11 +121,7 @@ unsafe extern "C" fn sin_cos<const N: usize>(from: *const [f64; N], to: *mut [[f
 /// # Safety
 ///
 /// `from` points to `rows * (rows + 1)` blocks, `to` to `rows` that nothing else uses.
-unsafe extern "C" fn system<const N: usize>(
-    from: *const [f64; N],
-    to: *mut [f64; N],
-    rows: usize,
-) {
+unsafe extern "C" fn system<const N: usize>(from: *const [f64; N], to: *mut [f64; N], rows: usize) {
     // SAFETY: the caller's promise.
     let (from, to) = unsafe {
         (

@@ -32,7 +32,11 @@ impl Slots {
         let mut run = 0;
         let mut last = None;
         for &slot in &self.free {
-            run = if last == slot.checked_sub(1) { run + 1 } else { 1 };
+            run = if last == slot.checked_sub(1) {
+                run + 1
+            } else {
+                1
+            };
             last = Some(slot);
             if run == count {
                 return Some(slot + 1 - count);

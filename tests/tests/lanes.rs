@@ -1,0 +1,164 @@
+//! Eight places at once: each lane has the bits of scalar code.
+
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
+
+use appell_codegen::jit::{
+    Elementary, Instructions, JitModel, NativeFunction, Sizes, Target, VectorFunction,
+};
+use appell_codegen::program::{FunctionKind, Program};
+use appell_codegen::schedule::{ResultArray, Schedule, schedule};
+use appell_runtime::lanes::{AtLanes, LANES, lane};
+use appell_runtime::model::Model;
+use appell_test_kit::Random;
+use appell_tests::point::Point;
+use appell_tests::shipped;
+
+/// Blocks of random places per function.
+const BLOCKS: usize = 4;
+
+/// What motions and their analysis evaluate most.
+const KINDS: [FunctionKind; 4] = [
+    FunctionKind::Rates,
+    FunctionKind::Jacobians,
+    FunctionKind::Outputs,
+    FunctionKind::Energies,
+];
+
+/// Eight places, component by component.
+struct Block {
+    places: [Point; LANES],
+    t: [f64; LANES],
+    x: Vec<[f64; LANES]>,
+    u: Vec<[f64; LANES]>,
+    p: Vec<[f64; LANES]>,
+}
+
+impl Block {
+    fn random(program: &Program, random: &mut Random) -> Self {
+        let places: [Point; LANES] = std::array::from_fn(|_| Point::random(&program.info, random));
+        let blocks = |numbers: fn(&Point) -> &Vec<f64>| -> Vec<[f64; LANES]> {
+            let entries = 0..numbers(&places[0]).len();
+            entries
+                .map(|i| places.each_ref().map(|place| numbers(place)[i]))
+                .collect()
+        };
+        Self {
+            t: places.each_ref().map(|place| place.t),
+            x: blocks(|place| &place.x),
+            u: blocks(|place| &place.u),
+            p: blocks(|place| &place.p),
+            places,
+        }
+    }
+
+    fn at(&self) -> AtLanes<'_> {
+        AtLanes {
+            t: &self.t,
+            x: &self.x,
+            u: &self.u,
+            p: &self.p,
+        }
+    }
+}
+
+/// Code for every kind of vector instructions that this processor has.
+fn targets() -> impl Iterator<Item = Target> {
+    let all = [Instructions::Avx512, Instructions::Avx2];
+    let exist = all.into_iter().filter(|instructions| instructions.exist());
+    exist.map(|instructions| Target {
+        instructions,
+        elementary: Elementary::Standard,
+    })
+}
+
+/// A function whose results are one list.
+fn joined(program: &Program, kind: FunctionKind) -> Option<Schedule> {
+    let function = program.functions.iter().find(|f| f.kind == kind)?;
+    let mut schedule = schedule(program, function);
+    let results = std::mem::take(&mut schedule.results).into_iter();
+    schedule.results.push(ResultArray {
+        name: "all".to_owned(),
+        entries: results.flat_map(|array| array.entries).collect(),
+    });
+    Some(schedule)
+}
+
+#[track_caller]
+fn assert_same(what: &str, found: &[f64], expected: &[f64]) {
+    let bits = |numbers: &[f64]| -> Vec<u64> {
+        let bits = |x: &f64| if x.is_nan() { f64::NAN } else { *x }.to_bits();
+        numbers.iter().map(bits).collect()
+    };
+    assert_eq!(bits(found), bits(expected), "{what}");
+}
+
+#[test]
+fn every_mechanism_has_the_bits_of_scalar_code_in_every_lane() {
+    for name in shipped::names() {
+        let program = shipped::program(&name);
+        let sizes = Sizes::from(&program.info);
+        let mut random = Random::of(&format!("lanes {name}"));
+        for kind in KINDS {
+            let Some(schedule) = joined(program, kind) else {
+                continue;
+            };
+            let len = schedule.results[0].entries.len();
+            let native = NativeFunction::compile(&schedule, sizes).unwrap();
+            let compile = |target| {
+                let function = VectorFunction::compile_for(&schedule, sizes, target).unwrap();
+                assert!(function.is_vector(), "{name}, {kind:?}, {target:?}");
+                (target, function)
+            };
+            let functions: Vec<_> = targets().map(compile).collect();
+            for _ in 0..BLOCKS {
+                let block = Block::random(program, &mut random);
+                for (target, function) in &functions {
+                    let mut found = vec![[f64::NAN; LANES]; len];
+                    function.call(block.at(), [&mut found]);
+                    for (l, place) in block.places.iter().enumerate() {
+                        let mut expected = vec![f64::NAN; len];
+                        native.call(place.at(), [&mut expected]);
+                        let what = format!("{name}, {kind:?}, {target:?}, lane {l}");
+                        assert_same(&what, &lane(&found, l), &expected);
+                    }
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn models_evaluate_lanes_as_they_evaluate_places() {
+    for name in ["cart_pole", "four_bar"] {
+        let program = shipped::program(name);
+        let compiled = JitModel::new(program).unwrap();
+        let models: [&dyn Model; 2] = [&compiled, shipped::model(name)];
+        let (n, m, l) = (
+            program.info.state_len(),
+            program.info.input_len(),
+            program.info.output_len(),
+        );
+        let mut random = Random::of(&format!("lanes of {name}"));
+        let block = Block::random(program, &mut random);
+        for model in models {
+            let [mut rates, mut a, mut b, mut outputs] =
+                [n, n * n, n * m, l].map(|len| vec![[f64::NAN; LANES]; len]);
+            model.rates_lanes(block.at(), &mut rates);
+            let first = rates.clone();
+            model.jacobians_lanes(block.at(), &mut rates, &mut a, &mut b);
+            model.outputs_lanes(block.at(), &mut outputs);
+            for (number, place) in block.places.iter().enumerate() {
+                let [mut x, mut xa, mut xb, mut y] =
+                    [n, n * n, n * m, l].map(|len| vec![f64::NAN; len]);
+                let what = format!("{name}, lane {number}");
+                model.rates(place.at(), &mut x);
+                assert_same(&what, &lane(&first, number), &x);
+                model.jacobians(place.at(), &mut x, &mut xa, &mut xb);
+                model.outputs(place.at(), &mut y);
+                for (found, expected) in [(&rates, x), (&a, xa), (&b, xb), (&outputs, y)] {
+                    assert_same(&what, &lane(found, number), &expected);
+                }
+            }
+        }
+    }
+}

@@ -29,7 +29,8 @@ mod translate;
 mod vector;
 
 pub use check::{MOST_DEPTH, MOST_OPERATIONS, MOST_ROWS, Sizes};
+pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
-pub use vector::{Elementary, Instructions, Target, VectorFunction};
+pub use vector::{Instructions, Target, VectorFunction};

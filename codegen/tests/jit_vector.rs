@@ -5,16 +5,17 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
 
-use appell_codegen::jit::{Instructions, Sizes, Target, VectorFunction};
+use appell_codegen::jit::{Elementary, Instructions, Sizes, Target, VectorFunction};
 use appell_codegen::schedule::{
     Argument, Operation, ResultArray, Schedule, Tree, interpret_weighted,
 };
 use appell_codegen::symbolic::{Function, Relation};
-use appell_runtime::lanes::{AtLanes, LANES, lane};
+use appell_runtime::elementary;
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
 use crate::jit_support::{
-    Point, SIZES, agrees, agrees_in_lanes, around, binary, function, in_lanes, number, same,
+    Point, SIZES, agrees, agrees_in_lanes, around, binary, function, in_lanes, lane, number, same,
     schedule, set, state, system, targets, value,
 };
 
@@ -201,7 +202,11 @@ fn each_result_goes_to_its_own_slice() {
         assert_eq!(a, [x0, [0.0; LANES]]);
         assert_eq!(c, [x1, x0]);
         assert_eq!(d, [t]);
-        assert_eq!(e, [x2.map(f64::cos), x2]);
+        let cos = match target.elementary {
+            Elementary::Standard => f64::cos,
+            Elementary::Own => elementary::cos,
+        };
+        assert_eq!(e, [x2.map(cos), x2]);
     }
 }
 
@@ -325,4 +330,45 @@ fn what_a_processor_lacks_is_done_place_by_place() {
         function.is_vector(),
         Instructions::best() != Instructions::Scalar
     );
+}
+
+/// A function of the first two states and what computes it elsewhere.
+type Known = (Tree, fn(f64, f64) -> f64);
+
+#[test]
+fn own_functions_are_those_of_the_runtime() {
+    let unary = |name| function(name, state(0));
+    let pair = || [Box::new(state(0)), Box::new(state(1))];
+    let [y, x] = pair();
+    let [base, exponent] = pair();
+    let known: [Known; 12] = [
+        (unary(Function::Sin), |x, _| elementary::sin(x)),
+        (unary(Function::Cos), |x, _| elementary::cos(x)),
+        (unary(Function::Asin), |x, _| elementary::asin(x)),
+        (unary(Function::Acos), |x, _| elementary::acos(x)),
+        (unary(Function::Atan), |x, _| elementary::atan(x)),
+        (unary(Function::Sinh), |x, _| elementary::sinh(x)),
+        (unary(Function::Cosh), |x, _| elementary::cosh(x)),
+        (unary(Function::Tanh), |x, _| elementary::tanh(x)),
+        (unary(Function::Exp), |x, _| elementary::exp(x)),
+        (unary(Function::Ln), |x, _| elementary::ln(x)),
+        (Tree::Atan2(y, x), elementary::atan2),
+        (Tree::Power(base, exponent), elementary::powf),
+    ];
+    let schedule = schedule(vec![], known.iter().map(|(tree, _)| tree.clone()).collect());
+    // Angles beyond all ordinary ones stand beside ordinary ones.
+    let numbers = [0.3, -1e22, 710.0, f64::NAN, -0.0, 0.99, f64::INFINITY, 1e9];
+    let second = [2.5, -0.7, 0.0, 1.0, -2.0, f64::NAN, 3.0, -1e-300];
+    let points = std::array::from_fn(|l| with_states(numbers[l], second[l]));
+    agrees_in_lanes(&schedule, &points);
+    for target in targets().filter(|target| target.elementary == Elementary::Own) {
+        let found = in_lanes(&schedule, &points, target);
+        for l in 0..LANES {
+            let expected: Vec<f64> = known
+                .iter()
+                .map(|(_, f)| f(numbers[l], second[l]))
+                .collect();
+            assert!(same(&lane(&found, l), &expected), "{target:?}, lane {l}");
+        }
+    }
 }

@@ -1,51 +1,53 @@
 //! Eight places at once.
 //!
-//! A *block* is one number for each of eight places, `[f64; LANES]`. Models are evaluated at a
-//! block of places by arrays of blocks, component by component: component `i` of place `l` is
-//! `x[i][l]`. There are always eight, whatever the processor does at once, so no result depends on
-//! it. Where fewer places are left, the last is repeated.
+//! A *block* is [`LANES`] places that are evaluated together, component by component: component i of
+//! place l lies at `x[i][l]`. The processor does a block as one vector of eight numbers, as two of
+//! four, or number by number; what it has is found out when the program runs. A block has eight places in
+//! all cases, and every lane goes the same way, so that no result depends on the processor. Where
+//! places are left over, repeat the last one.
+//!
+//! Emitted models evaluate blocks with the functions of [`crate::elementary`], and
+//! [`Model::rates_own`](crate::model::Model::rates_own) and its like evaluate one place with
+//! the same bits. Other models go through their blocks place by place.
+//!
+//! The files: [`dispatch`] finds the processor's vectors, [`lane`] takes numbers from lanes and puts
+//! them there, [`fast`] is the scalar of a lane, [`evaluate`] runs equations over blocks and places, and
+//! [`plain`] goes place by place.
 
-use std::array::from_fn;
+// What is not inlined is not compiled for the vectors of the processor.
+#![allow(clippy::inline_always)]
 
-use crate::model::At;
+#[cfg(any(feature = "std", feature = "libm"))]
+mod dispatch;
+#[cfg(any(feature = "std", feature = "libm"))]
+mod evaluate;
+#[cfg(any(feature = "std", feature = "libm"))]
+mod fast;
+mod lane;
+#[cfg(feature = "std")]
+mod plain;
 
-/// Places of a block.
+#[cfg(any(feature = "std", feature = "libm"))]
+pub use dispatch::{Level, dispatch};
+#[cfg(any(feature = "std", feature = "libm"))]
+pub use evaluate::Equations;
+pub use lane::Lane;
+#[cfg(feature = "std")]
+pub use plain::place_by_place;
+
+/// How many places a block has.
 pub const LANES: usize = 8;
 
-/// Where a model is evaluated: [`At`] for eight places.
+/// Where a model is evaluated, several places at once. All numbers in SI, in the order of the
+/// model's vectors.
 #[derive(Debug, Clone, Copy)]
-pub struct AtLanes<'a> {
+pub struct AtLanes<'a, const N: usize = LANES> {
     /// Times in seconds.
-    pub t: &'a [f64; LANES],
+    pub t: &'a [f64; N],
     /// States: pseudo-velocities, coordinates.
-    pub x: &'a [[f64; LANES]],
+    pub x: &'a [[f64; N]],
     /// Inputs, then signals.
-    pub u: &'a [[f64; LANES]],
+    pub u: &'a [[f64; N]],
     /// Parameters.
-    pub p: &'a [[f64; LANES]],
-}
-
-/// The numbers of one place.
-pub fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
-    blocks.iter().map(|block| block[lane]).collect()
-}
-
-/// Evaluates a function of one place at each of eight: by the number of the place, where it is, and
-/// its results.
-pub fn place_by_place<const N: usize>(
-    at: AtLanes<'_>,
-    mut results: [&mut [[f64; LANES]]; N],
-    mut evaluate: impl FnMut(usize, At<'_>, [&mut [f64]; N]),
-) {
-    let mut written: [Vec<f64>; N] = from_fn(|result| vec![0.0; results[result].len()]);
-    for l in 0..LANES {
-        let [x, u, p] = [at.x, at.u, at.p].map(|blocks| lane(blocks, l));
-        let (t, x, u, p) = (at.t[l], &x, &u, &p);
-        evaluate(l, At { t, x, u, p }, written.each_mut().map(|w| &mut w[..]));
-        for (result, written) in results.iter_mut().zip(&written) {
-            for (block, number) in result.iter_mut().zip(written) {
-                block[l] = *number;
-            }
-        }
-    }
+    pub p: &'a [[f64; N]],
 }

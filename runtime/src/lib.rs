@@ -3,7 +3,6 @@
 //! With the feature `std`, the default:
 //!
 //! - [`model`]: the trait that emitted models and models made at run time implement;
-//! - [`lanes`]: models at eight places at once;
 //! - [`signal`]: tabulated functions of time;
 //! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
@@ -13,10 +12,10 @@
 //! - [`differences`]: derivatives that a model has no formulas for;
 //! - [`contact`] and [`condition`]: where a model stops being valid.
 //!
-//! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`],
-//! dual numbers and lanes that implement it, small dense systems in [`dense`], and the arithmetic of
-//! structs in [`vector!`]. `f32` and
-//! `f64` are then scalars with the feature `libm`. Both are checked by
+//! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`], dual
+//! numbers that implement it, small dense systems in [`dense`], and the arithmetic of structs in
+//! [`vector!`]. With the feature `libm`, `f32`, `f64` and lanes are scalars too, with the functions of
+//! [`elementary`], and [`lanes`] evaluates blocks of places. Both are checked by
 //!
 //! ```text
 //! cargo check -p appell-runtime --no-default-features
@@ -32,11 +31,12 @@ pub mod contact;
 pub mod dense;
 #[cfg(feature = "std")]
 pub mod differences;
+#[cfg(any(feature = "std", feature = "libm"))]
+pub mod elementary;
 #[cfg(feature = "std")]
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
-#[cfg(feature = "std")]
 pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;

@@ -342,11 +342,14 @@ pub trait Model: Sync {
     }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
-    /// [`Model::rates`] at eight places.
+    /// [`Model::rates`] at every place of a block, see [`crate::lanes`]; `rates` are component by
+    /// component as the arguments are. Emitted models compute with the functions of
+    /// [`crate::elementary`]. The answer of this trait is the *plain mode*: it goes place by place with
+    /// [`Model::rates`], bit for bit.
     fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
-        place_by_place(at, [rates], |_, at, [rates]| self.rates(at, rates));
+        place_by_place(at, [rates], |at, [rates]| self.rates(at, rates));
     }
-    /// [`Model::jacobians`] at eight places.
+    /// [`Model::jacobians`] at every place of a block, as [`Model::rates_lanes`].
     fn jacobians_lanes(
         &self,
         at: AtLanes<'_>,
@@ -354,13 +357,26 @@ pub trait Model: Sync {
         a: &mut [[f64; LANES]],
         b: &mut [[f64; LANES]],
     ) {
-        place_by_place(at, [rates, a, b], |_, at, [rates, a, b]| {
-            self.jacobians(at, rates, a, b);
-        });
+        let jacobians =
+            |at: At<'_>, [rates, a, b]: [&mut [f64]; 3]| self.jacobians(at, rates, a, b);
+        place_by_place(at, [rates, a, b], jacobians);
     }
-    /// [`Model::outputs`] at eight places.
+    /// [`Model::outputs`] at every place of a block, as [`Model::rates_lanes`].
     fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
-        place_by_place(at, [outputs], |_, at, [outputs]| self.outputs(at, outputs));
+        place_by_place(at, [outputs], |at, [outputs]| self.outputs(at, outputs));
+    }
+    /// ẋ with the elementary functions of [`Model::rates_lanes`]: what it gives at one place, bit for
+    /// bit.
+    fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
+        self.rates(at, rates);
+    }
+    /// ẋ, A, B with the elementary functions of [`Model::jacobians_lanes`], bit for bit.
+    fn jacobians_own(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+        self.jacobians(at, rates, a, b);
+    }
+    /// Outputs with the elementary functions of [`Model::outputs_lanes`], bit for bit.
+    fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
+        self.outputs(at, outputs);
     }
     /// Whether the derivatives below are formulas. The answers of this trait are differences of the
     /// functions above: slower, and right to some nine digits.

@@ -4,9 +4,13 @@ mod dual;
 #[cfg(any(feature = "std", feature = "libm"))]
 mod float;
 #[cfg(any(feature = "std", feature = "libm"))]
+mod functions;
+#[cfg(any(feature = "std", feature = "libm"))]
 mod lanes;
 
 pub use dual::Dual;
+#[cfg(any(feature = "std", feature = "libm"))]
+pub use functions::{Functions, Own, Standard};
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use lanes::Lanes;
 

@@ -1,9 +1,9 @@
 //! What the structs of emitted models have in common: they are vectors with named entries.
 
-/// Makes a struct `Name<T>` of `len` numbers, which converts from and to `[T; len]`, a vector: sums,
-/// differences, multiples, and a function of every entry.
+/// Makes a struct `Name<T>` of numbers, whose fields are listed in their order, a vector: it converts
+/// from and to `[T; len]`, and has sums, differences, multiples, and a function of every entry.
 ///
-/// `vector!(Name, len, Rates)` adds that `Rates<T>`, times a step of time, moves a `Name<T>`. A vector
+/// `vector!(Name { … }, Rates)` adds that `Rates<T>`, times a step of time, moves a `Name<T>`. A vector
 /// without entries is a `Name` without a scalar, and has nothing to compute.
 ///
 /// ```
@@ -12,26 +12,33 @@
 ///     x: T,
 ///     y: T,
 /// }
-/// impl<T> From<[T; 2]> for Point<T> {
-///     fn from([x, y]: [T; 2]) -> Self {
-///         Self { x, y }
-///     }
-/// }
-/// impl<T> From<Point<T>> for [T; 2] {
-///     fn from(Point { x, y }: Point<T>) -> Self {
-///         [x, y]
-///     }
-/// }
-/// appell_runtime::vector!(Point, 2);
+/// appell_runtime::vector!(Point { x, y });
 ///
 /// let middle = (Point { x: 1.0, y: 2.0 } + Point::splat(3.0)) * 0.5;
 /// assert_eq!(middle.to_array(), [2.0, 2.5]);
 /// ```
 #[macro_export]
 macro_rules! vector {
-    ($name:ident, 0 $(, $rates:ident)?) => {};
-    ($name:ident, $len:literal, $rates:ident) => {
-        $crate::vector!($name, $len);
+    ($name:ident {}) => {
+        impl<T> From<[T; 0]> for $name {
+            #[inline]
+            fn from([]: [T; 0]) -> Self {
+                Self {}
+            }
+        }
+
+        impl<T> From<$name> for [T; 0] {
+            #[inline]
+            fn from($name {}: $name) -> Self {
+                []
+            }
+        }
+    };
+    ($name:ident {}, $rates:ident) => {
+        $crate::vector!($name {});
+    };
+    ($name:ident { $($field:ident),+ $(,)? }, $rates:ident) => {
+        $crate::vector!($name { $($field),+ });
 
         impl<T: Copy + core::ops::Add<Output = T>> core::ops::Add<$rates<T>> for $name<T> {
             type Output = Self;
@@ -48,7 +55,21 @@ macro_rules! vector {
             }
         }
     };
-    ($name:ident, $len:literal) => {
+    ($name:ident { $($field:ident),+ $(,)? }) => {
+        impl<T> From<[T; { [$(stringify!($field)),+].len() }]> for $name<T> {
+            #[inline]
+            fn from([$($field),+]: [T; { [$(stringify!($field)),+].len() }]) -> Self {
+                Self { $($field),+ }
+            }
+        }
+
+        impl<T> From<$name<T>> for [T; { [$(stringify!($field)),+].len() }] {
+            #[inline]
+            fn from($name { $($field),+ }: $name<T>) -> Self {
+                [$($field),+]
+            }
+        }
+
         impl<T> $name<T> {
             /// The same in every entry.
             #[must_use]
@@ -57,13 +78,13 @@ macro_rules! vector {
             where
                 T: Copy,
             {
-                [value; $len].into()
+                Self { $($field: value),+ }
             }
 
             /// The entries in their order.
             #[must_use]
             #[inline]
-            pub fn to_array(self) -> [T; $len] {
+            pub fn to_array(self) -> [T; { [$(stringify!($field)),+].len() }] {
                 self.into()
             }
 

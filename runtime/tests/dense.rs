@@ -120,8 +120,10 @@ fn each_lane_has_its_own_row_order() {
     let matrices = [numbers.matrix::<4>(), numbers.matrix(), numbers.matrix()];
     let right = [numbers.vector::<4>(), numbers.vector(), numbers.vector()];
     let lanes: [Lanes<3>; 4] = solve(
-        std::array::from_fn(|i| std::array::from_fn(|j| Lanes(matrices.map(|a| a[i][j])))),
-        std::array::from_fn(|i| Lanes(right.map(|b| b[i]))),
+        std::array::from_fn(|i| {
+            std::array::from_fn(|j| Lanes::standard(matrices.map(|a| a[i][j])))
+        }),
+        std::array::from_fn(|i| Lanes::standard(right.map(|b| b[i]))),
     );
     for lane in 0..3 {
         let scalar = solve(matrices[lane], right[lane]);

@@ -471,7 +471,7 @@ fn evaluations_are_counted_truly() {
 #[test]
 fn an_ensemble_in_lanes_follows_its_own_motions() {
     // Eight oscillators, each with its frequency: state i of lane k at x[8 i + k].
-    let frequencies = Lanes(std::array::from_fn::<f64, 8, _>(|lane| {
+    let frequencies = Lanes::standard(std::array::from_fn::<f64, 8, _>(|lane| {
         1.0 + 0.1 * lane as f64
     }));
     let mut x: Vec<f64> = [1.0; 8].into_iter().chain([0.0; 8]).collect();
@@ -479,7 +479,7 @@ fn an_ensemble_in_lanes_follows_its_own_motions() {
         let (x, _) = x.as_chunks::<8>();
         let (rates, _) = rates.as_chunks_mut::<8>();
         rates[0] = x[1];
-        rates[1] = (-(frequencies * frequencies * Lanes(x[0]))).0;
+        rates[1] = (-(frequencies * frequencies * Lanes::standard(x[0]))).0;
     };
     integrate::<Dop853>(together, [0.0, 20.0], &mut x, 1e-10);
     for lane in 0..8 {

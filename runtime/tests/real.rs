@@ -98,7 +98,7 @@ fn the_value_of_a_dual_is_the_scalar_result() {
 
 #[test]
 fn lanes_equal_scalars_bit_by_bit() {
-    let lanes = functions(Lanes(ARGUMENTS));
+    let lanes = functions(Lanes::standard(ARGUMENTS));
     for (lane, x) in ARGUMENTS.into_iter().enumerate() {
         for (lanes, scalar) in lanes.iter().zip(functions(x)) {
             assert_eq!(

@@ -6,12 +6,16 @@ use serde_json::Value;
 
 use crate::shipped::workspace;
 
-/// A whole file.
-pub fn document(file: &str) -> Value {
+/// The text of a file.
+pub fn text(file: &str) -> String {
     let path = workspace().join("tests/reference").join(file);
     let text = std::fs::read_to_string(&path);
-    let text = text.unwrap_or_else(|error| panic!("{}: {error}", path.display()));
-    serde_json::from_str(&text).unwrap_or_else(|error| panic!("{file}: {error}"))
+    text.unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+}
+
+/// A whole file.
+pub fn document(file: &str) -> Value {
+    serde_json::from_str(&text(file)).unwrap_or_else(|error| panic!("{file}: {error}"))
 }
 
 /// Cases of a file.

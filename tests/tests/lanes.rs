@@ -7,7 +7,7 @@ use appell_codegen::jit::{
 };
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{ResultArray, Schedule, schedule};
-use appell_runtime::lanes::{AtLanes, LANES, lane};
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::Model;
 use appell_test_kit::Random;
 use appell_tests::point::Point;
@@ -61,14 +61,22 @@ impl Block {
     }
 }
 
-/// Code for every kind of vector instructions that this processor has.
+/// Code for every kind of vector instructions that this processor has, with both kinds of elementary
+/// functions.
 fn targets() -> impl Iterator<Item = Target> {
     let all = [Instructions::Avx512, Instructions::Avx2];
     let exist = all.into_iter().filter(|instructions| instructions.exist());
-    exist.map(|instructions| Target {
-        instructions,
-        elementary: Elementary::Standard,
+    exist.flat_map(|instructions| {
+        [Elementary::Standard, Elementary::Own].map(|elementary| Target {
+            instructions,
+            elementary,
+        })
     })
+}
+
+/// The numbers of one place.
+fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
+    blocks.iter().map(|block| block[lane]).collect()
 }
 
 /// A function whose results are one list.
@@ -103,7 +111,8 @@ fn every_mechanism_has_the_bits_of_scalar_code_in_every_lane() {
                 continue;
             };
             let len = schedule.results[0].entries.len();
-            let native = NativeFunction::compile(&schedule, sizes).unwrap();
+            let natives = [Elementary::Standard, Elementary::Own]
+                .map(|kind| NativeFunction::compile_with(&schedule, sizes, kind).unwrap());
             let compile = |target| {
                 let function = VectorFunction::compile_for(&schedule, sizes, target).unwrap();
                 assert!(function.is_vector(), "{name}, {kind:?}, {target:?}");
@@ -113,6 +122,7 @@ fn every_mechanism_has_the_bits_of_scalar_code_in_every_lane() {
             for _ in 0..BLOCKS {
                 let block = Block::random(program, &mut random);
                 for (target, function) in &functions {
+                    let native = &natives[target.elementary as usize];
                     let mut found = vec![[f64::NAN; LANES]; len];
                     function.call(block.at(), [&mut found]);
                     for (l, place) in block.places.iter().enumerate() {
@@ -132,7 +142,12 @@ fn models_evaluate_lanes_as_they_evaluate_places() {
     for name in ["cart_pole", "four_bar"] {
         let program = shipped::program(name);
         let compiled = JitModel::new(program).unwrap();
-        let models: [&dyn Model; 2] = [&compiled, shipped::model(name)];
+        let own = Target {
+            elementary: Elementary::Own,
+            ..Target::default()
+        };
+        let with_own = JitModel::new(program).unwrap().with_lanes_for(own);
+        let models: [&dyn Model; 3] = [&compiled, &with_own, shipped::model(name)];
         let (n, m, l) = (
             program.info.state_len(),
             program.info.input_len(),
@@ -140,7 +155,7 @@ fn models_evaluate_lanes_as_they_evaluate_places() {
         );
         let mut random = Random::of(&format!("lanes of {name}"));
         let block = Block::random(program, &mut random);
-        for model in models {
+        for (is_own, model) in [false, true, false].into_iter().zip(models) {
             let [mut rates, mut a, mut b, mut outputs] =
                 [n, n * n, n * m, l].map(|len| vec![[f64::NAN; LANES]; len]);
             model.rates_lanes(block.at(), &mut rates);
@@ -151,12 +166,17 @@ fn models_evaluate_lanes_as_they_evaluate_places() {
                 let [mut x, mut xa, mut xb, mut y] =
                     [n, n * n, n * m, l].map(|len| vec![f64::NAN; len]);
                 let what = format!("{name}, lane {number}");
-                model.rates(place.at(), &mut x);
+                model.rates_own(place.at(), &mut x);
                 assert_same(&what, &lane(&first, number), &x);
-                model.jacobians(place.at(), &mut x, &mut xa, &mut xb);
-                model.outputs(place.at(), &mut y);
+                model.jacobians_own(place.at(), &mut x, &mut xa, &mut xb);
+                model.outputs_own(place.at(), &mut y);
                 for (found, expected) in [(&rates, x), (&a, xa), (&b, xb), (&outputs, y)] {
                     assert_same(&what, &lane(found, number), &expected);
+                }
+                if !is_own {
+                    let mut plain = vec![f64::NAN; n];
+                    model.rates(place.at(), &mut plain);
+                    assert_same(&what, &lane(&first, number), &plain);
                 }
             }
         }

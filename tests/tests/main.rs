@@ -11,6 +11,7 @@ mod cost;
 mod creep;
 mod dependencies;
 mod drawings;
+mod elementary;
 mod errata;
 mod estimate_corners;
 mod estimate_fit;

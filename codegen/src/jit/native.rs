@@ -5,6 +5,7 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
 use super::check::{Sizes, check};
+use super::elementary::Elementary;
 use super::memory::Code;
 use super::on_demand::lengths;
 use super::translate::{signature, translate};
@@ -29,8 +30,18 @@ pub struct NativeFunction {
 }
 
 impl NativeFunction {
-    /// Compiles a schedule of a model with arguments of these sizes.
+    /// Compiles a schedule of a model with arguments of these sizes. It calls the elementary functions
+    /// of the standard library.
     pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
+        Self::compile_with(schedule, sizes, Elementary::Standard)
+    }
+
+    /// [`Self::compile`] with elementary functions of one's choice.
+    pub fn compile_with(
+        schedule: &Schedule,
+        sizes: Sizes,
+        elementary: Elementary,
+    ) -> Result<Self, JitError> {
         let checked = check(schedule, sizes)?;
         let target = host::target(schedule.steps.len())?;
         let builder = JITBuilder::with_isa(target, default_libcall_names());
@@ -38,7 +49,7 @@ impl NativeFunction {
         let config = module.target_config();
         let mut context = module.make_context();
         context.func.signature = signature(config);
-        translate(&checked, config, &mut context.func);
+        translate(&checked, elementary, config, &mut context.func);
         let defined = define(&mut module, &mut context);
         // From here on the memory is freed, also where something failed.
         let code = Code::new(module);

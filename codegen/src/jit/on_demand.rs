@@ -6,7 +6,7 @@ use appell_runtime::lanes::{AtLanes, LANES, place_by_place};
 use appell_runtime::model::At;
 
 use super::native::check_lengths;
-use super::{JitError, NativeFunction, Sizes, Target, VectorFunction};
+use super::{Elementary, JitError, NativeFunction, Sizes, Target, VectorFunction};
 use crate::program::{Function, FunctionKind, Program};
 use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
 
@@ -116,7 +116,7 @@ impl OnDemand {
     ) {
         match self.lanes(program, sizes, target) {
             Some(vector) => vector.call(at, out),
-            None => place_by_place(at, out, |_, at, out| {
+            None => place_by_place(at, out, |at, out| {
                 self.call(program, sizes, at, &[], out);
             }),
         }
@@ -130,7 +130,14 @@ impl OnDemand {
 
     #[inline]
     fn lanes(&self, program: &Program, sizes: Sizes, target: Target) -> Option<&VectorFunction> {
-        let make = || VectorFunction::all_at_once(self.schedule(program), sizes, target);
+        let make = || {
+            let schedule = self.schedule(program);
+            match target.elementary {
+                // Scalar code has the same bits.
+                Elementary::Standard => VectorFunction::all_at_once(schedule, sizes, target),
+                Elementary::Own => VectorFunction::compile_for(schedule, sizes, target).map(Some),
+            }
+        };
         // What cannot be compiled tells its reason where it is interpreted.
         let lanes = self.lanes.get_or_init(|| make().ok().flatten());
         lanes.as_ref()

@@ -15,10 +15,11 @@
 //! | `assemble.rs`, `encode.rs` | instructions | bytes, constants behind them |
 //! | `machine.rs` | bytes | code in executable memory; calls it |
 //!
-//! `routines.rs` has what the code calls: elementary functions and large systems. `function.rs`
+//! `routines.rs` has what the code calls: elementary functions (`blocks.rs`) and large systems. `function.rs`
 //! chooses between machine code and scalar code.
 
 mod assemble;
+mod blocks;
 mod encode;
 mod function;
 mod instruction;
@@ -32,4 +33,3 @@ mod slots;
 
 pub use function::VectorFunction;
 pub use machine::{Instructions, Target};
-pub use routines::Elementary;

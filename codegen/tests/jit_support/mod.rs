@@ -9,7 +9,7 @@ use appell_codegen::schedule::{
     Argument, Operation, ResultArray, Schedule, Step, Tree, Value, interpret,
 };
 use appell_codegen::symbolic::{Function, Rational};
-use appell_runtime::lanes::{AtLanes, LANES, lane};
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
 /// Arguments of all test schedules: three states, two inputs, two parameters.
@@ -116,7 +116,8 @@ pub(crate) fn agrees(schedule: &Schedule, point: &Point) {
     agrees_in_lanes(schedule, &around(point));
 }
 
-/// Vector code for every kind of instructions that this processor has, and scalar code.
+/// Code for every kind of vector instructions that this processor has, and scalar code, each with
+/// both kinds of elementary functions.
 pub(crate) fn targets() -> impl Iterator<Item = Target> {
     let all = [
         Instructions::Avx512,
@@ -124,17 +125,29 @@ pub(crate) fn targets() -> impl Iterator<Item = Target> {
         Instructions::Scalar,
     ];
     let exist = all.into_iter().filter(|instructions| instructions.exist());
-    exist.map(|instructions| Target {
-        instructions,
-        elementary: Elementary::Standard,
+    exist.flat_map(|instructions| {
+        [Elementary::Standard, Elementary::Own].map(|elementary| Target {
+            instructions,
+            elementary,
+        })
     })
 }
 
-/// Every lane has the bits of the interpreter, whatever instructions compute it.
+/// Every lane has the bits of scalar code, whatever instructions compute it.
 #[track_caller]
 pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
-    let expected = points.each_ref().map(|point| interpreted(schedule, point));
+    let standard = points.each_ref().map(|point| interpreted(schedule, point));
+    let own = NativeFunction::compile_with(schedule, SIZES, Elementary::Own).unwrap();
+    let own = points.each_ref().map(|point| {
+        let mut result = vec![1.0e300; schedule.results[0].entries.len()];
+        own.call(point.at(), [&mut result]);
+        result
+    });
     for target in targets() {
+        let expected = match target.elementary {
+            Elementary::Standard => &standard,
+            Elementary::Own => &own,
+        };
         let found = in_lanes(schedule, points, target);
         for (l, expected) in expected.iter().enumerate() {
             let found = lane(&found, l);
@@ -145,6 +158,11 @@ pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
             );
         }
     }
+}
+
+/// The numbers of one place.
+pub(crate) fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
+    blocks.iter().map(|block| block[lane]).collect()
 }
 
 /// The result of a schedule at eight points. The buffer starts with numbers that must not survive.

@@ -13,6 +13,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::super::elementary::Elementary;
 use super::encode::{
     Code, General, Opcode, Options, Place, R8, R9, R10, R11, R12, R13, R14, R15, RAX, RBP, RBX,
     RCX, RDI, RDX, RSI, RSP, Width,
@@ -20,7 +21,7 @@ use super::encode::{
 use super::instruction::{Instruction, Memory, Operand, Register};
 use super::line::{Array, Binary, Routine};
 use super::registers::Allocated;
-use super::routines::Routines;
+use super::routines;
 use crate::schedule::Operation;
 use crate::symbolic::Relation;
 
@@ -63,12 +64,12 @@ impl Width {
 }
 
 /// The bytes of a function.
-pub(super) fn assemble(allocated: &Allocated, width: Width, routines: Routines) -> Vec<u8> {
+pub(super) fn assemble(allocated: &Allocated, width: Width, elementary: Elementary) -> Vec<u8> {
     let is_call = |instruction: &Instruction| matches!(instruction, Instruction::Call { .. });
     let mut assembler = Assembler {
         code: Code::default(),
         width,
-        routines,
+        elementary,
         calls: allocated.instructions.iter().any(is_call),
         slots: allocated.slots,
         constants: Vec::new(),
@@ -97,7 +98,7 @@ pub(super) fn assemble(allocated: &Allocated, width: Width, routines: Routines) 
 struct Assembler {
     code: Code,
     width: Width,
-    routines: Routines,
+    elementary: Elementary,
     /// Whether it calls anything.
     calls: bool,
     /// Blocks of the frame.
@@ -261,7 +262,7 @@ impl Assembler {
         if let Routine::System(rows) = routine {
             self.code.number(RDX, rows.into());
         }
-        let address = self.routines.address(routine, self.width);
+        let address = routines::address(routine, self.elementary, self.width);
         self.code.number(RAX, address as u64);
         self.code.clear_upper_halves();
         self.code.call(RAX);

@@ -12,7 +12,8 @@ use crate::schedule::Schedule;
 /// One schedule in machine code for blocks of eight places. The code lives as long as this value;
 /// several threads may call it at the same time.
 ///
-/// Each lane gets the bits of [`NativeFunction`] at its place.
+/// Each lane gets the bits of a [`NativeFunction`] with the same elementary functions at its place. It
+/// is fastest where arguments and results start at multiples of 64 bytes.
 #[derive(Debug)]
 pub struct VectorFunction {
     how: How,
@@ -46,7 +47,7 @@ impl VectorFunction {
         if let Some(vector) = Self::all_at_once(schedule, sizes, target)? {
             return Ok(vector);
         }
-        let native = NativeFunction::compile(schedule, sizes)?;
+        let native = NativeFunction::compile_with(schedule, sizes, target.elementary)?;
         let checked = check(schedule, sizes)?;
         Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
     }
@@ -140,7 +141,10 @@ fn place_by_place<const N: usize>(
     weights: &[[f64; LANES]],
     results: [&mut [[f64; LANES]]; N],
 ) {
-    lanes::place_by_place(at, results, |place, at, results| {
-        native.call_weighted(at, &lanes::lane(weights, place), results);
+    let mut places = 0..;
+    lanes::place_by_place(at, results, |at, results| {
+        let place = places.next().unwrap_or(0);
+        let weights: Vec<f64> = weights.iter().map(|block| block[place]).collect();
+        native.call_weighted(at, &weights, results);
     });
 }

@@ -5,13 +5,13 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
 use super::super::check::Checked;
+use super::super::elementary::Elementary;
 use super::super::memory::Code;
 use super::super::{JitError, host};
 use super::assemble::assemble;
 use super::encode::Width;
 use super::lower::lower;
 use super::registers::allocate;
-use super::routines::{Elementary, Routines};
 
 /// Frames of more blocks are not made: with eight lanes they are half a mebibyte.
 const MOST_SLOTS: u32 = 8192;
@@ -109,8 +109,7 @@ impl Machine {
         if allocated.slots > MOST_SLOTS {
             return Ok(None);
         }
-        let elementary = target.elementary;
-        let bytes = assemble(&allocated, width, Routines { elementary });
+        let bytes = assemble(&allocated, width, target.elementary);
         let isa = host::target(0)?;
         let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
         let defined = define(&mut module, &bytes);

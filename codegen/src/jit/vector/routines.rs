@@ -1,35 +1,13 @@
 //! The routines that machine code calls with addresses of blocks.
 
 use appell_runtime::dense::lu_solve_in_place;
-use appell_runtime::real::Real;
+use appell_runtime::real::{Own, Standard};
 
+use super::super::elementary::Elementary;
+use super::blocks::Blocks;
 use super::encode::Width;
 use super::line::Routine;
 use crate::symbolic::Function;
-
-/// Which elementary functions are called.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Elementary {
-    /// Those of the Rust standard library, lane by lane: every lane has the bits of scalar code.
-    #[default]
-    Standard,
-}
-
-/// The addresses of routines.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Routines {
-    pub(super) elementary: Elementary,
-}
-
-impl Routines {
-    pub(super) fn address(self, routine: Routine, width: Width) -> usize {
-        let Elementary::Standard = self.elementary;
-        match width {
-            Width::Ymm => standard::<4>(routine),
-            Width::Zmm => standard::<8>(routine),
-        }
-    }
-}
 
 /// From a block to a block. The last address is that of the result.
 type Unary<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [f64; N]);
@@ -40,33 +18,48 @@ type Pair<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [[f64; N]
 /// From the blocks of a matrix and a right-hand side to those of the unknowns, for so many rows.
 type System<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [f64; N], usize);
 
-fn standard<const N: usize>(routine: Routine) -> usize {
-    let sin_cos: Pair<N> = sin_cos::<N>;
-    let [atan2, power]: [Binary<N>; 2] = [atan2::<N>, power::<N>];
+/// Where a routine stands.
+pub(super) fn address(routine: Routine, elementary: Elementary, width: Width) -> usize {
+    match (elementary, width) {
+        (Elementary::Standard, Width::Ymm) => of::<Standard, 4>(routine),
+        (Elementary::Standard, Width::Zmm) => of::<Standard, 8>(routine),
+        (Elementary::Own, Width::Ymm) => of::<Own, 4>(routine),
+        (Elementary::Own, Width::Zmm) => of::<Own, 8>(routine),
+    }
+}
+
+fn of<B: Blocks, const N: usize>(routine: Routine) -> usize {
+    let sin_cos: Pair<N> = sin_cos::<B, N>;
+    let [atan2, powf]: [Binary<N>; 2] = [atan2::<B, N>, powf::<B, N>];
     let system: System<N> = system::<N>;
     match routine {
-        Routine::Unary(function) => unary::<N>(function) as usize,
+        Routine::Unary(function) => unary::<B, N>(function).map_or(0, |routine| routine as usize),
         Routine::SinCos => sin_cos as usize,
         Routine::Atan2 => atan2 as usize,
-        Routine::Power => power as usize,
+        Routine::Power => powf as usize,
         Routine::System(_) => system as usize,
     }
 }
 
 macro_rules! unary {
     ($($function:ident $name:ident),+) => {
-        fn unary<const N: usize>(function: Function) -> Unary<N> {
-            match function {
-                $(Function::$function => $name::<N>,)+
-            }
+        fn unary<B: Blocks, const N: usize>(function: Function) -> Option<Unary<N>> {
+            Some(match function {
+                $(Function::$function => $name::<B, N>,)+
+                // Instructions do it.
+                Function::Sqrt | Function::Abs | Function::Sign => return None,
+            })
         }
         $(
             /// # Safety
             ///
             /// `from` points to a block, `to` to one that nothing else uses.
-            unsafe extern "C" fn $name<const N: usize>(from: *const [f64; N], to: *mut [f64; N]) {
+            unsafe extern "C" fn $name<B: Blocks, const N: usize>(
+                from: *const [f64; N],
+                to: *mut [f64; N],
+            ) {
                 // SAFETY: the caller's promise.
-                unsafe { to.write(from.read().map(<f64 as Real>::$name)) }
+                unsafe { to.write(<B as Blocks>::$name(from.read())) }
             }
         )+
     };
@@ -74,48 +67,38 @@ macro_rules! unary {
 
 unary!(
     Sin sin, Cos cos, Asin asin, Acos acos, Atan atan, Sinh sinh, Cosh cosh, Tanh tanh, Exp exp,
-    Ln ln, Sqrt sqrt, Abs abs, Sign sign
+    Ln ln
 );
 
-/// # Safety
-///
-/// `y` and `x` point to blocks, `to` to one that nothing else uses.
-unsafe extern "C" fn atan2<const N: usize>(
-    y: *const [f64; N],
-    x: *const [f64; N],
-    to: *mut [f64; N],
-) {
-    // SAFETY: the caller's promise.
-    let (y, x) = unsafe { (y.read(), x.read()) };
-    let lanes = std::array::from_fn(|lane| Real::atan2(y[lane], x[lane]));
-    // SAFETY: the caller's promise.
-    unsafe { to.write(lanes) }
+macro_rules! binary {
+    ($($name:ident),+) => {
+        $(
+            /// # Safety
+            ///
+            /// `first` and `second` point to blocks, `to` to one that nothing else uses.
+            unsafe extern "C" fn $name<B: Blocks, const N: usize>(
+                first: *const [f64; N],
+                second: *const [f64; N],
+                to: *mut [f64; N],
+            ) {
+                // SAFETY: the caller's promise.
+                unsafe { to.write(<B as Blocks>::$name(first.read(), second.read())) }
+            }
+        )+
+    };
 }
 
-/// # Safety
-///
-/// `base` and `exponent` point to blocks, `to` to one that nothing else uses.
-unsafe extern "C" fn power<const N: usize>(
-    base: *const [f64; N],
-    exponent: *const [f64; N],
-    to: *mut [f64; N],
-) {
-    // SAFETY: the caller's promise.
-    let (base, exponent) = unsafe { (base.read(), exponent.read()) };
-    let lanes = std::array::from_fn(|lane| Real::powf(base[lane], exponent[lane]));
-    // SAFETY: the caller's promise.
-    unsafe { to.write(lanes) }
-}
+binary!(atan2, powf);
 
 /// # Safety
 ///
 /// `from` points to a block, `to` to two that nothing else uses.
-unsafe extern "C" fn sin_cos<const N: usize>(from: *const [f64; N], to: *mut [[f64; N]; 2]) {
+unsafe extern "C" fn sin_cos<B: Blocks, const N: usize>(
+    from: *const [f64; N],
+    to: *mut [[f64; N]; 2],
+) {
     // SAFETY: the caller's promise.
-    let pairs = unsafe { from.read() }.map(<f64 as Real>::sin_cos);
-    let lanes = [pairs.map(|(sin, _)| sin), pairs.map(|(_, cos)| cos)];
-    // SAFETY: the caller's promise.
-    unsafe { to.write(lanes) }
+    unsafe { to.write(<B as Blocks>::sin_cos(from.read())) }
 }
 
 /// # Safety

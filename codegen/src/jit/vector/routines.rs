@@ -59,7 +59,7 @@ macro_rules! unary {
                 to: *mut [f64; N],
             ) {
                 // SAFETY: the caller's promise.
-                unsafe { to.write(<B as Blocks>::$name(from.read())) }
+                unsafe { <B as Blocks>::$name(&*from, &mut *to) }
             }
         )+
     };
@@ -82,7 +82,7 @@ macro_rules! binary {
                 to: *mut [f64; N],
             ) {
                 // SAFETY: the caller's promise.
-                unsafe { to.write(<B as Blocks>::$name(first.read(), second.read())) }
+                unsafe { <B as Blocks>::$name(&*first, &*second, &mut *to) }
             }
         )+
     };
@@ -98,7 +98,7 @@ unsafe extern "C" fn sin_cos<B: Blocks, const N: usize>(
     to: *mut [[f64; N]; 2],
 ) {
     // SAFETY: the caller's promise.
-    unsafe { to.write(<B as Blocks>::sin_cos(from.read())) }
+    unsafe { <B as Blocks>::sin_cos(&*from, &mut *to) }
 }
 
 /// # Safety

@@ -1,7 +1,8 @@
 //! Readable Rust from a program. Nothing else in this crate knows how Rust is written.
 //!
 //! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`body`] turns a
-//! schedule into statements, [`model`] implements the run-time trait, [`equations`] writes what a
+//! schedule into statements, [`model`] implements the run-time trait, [`lanes`] its part for
+//! blocks of places, [`equations`] writes what a
 //! function computes as a person does, [`picture`] draws small matrices, [`layout`] places comments and blank lines, [`markdown`] writes the page about the
 //! model, and [`syntax`] holds short constructors.
 
@@ -9,6 +10,7 @@ mod body;
 mod equations;
 mod error;
 mod function;
+mod lanes;
 mod layout;
 mod markdown;
 mod model;
@@ -118,7 +120,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     file.items.extend(items);
     if options.model_impl {
         file.items
-            .extend(parse(model::implementation(&types)?)?.items);
+            .extend(parse(model::implementation(&types, &runtime, &costs)?)?.items);
         file.items.extend(parse(model::info(&program.info))?.items);
     }
     let conversions = types.conversions(&functions, options.model_impl, &runtime);

@@ -1,32 +1,22 @@
-//! Eight places at once: each lane has the bits of scalar code.
+//! Blocks of places: every lane has the bits of its place alone, at every width of the processor's vectors.
 
-#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
-
-use appell_codegen::jit::{
-    Elementary, Instructions, JitModel, NativeFunction, Sizes, Target, VectorFunction,
-};
-use appell_codegen::program::{FunctionKind, Program};
-use appell_codegen::schedule::{ResultArray, Schedule, schedule};
-use appell_runtime::lanes::{AtLanes, LANES};
-use appell_runtime::model::Model;
+use appell_models::Shipped;
+use appell_models::unicycle::{self, Inputs, Parameters, State, rates};
+use appell_runtime::Real;
+use appell_runtime::lanes::{AtLanes, Equations, LANES, Level, place_by_place};
+use appell_runtime::model::{At, Model, ModelInfo};
+use appell_runtime::real::{Functions, Lanes, Own, Standard};
 use appell_test_kit::Random;
 use appell_tests::point::Point;
 use appell_tests::shipped;
 
-/// Blocks of random places per function.
-const BLOCKS: usize = 4;
+/// Own functions and those of the platform differ by rounding; equations enlarge that.
+const ROUNDING: f64 = 1e-9;
+/// An angle that needs more digits of π than straight code has.
+const FAR_TURNED: f64 = 1e12;
 
-/// What motions and their analysis evaluate most.
-const KINDS: [FunctionKind; 4] = [
-    FunctionKind::Rates,
-    FunctionKind::Jacobians,
-    FunctionKind::Outputs,
-    FunctionKind::Energies,
-];
-
-/// Eight places, component by component.
+/// A block of random places.
 struct Block {
-    places: [Point; LANES],
     t: [f64; LANES],
     x: Vec<[f64; LANES]>,
     u: Vec<[f64; LANES]>,
@@ -34,20 +24,18 @@ struct Block {
 }
 
 impl Block {
-    fn random(program: &Program, random: &mut Random) -> Self {
-        let places: [Point; LANES] = std::array::from_fn(|_| Point::random(&program.info, random));
-        let blocks = |numbers: fn(&Point) -> &Vec<f64>| -> Vec<[f64; LANES]> {
-            let entries = 0..numbers(&places[0]).len();
-            entries
-                .map(|i| places.each_ref().map(|place| numbers(place)[i]))
+    fn random(info: &ModelInfo, random: &mut Random) -> Self {
+        let points: [Point; LANES] = std::array::from_fn(|_| Point::random(info, random));
+        let columns = |of: fn(&Point) -> &Vec<f64>| {
+            (0..of(&points[0]).len())
+                .map(|i| std::array::from_fn(|lane| of(&points[lane])[i]))
                 .collect()
         };
         Self {
-            t: places.each_ref().map(|place| place.t),
-            x: blocks(|place| &place.x),
-            u: blocks(|place| &place.u),
-            p: blocks(|place| &place.p),
-            places,
+            t: std::array::from_fn(|lane| points[lane].t),
+            x: columns(|point| &point.x),
+            u: columns(|point| &point.u),
+            p: columns(|point| &point.p),
         }
     }
 
@@ -61,76 +49,77 @@ impl Block {
     }
 }
 
-/// Code for every kind of vector instructions that this processor has, with both kinds of elementary
-/// functions.
-fn targets() -> impl Iterator<Item = Target> {
-    let all = [Instructions::Avx512, Instructions::Avx2];
-    let exist = all.into_iter().filter(|instructions| instructions.exist());
-    exist.flat_map(|instructions| {
-        [Elementary::Standard, Elementary::Own].map(|elementary| Target {
-            instructions,
-            elementary,
-        })
-    })
+/// Rates, A, B and outputs at every place of a block.
+fn in_lanes(model: &dyn Model, at: AtLanes<'_>) -> [Vec<[f64; LANES]>; 5] {
+    let info = model.info();
+    let (n, m) = (info.state_len(), info.input_len());
+    let mut all = [n, n, n * n, n * m, info.output_len()].map(|len| vec![[0.0; LANES]; len]);
+    let [rates, same, a, b, outputs] = &mut all;
+    model.rates_lanes(at, rates);
+    model.jacobians_lanes(at, same, a, b);
+    model.outputs_lanes(at, outputs);
+    all
 }
 
-/// The numbers of one place.
-fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
-    blocks.iter().map(|block| block[lane]).collect()
-}
-
-/// A function whose results are one list.
-fn joined(program: &Program, kind: FunctionKind) -> Option<Schedule> {
-    let function = program.functions.iter().find(|f| f.kind == kind)?;
-    let mut schedule = schedule(program, function);
-    let results = std::mem::take(&mut schedule.results).into_iter();
-    schedule.results.push(ResultArray {
-        name: "all".to_owned(),
-        entries: results.flat_map(|array| array.entries).collect(),
+/// The same place by place: with own functions, or with those of the standard library.
+fn by_place(model: &dyn Model, at: AtLanes<'_>, own: bool) -> [Vec<[f64; LANES]>; 5] {
+    let info = model.info();
+    let (n, m) = (info.state_len(), info.input_len());
+    let mut all = [n, n, n * n, n * m, info.output_len()].map(|len| vec![[0.0; LANES]; len]);
+    let results = all.each_mut().map(Vec::as_mut_slice);
+    place_by_place(at, results, |at, [rates, same, a, b, outputs]| {
+        if own {
+            model.rates_own(at, rates);
+            model.jacobians_own(at, same, a, b);
+            model.outputs_own(at, outputs);
+        } else {
+            model.rates(at, rates);
+            model.jacobians(at, same, a, b);
+            model.outputs(at, outputs);
+        }
     });
-    Some(schedule)
+    all
 }
 
-#[track_caller]
-fn assert_same(what: &str, found: &[f64], expected: &[f64]) {
-    let bits = |numbers: &[f64]| -> Vec<u64> {
-        let bits = |x: &f64| if x.is_nan() { f64::NAN } else { *x }.to_bits();
-        numbers.iter().map(bits).collect()
-    };
-    assert_eq!(bits(found), bits(expected), "{what}");
+/// The bits of numbers; all NaN are one.
+fn bits(all: &[Vec<[f64; LANES]>; 5]) -> Vec<u64> {
+    let numbers = all.iter().flatten().flatten();
+    let bits = numbers.map(|x| if x.is_nan() { u64::MAX } else { x.to_bits() });
+    bits.collect()
 }
 
 #[test]
-fn every_mechanism_has_the_bits_of_scalar_code_in_every_lane() {
-    for name in shipped::names() {
-        let program = shipped::program(&name);
-        let sizes = Sizes::from(&program.info);
-        let mut random = Random::of(&format!("lanes {name}"));
-        for kind in KINDS {
-            let Some(schedule) = joined(program, kind) else {
-                continue;
-            };
-            let len = schedule.results[0].entries.len();
-            let natives = [Elementary::Standard, Elementary::Own]
-                .map(|kind| NativeFunction::compile_with(&schedule, sizes, kind).unwrap());
-            let compile = |target| {
-                let function = VectorFunction::compile_for(&schedule, sizes, target).unwrap();
-                assert!(function.is_vector(), "{name}, {kind:?}, {target:?}");
-                (target, function)
-            };
-            let functions: Vec<_> = targets().map(compile).collect();
-            for _ in 0..BLOCKS {
-                let block = Block::random(program, &mut random);
-                for (target, function) in &functions {
-                    let native = &natives[target.elementary as usize];
-                    let mut found = vec![[f64::NAN; LANES]; len];
-                    function.call(block.at(), [&mut found]);
-                    for (l, place) in block.places.iter().enumerate() {
-                        let mut expected = vec![f64::NAN; len];
-                        native.call(place.at(), [&mut expected]);
-                        let what = format!("{name}, {kind:?}, {target:?}, lane {l}");
-                        assert_same(&what, &lane(&found, l), &expected);
-                    }
+fn a_lane_of_a_shipped_model_has_the_bits_of_its_place_alone() {
+    for shipped in appell_models::ALL {
+        let model = shipped.model;
+        let mut random = Random::of(shipped.name);
+        for round in 0..4 {
+            let mut block = Block::random(model.info(), &mut random);
+            if round == 3 {
+                // Some lanes leave the straight way.
+                block.x.iter_mut().for_each(|x| x[5] = FAR_TURNED);
+                block.x.iter_mut().for_each(|x| x[2] = f64::NAN);
+            }
+            let lanes = bits(&in_lanes(model, block.at()));
+            let alone = bits(&by_place(model, block.at(), true));
+            assert_eq!(lanes, alone, "{}, round {round}", shipped.name);
+        }
+    }
+}
+
+#[test]
+fn own_functions_change_a_shipped_model_by_rounding() {
+    for Shipped { name, model, .. } in appell_models::ALL {
+        let mut random = Random::of(name);
+        let block = Block::random(model.info(), &mut random);
+        let own = in_lanes(*model, block.at());
+        let standard = by_place(*model, block.at(), false);
+        for (own, standard) in own.iter().zip(&standard) {
+            for lane in 0..LANES {
+                let largest = standard.iter().fold(1.0, |most, x| x[lane].abs().max(most));
+                for (own, standard) in own.iter().zip(standard) {
+                    let off = (own[lane] - standard[lane]).abs();
+                    assert!(off <= ROUNDING * largest, "{name}: {own:?} {standard:?}");
                 }
             }
         }
@@ -138,47 +127,152 @@ fn every_mechanism_has_the_bits_of_scalar_code_in_every_lane() {
 }
 
 #[test]
-fn models_evaluate_lanes_as_they_evaluate_places() {
-    for name in ["cart_pole", "four_bar"] {
-        let program = shipped::program(name);
-        let compiled = JitModel::new(program).unwrap();
-        let own = Target {
-            elementary: Elementary::Own,
-            ..Target::default()
-        };
-        let with_own = JitModel::new(program).unwrap().with_lanes_for(own);
-        let models: [&dyn Model; 3] = [&compiled, &with_own, shipped::model(name)];
-        let (n, m, l) = (
-            program.info.state_len(),
-            program.info.input_len(),
-            program.info.output_len(),
+fn models_without_lanes_of_their_own_go_place_by_place() {
+    for shipped in appell_models::ALL.iter().take(6) {
+        let model = shipped::complete_model(shipped.name);
+        let mut random = Random::of(shipped.name);
+        let block = Block::random(model.info(), &mut random);
+        let lanes = bits(&in_lanes(model, block.at()));
+        assert_eq!(lanes, bits(&by_place(model, block.at(), false)));
+        assert_eq!(lanes, bits(&by_place(model, block.at(), true)));
+        assert_eq!(
+            lanes,
+            bits(&by_place(shipped.model, block.at(), false)),
+            "the plain mode of emitted code"
         );
-        let mut random = Random::of(&format!("lanes of {name}"));
-        let block = Block::random(program, &mut random);
-        for (is_own, model) in [false, true, false].into_iter().zip(models) {
-            let [mut rates, mut a, mut b, mut outputs] =
-                [n, n * n, n * m, l].map(|len| vec![[f64::NAN; LANES]; len]);
-            model.rates_lanes(block.at(), &mut rates);
-            let first = rates.clone();
-            model.jacobians_lanes(block.at(), &mut rates, &mut a, &mut b);
-            model.outputs_lanes(block.at(), &mut outputs);
-            for (number, place) in block.places.iter().enumerate() {
-                let [mut x, mut xa, mut xb, mut y] =
-                    [n, n * n, n * m, l].map(|len| vec![f64::NAN; len]);
-                let what = format!("{name}, lane {number}");
-                model.rates_own(place.at(), &mut x);
-                assert_same(&what, &lane(&first, number), &x);
-                model.jacobians_own(place.at(), &mut x, &mut xa, &mut xb);
-                model.outputs_own(place.at(), &mut y);
-                for (found, expected) in [(&rates, x), (&a, xa), (&b, xb), (&outputs, y)] {
-                    assert_same(&what, &lane(found, number), &expected);
-                }
-                if !is_own {
-                    let mut plain = vec![f64::NAN; n];
-                    model.rates(place.at(), &mut plain);
-                    assert_same(&what, &lane(&first, number), &plain);
-                }
-            }
+    }
+}
+
+/// Rates and outputs of the unicycle in lanes of any type.
+fn generic<const N: usize, E: Functions>(block: &Block, first: usize) -> Vec<[f64; N]> {
+    let lanes = |of: &[[f64; LANES]], i: usize| -> Lanes<N, E> {
+        std::array::from_fn(|lane| of[i][first + lane]).into()
+    };
+    let x: [Lanes<N, E>; 10] = std::array::from_fn(|i| lanes(&block.x, i));
+    let p: [Lanes<N, E>; 4] = std::array::from_fn(|i| lanes(&block.p, i));
+    let (x, u, p) = (x.into(), [lanes(&block.u, 0)].into(), p.into());
+    let rates = rates(&p, &x, &u).to_array();
+    let outputs = unicycle::outputs(&p, &x, &u).to_array();
+    let all = rates.into_iter().chain(outputs);
+    all.map(|lanes| lanes.0).collect()
+}
+
+/// The same for all lanes of a block, `N` at a time.
+fn in_groups<const N: usize, E: Functions>(block: &Block) -> Vec<Vec<u64>> {
+    let groups = (0..LANES).step_by(N).flat_map(|first| {
+        let found = generic::<N, E>(block, first);
+        (0..N).map(move |lane| found.iter().map(|x| x[lane].to_bits()).collect())
+    });
+    groups.collect()
+}
+
+#[test]
+fn lanes_of_any_number_have_the_same_bits() {
+    let info = unicycle::Unicycle.info();
+    let mut random = Random::of("numbers of lanes");
+    for _ in 0..20 {
+        let mut block = Block::random(info, &mut random);
+        block.x[7][3] = FAR_TURNED;
+        let own = in_groups::<1, Own>(&block);
+        assert_eq!(own, in_groups::<2, Own>(&block));
+        assert_eq!(own, in_groups::<4, Own>(&block));
+        assert_eq!(own, in_groups::<8, Own>(&block));
+        let standard = in_groups::<8, Standard>(&block);
+        let plain = by_place(&unicycle::Unicycle, block.at(), false);
+        for (lane, standard) in standard.iter().enumerate() {
+            let plain = plain[0].iter().chain(&plain[4]);
+            let plain: Vec<u64> = plain.map(|x| x[lane].to_bits()).collect();
+            assert_eq!(*standard, plain, "plain mode, lane {lane}");
         }
+    }
+}
+
+appell_runtime::in_lanes! {
+    RatesInLanes = rates(
+        Parameters[4] { m, m0, R, g },
+        State[10] { omega_1, omega_2, omega_3, sigma, x_G, y_G, psi, theta, phi, r },
+        Inputs[1] { u }
+    ) => [10](whole [
+        omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot, x_G_dot, y_G_dot, psi_dot, theta_dot,
+        phi_dot, r_dot
+    ]) [0]() [0]()
+}
+
+#[test]
+fn the_width_of_vectors_changes_no_bit() {
+    let mut random = Random::of("levels");
+    for round in 0..20 {
+        let mut block = Block::random(unicycle::Unicycle.info(), &mut random);
+        if round % 4 == 3 {
+            block.x[6][round % LANES] = FAR_TURNED;
+        }
+        let rates = |level: Level| {
+            let mut rates = [[0.0; LANES]; 10];
+            RatesInLanes::block_at(level, block.at(), [&mut rates, &mut [], &mut []]);
+            rates.map(|lanes| lanes.map(f64::to_bits))
+        };
+        let mut model = [[0.0; LANES]; 10];
+        unicycle::Unicycle.rates_lanes(block.at(), &mut model);
+        let model = model.map(|lanes| lanes.map(f64::to_bits));
+        for level in Level::ALL {
+            if !level.is_available() {
+                println!("this processor has no {level:?}");
+            }
+            assert_eq!(rates(level), model, "{level:?}");
+        }
+    }
+}
+
+/// Equations that choose, and hide in the choice that an angle is too large for straight code.
+fn choosing<T: Real>(x: &Numbers<T>, _: &Numbers<T>, _: &Numbers<T>) -> Numbers<T> {
+    let one = T::constant(1.0);
+    let chosen = T::if_less(x.a.sin(), T::constant(0.5), one, T::constant(2.0));
+    let powers = x.a.cos().powf(T::constant(0.0)) + one.powf(x.a.tan());
+    let others = T::if_less_or_equal(x.a.cos(), T::constant(0.5), one, T::constant(2.0));
+    let b = powers + others + x.b.sign() * x.b.abs() + x.b.atan2(x.a);
+    Numbers { a: chosen, b }
+}
+
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Numbers<T> {
+    a: T,
+    b: T,
+}
+appell_runtime::vector!(Numbers { a, b });
+
+appell_runtime::in_lanes! {
+    Choosing = choosing(Numbers[2] { a, b }, Numbers[2] { a, b }, Numbers[2] { a, b })
+        => [2](whole [a, b]) [0]() [0]()
+}
+
+#[test]
+fn what_leaves_the_straight_way_is_not_hidden_by_a_choice() {
+    let angles = [0.3, 1e10, -1e15, 2.0, f64::NAN, 1e300, 1.0, f64::INFINITY];
+    let x = [angles, [1.0, -2.0, 0.0, -0.0, 3.0, f64::NAN, 1e-300, 5.0]];
+    let mut found = [[0.0; LANES]; 2];
+    let at = AtLanes {
+        t: &[0.0; LANES],
+        x: &x,
+        u: &x,
+        p: &x,
+    };
+    Choosing::block(at, [&mut found, &mut [], &mut []]);
+    for lane in 0..LANES {
+        let numbers = Numbers::from(x.map(|x| Lanes::own([x[lane]])));
+        let alone = choosing(&numbers, &numbers, &numbers);
+        let bits = |x: f64| if x.is_nan() { u64::MAX } else { x.to_bits() };
+        assert_eq!(bits(found[0][lane]), bits(alone.a.0[0]), "lane {lane}");
+        assert_eq!(bits(found[1][lane]), bits(alone.b.0[0]), "lane {lane}");
+        let mut place = [0.0; 2];
+        let x = x.map(|x| x[lane]);
+        let at = At {
+            t: 0.0,
+            x: &x,
+            u: &x,
+            p: &x,
+        };
+        Choosing::place(at, [&mut place, &mut [], &mut []]);
+        assert_eq!(bits(place[0]), bits(alone.a.0[0]), "place {lane}");
+        assert_eq!(bits(place[1]), bits(alone.b.0[0]), "place {lane}");
     }
 }

@@ -6,6 +6,7 @@ use syn::ItemFn;
 
 use super::body::body;
 use super::error::Error;
+use super::lanes::in_lanes;
 use super::layout::{blank_tokens, docs, one_line};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
@@ -130,11 +131,17 @@ pub(super) fn function(
     let [parameters_type, state_type, inputs_type] =
         [Space::Parameters, Space::State, Space::Inputs]
             .map(|space| types.vector(space, &quote!(T)));
+    // What is not inlined into a loop over lanes has no lanes.
+    let inline = if in_lanes(function.kind) {
+        quote!(#[inline(always)])
+    } else {
+        quote!(#[inline])
+    };
     let tokens = quote! {
         #blank
         #about
         #[must_use]
-        #[inline]
+        #inline
         pub fn #name<T: Real>(
             #time
             #parameters: &#parameters_type,

@@ -5,10 +5,12 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::error::Error;
+use super::lanes;
 use super::layout::{blank_tokens, docs, escaped};
 use super::syntax::{ident, known, path};
 use super::types::{Types, double};
 use crate::program::{FunctionKind, Layout, Program, Space};
+use crate::schedule::OperationCount;
 
 /// Types of the emitted text beside the results of functions, which the model's own type must not
 /// collide with.
@@ -41,6 +43,12 @@ const TYPES: &[&str] = &[
     "PartialEq",
     "Model",
     "ModelInfo",
+    "At",
+    "AtLanes",
+    "Equations",
+    "RatesInLanes",
+    "JacobiansInLanes",
+    "OutputsInLanes",
     "String",
     "Send",
     "Sync",
@@ -239,7 +247,11 @@ fn signals(info: &ModelInfo) -> TokenStream {
 }
 
 /// The unit struct and its `impl Model`.
-pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
+pub(super) fn implementation(
+    types: &Types<'_>,
+    runtime: &syn::Path,
+    costs: &[(FunctionKind, OperationCount)],
+) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
     let title = escaped(&types.program.info.title);
     let stop = if title.ends_with(['.', '!', '?']) {
@@ -266,6 +278,10 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
         provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
         gradient_method(types, FunctionKind::OutputAdjoint)?,
     ];
+    let (equations, in_lanes) = (
+        lanes::equations(types, runtime),
+        lanes::methods(types, costs),
+    );
     let named = named(types, &name);
     let blank = blank_tokens();
     Ok(quote! {
@@ -276,7 +292,9 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
 
         #blank
         const _: () = {
+            use #runtime::lanes::{AtLanes, Equations, LANES};
             #helpers
+            #equations
 
             #blank
             impl model::Model for #name {
@@ -284,6 +302,7 @@ pub(super) fn implementation(types: &Types<'_>) -> Result<TokenStream, Error> {
                     &INFO
                 }
                 #(#bodies)*
+                #in_lanes
             }
             #named
         };

@@ -343,9 +343,7 @@ impl<'a> Types<'a> {
             .iter()
             .map(|&space| {
                 let moved = (rates && space == Space::State).then_some("Rates");
-                let vector = self.structure(space);
-                let (conversions, sums) = (vector.conversions(), vector.sums(runtime, moved));
-                quote!(#conversions #sums)
+                self.structure(space).arithmetic(runtime, moved)
             })
             .collect()
     }
@@ -458,42 +456,18 @@ impl Vector<'_> {
         }
     }
 
-    /// From and to an array.
-    fn conversions(&self) -> TokenStream {
+    /// What makes it a vector.
+    fn arithmetic(&self, runtime: &syn::Path, moved: Option<&'static str>) -> TokenStream {
         let name = known(self.name);
         let blank = blank_tokens();
-        let fields: Vec<_> = self.fields.iter().map(|field| ident(field)).collect();
-        let count = proc_macro2::Literal::usize_unsuffixed(fields.len());
-        let of = (!fields.is_empty()).then(|| quote!(<T>));
-        quote! {
-            #blank
-            impl<T> From<[T; #count]> for #name #of {
-                fn from([#(#fields),*]: [T; #count]) -> Self {
-                    Self { #(#fields),* }
-                }
-            }
-
-            #blank
-            impl<T> From<#name #of> for [T; #count] {
-                fn from(#name { #(#fields),* }: #name #of) -> Self {
-                    [#(#fields),*]
-                }
-            }
-        }
-    }
-
-    /// Sums, differences and multiples.
-    fn sums(&self, runtime: &syn::Path, moved: Option<&'static str>) -> TokenStream {
-        let name = known(self.name);
-        let blank = blank_tokens();
-        let count = proc_macro2::Literal::usize_unsuffixed(self.fields.len());
+        let fields = self.fields.iter().map(|field| ident(field));
         let moved = moved.map(|rates| {
             let rates = known(rates);
             quote!(, #rates)
         });
         quote! {
             #blank
-            #runtime::vector!(#name, #count #moved);
+            #runtime::vector!(#name { #(#fields),* } #moved);
         }
     }
 }

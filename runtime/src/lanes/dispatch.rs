@@ -42,21 +42,38 @@ impl Level {
     #[inline(always)]
     pub fn run(self, task: impl FnMut()) {
         let mut task = task;
+        if !self.run_in_vectors(&mut task) {
+            task();
+        }
+    }
+
+    /// Runs a task only if there is code for vectors and fused multiply-adds that the processor has. Whether
+    /// there is; beyond x86-64 every processor counts as one.
+    #[inline(always)]
+    pub(super) fn run_in_vectors(self, task: impl FnMut()) -> bool {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
             use pulp::Simd;
             if self >= Self::Avx512
                 && let Some(simd) = pulp::x86::V4::try_new()
             {
-                return Simd::vectorize(simd, Task(task));
+                Simd::vectorize(simd, Task(task));
+                return true;
             }
             if self >= Self::Avx2
                 && let Some(simd) = pulp::x86::V3::try_new()
             {
-                return Simd::vectorize(simd, Task(task));
+                Simd::vectorize(simd, Task(task));
+                return true;
             }
+            false
         }
-        task();
+        #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
+        {
+            let mut task = task;
+            task();
+            true
+        }
     }
 }
 

@@ -42,8 +42,8 @@ pub trait Equations<
     ///
     /// If a slice is shorter than its array.
     #[inline]
-    fn block<const N: usize>(at: AtLanes<'_, N>, [first, second, third]: [&mut [[f64; N]]; 3]) {
-        Self::block_at(Level::Avx512, at, [first, second, third]);
+    fn block<const N: usize>(at: AtLanes<'_, N>, results: [&mut [[f64; N]]; 3]) {
+        Self::block_at(Level::Avx512, at, results);
     }
 
     /// [`Equations::block`] with vectors no wider than a level; the results are the same bits.
@@ -60,13 +60,33 @@ pub trait Equations<
         let (x, u, p) = (array(at.x), array(at.u), array(at.p));
         let (first, second, third) = (array_mut(first), array_mut(second), array_mut(third));
         let mut unknown = false;
-        level.run(
+        let done = level.run_in_vectors(
             #[inline(always)]
             || unknown = Self::evaluate::<Fast, N>(at.t, x, u, p, first, second, third),
         );
-        if unknown {
-            // What `Fast` numbers cannot do.
-            Self::evaluate::<Lanes<1, Own>, N>(at.t, x, u, p, first, second, third);
+        if unknown || !done {
+            Self::places(at, [first, second, third]);
+        }
+    }
+
+    /// The same place by place: for equations that a loop over lanes does not make vector code of.
+    ///
+    /// # Panics
+    ///
+    /// If a slice is shorter than its array.
+    #[inline]
+    fn places<const N: usize>(at: AtLanes<'_, N>, [first, second, third]: [&mut [[f64; N]]; 3]) {
+        for lane in 0..N {
+            let (t, x, u, p) = (
+                [at.t[lane]],
+                only(at.x, lane),
+                only(at.u, lane),
+                only(at.p, lane),
+            );
+            let results = alone::<Self, X, U, P, A, B, C>(&t, &x, &u, &p);
+            put(results.0, first, lane);
+            put(results.1, second, lane);
+            put(results.2, third, lane);
         }
     }
 
@@ -78,24 +98,69 @@ pub trait Equations<
     #[cfg(feature = "std")]
     #[inline]
     fn place(at: At<'_>, results: [&mut [f64]; 3]) {
-        let at = AtLanes {
-            t: &[at.t],
-            x: at.x.as_chunks().0,
-            u: at.u.as_chunks().0,
-            p: at.p.as_chunks().0,
-        };
-        Self::block::<1>(at, results.map(|numbers| numbers.as_chunks_mut().0));
+        let [x, u, p] = [at.x, at.u, at.p].map(|numbers| numbers.as_chunks().0);
+        let [first, second, third] = results.map(|numbers| numbers.as_chunks_mut().0);
+        let found = alone::<Self, X, U, P, A, B, C>(&[at.t], array(x), array(u), array(p));
+        *array_mut(first) = found.0;
+        *array_mut(second) = found.1;
+        *array_mut(third) = found.2;
+    }
+}
+
+/// A vector at one place.
+type One<const LEN: usize> = [[f64; 1]; LEN];
+
+/// Equations at one place, without branches where that does.
+#[inline(never)]
+fn alone<
+    E: Equations<X, U, P, A, B, C> + ?Sized,
+    const X: usize,
+    const U: usize,
+    const P: usize,
+    const A: usize,
+    const B: usize,
+    const C: usize,
+>(
+    t: &[f64; 1],
+    x: &One<X>,
+    u: &One<U>,
+    p: &One<P>,
+) -> (One<A>, One<B>, One<C>) {
+    let (mut first, mut second, mut third) = ([[0.0]; A], [[0.0]; B], [[0.0]; C]);
+    let mut unknown = false;
+    // One number needs no wider vectors.
+    let done = Level::Avx2.run_in_vectors(
+        #[inline(always)]
+        || unknown = E::evaluate::<Fast, 1>(t, x, u, p, &mut first, &mut second, &mut third),
+    );
+    if unknown || !done {
+        E::evaluate::<Lanes<1, Own>, 1>(t, x, u, p, &mut first, &mut second, &mut third);
+    }
+    (first, second, third)
+}
+
+fn only<const N: usize, const LEN: usize>(of: &[[f64; N]], lane: usize) -> One<LEN> {
+    array(of).map(|numbers| [numbers[lane]])
+}
+
+fn put<const N: usize, const LEN: usize>(from: One<LEN>, to: &mut [[f64; N]], lane: usize) {
+    for ([from], to) in from.into_iter().zip(array_mut::<N, LEN>(to)) {
+        to[lane] = from;
     }
 }
 
 fn array<const N: usize, const LEN: usize>(slice: &[[f64; N]]) -> &[[f64; N]; LEN] {
-    slice
-        .first_chunk()
-        .expect("as many numbers as the model has")
+    let array = slice.first_chunk();
+    array.unwrap_or_else(|| too_short(slice.len(), LEN))
 }
 
 fn array_mut<const N: usize, const LEN: usize>(slice: &mut [[f64; N]]) -> &mut [[f64; N]; LEN] {
-    slice
-        .first_chunk_mut()
-        .expect("as many numbers as the model has")
+    let found = slice.len();
+    let array = slice.first_chunk_mut();
+    array.unwrap_or_else(|| too_short(found, LEN))
+}
+
+#[cold]
+fn too_short(found: usize, needed: usize) -> ! {
+    panic!("{found} numbers for a vector of {needed}")
 }

@@ -245,9 +245,9 @@ fn random_line(random: &mut Random, len: usize) -> (Line, Vec<Action>) {
 
 #[test]
 fn instructions_give_the_values_of_the_line() {
-    for seed in 0..300 {
+    for (seed, len) in (0..300).zip((40..440).step_by(10).cycle()) {
         let mut random = Random::new(seed);
-        let (line, mut stores) = random_line(&mut random, 40 + 10 * seed as usize % 400);
+        let (line, mut stores) = random_line(&mut random, len);
         let values = values(&line);
         for registers in [3, 4, 15, 32] {
             let allocated = allocate(&line, registers);

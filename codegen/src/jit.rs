@@ -6,11 +6,14 @@
 //! elementary functions of the Rust standard library. Its results are those of the emitted Rust
 //! and of the interpreter, bit for bit.
 //!
+//! [`VectorFunction`] evaluates a schedule at eight places at once, with the same bits in each.
+//!
 //! The stages: `check` makes sure that a schedule can be compiled at all, `translate` turns
-//! it, `native` owns the machine code. `elementary` and `dense` are what the code calls.
+//! it, `native` calls the machine code, `memory` owns it. `elementary` and `dense` are what the code
+//! calls. `vector` has stages of its own.
 
-// Machine code is reached by pointers. Only `native`, `elementary` and `dense` use unsafe blocks;
-// the interface of the module is safe.
+// Machine code is reached by pointers. Only `native`, `memory`, `elementary`, `dense`,
+// `vector::machine` and `vector::routines` use unsafe blocks; the interface of the module is safe.
 #![allow(unsafe_code)]
 
 mod check;
@@ -18,12 +21,16 @@ mod dense;
 mod elementary;
 mod error;
 mod host;
+mod memory;
 mod model;
 mod native;
 mod on_demand;
 mod translate;
+mod vector;
 
 pub use check::{MOST_DEPTH, MOST_OPERATIONS, MOST_ROWS, Sizes};
+pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
+pub use vector::{Instructions, Target, VectorFunction};

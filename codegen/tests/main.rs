@@ -22,6 +22,10 @@ mod jit_random;
 #[cfg(feature = "jit")]
 mod jit_safety;
 #[cfg(feature = "jit")]
+mod jit_shipped;
+#[cfg(feature = "jit")]
+mod jit_vector;
+#[cfg(feature = "jit")]
 mod responses;
 mod schedule;
 mod switches;

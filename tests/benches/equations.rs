@@ -5,8 +5,12 @@
 
 use std::hint::black_box;
 
+use appell_codegen::jit::JitModel;
 use appell_models::unicycle::{self, Inputs, Parameters, Rates, State};
+use appell_runtime::lanes::{AtLanes, LANES};
+use appell_runtime::model::Model;
 use appell_test_kit::Random;
+use appell_tests::shipped;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// States that are worked through in turn, so that no call is predicted from the last.
@@ -151,5 +155,52 @@ fn equations(criterion: &mut Criterion) {
     group.finish();
 }
 
-criterion_group!(benches, equations);
+/// A model evaluated at blocks of eight places; the numbers are those of one place.
+fn lanes(criterion: &mut Criterion) {
+    let model = JitModel::new(shipped::program("unicycle")).unwrap();
+    let info = model.info();
+    let (n, m) = (info.state_len(), info.input_len());
+    let mut dice = Random::of("lanes");
+    let mut blocks = |len: usize| -> Vec<[f64; LANES]> {
+        let block = |_| std::array::from_fn(|_| dice.between(-0.3, 0.3));
+        (0..len).map(block).collect()
+    };
+    let states: Vec<_> = (0..STATES / LANES)
+        .map(|_| (blocks(n), blocks(m)))
+        .collect();
+    let p: Vec<_> = info
+        .default_parameters()
+        .iter()
+        .map(|&value| [value; LANES])
+        .collect();
+    let at = |(x, u): &'_ (Vec<_>, Vec<_>)| -> AtLanes<'_> {
+        let t = &[0.0; LANES];
+        AtLanes { t, x, u, p: &p }
+    };
+    let [mut rates, mut a, mut b] = [n, n * n, n * m].map(|len| vec![[0.0; LANES]; len]);
+    let mut group = criterion.benchmark_group("unicycle, eight places");
+    group.throughput(criterion::Throughput::Elements(STATES as u64));
+    group.bench_function("rates, compiled in the process", |bencher| {
+        bencher.iter(|| {
+            for block in &states {
+                model.rates_lanes(black_box(at(block)), &mut rates);
+                black_box(&rates);
+            }
+        });
+    });
+    group.bench_function(
+        "rates and Jacobians in state and input, compiled in the process",
+        |bencher| {
+            bencher.iter(|| {
+                for block in &states {
+                    model.jacobians_lanes(black_box(at(block)), &mut rates, &mut a, &mut b);
+                    black_box((&rates, &a, &b));
+                }
+            });
+        },
+    );
+    group.finish();
+}
+
+criterion_group!(benches, equations, lanes);
 criterion_main!(benches);

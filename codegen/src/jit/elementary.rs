@@ -1,18 +1,68 @@
 //! The elementary functions that machine code calls.
 //!
-//! Each is the function of the standard library, the one that emitted Rust calls for `f64`, under
-//! an address and a calling convention that machine code knows.
+//! Each stands under an address and a calling convention that machine code knows.
+
+use appell_runtime::real::{Functions, Own, Standard};
 
 use crate::symbolic::Function;
 
+/// Which elementary functions machine code calls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Elementary {
+    /// Those of the Rust standard library, which emitted Rust calls for `f64`.
+    #[default]
+    Standard,
+    /// Those of [`appell_runtime::elementary`], with the same bits on every machine; a vector of numbers
+    /// takes little longer than one.
+    Own,
+}
+
 /// `f64 -> f64`
 pub(super) type Unary = extern "C" fn(f64) -> f64;
+/// `(f64, f64) -> f64`
+pub(super) type Binary = extern "C" fn(f64, f64) -> f64;
+/// Writes two numbers for one.
+pub(super) type Pair = unsafe extern "C" fn(f64, *mut [f64; 2]);
+
+impl Elementary {
+    /// The function to call. `None` where instructions do it.
+    pub(super) fn unary(self, function: Function) -> Option<Unary> {
+        match self {
+            Self::Standard => unary::<Standard>(function),
+            Self::Own => unary::<Own>(function),
+        }
+    }
+
+    /// Angle of the point (second, first).
+    pub(super) fn atan2(self) -> Binary {
+        match self {
+            Self::Standard => atan2::<Standard>,
+            Self::Own => atan2::<Own>,
+        }
+    }
+
+    /// Power with a real exponent.
+    pub(super) fn powf(self) -> Binary {
+        match self {
+            Self::Standard => powf::<Standard>,
+            Self::Own => powf::<Own>,
+        }
+    }
+
+    /// Sine and cosine.
+    pub(super) fn sin_cos(self) -> Pair {
+        match self {
+            Self::Standard => sin_cos::<Standard>,
+            Self::Own => sin_cos::<Own>,
+        }
+    }
+}
 
 macro_rules! shims {
     ($($name:ident),+) => {
         $(
-            extern "C" fn $name(x: f64) -> f64 {
-                x.$name()
+            extern "C" fn $name<F: Functions>(x: f64) -> f64 {
+                F::$name(x)
             }
         )+
     };
@@ -20,40 +70,35 @@ macro_rules! shims {
 
 shims!(sin, cos, asin, acos, atan, sinh, cosh, tanh, exp, ln);
 
-/// The function to call. `None` where instructions do it.
-pub(super) fn unary(function: Function) -> Option<Unary> {
+fn unary<F: Functions>(function: Function) -> Option<Unary> {
     Some(match function {
-        Function::Sin => sin,
-        Function::Cos => cos,
-        Function::Asin => asin,
-        Function::Acos => acos,
-        Function::Atan => atan,
-        Function::Sinh => sinh,
-        Function::Cosh => cosh,
-        Function::Tanh => tanh,
-        Function::Exp => exp,
-        Function::Ln => ln,
+        Function::Sin => sin::<F>,
+        Function::Cos => cos::<F>,
+        Function::Asin => asin::<F>,
+        Function::Acos => acos::<F>,
+        Function::Atan => atan::<F>,
+        Function::Sinh => sinh::<F>,
+        Function::Cosh => cosh::<F>,
+        Function::Tanh => tanh::<F>,
+        Function::Exp => exp::<F>,
+        Function::Ln => ln::<F>,
         Function::Sqrt | Function::Abs | Function::Sign => return None,
     })
 }
 
-/// Angle of the point (`x`, `y`).
-pub(super) extern "C" fn atan2(y: f64, x: f64) -> f64 {
-    y.atan2(x)
+extern "C" fn atan2<F: Functions>(y: f64, x: f64) -> f64 {
+    F::atan2(y, x)
 }
 
-/// Power with a real exponent.
-pub(super) extern "C" fn powf(base: f64, exponent: f64) -> f64 {
-    base.powf(exponent)
+extern "C" fn powf<F: Functions>(base: f64, exponent: f64) -> f64 {
+    F::powf(base, exponent)
 }
 
-/// Writes sine and cosine of an angle.
-///
 /// # Safety
 ///
 /// `out` must point to two numbers that nothing else uses.
-pub(super) unsafe extern "C" fn sin_cos(angle: f64, out: *mut [f64; 2]) {
-    let (sin, cos) = angle.sin_cos();
+unsafe extern "C" fn sin_cos<F: Functions>(angle: f64, out: *mut [f64; 2]) {
+    let (sin, cos) = F::sin_cos(angle);
     // SAFETY: the caller provides the place.
     unsafe { out.write([sin, cos]) }
 }

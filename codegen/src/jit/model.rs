@@ -4,10 +4,11 @@ use std::fmt;
 use std::slice::from_mut;
 
 use appell_runtime::differences;
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 
 use super::on_demand::OnDemand;
-use super::{JitError, Sizes};
+use super::{JitError, Sizes, Target};
 use crate::program::{FunctionKind, Program};
 
 /// A model compiled in this process.
@@ -17,9 +18,14 @@ use crate::program::{FunctionKind, Program};
 /// Threads that ask for the same function meanwhile wait for it. A function that cannot be
 /// compiled, because it is too long, is interpreted with the same results; [`Self::interpreted`]
 /// lists these.
+///
+/// Eight places at once have code of their own, with the same bits in every lane; see
+/// [`VectorFunction`](super::VectorFunction).
 pub struct JitModel {
     program: Program,
     sizes: Sizes,
+    /// What lanes are compiled for.
+    target: Target,
     /// By [`FunctionKind`], in the order of its variants.
     parts: Vec<OnDemand>,
 }
@@ -93,6 +99,7 @@ impl JitModel {
         let model = Self {
             program: program.clone(),
             sizes,
+            target: Target::default(),
             parts,
         };
         // A processor without a compiler shows here and not in the middle of a simulation.
@@ -100,10 +107,17 @@ impl JitModel {
         Ok(model)
     }
 
-    /// Compiles all functions now instead of at their first use.
+    /// The same with other vector instructions or elementary functions for lanes, and for the methods
+    /// that agree with lanes at one place.
+    #[must_use]
+    pub fn with_lanes_for(self, target: Target) -> Self {
+        Self { target, ..self }
+    }
+
+    /// Compiles all functions of one place now instead of at their first use.
     pub fn compile_all(&self) {
         for part in &self.parts {
-            part.ready(&self.program, self.sizes);
+            part.prepare(&self.program, self.sizes);
         }
     }
 
@@ -130,8 +144,18 @@ impl JitModel {
         weights: &[f64],
         results: [&mut [f64]; N],
     ) {
-        let part = self.part(kind).ready(&self.program, self.sizes);
-        part.call(at, weights, results);
+        let part = self.part(kind);
+        part.call(&self.program, self.sizes, at, weights, results);
+    }
+
+    fn evaluate_lanes<const N: usize>(
+        &self,
+        kind: FunctionKind,
+        at: AtLanes<'_>,
+        results: [&mut [[f64; LANES]]; N],
+    ) {
+        let part = self.part(kind);
+        part.call_lanes(&self.program, self.sizes, self.target, at, results);
     }
 }
 
@@ -190,6 +214,40 @@ impl Model for JitModel {
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, [outputs]);
+    }
+
+    fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
+        self.evaluate_lanes(FunctionKind::Rates, at, [rates]);
+    }
+
+    fn jacobians_lanes(
+        &self,
+        at: AtLanes<'_>,
+        rates: &mut [[f64; LANES]],
+        a: &mut [[f64; LANES]],
+        b: &mut [[f64; LANES]],
+    ) {
+        self.evaluate_lanes(FunctionKind::Jacobians, at, [rates, a, b]);
+    }
+
+    fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
+        self.evaluate_lanes(FunctionKind::Outputs, at, [outputs]);
+    }
+
+    fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
+        in_all_lanes(at, [rates], |at, [rates]| self.rates_lanes(at, rates));
+    }
+
+    fn jacobians_own(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
+        in_all_lanes(at, [rates, a, b], |at, [rates, a, b]| {
+            self.jacobians_lanes(at, rates, a, b);
+        });
+    }
+
+    fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
+        in_all_lanes(at, [outputs], |at, [outputs]| {
+            self.outputs_lanes(at, outputs);
+        });
     }
 
     fn has_adjoint(&self) -> bool {
@@ -251,6 +309,30 @@ impl Model for JitModel {
 
     fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
         self.evaluate(FunctionKind::Systems, at, [matrices]);
+    }
+}
+
+/// A function of eight places at one.
+fn in_all_lanes<const N: usize>(
+    at: At<'_>,
+    results: [&mut [f64]; N],
+    evaluate: impl FnOnce(AtLanes<'_>, [&mut [[f64; LANES]]; N]),
+) {
+    let block = |&number: &f64| [number; LANES];
+    let [x, u, p] =
+        [at.x, at.u, at.p].map(|numbers| -> Vec<_> { numbers.iter().map(block).collect() });
+    let (t, x, u, p) = (&block(&at.t), &x, &u, &p);
+    let mut blocks = results
+        .each_ref()
+        .map(|result| vec![[0.0; LANES]; result.len()]);
+    evaluate(
+        AtLanes { t, x, u, p },
+        blocks.each_mut().map(Vec::as_mut_slice),
+    );
+    for (result, blocks) in results.into_iter().zip(blocks) {
+        for (number, block) in result.iter_mut().zip(blocks) {
+            *number = block[0];
+        }
     }
 }
 

@@ -1,13 +1,12 @@
 //! Machine code and its life.
 
-use std::fmt;
-use std::sync::Mutex;
-
 use appell_runtime::model::At;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
 use super::check::{Sizes, check};
+use super::elementary::Elementary;
+use super::memory::Code;
 use super::on_demand::lengths;
 use super::translate::{signature, translate};
 use super::{JitError, host};
@@ -31,8 +30,18 @@ pub struct NativeFunction {
 }
 
 impl NativeFunction {
-    /// Compiles a schedule of a model with arguments of these sizes.
+    /// Compiles a schedule of a model with arguments of these sizes. It calls the elementary functions
+    /// of the standard library.
     pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
+        Self::compile_with(schedule, sizes, Elementary::Standard)
+    }
+
+    /// [`Self::compile`] with elementary functions of one's choice.
+    pub fn compile_with(
+        schedule: &Schedule,
+        sizes: Sizes,
+        elementary: Elementary,
+    ) -> Result<Self, JitError> {
         let checked = check(schedule, sizes)?;
         let target = host::target(schedule.steps.len())?;
         let builder = JITBuilder::with_isa(target, default_libcall_names());
@@ -40,10 +49,10 @@ impl NativeFunction {
         let config = module.target_config();
         let mut context = module.make_context();
         context.func.signature = signature(config);
-        translate(&checked, config, &mut context.func);
+        translate(&checked, elementary, config, &mut context.func);
         let defined = define(&mut module, &mut context);
         // From here on the memory is freed, also where something failed.
-        let code = Code(Mutex::new(Some(Box::new(module))));
+        let code = Code::new(module);
         let entry = defined?;
         Ok(Self {
             // SAFETY: the code was compiled with `signature`, which is that of `Entry`.
@@ -138,25 +147,4 @@ fn define(
     module.define_function(id, context)?;
     module.finalize_definitions()?;
     Ok(module.get_finalized_function(id))
-}
-
-/// Owner of the memory that holds the code. The lock is never contended: it only makes the
-/// compiler's state, which nobody uses after compilation, shareable between threads.
-struct Code(Mutex<Option<Box<JITModule>>>);
-
-impl Drop for Code {
-    fn drop(&mut self) {
-        let module = self.0.get_mut().map(Option::take);
-        if let Ok(Some(module)) = module {
-            // SAFETY: a `NativeFunction` owns its code and only runs it during `call`, which
-            // borrows it, so no code runs now and none will.
-            unsafe { module.free_memory() }
-        }
-    }
-}
-
-impl fmt::Debug for Code {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str("Code")
-    }
 }

@@ -2,10 +2,11 @@
 
 use std::sync::OnceLock;
 
+use appell_runtime::lanes::{AtLanes, LANES, place_by_place};
 use appell_runtime::model::At;
 
 use super::native::check_lengths;
-use super::{JitError, NativeFunction, Sizes};
+use super::{Elementary, JitError, NativeFunction, Sizes, Target, VectorFunction};
 use crate::program::{Function, FunctionKind, Program};
 use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
 
@@ -16,19 +17,18 @@ pub(super) type Wanted = (&'static str, usize);
 pub(super) struct OnDemand {
     kind: FunctionKind,
     wanted: Vec<Wanted>,
+    schedule: OnceLock<Schedule>,
     ready: OnceLock<Ready>,
+    /// For eight places at once; `None` where that cannot be made.
+    lanes: OnceLock<Option<VectorFunction>>,
 }
 
 /// A function that can be evaluated.
-pub(super) enum Ready {
+enum Ready {
     /// In machine code.
     Native(NativeFunction),
     /// Step by step, because it could not be compiled.
     Interpreted {
-        /// The function, with the wanted results only.
-        schedule: Schedule,
-        /// Lengths of the arguments.
-        sizes: Sizes,
         /// Lengths of the results.
         results: Vec<usize>,
         /// Why it was not compiled.
@@ -64,21 +64,83 @@ impl OnDemand {
         Ok(Self {
             kind,
             wanted,
+            schedule: OnceLock::new(),
             ready: OnceLock::new(),
+            lanes: OnceLock::new(),
         })
     }
 
     /// Compiles the function now, or says why it cannot be compiled.
     pub(super) fn compile(&self, program: &Program, sizes: Sizes) -> Result<(), JitError> {
-        let native = NativeFunction::compile(&self.schedule(program), sizes)?;
+        let native = NativeFunction::compile(self.schedule(program), sizes)?;
         self.ready.get_or_init(|| Ready::Native(native));
         Ok(())
     }
 
+    /// Makes the function now, in one way or the other.
+    pub(super) fn prepare(&self, program: &Program, sizes: Sizes) {
+        self.ready(program, sizes);
+    }
+
+    /// Evaluates the function; see [`NativeFunction::call_weighted`].
+    #[inline]
+    pub(super) fn call<const N: usize>(
+        &self,
+        program: &Program,
+        sizes: Sizes,
+        at: At<'_>,
+        weights: &[f64],
+        out: [&mut [f64]; N],
+    ) {
+        match self.ready(program, sizes) {
+            Ready::Native(native) => native.call_weighted(at, weights, out),
+            Ready::Interpreted { results, .. } => {
+                check_lengths(at, sizes, &out, results);
+                let computed = interpret_weighted(self.schedule(program), at, weights);
+                for (out, computed) in out.into_iter().zip(computed) {
+                    out.copy_from_slice(&computed);
+                }
+            }
+        }
+    }
+
+    /// Evaluates the function at eight places; see [`VectorFunction::call`].
+    #[inline]
+    pub(super) fn call_lanes<const N: usize>(
+        &self,
+        program: &Program,
+        sizes: Sizes,
+        target: Target,
+        at: AtLanes<'_>,
+        out: [&mut [[f64; LANES]]; N],
+    ) {
+        match self.lanes(program, sizes, target) {
+            Some(vector) => vector.call(at, out),
+            None => place_by_place(at, out, |at, out| {
+                self.call(program, sizes, at, &[], out);
+            }),
+        }
+    }
+
     /// The function, made when it is first asked for.
     #[inline]
-    pub(super) fn ready(&self, program: &Program, sizes: Sizes) -> &Ready {
+    fn ready(&self, program: &Program, sizes: Sizes) -> &Ready {
         self.ready.get_or_init(|| self.make(program, sizes))
+    }
+
+    #[inline]
+    fn lanes(&self, program: &Program, sizes: Sizes, target: Target) -> Option<&VectorFunction> {
+        let make = || {
+            let schedule = self.schedule(program);
+            match target.elementary {
+                // Scalar code has the same bits.
+                Elementary::Standard => VectorFunction::all_at_once(schedule, sizes, target),
+                Elementary::Own => VectorFunction::compile_for(schedule, sizes, target).map(Some),
+            }
+        };
+        // What cannot be compiled tells its reason where it is interpreted.
+        let lanes = self.lanes.get_or_init(|| make().ok().flatten());
+        lanes.as_ref()
     }
 
     /// Why the function is interpreted, if it is.
@@ -92,20 +154,22 @@ impl OnDemand {
     #[cold]
     fn make(&self, program: &Program, sizes: Sizes) -> Ready {
         let schedule = self.schedule(program);
-        match NativeFunction::compile(&schedule, sizes) {
+        match NativeFunction::compile(schedule, sizes) {
             Ok(native) => Ready::Native(native),
             Err(reason) => Ready::Interpreted {
-                results: lengths(&schedule),
-                schedule,
-                sizes,
+                results: lengths(schedule),
                 reason,
             },
         }
     }
 
+    fn schedule(&self, program: &Program) -> &Schedule {
+        self.schedule.get_or_init(|| self.find_schedule(program))
+    }
+
     /// The steps of the whole function, so that numbers do not depend on what is wanted, with the
     /// wanted results. The compiler drops the steps that these do not need.
-    fn schedule(&self, program: &Program) -> Schedule {
+    fn find_schedule(&self, program: &Program) -> Schedule {
         let whole =
             find(program, self.kind).filter(|_| self.wanted.iter().any(|&(_, len)| len > 0));
         let mut schedule = match whole {
@@ -129,28 +193,6 @@ impl OnDemand {
         });
         schedule.results = wanted.collect();
         schedule
-    }
-}
-
-impl Ready {
-    /// Evaluates the function; see [`NativeFunction::call`].
-    #[inline]
-    pub(super) fn call<const N: usize>(&self, at: At<'_>, weights: &[f64], out: [&mut [f64]; N]) {
-        match self {
-            Self::Native(native) => native.call_weighted(at, weights, out),
-            Self::Interpreted {
-                schedule,
-                sizes,
-                results,
-                ..
-            } => {
-                check_lengths(at, *sizes, &out, results);
-                let computed = interpret_weighted(schedule, at, weights);
-                for (out, computed) in out.into_iter().zip(computed) {
-                    out.copy_from_slice(&computed);
-                }
-            }
-        }
     }
 }
 

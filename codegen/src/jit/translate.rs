@@ -15,7 +15,7 @@ use rustc_hash::FxHashMap;
 
 use super::check::Checked;
 use super::dense::Routines;
-use super::elementary;
+use super::elementary::Elementary;
 use crate::schedule::{Argument, Operation, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
 
@@ -30,11 +30,12 @@ pub(super) fn signature(config: TargetFrontendConfig) -> Signature {
 /// Writes the body of a function with [`signature`].
 pub(super) fn translate(
     checked: &Checked<'_>,
+    elementary: Elementary,
     config: TargetFrontendConfig,
     function: &mut ir::Function,
 ) {
     let mut context = FunctionBuilderContext::new();
-    let mut translation = Translation::new(checked, config, function, &mut context);
+    let mut translation = Translation::new(checked, elementary, config, function, &mut context);
     for step in &checked.schedule.steps {
         translation.step(step);
     }
@@ -48,6 +49,7 @@ pub(super) fn translate(
 struct Translation<'a> {
     builder: FunctionBuilder<'a>,
     config: TargetFrontendConfig,
+    elementary: Elementary,
     received: Received,
     /// Results of the steps.
     values: Vec<ir::Value>,
@@ -97,6 +99,7 @@ struct Factorisation {
 impl<'a> Translation<'a> {
     fn new(
         checked: &Checked<'_>,
+        elementary: Elementary,
         config: TargetFrontendConfig,
         function: &'a mut ir::Function,
         context: &'a mut FunctionBuilderContext,
@@ -122,6 +125,7 @@ impl<'a> Translation<'a> {
         Self {
             builder,
             config,
+            elementary,
             received,
             values: vec![zero; checked.schedule.names.len()],
             arguments: FxHashMap::default(),
@@ -166,7 +170,7 @@ impl<'a> Translation<'a> {
         let pointer = self.config.pointer_type();
         let pair = self.pair;
         let to = self.builder.ins().stack_addr(pointer, pair, 0);
-        let routine = elementary::sin_cos as *const ();
+        let routine = self.elementary.sin_cos() as *const ();
         self.call(Shape::Pair, routine, &[angle, to]);
         for (index, value) in [sin, cos].into_iter().enumerate() {
             self.load(value, pair, index);
@@ -272,11 +276,13 @@ impl<'a> Translation<'a> {
             }
             Tree::Atan2(y, x) => {
                 let arguments = [self.tree(y), self.tree(x)];
-                self.call(Shape::Binary, elementary::atan2 as *const (), &arguments)[0]
+                let routine = self.elementary.atan2() as *const ();
+                self.call(Shape::Binary, routine, &arguments)[0]
             }
             Tree::Power(base, exponent) => {
                 let arguments = [self.tree(base), self.tree(exponent)];
-                self.call(Shape::Binary, elementary::powf as *const (), &arguments)[0]
+                let routine = self.elementary.powf() as *const ();
+                self.call(Shape::Binary, routine, &arguments)[0]
             }
             Tree::Choice {
                 relation,
@@ -306,7 +312,7 @@ impl<'a> Translation<'a> {
     }
 
     fn function(&mut self, function: Function, a: ir::Value) -> ir::Value {
-        if let Some(routine) = elementary::unary(function) {
+        if let Some(routine) = self.elementary.unary(function) {
             return self.call(Shape::Unary, routine as *const (), &[a])[0];
         }
         match function {

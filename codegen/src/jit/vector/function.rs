@@ -1,0 +1,150 @@
+//! A schedule at eight places at once.
+
+use appell_runtime::lanes::{self, AtLanes, LANES};
+
+use super::super::check::{Checked, check};
+use super::super::native::NativeFunction;
+use super::super::on_demand::lengths;
+use super::super::{JitError, Sizes};
+use super::machine::{Machine, Target};
+use crate::schedule::Schedule;
+
+/// One schedule in machine code for blocks of eight places. The code lives as long as this value;
+/// several threads may call it at the same time.
+///
+/// Each lane gets the bits of a [`NativeFunction`] with the same elementary functions at its place. It
+/// is fastest where arguments and results start at multiples of 64 bytes.
+#[derive(Debug)]
+pub struct VectorFunction {
+    how: How,
+    sizes: Sizes,
+    /// How many weights it uses.
+    weights: usize,
+    /// Lengths of the results.
+    results: Vec<usize>,
+}
+
+#[derive(Debug)]
+enum How {
+    Vector(Machine),
+    PlaceByPlace(NativeFunction),
+}
+
+impl VectorFunction {
+    /// Compiles a schedule of a model with arguments of these sizes, for this processor.
+    pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
+        Self::compile_for(schedule, sizes, Target::default())
+    }
+
+    /// [`Self::compile`] with instructions and elementary functions of one's choice. Where the
+    /// processor lacks the instructions, or the code would be too long, places are evaluated one by
+    /// one.
+    pub fn compile_for(
+        schedule: &Schedule,
+        sizes: Sizes,
+        target: Target,
+    ) -> Result<Self, JitError> {
+        if let Some(vector) = Self::all_at_once(schedule, sizes, target)? {
+            return Ok(vector);
+        }
+        let native = NativeFunction::compile_with(schedule, sizes, target.elementary)?;
+        let checked = check(schedule, sizes)?;
+        Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
+    }
+
+    /// [`Self::compile_for`], but nothing where places would be evaluated one by one.
+    pub(in crate::jit) fn all_at_once(
+        schedule: &Schedule,
+        sizes: Sizes,
+        target: Target,
+    ) -> Result<Option<Self>, JitError> {
+        let checked = check(schedule, sizes)?;
+        let machine = Machine::compile(&checked, target)?;
+        Ok(machine.map(|machine| Self::new(How::Vector(machine), &checked, sizes)))
+    }
+
+    fn new(how: How, checked: &Checked<'_>, sizes: Sizes) -> Self {
+        Self {
+            how,
+            sizes,
+            weights: checked.weights,
+            results: lengths(checked.schedule),
+        }
+    }
+
+    /// Whether all lanes are computed at once.
+    pub fn is_vector(&self) -> bool {
+        matches!(self.how, How::Vector(_))
+    }
+
+    /// Evaluates the function: one slice for each result of the schedule, in its order.
+    ///
+    /// # Panics
+    ///
+    /// Where a slice has another length than the schedule's results and the sizes it was compiled
+    /// for; no code runs then.
+    #[inline]
+    pub fn call<const N: usize>(&self, at: AtLanes<'_>, results: [&mut [[f64; LANES]]; N]) {
+        self.call_weighted(at, &[], results);
+    }
+
+    /// [`Self::call`] for a function of weights.
+    ///
+    /// # Panics
+    ///
+    /// As [`Self::call`], and where there are fewer weights than the schedule uses.
+    #[inline]
+    pub fn call_weighted<const N: usize>(
+        &self,
+        at: AtLanes<'_>,
+        weights: &[[f64; LANES]],
+        results: [&mut [[f64; LANES]]; N],
+    ) {
+        self.check_lengths(
+            at,
+            weights.len(),
+            results.each_ref().map(|result| result.len()),
+        );
+        match &self.how {
+            // SAFETY: the lengths were compared.
+            How::Vector(machine) => unsafe { machine.call(at, weights, results) },
+            How::PlaceByPlace(native) => place_by_place(native, at, weights, results),
+        }
+    }
+
+    /// Refuses slices of other lengths than the function was made for.
+    #[inline]
+    fn check_lengths<const N: usize>(&self, at: AtLanes<'_>, weights: usize, results: [usize; N]) {
+        let found = Sizes {
+            states: at.x.len(),
+            inputs: at.u.len(),
+            parameters: at.p.len(),
+        };
+        let expected = self.sizes;
+        assert!(
+            found == expected,
+            "arguments: {found:?} given, {expected:?} expected"
+        );
+        let expected = &self.results[..];
+        assert!(
+            results == *expected,
+            "results: lengths {expected:?} expected"
+        );
+        let used = self.weights;
+        assert!(weights >= used, "weights: {weights} given, {used} used");
+    }
+}
+
+fn place_by_place<const N: usize>(
+    native: &NativeFunction,
+    at: AtLanes<'_>,
+    weights: &[[f64; LANES]],
+    results: [&mut [[f64; LANES]]; N],
+) {
+    let mut places = 0..;
+    lanes::place_by_place(at, results, |at, results| {
+        let place = places.next().unwrap_or(0);
+        let weights: Vec<f64> = weights.iter().map(|block| block[place]).collect();
+        native.call_weighted(at, &weights, results);
+    });
+}

@@ -1,0 +1,148 @@
+//! A function as one straight line of vector operations.
+
+use crate::schedule::Operation;
+use crate::symbolic::{Function, Relation};
+
+/// A value of the line, numbered in the order of the schedule: operands come first.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub(super) struct Id(pub(super) u32);
+
+impl Id {
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Arrays of blocks that a function receives.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Array {
+    Time,
+    States,
+    Inputs,
+    Parameters,
+    Weights,
+}
+
+/// What a value is.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Node {
+    /// An entry of an argument.
+    Argument(Array, u32),
+    /// A number in every lane, by its bits.
+    Constant(u64),
+    /// An operation on two values.
+    Binary(Binary, Id, Id),
+    /// Square root.
+    Sqrt(Id),
+    /// `branches[0]` where `compared` are ordered as asked, `branches[1]` elsewhere and for NaN.
+    Choice {
+        relation: Relation,
+        compared: [Id; 2],
+        branches: [Id; 2],
+    },
+    /// What a call writes, by the call and the position in its results.
+    Result(u32, u32),
+}
+
+impl Node {
+    /// Whether it lies in memory from the start.
+    pub(super) fn is_leaf(self) -> bool {
+        matches!(self, Self::Argument(..) | Self::Constant(_))
+    }
+
+    /// The values that it is computed from, in the order in which instructions take them.
+    pub(super) fn operands(self) -> impl Iterator<Item = Id> {
+        let operands = match self {
+            Self::Argument(..) | Self::Constant(_) | Self::Result(..) => [None; 4],
+            Self::Sqrt(a) => [Some(a), None, None, None],
+            Self::Binary(_, a, b) => [Some(a), Some(b), None, None],
+            Self::Choice {
+                compared: [a, b],
+                branches: [c, d],
+                ..
+            } => [a, b, c, d].map(Some),
+        };
+        operands.into_iter().flatten()
+    }
+}
+
+/// Operations of one instruction with two operands.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Binary {
+    Arithmetic(Operation),
+    /// Bits that both have.
+    And,
+    /// Bits that one of them has.
+    Xor,
+}
+
+impl Binary {
+    /// Whether the operands may change places without changing a bit.
+    pub(super) fn is_commutative(self) -> bool {
+        !matches!(
+            self,
+            Self::Arithmetic(Operation::Subtract | Operation::Divide)
+        )
+    }
+}
+
+/// A routine that machine code calls with addresses of blocks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(super) enum Routine {
+    /// A function of one block; [`Function::Sqrt`] and its like are instructions instead.
+    Unary(Function),
+    /// Sine and cosine, one block after the other.
+    SinCos,
+    /// Angle of (second, first).
+    Atan2,
+    /// The first to the power of the second.
+    Power,
+    /// Solution of a linear system of so many rows. Its matrix and its right-hand side lie side by
+    /// side.
+    System(u32),
+}
+
+/// A call.
+#[derive(Debug, Clone)]
+pub(super) struct Call {
+    pub(super) routine: Routine,
+    /// What the routine is given.
+    pub(super) given: Vec<Id>,
+    /// What it writes, in order.
+    pub(super) results: Vec<Id>,
+}
+
+/// What is done, in order.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Action {
+    /// Computes a value.
+    Compute(Id),
+    /// Calls a routine.
+    Call(u32),
+    /// Writes a value to an entry of a result: value, result, entry.
+    Store(Id, u32, u32),
+}
+
+/// The line.
+#[derive(Debug)]
+pub(super) struct Line {
+    /// What the values are.
+    pub(super) nodes: Vec<Node>,
+    /// The calls among the actions.
+    pub(super) calls: Vec<Call>,
+    /// What is done; nothing that no result needs.
+    pub(super) actions: Vec<Action>,
+}
+
+impl Line {
+    /// The values that an action needs, in the order in which instructions take them.
+    pub(super) fn operands(&self, action: Action) -> impl Iterator<Item = Id> {
+        let (node, given, stored) = match action {
+            Action::Compute(id) => (Some(self.nodes[id.index()]), &[][..], None),
+            Action::Call(call) => (None, &self.calls[call as usize].given[..], None),
+            Action::Store(id, ..) => (None, &[][..], Some(id)),
+        };
+        let node = node.into_iter().flat_map(Node::operands);
+        node.chain(given.iter().copied()).chain(stored)
+    }
+}

@@ -1,0 +1,56 @@
+//! Blocks of the frame.
+
+use std::collections::BTreeSet;
+
+/// Which blocks of the frame are in use.
+#[derive(Debug)]
+pub(super) struct Slots {
+    free: BTreeSet<u32>,
+    len: u32,
+}
+
+impl Slots {
+    /// The first blocks are in use for ever.
+    pub(super) fn new(fixed: u32) -> Self {
+        Self {
+            free: BTreeSet::new(),
+            len: fixed,
+        }
+    }
+
+    /// The first of so many blocks in a row, the lowest that are free.
+    pub(super) fn take(&mut self, count: u32) -> u32 {
+        let first = self.free_run(count).unwrap_or(self.len);
+        for slot in first..first + count {
+            self.free.remove(&slot);
+        }
+        self.len = self.len.max(first + count);
+        first
+    }
+
+    fn free_run(&self, count: u32) -> Option<u32> {
+        let mut run = 0;
+        let mut last = None;
+        for &slot in &self.free {
+            run = if last == slot.checked_sub(1) {
+                run + 1
+            } else {
+                1
+            };
+            last = Some(slot);
+            if run == count {
+                return Some(slot + 1 - count);
+            }
+        }
+        None
+    }
+
+    pub(super) fn release(&mut self, slot: u32) {
+        self.free.insert(slot);
+    }
+
+    /// Blocks that were ever in use.
+    pub(super) fn len(&self) -> u32 {
+        self.len
+    }
+}

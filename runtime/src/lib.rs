@@ -35,6 +35,7 @@ pub mod differences;
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
+pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;
 #[cfg(feature = "std")]

@@ -1,0 +1,4 @@
+//! Eight places at once.
+
+/// Places of a block.
+pub const LANES: usize = 8;

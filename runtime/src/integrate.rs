@@ -20,6 +20,8 @@
 //! # Ok::<(), appell_runtime::integrate::IntegrationError>(())
 //! ```
 
+mod block;
+mod block_stages;
 mod dense_output;
 mod dop853_coefficients;
 mod error;
@@ -35,6 +37,7 @@ mod stops;
 mod tableau;
 mod watch;
 
+pub use block::{BlockMotion, BlockSolver};
 pub use dense_output::DenseOutput;
 pub use error::{Cause, Failure, IntegrationError};
 pub use events::{Direction, Event, EventFunction, EventHit};

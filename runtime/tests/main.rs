@@ -5,6 +5,7 @@ mod dense;
 mod real;
 
 #[cfg(feature = "std")]
+mod block;
 mod common;
 #[cfg(feature = "std")]
 mod condition;

@@ -11,6 +11,9 @@ pub(super) struct Ends<'a> {
     pub(super) rates: [&'a [f64]; 2],
 }
 
+/// Coefficients of the cubic Hermite polynomial.
+pub(super) const HERMITE: usize = 4;
+
 /// A polynomial through both ends of the current step.
 ///
 /// In θ, the part of the step that has passed, and with θ̄ = 1 − θ, it reads c₀ + θ (c₁ + θ̄ (c₂ + θ (c₃ + θ̄ (…

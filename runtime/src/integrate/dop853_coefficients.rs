@@ -126,7 +126,7 @@ pub(super) const ERROR_3: Row = &[
 ];
 
 /// Extra stages of the interpolant: node and row.
-pub(super) const INTERIOR_STAGES: [(f64, Row); 3] = [
+pub(super) const INTERIOR_STAGES: &[(f64, Row)] = &[
     (
         0.1,
         &[
@@ -169,7 +169,7 @@ pub(super) const INTERIOR_STAGES: [(f64, Row); 3] = [
 ];
 
 /// The last four coefficients of the interpolant over h.
-pub(super) const INTERIOR: [Row; 4] = [
+pub(super) const INTERIOR: &[Row] = &[
     &[
         (0, -8.428938276109013),
         (5, 0.5667149535193777),

@@ -1,9 +1,10 @@
 //! The embedded pairs of Dormand and Prince.
 
-use super::dense_output::DenseOutput;
+use std::array::from_fn;
+
 use super::dop853_coefficients as dop853;
 use super::step_size::Control;
-use super::tableau::{Row, Stages, Tableau};
+use super::tableau::{Row, Tableau};
 
 /// What distinguishes one embedded pair from another. Sealed: implemented by [`Dopri5`] and
 /// [`Dop853`].
@@ -27,14 +28,16 @@ pub trait EmbeddedPair: sealed::Sealed {
     /// Constants of the step-size control.
     #[doc(hidden)]
     const CONTROL: Control;
-    /// The estimated error over the tolerances, at most 1 for a step to be accepted.
+    /// Nodes and rows of the stages of the interpolant alone.
     #[doc(hidden)]
-    fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64;
-    /// Completes the interpolant, which already holds the cubic Hermite polynomial.
+    const INTERIOR_STAGES: &[(f64, Row)];
+    /// Its coefficients over h, after those of the cubic Hermite polynomial.
     #[doc(hidden)]
-    fn interior<F>(f: &mut F, t: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput)
-    where
-        F: FnMut(f64, &[f64], &mut [f64]);
+    const INTERIOR: &[Row];
+    /// The estimated errors of steps over the tolerances, at most 1 for a step to be accepted; `mean_square`
+    /// is that of a combination of the stages, over the tolerances.
+    #[doc(hidden)]
+    fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N];
 }
 
 mod sealed {
@@ -113,15 +116,12 @@ impl EmbeddedPair for Dopri5 {
         largest_factor: 10.0,
     };
 
-    fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64 {
-        h * stages.mean_square(DOPRI5_ERROR, scale).sqrt()
-    }
+    const INTERIOR_STAGES: &[(f64, Row)] = &[];
+    const INTERIOR: &[Row] = &[DOPRI5_INTERIOR];
 
-    fn interior<F>(_: &mut F, _: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput)
-    where
-        F: FnMut(f64, &[f64], &mut [f64]),
-    {
-        stages.combination(h, DOPRI5_INTERIOR, dense.coefficient(4));
+    fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N] {
+        let square = mean_square(DOPRI5_ERROR);
+        from_fn(|l| h[l] * square[l].sqrt())
     }
 }
 
@@ -172,29 +172,20 @@ impl EmbeddedPair for Dop853 {
         largest_factor: 6.0,
     };
 
+    const INTERIOR_STAGES: &[(f64, Row)] = dop853::INTERIOR_STAGES;
+    const INTERIOR: &[Row] = dop853::INTERIOR;
+
     /// Equation (10.17): E₅² / √(E₅² + 0.01 E₃²), an estimate of order 8 that vanishes only with
     /// both differences.
-    fn error(stages: &Stages, h: f64, scale: &[f64]) -> f64 {
-        let square_5 = stages.mean_square(dop853::ERROR_5, scale);
-        let square_3 = stages.mean_square(dop853::ERROR_3, scale);
-        let denominator = square_5 + 0.01 * square_3;
-        if denominator == 0.0 {
-            0.0
-        } else {
-            h * square_5 / denominator.sqrt()
-        }
-    }
-
-    fn interior<F>(f: &mut F, t: f64, h: f64, stages: &mut Stages, dense: &mut DenseOutput)
-    where
-        F: FnMut(f64, &[f64], &mut [f64]),
-    {
-        let first = Self::TABLEAU.new_rates() + 1;
-        for (i, &(node, row)) in dop853::INTERIOR_STAGES.iter().enumerate() {
-            stages.evaluate(f, first + i, t + node * h, h, row);
-        }
-        for (c, &row) in dop853::INTERIOR.iter().enumerate() {
-            stages.combination(h, row, dense.coefficient(4 + c));
-        }
+    fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N] {
+        let [square_5, square_3] = [dop853::ERROR_5, dop853::ERROR_3].map(mean_square);
+        from_fn(|l| {
+            let denominator = square_5[l] + 0.01 * square_3[l];
+            if denominator == 0.0 {
+                0.0
+            } else {
+                h[l] * square_5[l] / denominator.sqrt()
+            }
+        })
     }
 }

@@ -1,6 +1,6 @@
 //! The step loop of the embedded pairs.
 
-use super::dense_output::DenseOutput;
+use super::dense_output::{DenseOutput, HERMITE};
 use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
@@ -172,7 +172,9 @@ impl<P: EmbeddedPair> Solver<P> {
         for (scale, (x, x_new)) in self.scale.iter_mut().zip(x.iter().zip(x_new)) {
             *scale = options.scale(x.abs().max(x_new.abs()));
         }
-        P::error(&self.stages, stride.h, &self.scale)
+        let mean_square = |row| [self.stages.mean_square(row, &self.scale)];
+        let [error] = P::errors(mean_square, &[stride.h]);
+        error
     }
 
     /// Interpolates if anyone asks for it and shows the step to the watcher.
@@ -197,7 +199,14 @@ impl<P: EmbeddedPair> Solver<P> {
             return watcher.accept(&ends, None, x);
         }
         self.dense.set_hermite(&ends);
-        P::interior(f, t, stride.h, &mut self.stages, &mut self.dense);
+        for (i, &(node, row)) in P::INTERIOR_STAGES.iter().enumerate() {
+            let (stage, t) = (new_rates + 1 + i, t + node * stride.h);
+            self.stages.evaluate(f, stage, t, stride.h, row);
+        }
+        for (c, &row) in P::INTERIOR.iter().enumerate() {
+            let coefficient = self.dense.coefficient(HERMITE + c);
+            self.stages.combination(stride.h, row, coefficient);
+        }
         let ends = self.stages.ends(span, new_rates);
         watcher.accept(&ends, Some(&self.dense), x)
     }

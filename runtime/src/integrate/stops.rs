@@ -53,6 +53,18 @@ pub(super) struct Stride {
     pub(super) lands: bool,
 }
 
+impl Stride {
+    /// No step at all.
+    pub(super) fn none(t: f64) -> Self {
+        Self {
+            h: 0.0,
+            t_new: t,
+            last: t,
+            lands: false,
+        }
+    }
+}
+
 /// Parts of a step between which changes are sought.
 const PARTS: u8 = 8;
 

@@ -153,6 +153,11 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         Ok(())
     }
 
+    /// Whether states are brought back to where they belong.
+    pub(super) fn projects(&self) -> bool {
+        self.projection.is_some()
+    }
+
     /// Brings a state back to where it belongs; false where that fails.
     pub(super) fn project(&mut self, t: f64, x: &mut [f64]) -> bool {
         match &mut self.projection {

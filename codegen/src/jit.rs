@@ -21,9 +21,11 @@ mod host;
 mod model;
 mod native;
 mod on_demand;
+mod series;
 mod translate;
 
 pub use check::{MOST_DEPTH, MOST_OPERATIONS, MOST_ROWS, Sizes};
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
+pub use series::JitSeries;

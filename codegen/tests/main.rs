@@ -29,3 +29,5 @@ mod symbolic_forms;
 mod symbolic_identity;
 mod symbolic_laws;
 mod symbolic_print;
+#[cfg(feature = "jit")]
+mod taylor;

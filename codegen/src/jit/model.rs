@@ -2,13 +2,17 @@
 
 use std::fmt;
 use std::slice::from_mut;
+use std::sync::OnceLock;
 
 use appell_runtime::differences;
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
+use appell_runtime::series::Series;
 
 use super::on_demand::OnDemand;
+use super::series::JitSeries;
 use super::{JitError, Sizes};
 use crate::program::{FunctionKind, Program};
+use crate::taylor::{Lengths, expand};
 
 /// A model compiled in this process.
 ///
@@ -22,6 +26,8 @@ pub struct JitModel {
     sizes: Sizes,
     /// By [`FunctionKind`], in the order of its variants.
     parts: Vec<OnDemand>,
+    /// Made when they are first asked for.
+    series: OnceLock<JitSeries>,
 }
 
 /// The results that the trait asks for, with their lengths.
@@ -94,6 +100,7 @@ impl JitModel {
             program: program.clone(),
             sizes,
             parts,
+            series: OnceLock::new(),
         };
         // A processor without a compiler shows here and not in the middle of a simulation.
         model.part(FunctionKind::Rates).compile(program, sizes)?;
@@ -228,6 +235,14 @@ impl Model for JitModel {
 
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
         self.evaluate(FunctionKind::PositionConstraints, at, [residual, jacobian]);
+    }
+
+    fn series(&self) -> Option<&dyn Series> {
+        let series = self.series.get_or_init(|| {
+            let rates = self.part(FunctionKind::Rates).schedule(&self.program);
+            JitSeries::new(expand(&rates, Lengths::from(&self.program.info)))
+        });
+        Some(series)
     }
 
     fn switch_len(&self) -> usize {

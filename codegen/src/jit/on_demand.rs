@@ -91,21 +91,12 @@ impl OnDemand {
 
     #[cold]
     fn make(&self, program: &Program, sizes: Sizes) -> Ready {
-        let schedule = self.schedule(program);
-        match NativeFunction::compile(&schedule, sizes) {
-            Ok(native) => Ready::Native(native),
-            Err(reason) => Ready::Interpreted {
-                results: lengths(&schedule),
-                schedule,
-                sizes,
-                reason,
-            },
-        }
+        Ready::new(self.schedule(program), sizes)
     }
 
     /// The steps of the whole function, so that numbers do not depend on what is wanted, with the
     /// wanted results. The compiler drops the steps that these do not need.
-    fn schedule(&self, program: &Program) -> Schedule {
+    pub(super) fn schedule(&self, program: &Program) -> Schedule {
         let whole =
             find(program, self.kind).filter(|_| self.wanted.iter().any(|&(_, len)| len > 0));
         let mut schedule = match whole {
@@ -133,6 +124,19 @@ impl OnDemand {
 }
 
 impl Ready {
+    /// Compiles a schedule if that is possible.
+    pub(super) fn new(schedule: Schedule, sizes: Sizes) -> Self {
+        match NativeFunction::compile(&schedule, sizes) {
+            Ok(native) => Self::Native(native),
+            Err(reason) => Self::Interpreted {
+                results: lengths(&schedule),
+                schedule,
+                sizes,
+                reason,
+            },
+        }
+    }
+
     /// Evaluates the function; see [`NativeFunction::call`].
     #[inline]
     pub(super) fn call<const N: usize>(&self, at: At<'_>, weights: &[f64], out: [&mut [f64]; N]) {

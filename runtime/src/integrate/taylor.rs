@@ -1,0 +1,280 @@
+//! Integration by Taylor series of the motion.
+//!
+//! A step expands the motion about its start to an order that follows from the tolerances and goes as far as
+//! the last two terms allow (Jorba and Zou, *Experimental Mathematics* 14, 2005). The polynomial is the solution
+//! between the ends: events, ranges and outputs cost no evaluation.
+
+mod expansion;
+mod guards;
+
+use super::dense_output::{DenseOutput, Ends};
+use super::error::{Cause, IntegrationError};
+use super::options::Options;
+use super::outcome::{Outcome, Statistics};
+use super::stops::Stride;
+use super::watch::{End, Observer, Watch, Watcher};
+use crate::series::{Cubic, Series};
+use expansion::Expansion;
+
+/// Equations to be expanded, with what drives them.
+pub struct Expanded<'a> {
+    /// The equations.
+    pub series: &'a dyn Series,
+    /// Parameters in SI.
+    pub parameters: &'a [f64],
+    /// Writes the inputs as functions of the time since a given one in s, where the state is as given. They hold up
+    /// to the next switching time.
+    pub inputs: InputPolynomials<'a>,
+}
+
+/// Inputs from a time in s and a state on.
+pub type InputPolynomials<'a> = Box<dyn Fn(f64, &[f64], &mut [Cubic]) + 'a>;
+
+impl std::fmt::Debug for Expanded<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("Expanded")
+            .field("shape", self.series.shape())
+            .finish_non_exhaustive()
+    }
+}
+
+/// An integrator by Taylor series with its work arrays.
+#[derive(Debug, Clone, Default)]
+pub struct Taylor {
+    expansion: Expansion,
+    dense: DenseOutput,
+    inputs: Vec<Cubic>,
+    x: Vec<f64>,
+    x_new: Vec<f64>,
+    rates: Vec<f64>,
+    rates_new: Vec<f64>,
+    slopes: Vec<f64>,
+    order: usize,
+}
+
+/// Limits of the order.
+const ORDERS: [f64; 2] = [6.0, 40.0];
+/// The last terms of a step in tolerated errors.
+const LAST_TERM: f64 = 0.5;
+/// Shortening of a step at whose end the equations contradict the polynomial.
+const SHORTER: f64 = 0.5;
+
+impl Taylor {
+    /// An integrator for equations of any size.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Integrates over `span`, forward in time. `x` holds the initial state and leaves with the last one, also
+    /// after an error; the other arguments are those of [`Solver::integrate`](super::Solver::integrate).
+    pub fn integrate<O: Observer>(
+        &mut self,
+        equations: &Expanded<'_>,
+        span: [f64; 2],
+        x: &mut [f64],
+        options: &Options,
+        watch: &mut Watch<'_>,
+        observer: &mut O,
+    ) -> Result<Outcome, IntegrationError> {
+        options.check(span)?;
+        watch.check(x.len())?;
+        self.prepare(equations, x, options)?;
+        let mut watcher = Watcher::new(watch, observer, span);
+        let mut statistics = Statistics::default();
+        let end = match watcher.start(span[0], x) {
+            Ok(()) => self.run(
+                equations,
+                span[0],
+                x,
+                options,
+                &mut watcher,
+                &mut statistics,
+            ),
+            Err(cause) => End::failed(span[0], cause),
+        };
+        watcher.conclude(end, x, statistics)
+    }
+
+    /// Sizes the arrays.
+    fn prepare(
+        &mut self,
+        equations: &Expanded<'_>,
+        x: &[f64],
+        options: &Options,
+    ) -> Result<(), IntegrationError> {
+        let shape = equations.series.shape();
+        for (what, given, expected) in [
+            ("number of states", x.len(), shape.states),
+            (
+                "number of parameters",
+                equations.parameters.len(),
+                shape.parameters,
+            ),
+        ] {
+            if given != expected {
+                let value = given as f64;
+                return Err(IntegrationError::InvalidArgument { what, value });
+            }
+        }
+        self.order = order(options);
+        self.expansion.prepare(equations.series, self.order);
+        self.dense.prepare(x.len(), self.order + 1);
+        self.inputs.clear();
+        self.inputs.resize(shape.inputs, Cubic::default());
+        for vector in [
+            &mut self.x,
+            &mut self.x_new,
+            &mut self.rates,
+            &mut self.rates_new,
+            &mut self.slopes,
+        ] {
+            vector.clear();
+            vector.extend_from_slice(x);
+        }
+        Ok(())
+    }
+
+    /// Steps from stop to stop. `x` becomes the state at the end.
+    fn run<O: Observer>(
+        &mut self,
+        equations: &Expanded<'_>,
+        t_start: f64,
+        x: &mut [f64],
+        options: &Options,
+        watcher: &mut Watcher<'_, '_, O>,
+        statistics: &mut Statistics,
+    ) -> End {
+        let mut t = t_start;
+        let mut first_step = options.first_step;
+        self.x_new.copy_from_slice(x);
+        self.start(equations, t, statistics);
+        while t < watcher.stops.end() {
+            if let Some(component) = not_finite(&self.rates_new) {
+                return End::failed(t, Cause::NonFinite { component });
+            }
+            self.advance(equations, t);
+            let taken = statistics.steps + statistics.rejected;
+            if taken >= options.max_steps {
+                return End::failed(t, Cause::TooManySteps { steps: taken });
+            }
+            let longest = match self.longest(options) {
+                Ok(longest) => longest.min(options.max_step),
+                Err(cause) => return End::failed(t, cause),
+            };
+            let mut h = first_step.take().map_or(longest, |h| h.min(longest));
+            let stride = loop {
+                if t + 0.1 * h <= t {
+                    return End::failed(t, Cause::StepTooSmall { h });
+                }
+                let stride = watcher.stops.stride(t, h);
+                if let Some(stride) =
+                    self.attempt(equations, t, stride, options, watcher, statistics)
+                {
+                    break stride;
+                }
+                statistics.rejected += 1;
+                h = SHORTER * stride.h;
+            };
+            statistics.steps += 1;
+            let ends = Ends {
+                t: [t, stride.t_new],
+                x: [&self.x, &self.x_new],
+                rates: [&self.rates, &self.rates_new],
+            };
+            let interior = watcher.wants_interior(&ends).then_some(&self.dense);
+            if let Some(end) = watcher.accept(&ends, interior, x) {
+                return end;
+            }
+            t = stride.t_new;
+            if stride.lands && t < watcher.stops.end() {
+                self.start(equations, t, statistics);
+            }
+        }
+        End::finished(t)
+    }
+
+    /// The new state and its rates become the start of a step, and are expanded.
+    fn advance(&mut self, equations: &Expanded<'_>, t: f64) {
+        let n = self.x.len();
+        self.x.copy_from_slice(&self.x_new);
+        self.rates.copy_from_slice(&self.rates_new);
+        let coefficients = self.dense.taylor(t);
+        coefficients[..n].copy_from_slice(&self.x);
+        coefficients[n..2 * n].copy_from_slice(&self.rates);
+        self.expansion
+            .expand(equations.series, &self.inputs, coefficients, n, self.order);
+    }
+
+    /// Order zero at a time and the new state.
+    fn start(&mut self, equations: &Expanded<'_>, t: f64, statistics: &mut Statistics) {
+        statistics.evaluations += 1;
+        (equations.inputs)(t, &self.x_new, &mut self.inputs);
+        self.expansion.start(
+            equations.series,
+            t,
+            &self.x_new,
+            &self.inputs,
+            equations.parameters,
+            &mut self.rates_new,
+        );
+    }
+
+    /// The step at which the last two terms are as large as the tolerances allow.
+    fn longest(&self, options: &Options) -> Result<f64, Cause> {
+        let n = self.x.len();
+        let mut longest = f64::INFINITY;
+        for k in [self.order - 1, self.order] {
+            let (mut size, terms) = (0.0, self.dense.all_of_order(k));
+            for component in 0..n {
+                let term = terms[component].abs();
+                if !term.is_finite() {
+                    return Err(Cause::NotAnalytic { component });
+                }
+                size = f64::max(size, term / options.scale(self.x[component].abs()));
+            }
+            longest = longest.min((LAST_TERM / size).powf(1.0 / k as f64));
+        }
+        Ok(longest)
+    }
+
+    /// A step: the state and the rates at its end; nothing where they contradict the polynomial.
+    fn attempt<O: Observer>(
+        &mut self,
+        equations: &Expanded<'_>,
+        t: f64,
+        stride: Stride,
+        options: &Options,
+        watcher: &mut Watcher<'_, '_, O>,
+        statistics: &mut Statistics,
+    ) -> Option<Stride> {
+        self.dense.state(stride.t_new, &mut self.x_new);
+        if !watcher.project(stride.t_new, &mut self.x_new) || not_finite(&self.x_new).is_some() {
+            return None;
+        }
+        self.start(equations, stride.last, statistics);
+        self.dense.slopes(stride.t_new, &mut self.slopes);
+        let part = stride.h / (self.order as f64 + 1.0);
+        let agree = (0..self.x.len()).all(|i| {
+            let size = self.x[i].abs().max(self.x_new[i].abs());
+            let rounding = 64.0 * f64::EPSILON * (size + stride.h * self.rates_new[i].abs());
+            let off = part * (self.rates_new[i] - self.slopes[i]).abs();
+            off <= options.scale(size).max(rounding)
+        });
+        let _ = t;
+        agree.then_some(stride)
+    }
+}
+
+/// The order that makes a second of motion cheapest: with ε = e^−2L a step of order L + 1 reaches e⁻² of the radius of
+/// convergence.
+fn order(options: &Options) -> usize {
+    let tolerances = [options.rtol, options.atol].map(|tolerance| tolerance.max(1e-16));
+    let tolerance = tolerances[0].min(tolerances[1]);
+    let wanted = (1.0 - 0.5 * tolerance.ln()).ceil();
+    wanted.clamp(ORDERS[0], ORDERS[1]) as usize
+}
+
+fn not_finite(values: &[f64]) -> Option<usize> {
+    values.iter().position(|value| !value.is_finite())
+}

@@ -15,6 +15,7 @@ use super::stops::Stride;
 use super::watch::{End, Observer, Watch, Watcher};
 use crate::series::{Cubic, Series};
 use expansion::Expansion;
+use guards::{Change, first_change};
 
 /// Equations to be expanded, with what drives them.
 pub struct Expanded<'a> {
@@ -51,6 +52,10 @@ pub struct Taylor {
     rates_new: Vec<f64>,
     slopes: Vec<f64>,
     order: usize,
+    /// Whether the rates after the step are not those up to its end.
+    restart: bool,
+    /// Steps in a row that were too short to count.
+    slivers: usize,
 }
 
 /// Limits of the order.
@@ -59,6 +64,14 @@ const ORDERS: [f64; 2] = [6.0, 40.0];
 const LAST_TERM: f64 = 0.5;
 /// Shortening of a step at whose end the equations contradict the polynomial.
 const SHORTER: f64 = 0.5;
+/// Rounding of a state in a step, relative to it.
+const ROUNDING: f64 = 64.0 * f64::EPSILON;
+/// How far beyond a change a step may end, in steps.
+const FARTHEST: f64 = 1e-6;
+/// A step that is hardly one, in parts of the time.
+const SLIVER: f64 = 1e-12;
+/// So many of these in a row are one place that the motion does not leave.
+const MOST_SLIVERS: usize = 100;
 
 impl Taylor {
     /// An integrator for equations of any size.
@@ -147,38 +160,29 @@ impl Taylor {
     ) -> End {
         let mut t = t_start;
         let mut first_step = options.first_step;
+        self.slivers = 0;
         self.x_new.copy_from_slice(x);
         self.start(equations, t, statistics);
         while t < watcher.stops.end() {
             if let Some(component) = not_finite(&self.rates_new) {
                 return End::failed(t, Cause::NonFinite { component });
             }
-            self.advance(equations, t);
             let taken = statistics.steps + statistics.rejected;
             if taken >= options.max_steps {
                 return End::failed(t, Cause::TooManySteps { steps: taken });
             }
+            self.advance(equations, t);
             let longest = match self.longest(options) {
                 Ok(longest) => longest.min(options.max_step),
                 Err(cause) => return End::failed(t, cause),
             };
-            let mut h = first_step.take().map_or(longest, |h| h.min(longest));
-            let stride = loop {
-                if t + 0.1 * h <= t {
-                    return End::failed(t, Cause::StepTooSmall { h });
-                }
-                let stride = watcher.stops.stride(t, h);
-                if let Some(stride) =
-                    self.attempt(equations, t, stride, options, watcher, statistics)
-                {
-                    break stride;
-                }
-                statistics.rejected += 1;
-                h = SHORTER * stride.h;
+            let h = first_step.take().map_or(longest, |h| h.min(longest));
+            let t_new = match self.step(equations, t, h, options, watcher, statistics) {
+                Ok(t_new) => t_new,
+                Err(cause) => return End::failed(t, cause),
             };
-            statistics.steps += 1;
             let ends = Ends {
-                t: [t, stride.t_new],
+                t: [t, t_new],
                 x: [&self.x, &self.x_new],
                 rates: [&self.rates, &self.rates_new],
             };
@@ -186,12 +190,76 @@ impl Taylor {
             if let Some(end) = watcher.accept(&ends, interior, x) {
                 return end;
             }
-            t = stride.t_new;
-            if stride.lands && t < watcher.stops.end() {
+            t = t_new;
+            if self.restart && t < watcher.stops.end() {
                 self.start(equations, t, statistics);
             }
         }
         End::finished(t)
+    }
+
+    /// A step from `t` of length `h` or less, as far as the polynomial and the equations agree; tells where it ends.
+    fn step<O: Observer>(
+        &mut self,
+        equations: &Expanded<'_>,
+        t: f64,
+        mut h: f64,
+        options: &Options,
+        watcher: &mut Watcher<'_, '_, O>,
+        statistics: &mut Statistics,
+    ) -> Result<f64, Cause> {
+        let guards = &equations.series.shape().guards;
+        loop {
+            if t + 0.1 * h <= t || self.slivers > MOST_SLIVERS {
+                return Err(Cause::StepTooSmall { h });
+            }
+            let stride = watcher.stops.stride(t, h);
+            let change = first_change(guards, &self.expansion.guards, stride.h);
+            let (end, last) = match change {
+                Some(change) => (t + change.before, t + change.before),
+                None => (stride.t_new, stride.last),
+            };
+            if self.attempt(equations, [t, end], last, options, watcher, statistics) {
+                statistics.steps += 1;
+                let end = match change {
+                    Some(change) => self.cross(equations, t, stride, change, watcher, statistics),
+                    None => end,
+                };
+                self.restart = change.is_none() && stride.lands;
+                let is_sliver = end - t <= SLIVER * t.abs().max(1.0);
+                self.slivers = if is_sliver { self.slivers + 1 } else { 0 };
+                return Ok(end);
+            }
+            statistics.rejected += 1;
+            h = SHORTER * (end - t);
+        }
+    }
+
+    /// Beyond a change of an answer by as little as shows in the equations themselves.
+    fn cross<O: Observer>(
+        &mut self,
+        equations: &Expanded<'_>,
+        t: f64,
+        stride: Stride,
+        change: Change,
+        watcher: &mut Watcher<'_, '_, O>,
+        statistics: &mut Statistics,
+    ) -> f64 {
+        let guard = equations.series.shape().guards[change.guard];
+        let old = guard.answer(self.expansion.guards[change.guard]);
+        let (first, mut beyond) = ((t + change.after).max(t.next_up()), 0.0);
+        loop {
+            let end = (first + beyond).min(stride.t_new);
+            self.dense.state(end, &mut self.x_new);
+            // Where this fails, the next step does.
+            watcher.project(end, &mut self.x_new);
+            self.start(equations, end, statistics);
+            let new = guard.answer(self.expansion.guards_new[change.guard]);
+            if new != old || end >= stride.t_new || beyond > FARTHEST * stride.h {
+                return end;
+            }
+            beyond = f64::max(2.0 * beyond, first.next_up() - first);
+        }
     }
 
     /// The new state and its rates become the start of a step, and are expanded.
@@ -238,31 +306,31 @@ impl Taylor {
         Ok(longest)
     }
 
-    /// A step: the state and the rates at its end; nothing where they contradict the polynomial.
+    /// The state and the rates at the end of a step, these at the time `last`; false where they contradict the
+    /// polynomial.
     fn attempt<O: Observer>(
         &mut self,
         equations: &Expanded<'_>,
-        t: f64,
-        stride: Stride,
+        [t, end]: [f64; 2],
+        last: f64,
         options: &Options,
         watcher: &mut Watcher<'_, '_, O>,
         statistics: &mut Statistics,
-    ) -> Option<Stride> {
-        self.dense.state(stride.t_new, &mut self.x_new);
-        if !watcher.project(stride.t_new, &mut self.x_new) || not_finite(&self.x_new).is_some() {
-            return None;
+    ) -> bool {
+        self.dense.state(end, &mut self.x_new);
+        if !watcher.project(end, &mut self.x_new) || not_finite(&self.x_new).is_some() {
+            return false;
         }
-        self.start(equations, stride.last, statistics);
-        self.dense.slopes(stride.t_new, &mut self.slopes);
-        let part = stride.h / (self.order as f64 + 1.0);
-        let agree = (0..self.x.len()).all(|i| {
+        self.start(equations, last, statistics);
+        self.dense.slopes(end, &mut self.slopes);
+        // The first term that is left out makes a defect of its order over the step.
+        let (h, part) = (end - t, (end - t) / (self.order as f64 + 1.0));
+        (0..self.x.len()).all(|i| {
             let size = self.x[i].abs().max(self.x_new[i].abs());
-            let rounding = 64.0 * f64::EPSILON * (size + stride.h * self.rates_new[i].abs());
+            let rounding = ROUNDING * (size + h * self.rates_new[i].abs());
             let off = part * (self.rates_new[i] - self.slopes[i]).abs();
             off <= options.scale(size).max(rounding)
-        });
-        let _ = t;
-        agree.then_some(stride)
+        })
     }
 }
 

@@ -12,8 +12,12 @@ pub(super) struct Expansion {
     /// Inputs at some order, then the numbers of the order.
     order: Vec<f64>,
     products: Products,
+    /// Values of the guards where order zero was last computed.
+    pub(super) guards_new: Vec<f64>,
     /// Coefficients of the guards by order.
     pub(super) guards: Vec<f64>,
+    /// Coefficients beyond the highest order.
+    beyond: Vec<f64>,
 }
 
 /// The factors of all products, and the sums over them.
@@ -41,7 +45,9 @@ impl Expansion {
         sized(&mut self.kept, shape.kept);
         sized(&mut self.inputs, shape.inputs);
         sized(&mut self.order, shape.inputs + OrderNumber::COUNT);
+        sized(&mut self.guards_new, shape.guards.len());
         sized(&mut self.guards, shape.guards.len() * (order + 1));
+        sized(&mut self.beyond, shape.states);
         let products = &mut self.products;
         products.count = shape.products;
         products.width = shape.products.next_multiple_of(BLOCK);
@@ -64,12 +70,13 @@ impl Expansion {
         for (u, input) in self.inputs.iter_mut().zip(inputs) {
             *u = input[0];
         }
-        let (u, count) = (&self.inputs, series.shape().guards.len());
+        let u = &self.inputs;
         let at = At { t, x, u, p };
-        series.start(at, rates, &mut self.kept, &mut self.guards[..count]);
+        series.start(at, rates, &mut self.kept, &mut self.guards_new);
     }
 
-    /// Orders 2 to `order` of the states, `n` numbers each; those of orders 0 and 1 are there.
+    /// Orders 2 to `order` of the states, `n` numbers each, and all of the guards; orders 0 and 1 of the states
+    /// are there.
     pub(super) fn expand(
         &mut self,
         series: &dyn Series,
@@ -79,7 +86,9 @@ impl Expansion {
         order: usize,
     ) {
         let count = series.shape().guards.len();
-        for k in 1..order {
+        self.guards[..count].copy_from_slice(&self.guards_new);
+        let last = if count == 0 { order - 1 } else { order };
+        for k in 1..=last {
             self.products.sum(k);
             let Products {
                 width,
@@ -92,7 +101,11 @@ impl Expansion {
                 *u = input.get(k).copied().unwrap_or(0.0);
             }
             self.order[inputs.len()..].copy_from_slice(&OrderNumber::all(k));
-            let (known, next) = x.split_at_mut((k + 1) * n);
+            let (known, rest) = x.split_at_mut((k + 1) * n);
+            let next = match k < order {
+                true => &mut rest[..n],
+                false => &mut self.beyond[..],
+            };
             let at = At {
                 t: k as f64,
                 x: &known[k * n..],
@@ -106,7 +119,7 @@ impl Expansion {
             series.sweep(
                 from,
                 Swept {
-                    next: &mut next[..n],
+                    next,
                     left: &mut left[k * *width..][..*products],
                     right: &mut right[k * *width..][..*products],
                     guards: &mut self.guards[k * count..][..count],

@@ -31,3 +31,5 @@ mod symbolic_laws;
 mod symbolic_print;
 #[cfg(feature = "jit")]
 mod taylor;
+#[cfg(feature = "jit")]
+mod taylor_motions;

@@ -83,10 +83,15 @@ impl DenseOutput {
         [theta, 1.0 - theta]
     }
 
-    /// The derivative of the state at `t`, written to `slopes`.
-    pub(super) fn slopes(&self, t: f64, slopes: &mut [f64]) {
-        for (i, slope) in slopes.iter_mut().enumerate() {
-            *slope = self.component_and_slope(t, i).1;
+    /// The derivative of a Taylor polynomial at `t`, written to `slopes`.
+    pub(super) fn taylor_slopes(&self, t: f64, slopes: &mut [f64]) {
+        let since = t - self.t_old;
+        slopes.fill(0.0);
+        let orders = self.coefficients.chunks_exact(self.n.max(1)).enumerate();
+        for (order, terms) in orders.skip(1).rev() {
+            for (slope, term) in slopes.iter_mut().zip(terms) {
+                *slope = order as f64 * term + since * *slope;
+            }
         }
     }
 

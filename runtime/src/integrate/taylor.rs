@@ -6,6 +6,7 @@
 
 mod expansion;
 mod guards;
+mod products;
 
 use super::dense_output::{DenseOutput, Ends};
 use super::error::{Cause, IntegrationError};
@@ -59,7 +60,10 @@ pub struct Taylor {
 }
 
 /// Limits of the order.
-const ORDERS: [f64; 2] = [6.0, 40.0];
+const LEAST_ORDER: usize = 6;
+const MOST_ORDER: usize = 30;
+/// Rounding leaves no more digits than this.
+const LEAST_TOLERANCE: f64 = 1e-16;
 /// The last terms of a step in tolerated errors.
 const LAST_TERM: f64 = 0.5;
 /// Shortening of a step at whose end the equations contradict the polynomial.
@@ -92,7 +96,7 @@ impl Taylor {
     ) -> Result<Outcome, IntegrationError> {
         options.check(span)?;
         watch.check(x.len())?;
-        self.prepare(equations, x, options)?;
+        self.prepare(equations, x, order(options))?;
         let mut watcher = Watcher::new(watch, observer, span);
         let mut statistics = Statistics::default();
         let end = match watcher.start(span[0], x) {
@@ -109,12 +113,27 @@ impl Taylor {
         watcher.conclude(end, x, statistics)
     }
 
-    /// Sizes the arrays.
+    /// The coefficients of orders 0 to `order` of the motion that passes `x` at `t` in s: `n` numbers each.
+    pub fn coefficients(
+        &mut self,
+        equations: &Expanded<'_>,
+        t: f64,
+        x: &[f64],
+        order: usize,
+    ) -> Result<&[f64], IntegrationError> {
+        self.prepare(equations, x, order.max(1))?;
+        self.start(equations, t, &mut Statistics::default());
+        self.advance(equations, t);
+        let count = (order + 1) * x.len();
+        Ok(&self.dense.taylor(t)[..count])
+    }
+
+    /// Sizes the arrays for expansions to an order.
     fn prepare(
         &mut self,
         equations: &Expanded<'_>,
         x: &[f64],
-        options: &Options,
+        order: usize,
     ) -> Result<(), IntegrationError> {
         let shape = equations.series.shape();
         for (what, given, expected) in [
@@ -130,7 +149,7 @@ impl Taylor {
                 return Err(IntegrationError::InvalidArgument { what, value });
             }
         }
-        self.order = order(options);
+        self.order = order;
         self.expansion.prepare(equations.series, self.order);
         self.dense.prepare(x.len(), self.order + 1);
         self.inputs.clear();
@@ -322,7 +341,7 @@ impl Taylor {
             return false;
         }
         self.start(equations, last, statistics);
-        self.dense.slopes(end, &mut self.slopes);
+        self.dense.taylor_slopes(end, &mut self.slopes);
         // The first term that is left out makes a defect of its order over the step.
         let (h, part) = (end - t, (end - t) / (self.order as f64 + 1.0));
         (0..self.x.len()).all(|i| {
@@ -334,13 +353,16 @@ impl Taylor {
     }
 }
 
-/// The order that makes a second of motion cheapest: with ε = e^−2L a step of order L + 1 reaches e⁻² of the radius of
-/// convergence.
+/// The order of the expansions. With ε = e⁻ᴸ a step of order L/2 is the longest for its cost where this grows with the
+/// square of the order (Jorba and Zou), and one of order L where it grows with the order. Sums over products are
+/// cheap here, and a start is not: the truth lies between.
 fn order(options: &Options) -> usize {
-    let tolerances = [options.rtol, options.atol].map(|tolerance| tolerance.max(1e-16));
+    let tolerances = [options.rtol, options.atol].map(|tolerance| tolerance.max(LEAST_TOLERANCE));
     let tolerance = tolerances[0].min(tolerances[1]);
-    let wanted = (1.0 - 0.5 * tolerance.ln()).ceil();
-    wanted.clamp(ORDERS[0], ORDERS[1]) as usize
+    let wanted = (1.0 - 0.7 * tolerance.ln()).ceil();
+    // A small number, limited on both sides.
+    let orders = (LEAST_ORDER..MOST_ORDER).take_while(|&order| (order as f64) < wanted);
+    orders.last().map_or(LEAST_ORDER, |order| order + 1)
 }
 
 fn not_finite(values: &[f64]) -> Option<usize> {

@@ -1,5 +1,6 @@
 //! The coefficients of one step.
 
+use super::products::Products;
 use crate::model::At;
 use crate::series::{Cubic, OrderNumber, Series, Sweep, Swept};
 
@@ -9,8 +10,8 @@ pub(super) struct Expansion {
     kept: Vec<f64>,
     /// Inputs at order zero.
     inputs: Vec<f64>,
-    /// Inputs at some order, then the numbers of the order.
-    order: Vec<f64>,
+    /// Inputs at each order, then the numbers of the order.
+    orders: Vec<f64>,
     products: Products,
     /// Values of the guards where order zero was last computed.
     pub(super) guards_new: Vec<f64>,
@@ -19,20 +20,6 @@ pub(super) struct Expansion {
     /// Coefficients beyond the highest order.
     beyond: Vec<f64>,
 }
-
-/// The factors of all products, and the sums over them.
-#[derive(Debug, Clone, Default)]
-struct Products {
-    /// How many there are, rounded up to whole blocks.
-    width: usize,
-    count: usize,
-    left: Vec<f64>,
-    right: Vec<f64>,
-    sums: Vec<f64>,
-}
-
-/// Products that are summed together.
-const BLOCK: usize = 8;
 
 impl Expansion {
     /// Sizes the arrays for a series up to an order.
@@ -44,17 +31,15 @@ impl Expansion {
         };
         sized(&mut self.kept, shape.kept);
         sized(&mut self.inputs, shape.inputs);
-        sized(&mut self.order, shape.inputs + OrderNumber::COUNT);
+        let width = shape.inputs + OrderNumber::COUNT;
+        sized(&mut self.orders, width * (order + 1));
+        for (k, numbers) in self.orders.chunks_exact_mut(width).enumerate() {
+            numbers[shape.inputs..].copy_from_slice(&OrderNumber::all(k));
+        }
         sized(&mut self.guards_new, shape.guards.len());
         sized(&mut self.guards, shape.guards.len() * (order + 1));
         sized(&mut self.beyond, shape.states);
-        let products = &mut self.products;
-        products.count = shape.products;
-        products.width = shape.products.next_multiple_of(BLOCK);
-        for factors in [&mut products.left, &mut products.right] {
-            sized(factors, products.width * (order + 1));
-        }
-        sized(&mut products.sums, products.width);
+        self.products.prepare(shape.products, order);
     }
 
     /// Order zero at a time and state: writes the rates.
@@ -88,19 +73,20 @@ impl Expansion {
         let count = series.shape().guards.len();
         self.guards[..count].copy_from_slice(&self.guards_new);
         let last = if count == 0 { order - 1 } else { order };
-        for k in 1..=last {
-            self.products.sum(k);
-            let Products {
-                width,
-                count: products,
-                left,
-                right,
-                sums,
-            } = &mut self.products;
-            for (u, input) in self.order.iter_mut().zip(inputs) {
-                *u = input.get(k).copied().unwrap_or(0.0);
+        let width = inputs.len() + OrderNumber::COUNT;
+        for (k, of_order) in self.orders.chunks_exact_mut(width).enumerate().take(4) {
+            for (u, input) in of_order.iter_mut().zip(inputs) {
+                *u = input[k];
             }
-            self.order[inputs.len()..].copy_from_slice(&OrderNumber::all(k));
+        }
+        for (k, of_order) in self
+            .orders
+            .chunks_exact(width)
+            .enumerate()
+            .take(last + 1)
+            .skip(1)
+        {
+            let (sums, [left, right]) = self.products.summed(k);
             let (known, rest) = x.split_at_mut((k + 1) * n);
             let next = match k < order {
                 true => &mut rest[..n],
@@ -109,39 +95,19 @@ impl Expansion {
             let at = At {
                 t: k as f64,
                 x: &known[k * n..],
-                u: &self.order,
+                u: of_order,
                 p: &self.kept,
             };
-            let from = Sweep {
-                at,
-                sums: &sums[..*products],
-            };
+            let from = Sweep { at, sums };
             series.sweep(
                 from,
                 Swept {
                     next,
-                    left: &mut left[k * *width..][..*products],
-                    right: &mut right[k * *width..][..*products],
+                    left,
+                    right,
                     guards: &mut self.guards[k * count..][..count],
                 },
             );
-        }
-    }
-}
-
-impl Products {
-    /// Σ aⱼ bₖ₋ⱼ over 1 ≤ j < k for all products.
-    fn sum(&mut self, k: usize) {
-        for start in (0..self.width).step_by(BLOCK) {
-            let mut sum = [0.0; BLOCK];
-            for j in 1..k {
-                let left = &self.left[j * self.width + start..][..BLOCK];
-                let right = &self.right[(k - j) * self.width + start..][..BLOCK];
-                for lane in 0..BLOCK {
-                    sum[lane] += left[lane] * right[lane];
-                }
-            }
-            self.sums[start..][..BLOCK].copy_from_slice(&sum);
         }
     }
 }

@@ -21,11 +21,14 @@ pub(super) fn first_change(guards: &[Guard], coefficients: &[f64], h: f64) -> Op
     let count = guards.len();
     let mut first: Option<Change> = None;
     for (place, guard) in guards.iter().enumerate() {
-        let answer = |tau: f64| {
-            let terms = coefficients[place..].iter().step_by(count).rev();
-            guard.answer(terms.fold(0.0, |sum, term| term + tau * sum))
-        };
+        let terms = || coefficients[place..].iter().step_by(count);
         let longest = first.map_or(h, |change| change.before);
+        let most = terms().skip(1).rev();
+        let most = longest * most.fold(0.0, |sum, term| term.abs() + longest * sum);
+        if terms().next().is_some_and(|now| now.abs() > most) {
+            continue;
+        }
+        let answer = |tau: f64| guard.answer(terms().rev().fold(0.0, |sum, term| term + tau * sum));
         if let Some([before, after]) = change(answer, longest) {
             first = Some(Change {
                 guard: place,

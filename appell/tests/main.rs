@@ -4,3 +4,4 @@
 
 mod control;
 mod errors;
+mod taylor;

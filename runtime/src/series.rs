@@ -5,15 +5,12 @@
 //! values *kept* at order zero, and what lower orders contribute to products comes in sums over pairs of
 //! coefficients, Σ aⱼ bₖ₋ⱼ for 1 ≤ j < k, which the caller takes.
 
-use crate::model::At;
-
 /// Equations ẋ = f(t, x, u, p) with the recurrences of their Taylor coefficients.
 pub trait Series: Send + Sync {
     /// Lengths of what the methods read and write.
     fn shape(&self) -> &Shape;
-    /// Order zero: writes the rates, which are the coefficients of order 1 of the states; the values that sweeps
-    /// need; and the values whose signs decide what the equations are.
-    fn start(&self, at: At<'_>, next: &mut [f64], kept: &mut [f64], guards: &mut [f64]);
+    /// Order zero.
+    fn start(&self, from: Start<'_>, to: Started<'_>);
     /// Order k ≥ 1.
     fn sweep(&self, from: Sweep<'_>, to: Swept<'_>);
 }
@@ -87,12 +84,41 @@ impl OrderNumber {
     }
 }
 
+/// What order zero reads, all in SI.
+#[derive(Debug, Clone, Copy)]
+pub struct Start<'a> {
+    /// Time in s.
+    pub t: f64,
+    /// State.
+    pub x: &'a [f64],
+    /// Inputs.
+    pub u: &'a [f64],
+    /// Parameters.
+    pub p: &'a [f64],
+}
+
+/// What order zero writes.
+#[derive(Debug)]
+pub struct Started<'a> {
+    /// The rates: coefficients of order 1 of the states.
+    pub next: &'a mut [f64],
+    /// Values that sweeps need.
+    pub kept: &'a mut [f64],
+    /// Values whose signs decide what the equations are.
+    pub guards: &'a mut [f64],
+}
+
 /// What a sweep reads.
 #[derive(Debug, Clone, Copy)]
 pub struct Sweep<'a> {
-    /// The order k as the time; the coefficients of order k of the states and of the inputs, these followed by
-    /// the numbers of [`OrderNumber`]; what was kept as parameters.
-    pub at: At<'a>,
+    /// The order k.
+    pub k: f64,
+    /// Coefficients of order k of the states.
+    pub x: &'a [f64],
+    /// Of the inputs, then the numbers of [`OrderNumber`].
+    pub u: &'a [f64],
+    /// What order zero kept.
+    pub kept: &'a [f64],
     /// The sums of all products.
     pub sums: &'a [f64],
 }

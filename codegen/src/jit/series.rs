@@ -3,7 +3,7 @@
 use std::fmt;
 
 use appell_runtime::model::At;
-use appell_runtime::series::{OrderNumber, Series, Shape, Sweep, Swept};
+use appell_runtime::series::{OrderNumber, Series, Shape, Start, Started, Sweep, Swept};
 
 use super::Sizes;
 use super::on_demand::Ready;
@@ -47,13 +47,28 @@ impl Series for JitSeries {
         &self.shape
     }
 
-    fn start(&self, at: At<'_>, next: &mut [f64], kept: &mut [f64], guards: &mut [f64]) {
-        self.start.call(at, &[], [next, kept, guards]);
+    fn start(&self, from: Start<'_>, to: Started<'_>) {
+        let Start { t, x, u, p } = from;
+        let results = [to.next, to.kept, to.guards];
+        self.start.call(At { t, x, u, p }, &[], results);
     }
 
     fn sweep(&self, from: Sweep<'_>, to: Swept<'_>) {
+        let Sweep {
+            k,
+            x,
+            u,
+            kept,
+            sums,
+        } = from;
+        let at = At {
+            t: k,
+            x,
+            u,
+            p: kept,
+        };
         let results = [to.next, to.left, to.right, to.guards];
-        self.sweep.call(from.at, from.sums, results);
+        self.sweep.call(at, sums, results);
     }
 }
 

@@ -1,7 +1,7 @@
 //! Series executed step by step.
 
 use appell_runtime::model::At;
-use appell_runtime::series::{Series, Shape, Sweep, Swept};
+use appell_runtime::series::{Series, Shape, Start, Started, Sweep, Swept};
 
 use super::SeriesProgram;
 use crate::schedule::{Schedule, interpret_weighted};
@@ -15,13 +15,32 @@ impl Series for InterpretedSeries {
         &self.0.shape
     }
 
-    fn start(&self, at: At<'_>, next: &mut [f64], kept: &mut [f64], guards: &mut [f64]) {
-        write(&self.0.start, at, &[], [next, kept, guards]);
+    fn start(&self, from: Start<'_>, to: Started<'_>) {
+        let Start { t, x, u, p } = from;
+        let results = [to.next, to.kept, to.guards];
+        write(&self.0.start, At { t, x, u, p }, &[], results);
     }
 
     fn sweep(&self, from: Sweep<'_>, to: Swept<'_>) {
-        let results = [to.next, to.left, to.right, to.guards];
-        write(&self.0.sweep, from.at, from.sums, results);
+        let Sweep {
+            k,
+            x,
+            u,
+            kept,
+            sums,
+        } = from;
+        let at = At {
+            t: k,
+            x,
+            u,
+            p: kept,
+        };
+        write(
+            &self.0.sweep,
+            at,
+            sums,
+            [to.next, to.left, to.right, to.guards],
+        );
     }
 }
 

@@ -1,8 +1,7 @@
 //! The coefficients of one step.
 
 use super::products::Products;
-use crate::model::At;
-use crate::series::{Cubic, OrderNumber, Series, Sweep, Swept};
+use crate::series::{Cubic, OrderNumber, Series, Start, Started, Sweep, Swept};
 
 /// Work arrays of an expansion. Coefficients of one order follow each other.
 #[derive(Debug, Clone, Default)]
@@ -56,8 +55,13 @@ impl Expansion {
             *u = input[0];
         }
         let u = &self.inputs;
-        let at = At { t, x, u, p };
-        series.start(at, rates, &mut self.kept, &mut self.guards_new);
+        let (kept, guards) = (&mut self.kept, &mut self.guards_new);
+        let to = Started {
+            next: rates,
+            kept,
+            guards,
+        };
+        series.start(Start { t, x, u, p }, to);
     }
 
     /// Orders 2 to `order` of the states, `n` numbers each, and all of the guards; orders 0 and 1 of the states
@@ -92,13 +96,13 @@ impl Expansion {
                 true => &mut rest[..n],
                 false => &mut self.beyond[..],
             };
-            let at = At {
-                t: k as f64,
+            let from = Sweep {
+                k: k as f64,
                 x: &known[k * n..],
                 u: of_order,
-                p: &self.kept,
+                kept: &self.kept,
+                sums,
             };
-            let from = Sweep { at, sums };
             series.sweep(
                 from,
                 Swept {

@@ -8,6 +8,7 @@ use appell_codegen::schedule::{Schedule, interpret, pi, schedule};
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::Signal;
 use appell_runtime::model::{At, ModelInfo};
+use appell_runtime::series::{Cubic, differentiated};
 use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
 use appell_spec::expr::{BinaryOp, Expr as SpecExpr, ExprKind, Function as Named, Quantity};
@@ -67,6 +68,8 @@ pub(crate) struct StateFunction {
     native: Option<NativeFunction>,
     count: usize,
     declared: usize,
+    /// Signals and the orders of their derivatives that are inputs of the model.
+    derivatives: Vec<(usize, u8)>,
     signals: Vec<Signal>,
 }
 
@@ -79,8 +82,9 @@ impl StateFunction {
             .map(Signal::new)
             .collect::<Result<Vec<_>, _>>()?;
         let mut info = model.clone();
-        // The inputs of this function: those of the model, which it must not use, and all signals.
-        let mut inputs = model.inputs[..model.declared_inputs].to_vec();
+        // The inputs of this function: those of the model, of which it must not use the declared ones, and
+        // all signals.
+        let mut inputs = model.inputs.to_vec();
         inputs.extend(
             model
                 .signals
@@ -96,6 +100,10 @@ impl StateFunction {
         );
         info.inputs = inputs.into();
         let mut input_symbols = symbols.inputs.clone();
+        let derivatives = model.signal_inputs.iter();
+        input_symbols.extend(
+            derivatives.map(|&(signal, order)| symbols.signals[signal][usize::from(order)]),
+        );
         input_symbols.extend(symbols.signals.iter().map(|orders| orders[0]));
         let arguments = Arguments {
             time: ids(&graph, &[symbols.time])[0],
@@ -132,16 +140,46 @@ impl StateFunction {
             native,
             count,
             declared: model.declared_inputs,
+            derivatives: model.signal_inputs.to_vec(),
             signals,
         })
+    }
+
+    /// Its operations. Their inputs are the declared ones, then those of [`Self::polynomials`].
+    pub(crate) fn schedule(&self) -> &Schedule {
+        &self.schedule
+    }
+
+    /// How many declared inputs there are.
+    pub(crate) fn declared(&self) -> usize {
+        self.declared
+    }
+
+    /// How many inputs its operations have.
+    pub(crate) fn inputs(&self) -> usize {
+        self.declared + self.derivatives.len() + self.signals.len()
+    }
+
+    /// The inputs after the declared ones as polynomials of the time since `t` in s.
+    pub(crate) fn polynomials(&self, t: f64, u: &mut [Cubic]) {
+        for (u, (signal, order)) in u.iter_mut().zip(self.tabulated()) {
+            *u = differentiated(signal.polynomial(t), order);
+        }
+    }
+
+    /// The signals and orders of their derivatives that are inputs.
+    fn tabulated(&self) -> impl Iterator<Item = (&Signal, u8)> {
+        let derivatives = self.derivatives.iter();
+        let derivatives = derivatives.map(|&(signal, order)| (&self.signals[signal], order));
+        derivatives.chain(self.signals.iter().map(|signal| (signal, 0)))
     }
 
     /// Evaluates at time `t`, state `x` and parameters `p` into the first entries of `values`.
     pub(crate) fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
         let values = &mut values[..self.count];
-        let mut u = vec![0.0; self.declared + self.signals.len()];
-        for (u, signal) in u[self.declared..].iter_mut().zip(&self.signals) {
-            *u = signal.value(t);
+        let mut u = vec![0.0; self.declared + self.derivatives.len() + self.signals.len()];
+        for (u, (signal, order)) in u[self.declared..].iter_mut().zip(self.tabulated()) {
+            *u = signal.derivative(t, order);
         }
         match &self.native {
             Some(native) => native.call(At { t, x, u: &u, p }, [values]),

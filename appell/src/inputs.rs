@@ -4,4 +4,5 @@ pub use appell_runtime::inputs::InputSource;
 
 pub mod controller;
 pub mod feedback;
+mod law;
 pub mod tabulated;

@@ -1,10 +1,12 @@
 //! A model: a spec with its equations of motion, and one call for each request.
 
 use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
 
 use appell_codegen::Derived;
 use appell_codegen::compile::report;
 use appell_codegen::program::FunctionKind;
+use appell_codegen::schedule::{Schedule as Operations, schedule};
 use appell_gap::{diagnose as gap, identify};
 use appell_recordings::DataSet;
 use appell_runtime::integrate::{Direction, Event};
@@ -35,6 +37,8 @@ pub struct Model {
     equations: engine::Equations,
     /// Whether the equations have the adjoints of estimation.
     adjoints: bool,
+    /// The operations of the rates, made when they are first asked for.
+    rates: OnceLock<Operations>,
 }
 
 impl Model {
@@ -83,6 +87,7 @@ impl Model {
             source,
             equations,
             adjoints: false,
+            rates: OnceLock::new(),
         })
     }
 
@@ -94,6 +99,7 @@ impl Model {
             source,
             equations: engine::Equations::of(program, Engine::Jit),
             adjoints: false,
+            rates: OnceLock::new(),
         })
     }
 
@@ -105,6 +111,7 @@ impl Model {
             source,
             equations,
             adjoints: true,
+            rates: OnceLock::new(),
         })
     }
 
@@ -117,6 +124,17 @@ impl Model {
             return compute(self.equations());
         }
         compute(engine::Equations::for_estimation(&self.source)?.model())
+    }
+
+    /// The operations of the rates, which Taylor series expand.
+    fn rates(&self) -> Result<&Operations, Error> {
+        if let Some(rates) = self.rates.get() {
+            return Ok(rates);
+        }
+        let Source { file, text, .. } = &self.source;
+        let program = appell_codegen::compile(file, text, &[FunctionKind::Rates])?;
+        let schedule = schedule(&program, &program.functions[0]);
+        Ok(self.rates.get_or_init(|| schedule))
     }
 
     /// The equations of motion: rates, Jacobians, Appell's equations, energies, outputs.
@@ -169,7 +187,13 @@ impl Model {
             }
             .run()
         };
-        motion.simulate(self.equations(), self.setup()?, self.name(), run)
+        motion.simulate(
+            self.equations(),
+            || self.rates(),
+            self.setup()?,
+            self.name(),
+            run,
+        )
     }
 
     /// Integrates the equations of motion as long as `go_on`, which is asked several times in each step.
@@ -203,7 +227,13 @@ impl Model {
             }
             .run()
         };
-        motion.simulate(self.equations(), self.setup()?, self.name(), run)
+        motion.simulate(
+            self.equations(),
+            || self.rates(),
+            self.setup()?,
+            self.name(),
+            run,
+        )
     }
 
     /// A page that animates a motion; `ending` is the reason of an early end.

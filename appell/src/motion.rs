@@ -4,6 +4,7 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
+use appell_codegen::schedule::Schedule;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::Model;
@@ -199,10 +200,12 @@ impl Motion {
         self.interval.unwrap_or(self.t_end / 1000.0)
     }
 
-    /// Integrates the equations of motion with `run`; `name` names the spec in messages.
-    pub(crate) fn simulate(
+    /// Integrates the equations of motion with `run`; `name` names the spec in messages, `rates` gives the
+    /// operations to be expanded if the method needs them.
+    pub(crate) fn simulate<'r>(
         &self,
         model: &dyn Model,
+        rates: impl FnOnce() -> Result<&'r Schedule, Error>,
         mut setup: Setup<'_>,
         name: &str,
         run: impl FnOnce(Simulation<'_>) -> Result<Trajectory, SimulationError>,
@@ -215,7 +218,10 @@ impl Motion {
         let held_from = plan
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
-        let controller = plan.controller(&setup, self.t_end)?;
+        let mut controller = plan.controller(&setup, self.t_end)?;
+        if self.method == Method::Taylor {
+            controller.expand(rates()?, model.info());
+        }
         let simulation = Simulation {
             parameters: setup.parameters,
             initial_state: setup.initial,

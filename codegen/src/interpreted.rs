@@ -7,9 +7,11 @@ use std::sync::OnceLock;
 
 use appell_runtime::differences;
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
+use appell_runtime::series::Series;
 
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{Schedule, interpret_weighted, schedule};
+use crate::taylor::{InterpretedSeries, Lengths, expand};
 
 /// A model that interprets its schedules. Functions that the program lacks give NaN.
 #[derive(Debug)]
@@ -17,13 +19,19 @@ pub struct InterpretedModel {
     program: Program,
     /// By function of the program; made at the first use.
     schedules: Vec<OnceLock<Schedule>>,
+    /// Made at the first use.
+    series: OnceLock<InterpretedSeries>,
 }
 
 impl InterpretedModel {
     /// Takes a program.
     pub fn new(program: Program) -> Self {
         let schedules = program.functions.iter().map(|_| OnceLock::new()).collect();
-        Self { program, schedules }
+        Self {
+            program,
+            schedules,
+            series: OnceLock::new(),
+        }
     }
 
     /// Fills each slice with the result of its name.
@@ -157,6 +165,16 @@ impl Model for InterpretedModel {
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
         let wanted = &mut [("residual", residual), ("jacobian", jacobian)];
         self.evaluate(FunctionKind::PositionConstraints, at, wanted);
+    }
+
+    fn series(&self) -> Option<&dyn Series> {
+        let functions = self.program.functions.iter().zip(&self.schedules);
+        let (function, lazy) = functions
+            .into_iter()
+            .find(|(f, _)| f.kind == FunctionKind::Rates)?;
+        let rates = lazy.get_or_init(|| schedule(&self.program, function));
+        let expanded = || InterpretedSeries(expand(rates, Lengths::from(&self.program.info)));
+        Some(self.series.get_or_init(expanded))
     }
 
     fn switch_len(&self) -> usize {

@@ -25,6 +25,7 @@ mod memory;
 mod model;
 mod native;
 mod on_demand;
+mod series;
 mod translate;
 mod vector;
 
@@ -33,4 +34,5 @@ pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
+pub use series::JitSeries;
 pub use vector::{Instructions, Target, VectorFunction};

@@ -32,7 +32,12 @@ const ROUNDING: f64 = 1e-14;
 
 /// The motion for one second, without a rejected step.
 fn assert_exact(model: &dyn Model, velocity: f64, stops: &[f64]) {
-    for method in [Method::Dop853, Method::Dopri5, Method::Rk4 { step: 0.4 }] {
+    for method in [
+        Method::Dop853,
+        Method::Dopri5,
+        Method::Rk4 { step: 0.4 },
+        Method::Taylor,
+    ] {
         let motion = Simulation {
             method,
             span: [0.0, 1.0],

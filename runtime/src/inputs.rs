@@ -1,6 +1,7 @@
 //! What drives a model: inputs as functions of time and state.
 
 use crate::model::{Interpolation, ModelInfo, SignalTable};
+use crate::series::{Cubic, Series, differentiated};
 use crate::signal::{Signal, SignalError};
 
 /// The declared inputs of a model as functions of time and state.
@@ -14,6 +15,19 @@ pub trait InputSource {
     /// Times in s at which the inputs jump or lose smoothness, in any order.
     fn switching_times(&self) -> Vec<f64> {
         Vec::new()
+    }
+
+    /// The declared inputs as polynomials of the time since `t` in s, up to the next switching time; false where
+    /// they are none, as far as is known. `x` is the state at `t`.
+    fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
+        let _ = (t, x, u);
+        false
+    }
+
+    /// The equations of motion with the inputs that depend on the state put in, where this source has them.
+    /// [`InputSource::polynomials`] then gives the inputs of these, signals included.
+    fn series(&self) -> Option<&dyn Series> {
+        None
     }
 }
 
@@ -31,6 +45,11 @@ pub struct ZeroInputs;
 impl InputSource for ZeroInputs {
     fn inputs(&self, _: f64, _: &[f64], u: &mut [f64]) {
         u.fill(0.0);
+    }
+
+    fn polynomials(&self, _: f64, _: &[f64], u: &mut [Cubic]) -> bool {
+        u.fill(Cubic::default());
+        true
     }
 }
 
@@ -93,6 +112,14 @@ impl InputSource for TabulatedInputs {
         }
     }
 
+    fn polynomials(&self, t: f64, _: &[f64], u: &mut [Cubic]) -> bool {
+        u.fill(Cubic::default());
+        for (u, signal) in u.iter_mut().zip(&self.signals) {
+            *u = signal.polynomial(t);
+        }
+        true
+    }
+
     fn switching_times(&self) -> Vec<f64> {
         let mut times: Vec<f64> = self
             .signals
@@ -142,6 +169,20 @@ impl<'a> ModelInputs<'a> {
                 .get(signal)
                 .map_or(f64::NAN, |signal| signal.derivative(t, order));
         }
+    }
+
+    /// All inputs of the model, or of the equations of its source, as polynomials of the time since `t` in s; false
+    /// where they are none.
+    pub fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
+        if self.source.series().is_some() {
+            return self.source.polynomials(t, x, u);
+        }
+        let (declared, signals) = u.split_at_mut(self.declared.min(u.len()));
+        for (u, &(signal, order)) in signals.iter_mut().zip(self.signal_inputs) {
+            let polynomial = self.signals.get(signal).map(|signal| signal.polynomial(t));
+            *u = differentiated(polynomial.unwrap_or([f64::NAN; 4]), order);
+        }
+        self.source.polynomials(t, x, declared)
     }
 
     /// Times in s at which an input jumps or loses smoothness.

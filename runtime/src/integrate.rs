@@ -35,6 +35,7 @@ mod solver;
 mod step_size;
 mod stops;
 mod tableau;
+mod taylor;
 mod watch;
 
 pub use block::{BlockMotion, BlockSolver};
@@ -48,4 +49,5 @@ pub use range::Range;
 pub use rk4::Rk4;
 pub use solver::Solver;
 pub use stops::{SwitchFunction, Switches};
+pub use taylor::{Expanded, InputPolynomials, Taylor};
 pub use watch::{NoObserver, Observer, Projection, ProjectionFunction, Step, Watch};

@@ -46,6 +46,8 @@ pub mod model;
 pub mod positions;
 pub mod real;
 #[cfg(feature = "std")]
+pub mod series;
+#[cfg(feature = "std")]
 pub mod signal;
 #[cfg(feature = "std")]
 pub mod simulate;

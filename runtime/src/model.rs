@@ -4,6 +4,7 @@ use std::borrow::Cow;
 
 use crate::differences;
 use crate::lanes::{AtLanes, LANES, place_by_place};
+use crate::series::Series;
 
 /// A text that is static in emitted models and owned in models made at run time.
 pub type Text = Cow<'static, str>;
@@ -415,6 +416,11 @@ pub trait Model: Sync {
     /// How many values [`Model::switches`] writes; most models have none.
     fn switch_len(&self) -> usize {
         0
+    }
+    /// The equations with the recurrences of their Taylor coefficients, where the model has them; see
+    /// [`Method::Taylor`](crate::simulate::Method::Taylor).
+    fn series(&self) -> Option<&dyn Series> {
+        None
     }
     /// What time alone switches in the equations, such as the truth of `t < t_brake`: 1 or 0, or
     /// a sign. Depends on time and parameters. An integrator ends a step at each jump, where the

@@ -1,6 +1,7 @@
 //! Tabulated functions of time and their derivatives.
 
 use crate::model::{Interpolation, SignalTable};
+use crate::series::Cubic;
 
 /// Why a table is not a function of time.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -147,6 +148,20 @@ impl Signal {
             1 => slope + since * (c_left + since * jerk / 2.0),
             _ => c_left + since * jerk,
         }
+    }
+
+    /// The signal as a polynomial of the time since `t`, up to the next knot.
+    pub fn polynomial(&self, t: f64) -> Cubic {
+        let [value, slope, curvature] = [0, 1, 2].map(|order| self.derivative(t, order));
+        let right = self.times.partition_point(|&time| time <= t);
+        let jerk = match right.checked_sub(1) {
+            Some(left) if right < self.times.len() => {
+                let change = self.curvatures[right] - self.curvatures[left];
+                change / (self.times[right] - self.times[left])
+            }
+            _ => 0.0,
+        };
+        [value, slope, curvature / 2.0, jerk / 6.0]
     }
 
     /// The value at `t` in SI.

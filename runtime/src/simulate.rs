@@ -7,11 +7,12 @@ mod validity;
 use crate::condition::velocity_condition;
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError, Options, Outcome,
-    Projection, Range, Rk4, Solver, Switches, Watch,
+    Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure, IntegrationError, Options, Outcome,
+    Projection, Range, Rk4, Solver, Switches, Taylor, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::{Inconsistent, Moving, Positions};
+use crate::series::{Cubic, Series};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 pub use describe::describe;
@@ -35,6 +36,9 @@ pub enum Method {
         /// The step in s.
         step: f64,
     },
+    /// Taylor series of an order that follows from the tolerances, with step-size control. For models and inputs
+    /// that have series.
+    Taylor,
 }
 
 /// At which times the motion is recorded.
@@ -131,6 +135,14 @@ pub enum SimulationError {
         /// The interval in s.
         interval: f64,
     },
+    /// The equations or the inputs have no Taylor series.
+    #[error("{what} no Taylor series: {remedy}")]
+    NoSeries {
+        /// What has none.
+        what: &'static str,
+        /// What to do.
+        remedy: &'static str,
+    },
     /// The interval, the tolerances or the step have no answer.
     #[error("{what} cannot be {value}")]
     Argument {
@@ -175,6 +187,7 @@ impl<'a> Simulation<'a> {
         self.check()?;
         let info = self.model.info();
         let inputs = ModelInputs::new(info, self.inputs)?;
+        let series = self.series(&inputs)?;
         let (events, progress) = (std::mem::take(&mut self.events), self.progress.take());
         let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
         let (model, p) = (self.model, self.parameters.as_slice());
@@ -201,7 +214,27 @@ impl<'a> Simulation<'a> {
             inputs.fill(t, x, &mut u);
             model.rates(At { t, x, u: &u, p }, rates);
         };
-        let result = self.integrate(rates, &mut x, &mut watch, &mut recorder);
+        let result = match series {
+            Some(series) => {
+                let equations = Expanded {
+                    series,
+                    parameters: p,
+                    inputs: Box::new(|t, x, u| {
+                        inputs.polynomials(t, x, u);
+                    }),
+                };
+                let (span, options) = (self.span, &self.options);
+                Taylor::new().integrate(
+                    &equations,
+                    span,
+                    &mut x,
+                    options,
+                    &mut watch,
+                    &mut recorder,
+                )
+            }
+            None => self.integrate(rates, &mut x, &mut watch, &mut recorder),
+        };
 
         let recorded = |t_end, hits: Vec<EventHit>, statistics| {
             recorder.finish(t_end, &x);
@@ -248,6 +281,27 @@ impl<'a> Simulation<'a> {
                 Err(SimulationError::Argument { what, value })
             }
         }
+    }
+
+    /// The equations to be expanded, if the method asks for them.
+    fn series(&self, inputs: &ModelInputs<'_>) -> Result<Option<&'a dyn Series>, SimulationError> {
+        if self.method != Method::Taylor {
+            return Ok(None);
+        }
+        let Some(series) = self.inputs.series().or_else(|| self.model.series()) else {
+            return Err(SimulationError::NoSeries {
+                what: "these equations have",
+                remedy: "compile or interpret the model in this process, or choose another method",
+            });
+        };
+        let mut u = vec![Cubic::default(); series.shape().inputs];
+        if inputs.polynomials(self.span[0], &self.initial_state, &mut u) {
+            return Ok(Some(series));
+        }
+        Err(SimulationError::NoSeries {
+            what: "inputs that a program computes have",
+            remedy: "give them as expressions, laws or tables, or choose another method",
+        })
     }
 
     /// The initial state with its dependent coordinates found by Newton's method from their values
@@ -297,6 +351,11 @@ impl<'a> Simulation<'a> {
                 Solver::<Dopri5>::new().integrate(rates, span, x, options, watch, recorder)
             }
             Method::Rk4 { step } => Rk4::new().integrate(rates, span, x, step, watch, recorder),
+            // Without series, which `run` looks for.
+            Method::Taylor => Err(IntegrationError::InvalidArgument {
+                what: "number of series",
+                value: 0.0,
+            }),
         }
     }
 

@@ -451,8 +451,9 @@ const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
     ("formulations", &["mechanics", "symbolic"]),
     ("schedule", &["program", "symbolic"]),
     ("emit", &["program", "schedule", "symbolic"]),
-    ("jit", &["program", "schedule", "symbolic"]),
-    ("interpreted", &["program", "schedule"]),
+    ("taylor", &["schedule", "symbolic"]),
+    ("jit", &["program", "schedule", "symbolic", "taylor"]),
+    ("interpreted", &["program", "schedule", "taylor"]),
 ];
 
 /// What the three formulations share with the derivation: the graph, the reading of expressions,

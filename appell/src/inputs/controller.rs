@@ -4,8 +4,13 @@ use std::sync::Arc;
 
 use appell_analysis::control::sampler::Sampler;
 use appell_analysis::control::schedule::GainSchedule;
+use appell_codegen::jit::JitSeries;
+use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
+use appell_codegen::taylor::{Lengths, expand_under};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
+use appell_runtime::model::ModelInfo;
+use appell_runtime::series::{Cubic, Series};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;
 use appell_spec::{Scope, Snippet, formula};
@@ -13,6 +18,7 @@ use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
 use crate::inputs::feedback::{Feedback, Gains, Sampled, SchedulingVariable};
+use crate::inputs::law;
 use crate::inputs::tabulated::Table;
 use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, bracketed};
@@ -29,6 +35,8 @@ pub struct Controller {
     sampled: Vec<SampledLaw>,
     scheduled: Vec<ScheduledLaw>,
     switching_times: Vec<f64>,
+    /// The equations of motion with expressions and laws put in.
+    series: Option<JitSeries>,
 }
 
 /// A discrete-time law.
@@ -39,7 +47,7 @@ struct SampledLaw {
 }
 
 /// Meaning of a value of the function.
-enum Slot {
+pub(super) enum Slot {
     /// A term of an input.
     Input(usize),
     /// The desired value of a state.
@@ -52,21 +60,21 @@ enum Slot {
 type DrivenInputs = (Vec<usize>, Arc<dyn InputSource + Send + Sync>);
 
 /// A gain-scheduled law.
-struct ScheduledLaw {
-    over: SchedulingVariable,
-    schedule: GainSchedule,
-    inputs: Vec<usize>,
-    states: Vec<usize>,
+pub(super) struct ScheduledLaw {
+    pub(super) over: SchedulingVariable,
+    pub(super) schedule: GainSchedule,
+    pub(super) inputs: Vec<usize>,
+    pub(super) states: Vec<usize>,
 }
 
 /// Proportional feedback of the deviation of one state to one input.
 #[derive(Debug, Clone, Copy)]
-struct Term {
-    input: usize,
-    state: usize,
-    gain: f64,
+pub(super) struct Term {
+    pub(super) input: usize,
+    pub(super) state: usize,
+    pub(super) gain: f64,
     /// The sampled law to which it belongs.
-    law: Option<usize>,
+    pub(super) law: Option<usize>,
 }
 
 /// Collects the sources of the inputs.
@@ -259,6 +267,7 @@ impl Plan {
             sampled,
             scheduled: self.scheduled,
             switching_times,
+            series: None,
         })
     }
 }
@@ -267,6 +276,37 @@ impl Plan {
 const MOST_MEASUREMENTS: f64 = 1e6;
 
 impl Controller {
+    /// Prepares Taylor series of the motion under these inputs; `rates` are the model's.
+    pub fn expand(&mut self, rates: &Schedule, info: &ModelInfo) {
+        let law = law::schedule(&self.function, &self.slots, &self.scheduled, info);
+        let lengths = Lengths {
+            inputs: self.function.inputs(),
+            ..Lengths::from(info)
+        };
+        self.series = Some(JitSeries::new(expand_under(&law, rates, lengths)));
+    }
+
+    /// Adds what acts between samples.
+    fn add_sampled(
+        &self,
+        t: f64,
+        x: &[f64],
+        values: &[f64],
+        mut add: impl FnMut(usize, f64),
+        count: usize,
+    ) {
+        for (law, sampled) in self.sampled.iter().enumerate() {
+            let acting = sampled.sampler.acting(t, |pending| {
+                let mut asked = vec![0.0; count];
+                self.feedback(Some(law), x, values, &mut asked);
+                sampled.asked(&asked, &pending.concat())
+            });
+            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
+                add(input, *acting);
+            }
+        }
+    }
+
     /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
     fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
         for (slot, value) in self.slots.iter().zip(values) {
@@ -314,20 +354,46 @@ impl InputSource for Controller {
                 }
             });
         }
-        for (law, sampled) in self.sampled.iter().enumerate() {
-            let acting = sampled.sampler.acting(t, |pending| {
-                let mut asked = vec![0.0; u.len()];
-                self.feedback(Some(law), x, &values, &mut asked);
-                sampled.asked(&asked, &pending.concat())
-            });
-            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
-                u[input] += acting;
-            }
-        }
+        let count = u.len();
+        self.add_sampled(t, x, &values, |input, acting| u[input] += acting, count);
     }
 
     fn switching_times(&self) -> Vec<f64> {
         self.switching_times.clone()
+    }
+
+    fn series(&self) -> Option<&dyn Series> {
+        self.series.as_ref().map(|series| series as &dyn Series)
+    }
+
+    fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
+        let (declared, signals) = u.split_at_mut(self.function.declared().min(u.len()));
+        self.function.polynomials(t, signals);
+        match &self.recorded {
+            Some(recorded) => {
+                recorded.polynomials(t, x, declared);
+            }
+            None => declared.fill(Cubic::default()),
+        }
+        for (inputs, source) in &self.driven {
+            let mut own = vec![Cubic::default(); declared.len()];
+            if !source.polynomials(t, x, &mut own) {
+                return false;
+            }
+            for &input in inputs {
+                for (sum, own) in declared[input].iter_mut().zip(own[input]) {
+                    *sum += own;
+                }
+            }
+        }
+        if !self.sampled.is_empty() {
+            let mut values = vec![0.0; self.slots.len()];
+            self.function.values(t, x, &self.parameters, &mut values);
+            let count = declared.len();
+            let add = |input: usize, acting| declared[input][0] += acting;
+            self.add_sampled(t, x, &values, add, count);
+        }
+        true
     }
 }
 

@@ -116,6 +116,8 @@ enum Integrator {
     Dopri5,
     /// Order 4, fixed steps of the output interval
     Rk4,
+    /// Taylor series, order and step by the tolerances: the fastest for smooth motions
+    Taylor,
 }
 
 /// The response to an event.
@@ -141,6 +143,7 @@ impl Simulate {
                 Integrator::Rk4 => Method::Rk4 {
                     step: whole.row_interval(),
                 },
+                Integrator::Taylor => Method::Taylor,
             },
             options: Options {
                 max_steps: self.max_steps,

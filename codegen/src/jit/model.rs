@@ -2,14 +2,18 @@
 
 use std::fmt;
 use std::slice::from_mut;
+use std::sync::OnceLock;
 
 use appell_runtime::differences;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
+use appell_runtime::series::Series;
 
 use super::on_demand::OnDemand;
+use super::series::JitSeries;
 use super::{JitError, Sizes, Target};
 use crate::program::{FunctionKind, Program};
+use crate::taylor::{Lengths, expand};
 
 /// A model compiled in this process.
 ///
@@ -28,6 +32,8 @@ pub struct JitModel {
     target: Target,
     /// By [`FunctionKind`], in the order of its variants.
     parts: Vec<OnDemand>,
+    /// Made when they are first asked for.
+    series: OnceLock<JitSeries>,
 }
 
 /// The results that the trait asks for, with their lengths.
@@ -101,6 +107,7 @@ impl JitModel {
             sizes,
             target: Target::default(),
             parts,
+            series: OnceLock::new(),
         };
         // A processor without a compiler shows here and not in the middle of a simulation.
         model.part(FunctionKind::Rates).compile(program, sizes)?;
@@ -286,6 +293,14 @@ impl Model for JitModel {
 
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
         self.evaluate(FunctionKind::PositionConstraints, at, [residual, jacobian]);
+    }
+
+    fn series(&self) -> Option<&dyn Series> {
+        let series = self.series.get_or_init(|| {
+            let rates = self.part(FunctionKind::Rates).schedule(&self.program);
+            JitSeries::new(expand(rates, Lengths::from(&self.program.info)))
+        });
+        Some(series)
     }
 
     fn switch_len(&self) -> usize {

@@ -24,11 +24,15 @@ pub(super) struct OnDemand {
 }
 
 /// A function that can be evaluated.
-enum Ready {
+pub(super) enum Ready {
     /// In machine code.
     Native(NativeFunction),
     /// Step by step, because it could not be compiled.
     Interpreted {
+        /// The function, with the wanted results only.
+        schedule: Schedule,
+        /// Lengths of the arguments.
+        sizes: Sizes,
         /// Lengths of the results.
         results: Vec<usize>,
         /// Why it was not compiled.
@@ -92,16 +96,7 @@ impl OnDemand {
         weights: &[f64],
         out: [&mut [f64]; N],
     ) {
-        match self.ready(program, sizes) {
-            Ready::Native(native) => native.call_weighted(at, weights, out),
-            Ready::Interpreted { results, .. } => {
-                check_lengths(at, sizes, &out, results);
-                let computed = interpret_weighted(self.schedule(program), at, weights);
-                for (out, computed) in out.into_iter().zip(computed) {
-                    out.copy_from_slice(&computed);
-                }
-            }
-        }
+        self.ready(program, sizes).call(at, weights, out);
     }
 
     /// Evaluates the function at eight places; see [`VectorFunction::call`].
@@ -116,8 +111,8 @@ impl OnDemand {
     ) {
         match self.lanes(program, sizes, target) {
             Some(vector) => vector.call(at, out),
-            None => place_by_place(at, out, |at, out| {
-                self.call(program, sizes, at, &[], out);
+            None => place_by_place(at, out, |t, [x, u, p], out| {
+                self.call(program, sizes, At { t, x, u, p }, &[], out);
             }),
         }
     }
@@ -153,17 +148,10 @@ impl OnDemand {
 
     #[cold]
     fn make(&self, program: &Program, sizes: Sizes) -> Ready {
-        let schedule = self.schedule(program);
-        match NativeFunction::compile(schedule, sizes) {
-            Ok(native) => Ready::Native(native),
-            Err(reason) => Ready::Interpreted {
-                results: lengths(schedule),
-                reason,
-            },
-        }
+        Ready::new(self.schedule(program).clone(), sizes)
     }
 
-    fn schedule(&self, program: &Program) -> &Schedule {
+    pub(super) fn schedule(&self, program: &Program) -> &Schedule {
         self.schedule.get_or_init(|| self.find_schedule(program))
     }
 
@@ -193,6 +181,41 @@ impl OnDemand {
         });
         schedule.results = wanted.collect();
         schedule
+    }
+}
+
+impl Ready {
+    /// Compiles a schedule if that is possible.
+    pub(super) fn new(schedule: Schedule, sizes: Sizes) -> Self {
+        match NativeFunction::compile(&schedule, sizes) {
+            Ok(native) => Self::Native(native),
+            Err(reason) => Self::Interpreted {
+                results: lengths(&schedule),
+                schedule,
+                sizes,
+                reason,
+            },
+        }
+    }
+
+    /// Evaluates the function; see [`NativeFunction::call`].
+    #[inline]
+    pub(super) fn call<const N: usize>(&self, at: At<'_>, weights: &[f64], out: [&mut [f64]; N]) {
+        match self {
+            Self::Native(native) => native.call_weighted(at, weights, out),
+            Self::Interpreted {
+                schedule,
+                sizes,
+                results,
+                ..
+            } => {
+                check_lengths(at, *sizes, &out, results);
+                let computed = interpret_weighted(schedule, at, weights);
+                for (out, computed) in out.into_iter().zip(computed) {
+                    out.copy_from_slice(&computed);
+                }
+            }
+        }
     }
 }
 

@@ -16,7 +16,7 @@ use rustc_hash::FxHashMap;
 use super::check::Checked;
 use super::dense::Routines;
 use super::elementary::Elementary;
-use crate::schedule::{Argument, Operation, Step, Tree, Value};
+use crate::schedule::{Argument, Operation, ResultArray, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
 
 /// Signature of compiled functions: `t`, then the addresses of states, inputs, parameters, weights
@@ -39,9 +39,7 @@ pub(super) fn translate(
     for step in &checked.schedule.steps {
         translation.step(step);
     }
-    for (index, result) in checked.schedule.results.iter().enumerate() {
-        translation.result(index, &result.entries);
-    }
+    translation.remaining_results();
     translation.builder.ins().return_(&[]);
     translation.builder.finalize(config);
 }
@@ -53,8 +51,6 @@ struct Translation<'a> {
     received: Received,
     /// Results of the steps.
     values: Vec<ir::Value>,
-    /// Arguments that are loaded already.
-    arguments: FxHashMap<Argument, ir::Value>,
     /// Signatures that are declared already.
     signatures: FxHashMap<Shape, SigRef>,
     /// Sine and cosine.
@@ -64,6 +60,17 @@ struct Translation<'a> {
     /// A right-hand side, then the unknowns.
     right: StackSlot,
     factorisations: FxHashMap<u32, Factorisation>,
+    results: Results<'a>,
+}
+
+/// The entries of the results. A value is stored when it is defined, so that it occupies no register until the
+/// end.
+struct Results<'a> {
+    arrays: &'a [ResultArray],
+    /// Addresses of the arrays that are loaded already.
+    addresses: Vec<Option<ir::Value>>,
+    /// Places of values that are results as they are: arrays and entries.
+    places: FxHashMap<Value, Vec<(usize, usize)>>,
 }
 
 /// What the compiled function receives; see [`signature`].
@@ -98,7 +105,7 @@ struct Factorisation {
 
 impl<'a> Translation<'a> {
     fn new(
-        checked: &Checked<'_>,
+        checked: &Checked<'a>,
         elementary: Elementary,
         config: TargetFrontendConfig,
         function: &'a mut ir::Function,
@@ -128,12 +135,12 @@ impl<'a> Translation<'a> {
             elementary,
             received,
             values: vec![zero; checked.schedule.names.len()],
-            arguments: FxHashMap::default(),
             signatures: FxHashMap::default(),
             pair,
             matrix,
             right,
             factorisations: FxHashMap::default(),
+            results: Results::new(&checked.schedule.results),
         }
     }
 
@@ -163,6 +170,9 @@ impl<'a> Translation<'a> {
 
     fn define(&mut self, value: Value, computed: ir::Value) {
         self.values[value.0 as usize] = computed;
+        for (array, entry) in self.results.places.remove(&value).unwrap_or_default() {
+            self.store_result(array, entry, computed);
+        }
     }
 
     fn sin_cos(&mut self, sin: Value, cos: Value, angle: ir::Value) {
@@ -235,20 +245,30 @@ impl<'a> Translation<'a> {
         [from, to, rows]
     }
 
-    fn result(&mut self, index: usize, entries: &[Tree]) {
-        let pointer = self.config.pointer_type();
-        let array = self.builder.ins().load(
-            pointer,
-            MemFlagsData::trusted().with_readonly(),
-            self.received.results,
-            offset(index),
-        );
-        for (index, tree) in entries.iter().enumerate() {
-            let entry = self.tree(tree);
-            self.builder
-                .ins()
-                .store(MemFlagsData::trusted(), entry, array, offset(index));
+    /// Entries that no step defines: constants, arguments, negated values.
+    fn remaining_results(&mut self) {
+        let arrays = self.results.arrays;
+        for (array, result) in arrays.iter().enumerate() {
+            for (entry, tree) in result.entries.iter().enumerate() {
+                if !matches!(tree, Tree::Value(_)) {
+                    let computed = self.tree(tree);
+                    self.store_result(array, entry, computed);
+                }
+            }
         }
+    }
+
+    fn store_result(&mut self, array: usize, entry: usize, computed: ir::Value) {
+        let (pointer, results) = (self.config.pointer_type(), self.received.results);
+        let builder = &mut self.builder;
+        let address = *self.results.addresses[array].get_or_insert_with(|| {
+            let flags = MemFlagsData::trusted().with_readonly();
+            builder.ins().load(pointer, flags, results, offset(array))
+        });
+        let flags = MemFlagsData::trusted();
+        self.builder
+            .ins()
+            .store(flags, computed, address, offset(entry));
     }
 
     fn tree(&mut self, tree: &Tree) -> ir::Value {
@@ -338,14 +358,9 @@ impl<'a> Translation<'a> {
                 (self.received.weights, index)
             }
         };
-        let builder = &mut self.builder;
-        *self.arguments.entry(argument).or_insert_with(|| {
-            // Results never overlap arguments: the caller holds them by exclusive references.
-            let flags = MemFlagsData::trusted().with_readonly();
-            builder
-                .ins()
-                .load(F64, flags, array, offset(index as usize))
-        })
+        // Loaded where it is used: to load it again costs less than to keep it.
+        let (flags, place) = (MemFlagsData::trusted(), offset(index as usize));
+        self.builder.ins().load(F64, flags, array, place)
     }
 
     /// Calls a function of this process by its address.
@@ -369,6 +384,24 @@ impl<'a> Translation<'a> {
         self.builder
             .ins()
             .iconst(pointer, address.cast_signed() as i64)
+    }
+}
+
+impl<'a> Results<'a> {
+    fn new(arrays: &'a [ResultArray]) -> Self {
+        let mut places: FxHashMap<Value, Vec<(usize, usize)>> = FxHashMap::default();
+        for (array, result) in arrays.iter().enumerate() {
+            for (entry, tree) in result.entries.iter().enumerate() {
+                if let Tree::Value(value) = tree {
+                    places.entry(*value).or_default().push((array, entry));
+                }
+            }
+        }
+        Self {
+            arrays,
+            addresses: vec![None; arrays.len()],
+            places,
+        }
     }
 }
 

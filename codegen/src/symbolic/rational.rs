@@ -44,6 +44,11 @@ impl Rational {
         }
     }
 
+    /// A double as it is, if it is finite.
+    pub fn from_f64(value: f64) -> Option<Self> {
+        BigRational::from_float(value).map(Self::from_big)
+    }
+
     /// As a big rational.
     pub fn to_big(&self) -> BigRational {
         match &self.0 {

@@ -259,7 +259,8 @@ class Model(_appell.Model):
         is one function of t and x that returns all inputs. `feedback` takes designs of `control`, and the texts and
         paths of feedback files. `recorded` is a table of inputs, or a run of a data set such as
         `rig/recording.toml:run1.csv`. `record` adds columns: `reactions`, `contacts`, `conditions`, `residuals`.
-        A function sees the state before a step is accepted too, and should be smooth.
+        A function sees the state before a step is accepted too, and should be smooth. `method` is `dop853`, `dopri5`,
+        `rk4` with its `step`, or `taylor`, the fastest for smooth motions, whose inputs cannot be functions.
 
         >>> import appell, math
         >>> m = appell.load("cart_pole")

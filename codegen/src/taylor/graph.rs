@@ -1,0 +1,257 @@
+//! Operations without the order of a schedule: equal ones are one node.
+
+use rustc_hash::FxHashMap;
+
+use crate::schedule::{Argument, Operation};
+use crate::symbolic::{Function, Rational, Relation};
+
+/// A node of a [`Graph`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub(super) struct Id(u32);
+
+impl Id {
+    /// Its position among the nodes.
+    pub(super) fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// An operation on earlier nodes.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) enum Node {
+    /// An argument.
+    Argument(Argument),
+    /// An exact number.
+    Constant(Rational),
+    /// `-a`
+    Negate(Id),
+    /// `a ∘ b`
+    Binary(Operation, Id, Id),
+    /// A function of one argument.
+    Function(Function, Id),
+    /// `atan2(y, x)`
+    Atan2(Id, Id),
+    /// `base^exponent`
+    Power(Id, Id),
+    /// A choice between two values.
+    Choice {
+        /// Relation.
+        relation: Relation,
+        /// Left and right side of the relation.
+        compared: [Id; 2],
+        /// Value where it holds, value elsewhere.
+        branches: [Id; 2],
+    },
+    /// An unknown of a linear system.
+    Unknown {
+        /// The solution; see [`Graph::solution`].
+        solution: u32,
+        /// Which unknown.
+        row: u32,
+    },
+}
+
+/// A linear system with one right-hand side.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Solution {
+    /// Index of the matrix; see [`Graph::matrix`].
+    pub(super) matrix: u32,
+    /// Right-hand side.
+    pub(super) right: Vec<Id>,
+}
+
+/// A square matrix, row by row.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(super) struct Matrix {
+    /// Rows.
+    pub(super) size: usize,
+    /// Entries.
+    pub(super) entries: Vec<Id>,
+}
+
+/// Nodes in the order in which they were made: operands come first.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Graph {
+    nodes: Vec<Node>,
+    known: FxHashMap<Node, Id>,
+    matrices: Vec<Matrix>,
+    solutions: Vec<Solution>,
+}
+
+impl Graph {
+    /// How many nodes there are.
+    pub(super) fn len(&self) -> usize {
+        self.nodes.len()
+    }
+
+    /// All nodes.
+    pub(super) fn ids(&self) -> impl Iterator<Item = Id> + use<> {
+        (0..self.nodes.len()).map(id)
+    }
+
+    /// What a node is.
+    pub(super) fn node(&self, Id(id): Id) -> &Node {
+        &self.nodes[id as usize]
+    }
+
+    /// A node that was made already.
+    pub(super) fn find(&self, node: &Node) -> Option<Id> {
+        self.known.get(node).copied()
+    }
+
+    /// A solved system.
+    pub(super) fn solution(&self, solution: u32) -> &Solution {
+        &self.solutions[solution as usize]
+    }
+
+    /// The matrix of a system.
+    pub(super) fn matrix(&self, matrix: u32) -> &Matrix {
+        &self.matrices[matrix as usize]
+    }
+
+    /// The operands of a node.
+    pub(super) fn operands(&self, id: Id) -> Vec<Id> {
+        match self.node(id) {
+            Node::Argument(_) | Node::Constant(_) => Vec::new(),
+            Node::Negate(a) | Node::Function(_, a) => vec![*a],
+            Node::Binary(_, a, b) | Node::Atan2(a, b) | Node::Power(a, b) => vec![*a, *b],
+            Node::Choice {
+                compared, branches, ..
+            } => compared.iter().chain(branches).copied().collect(),
+            Node::Unknown { solution, .. } => {
+                let Solution { matrix, right } = self.solution(*solution);
+                let entries = &self.matrix(*matrix).entries;
+                entries.iter().chain(right).copied().collect()
+            }
+        }
+    }
+
+    /// A node as it stands.
+    pub(super) fn intern(&mut self, node: Node) -> Id {
+        let nodes = &mut self.nodes;
+        *self.known.entry(node).or_insert_with_key(|node| {
+            nodes.push(node.clone());
+            id(nodes.len() - 1)
+        })
+    }
+
+    /// A matrix to be factorised.
+    pub(super) fn factorise(&mut self, size: usize, entries: Vec<Id>) -> u32 {
+        position(&mut self.matrices, Matrix { size, entries })
+    }
+
+    /// The unknowns of a system.
+    pub(super) fn solve(&mut self, matrix: u32, right: Vec<Id>) -> Vec<Id> {
+        let rows = right.len();
+        let solution = position(&mut self.solutions, Solution { matrix, right });
+        let row = |row| Node::Unknown {
+            solution,
+            row: count(row),
+        };
+        (0..rows).map(|i| self.intern(row(i))).collect()
+    }
+
+    /// An argument.
+    pub(super) fn argument(&mut self, argument: Argument) -> Id {
+        self.intern(Node::Argument(argument))
+    }
+
+    /// A whole number.
+    pub(super) fn number(&mut self, number: i64) -> Id {
+        self.intern(Node::Constant(Rational::new(number, 1)))
+    }
+
+    /// The value of a node that is a number.
+    pub(super) fn constant(&self, id: Id) -> Option<&Rational> {
+        match self.node(id) {
+            Node::Constant(number) => Some(number),
+            _ => None,
+        }
+    }
+
+    /// `-a`
+    pub(super) fn negate(&mut self, a: Id) -> Id {
+        match self.node(a) {
+            Node::Negate(a) => *a,
+            Node::Binary(Operation::Subtract, left, right) => {
+                let (left, right) = (*left, *right);
+                self.intern(Node::Binary(Operation::Subtract, right, left))
+            }
+            _ => self.intern(Node::Negate(a)),
+        }
+    }
+
+    /// `a + b`
+    pub(super) fn add(&mut self, a: Id, b: Id) -> Id {
+        if let Node::Negate(b) = *self.node(b) {
+            return self.subtract(a, b);
+        }
+        if let Node::Negate(a) = *self.node(a) {
+            return self.subtract(b, a);
+        }
+        self.intern(Node::Binary(Operation::Add, a, b))
+    }
+
+    /// `a - b`
+    pub(super) fn subtract(&mut self, a: Id, b: Id) -> Id {
+        if let Node::Negate(b) = *self.node(b) {
+            return self.add(a, b);
+        }
+        self.intern(Node::Binary(Operation::Subtract, a, b))
+    }
+
+    /// `a * b`
+    pub(super) fn multiply(&mut self, a: Id, b: Id) -> Id {
+        for (number, other) in [(a, b), (b, a)] {
+            if let Some(number) = self.constant(number) {
+                if number.is_one() {
+                    return other;
+                }
+                if number.abs().is_one() {
+                    return self.negate(other);
+                }
+            }
+        }
+        match (self.node(a), self.node(b)) {
+            (&Node::Negate(a), &Node::Negate(b)) => self.multiply(a, b),
+            (&Node::Negate(a), _) => {
+                let product = self.multiply(a, b);
+                self.negate(product)
+            }
+            (_, &Node::Negate(b)) => {
+                let product = self.multiply(a, b);
+                self.negate(product)
+            }
+            _ => self.intern(Node::Binary(Operation::Multiply, a.min(b), a.max(b))),
+        }
+    }
+
+    /// `1 / a`
+    pub(super) fn reciprocal(&mut self, a: Id) -> Id {
+        let one = self.number(1);
+        self.intern(Node::Binary(Operation::Divide, one, a))
+    }
+
+    /// A function of one argument.
+    pub(super) fn function(&mut self, function: Function, a: Id) -> Id {
+        self.intern(Node::Function(function, a))
+    }
+}
+
+fn position<T: PartialEq>(all: &mut Vec<T>, one: T) -> u32 {
+    let known = all.iter().position(|other| *other == one);
+    let place = known.unwrap_or(all.len());
+    if place == all.len() {
+        all.push(one);
+    }
+    count(place)
+}
+
+fn id(index: usize) -> Id {
+    Id(count(index))
+}
+
+/// Schedules are far shorter.
+pub(super) fn count(index: usize) -> u32 {
+    u32::try_from(index).unwrap_or(u32::MAX)
+}

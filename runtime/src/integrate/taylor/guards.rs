@@ -1,0 +1,83 @@
+//! Where the equations of a series become others: a step ends there.
+
+use crate::series::Guard;
+
+/// Parts of a step between which changes are sought.
+const PARTS: u8 = 8;
+
+/// A change of an answer within a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Change {
+    /// The guard.
+    pub(super) guard: usize,
+    /// The last time since the start of the step, in s, at which its polynomial gives the old answer.
+    pub(super) before: f64,
+    /// The first one at which it gives another.
+    pub(super) after: f64,
+}
+
+/// The first change of an answer within `h` seconds. `coefficients` are those of the guards, order by order.
+pub(super) fn first_change(guards: &[Guard], coefficients: &[f64], h: f64) -> Option<Change> {
+    let count = guards.len();
+    let mut first: Option<Change> = None;
+    for (place, guard) in guards.iter().enumerate() {
+        let terms = || coefficients[place..].iter().step_by(count);
+        let longest = first.map_or(h, |change| change.before);
+        let most = terms().skip(1).rev();
+        let most = longest * most.fold(0.0, |sum, term| term.abs() + longest * sum);
+        if terms().next().is_some_and(|now| now.abs() > most) {
+            continue;
+        }
+        let answer = |tau: f64| guard.answer(terms().rev().fold(0.0, |sum, term| term + tau * sum));
+        if let Some([before, after]) = change(answer, longest) {
+            first = Some(Change {
+                guard: place,
+                before,
+                after,
+            });
+        }
+    }
+    first
+}
+
+/// Neighbouring times between which an answer changes for the first time, as far as eighths of a step tell.
+fn change(answer: impl Fn(f64) -> i8, h: f64) -> Option<[f64; 2]> {
+    let old = answer(0.0);
+    let part = |i: u8| h * (f64::from(i) / f64::from(PARTS));
+    let first = (1..=PARTS).find(|&i| answer(part(i)) != old)?;
+    let (mut before, mut after) = (part(first - 1), part(first));
+    loop {
+        let middle = before + (after - before) / 2.0;
+        if middle <= before || middle >= after {
+            return Some([before, after]);
+        }
+        let end = if answer(middle) == old {
+            &mut before
+        } else {
+            &mut after
+        };
+        *end = middle;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_change_of_all_guards_ends_the_step() {
+        // 1 − τ and τ² − 1/4.
+        let guards = [Guard::Negative, Guard::NotPositive];
+        let coefficients = [1.0, -0.25, -1.0, 0.0, 0.0, 1.0];
+        let change = first_change(&guards, &coefficients, 2.0).unwrap();
+        assert_eq!(change.guard, 1);
+        assert!((change.before - 0.5).abs() < 1e-15 && change.after > change.before);
+        assert_eq!(first_change(&guards, &coefficients, 0.4), None);
+    }
+
+    #[test]
+    fn a_sign_ends_at_once_where_it_is_zero() {
+        let change = first_change(&[Guard::Sign], &[0.0, 1.0], 1.0).unwrap();
+        assert!(change.before == 0.0 && change.after < 1e-300, "{change:?}");
+    }
+}

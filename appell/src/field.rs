@@ -60,6 +60,7 @@ fields! {
     Hypothesis "hypothesis" "Hypothesis of a gap report.",
     Sources "sources" "Sources of an FMU without machine code.",
     Bias "bias" "Columns with a constant bias.",
+    Study "study" "Study of an ensemble.",
 }
 
 impl fmt::Display for Field {

@@ -19,6 +19,7 @@
 //! | [`Model::inverse`] | `appell inverse` |
 //! | [`diagnose()`], [`diagnosis::Library`] | `appell diagnose` |
 //! | [`sample::rig`] | `appell sample` |
+//! | [`ensemble::Ensemble`] | `appell ensemble` |
 //! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
@@ -33,6 +34,7 @@ pub mod control;
 pub mod derivation;
 pub mod diagnosis;
 pub mod engine;
+pub mod ensemble;
 mod error;
 pub mod evaluation;
 mod field;

@@ -215,7 +215,8 @@ impl Motion {
         let held_from = plan
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
-        let controller = plan.controller(&setup, self.t_end)?;
+        let wiring = plan.wiring(&setup, self.t_end)?;
+        let controller = wiring.controller(setup.parameters.clone(), self.t_end);
         let simulation = Simulation {
             parameters: setup.parameters,
             initial_state: setup.initial,

@@ -31,6 +31,17 @@ pub(crate) fn parts() -> ProgressBar {
     bar
 }
 
+/// A bar over cases, with the time left.
+pub(crate) fn cases(all: u64) -> ProgressBar {
+    let bar = ProgressBar::new(all);
+    let template = "{bar:40} {percent} %  {human_pos} of {human_len} cases  {per_sec}  {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
+}
+
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

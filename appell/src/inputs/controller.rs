@@ -1,7 +1,9 @@
 //! The inputs of a simulation as one function of time and state.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
+use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
 use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::symbolic::Expr as Lowered;
@@ -18,22 +20,34 @@ use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, bracketed};
 use crate::{Error, Field};
 
-/// The sum of expressions, feedback laws and recordings.
-pub struct Controller {
+/// The sum of expressions, feedback laws and recordings in one motion.
+pub struct Controller<'w> {
+    wiring: &'w Wiring,
+    parameters: Vec<f64>,
+    /// Measurements of the discrete-time laws.
+    samplers: Vec<Sampler>,
+    switching_times: Vec<f64>,
+    /// Values of the function, kept to be written anew.
+    values: Cell<Vec<f64>>,
+}
+
+/// What all motions under the same expressions, laws and recordings share.
+pub struct Wiring {
     /// One value per entry of `slots`.
     function: StateFunction,
     slots: Vec<Slot>,
-    parameters: Vec<f64>,
     recorded: Option<TabulatedInputs>,
     driven: Vec<DrivenInputs>,
     sampled: Vec<SampledLaw>,
     scheduled: Vec<ScheduledLaw>,
     switching_times: Vec<f64>,
+    /// Expressions that may switch at times which depend on parameters.
+    switching: Vec<Expr>,
 }
 
 /// A discrete-time law.
 struct SampledLaw {
-    sampler: Sampler,
+    sampling: Sampling,
     inputs: Vec<usize>,
     pending_gains: Vec<Vec<f64>>,
 }
@@ -81,6 +95,7 @@ pub struct Plan {
     recorded: Option<Table>,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
+    switching: Vec<Expr>,
     /// Inputs set by an expression or a recording.
     set: Vec<usize>,
 }
@@ -98,6 +113,7 @@ impl Plan {
             recorded: None,
             driven: Vec::new(),
             switching_times: Vec::new(),
+            switching: Vec::new(),
             set: Vec::new(),
         }
     }
@@ -130,7 +146,7 @@ impl Plan {
         self.exprs
             .push(lowered.ok_or("an expression divides by the number zero")?);
         self.slots.push(slot);
-        switching_times(expr, &mut self.switching_times);
+        self.switching.push(expr.clone());
         Ok(())
     }
 
@@ -138,7 +154,6 @@ impl Plan {
     pub fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Error> {
         let Assignment { name, value } = assignment;
         let input = setup.input(Field::Input, name)?;
-        self.take(Field::Input, input, setup)?;
         let unit = &setup.mechanism.inputs[InputId::new(input)].label.unit;
         let text = bracketed(value);
         let expr = formula(
@@ -149,7 +164,14 @@ impl Plan {
             unit,
         )
         .map_err(Error::expression(Field::Input, name, &text))?;
-        self.push(Slot::Input(input), &expr)
+        self.input(input, &expr, setup)
+    }
+
+    /// Adds an expression that has been read.
+    pub fn input(&mut self, input: usize, expr: &Expr, setup: &Setup<'_>) -> Result<(), Error> {
+        self.take(Field::Input, input, setup)?;
+        let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
+        self.push(Slot::Input(input), expr)
             .map_err(|reason| Error::request(Field::Input, format!("{name}: {reason}")))
     }
 
@@ -225,13 +247,12 @@ impl Plan {
         Ok(())
     }
 
-    /// The inputs as a function of time and state, for a motion from 0 to `until` in s.
-    pub fn controller(self, setup: &Setup<'_>, until: f64) -> Result<Controller, Error> {
+    /// The inputs as functions of time and state, for motions of at most `until` in s.
+    pub fn wiring(self, setup: &Setup<'_>, until: f64) -> Result<Wiring, Error> {
         let function = self.bench.function(setup.info, self.exprs)?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
         slots.extend(self.zero.into_iter().map(Slot::Desired));
-        let mut switching_times = self.switching_times;
         let mut sampled = Vec::new();
         for (law, inputs) in self.sampled {
             if until / law.sampling.period() > MOST_MEASUREMENTS {
@@ -242,23 +263,21 @@ impl Plan {
                 );
                 return Err(Error::request(Field::Feedback, message));
             }
-            let sampler = Sampler::new(law.sampling, until);
-            switching_times.extend(sampler.switching_times());
             sampled.push(SampledLaw {
-                sampler,
+                sampling: law.sampling,
                 inputs,
                 pending_gains: law.pending_gains,
             });
         }
-        Ok(Controller {
+        Ok(Wiring {
             function,
             slots,
-            parameters: setup.parameters.clone(),
             recorded: self.recorded.map(|table| table.values),
             driven: self.driven,
             sampled,
             scheduled: self.scheduled,
-            switching_times,
+            switching_times: self.switching_times,
+            switching: self.switching,
         })
     }
 }
@@ -266,7 +285,25 @@ impl Plan {
 /// Maximum number of measurements in a motion.
 const MOST_MEASUREMENTS: f64 = 1e6;
 
-impl Controller {
+impl Wiring {
+    /// The inputs of a motion from 0 to `until` in s.
+    pub fn controller(&self, parameters: Vec<f64>, until: f64) -> Controller<'_> {
+        let mut times = self.switching_times.clone();
+        for expr in &self.switching {
+            switching_times(expr, &parameters, &mut times);
+        }
+        let sampler = |law: &SampledLaw| Sampler::new(law.sampling, until);
+        let samplers: Vec<Sampler> = self.sampled.iter().map(sampler).collect();
+        times.extend(samplers.iter().flat_map(Sampler::switching_times));
+        Controller {
+            wiring: self,
+            parameters,
+            samplers,
+            switching_times: times,
+            values: Cell::default(),
+        }
+    }
+
     /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
     fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
         for (slot, value) in self.slots.iter().zip(values) {
@@ -280,32 +317,36 @@ impl Controller {
     }
 }
 
-impl InputSource for Controller {
-    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        match &self.recorded {
+impl Controller<'_> {
+    /// The inputs with other parameters, as long as those of the motion, in the expressions.
+    pub fn inputs_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
+        let wiring = self.wiring;
+        match &wiring.recorded {
             Some(recorded) => recorded.inputs(t, x, u),
             None => u.fill(0.0),
         }
-        if !self.driven.is_empty() {
+        if !wiring.driven.is_empty() {
             let mut own = vec![0.0; u.len()];
-            for (inputs, source) in &self.driven {
+            for (inputs, source) in &wiring.driven {
                 source.inputs(t, x, &mut own);
                 for &input in inputs {
                     u[input] += own[input];
                 }
             }
         }
-        let mut values = vec![0.0; self.slots.len()];
-        self.function.values(t, x, &self.parameters, &mut values);
-        for (slot, value) in self.slots.iter().zip(&values) {
+        let mut values = self.values.take();
+        values.clear();
+        values.resize(wiring.slots.len(), 0.0);
+        wiring.function.values(t, x, p, &mut values);
+        for (slot, value) in wiring.slots.iter().zip(&values) {
             if let Slot::Input(input) = *slot {
                 u[input] += value;
             }
         }
-        self.feedback(None, x, &values, u);
-        for (law, scheduled) in self.scheduled.iter().enumerate() {
-            scheduled.add(x, &self.parameters, u, |y| {
-                for (slot, value) in self.slots.iter().zip(&values) {
+        wiring.feedback(None, x, &values, u);
+        for (law, scheduled) in wiring.scheduled.iter().enumerate() {
+            scheduled.add(x, p, u, |y| {
+                for (slot, value) in wiring.slots.iter().zip(&values) {
                     if let Slot::Beside(of, place) = *slot
                         && of == law
                     {
@@ -314,16 +355,29 @@ impl InputSource for Controller {
                 }
             });
         }
-        for (law, sampled) in self.sampled.iter().enumerate() {
-            let acting = sampled.sampler.acting(t, |pending| {
+        let laws = wiring.sampled.iter().zip(&self.samplers);
+        for (law, (sampled, sampler)) in laws.enumerate() {
+            let acting = sampler.acting(t, |pending| {
                 let mut asked = vec![0.0; u.len()];
-                self.feedback(Some(law), x, &values, &mut asked);
+                wiring.feedback(Some(law), x, &values, &mut asked);
                 sampled.asked(&asked, &pending.concat())
             });
             for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
                 u[input] += acting;
             }
         }
+        self.values.set(values);
+    }
+
+    /// The parameters of the motion.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+}
+
+impl InputSource for Controller<'_> {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        self.inputs_with(&self.parameters, t, x, u);
     }
 
     fn switching_times(&self) -> Vec<f64> {

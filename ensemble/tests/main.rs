@@ -1,0 +1,1 @@
+//! Ensembles of cases that need no mechanics.

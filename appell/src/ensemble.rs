@@ -80,8 +80,9 @@ pub struct Running {
     pub chunk: Option<u64>,
 }
 
-/// Chunks of a study that does not say how large they are, and the most cases of such a chunk.
+/// Chunks of a study that does not say how large they are, and the fewest and the most cases of such a chunk.
 const CHUNKS: u64 = 64;
+const LEAST_PER_CHUNK: u64 = 16;
 const MOST_PER_CHUNK: u64 = 4096;
 
 impl Ensemble {
@@ -175,7 +176,7 @@ impl Ensemble {
     /// All chunks of cases.
     pub fn chunks(&self, size: Option<u64>) -> Chunks {
         let cases = self.design.cases();
-        let usual = cases.div_ceil(CHUNKS).clamp(1, MOST_PER_CHUNK);
+        let usual = cases.div_ceil(CHUNKS).clamp(LEAST_PER_CHUNK, MOST_PER_CHUNK);
         Chunks {
             study: self.hash.clone(),
             cases,

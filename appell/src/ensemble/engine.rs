@@ -3,7 +3,7 @@
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
-use appell_ensemble::rows::{Column, Rows};
+use appell_ensemble::rows::{Column, Role, Rows};
 use appell_ensemble::run::{Engine, Watch};
 use appell_ensemble::study::{Kept, Method as Word};
 use appell_runtime::Simulation;
@@ -30,6 +30,9 @@ impl Engine for Ensemble {
                 return;
             }
             let (end, reason) = self.case(case, &mut row);
+            if !reason.is_empty() {
+                self.forget(&mut row);
+            }
             rows.push(&row, end, &reason);
             (watch.done)(1);
         }
@@ -72,6 +75,24 @@ impl Ensemble {
         };
         let moved = self.moved(variant, case, start, row);
         moved.unwrap_or_else(|error| (0.0, told(&error, variant)))
+    }
+
+    /// Of a motion that ended early nobody knows the numbers of the whole: its courses until then and the events that
+    /// happened are left.
+    fn forget(&self, row: &mut [f64]) {
+        let mut is_unknown = false;
+        for (value, column) in row.iter_mut().zip(&self.layout.columns) {
+            is_unknown = match column.role {
+                Role::Value => true,
+                Role::Event => *value == 0.0,
+                // Of the number or event before it.
+                Role::When => is_unknown,
+                Role::Factor(_) | Role::Course { .. } => false,
+            };
+            if is_unknown {
+                *value = f64::NAN;
+            }
+        }
     }
 
     fn moved(

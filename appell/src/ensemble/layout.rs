@@ -3,11 +3,11 @@
 use appell_ensemble::TAKEN;
 use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::study::{Keep, Kept};
-use appell_runtime::model::ModelInfo;
-use appell_spec::Code;
+use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::{Code, units};
 
 use super::reading::Reading;
-use super::spec::Quantity;
+use super::spec::Quantity as Kind;
 
 /// A number that is kept at a time.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -36,7 +36,7 @@ pub(super) fn layout(
     reading: &mut Reading<'_>,
     factors: Vec<Column>,
     info: &ModelInfo,
-    kept: &[Quantity],
+    kept: &[Kind],
 ) -> Layout {
     let study = reading.study;
     let t_end = study.motion.t_end;
@@ -50,9 +50,9 @@ pub(super) fn layout(
     let mut courses = Vec::new();
     for (index, (keep, source)) in study.keep.iter().zip(kept).enumerate() {
         let quantity = match *source {
-            Quantity::State(state) => &info.states[state],
-            Quantity::Input(input) => &info.inputs[input],
-            Quantity::Output(output) => &info.outputs[output],
+            Kind::State(state) => &info.states[state],
+            Kind::Input(input) => &info.inputs[input],
+            Kind::Output(output) => &info.outputs[output],
         };
         let is_own = !keep.about.is_empty();
         let about = if is_own {
@@ -60,11 +60,12 @@ pub(super) fn layout(
         } else {
             sentence(keep)
         };
+        let (unit, scale) = unit(reading, keep, quantity);
         let value = Column {
             name: keep.name.text.clone(),
             about,
-            unit: quantity.unit.to_string(),
-            scale: quantity.scale,
+            unit,
+            scale,
             role: Role::Value,
         };
         layout.first.push(layout.columns.len());
@@ -125,6 +126,29 @@ pub(super) fn layout(
     layout.moments.sort_by(|a, b| a.t.total_cmp(&b.t));
     unique(reading, &layout.columns);
     layout
+}
+
+/// Unit of a kept quantity: that of the study, if it fits, or its own.
+fn unit(reading: &mut Reading<'_>, keep: &Keep, quantity: &Quantity) -> (String, f64) {
+    let own = (quantity.unit.to_string(), quantity.scale);
+    let Some(wanted) = &keep.unit else {
+        return own;
+    };
+    let unit = match units::parse(&wanted.text) {
+        Ok(unit) => unit,
+        Err(error) => {
+            reading.tell(Code::UnknownUnit, error.to_string(), wanted, "");
+            return own;
+        }
+    };
+    let dimension = units::parse(&own.0).map_or(unit.dimension, |own| own.dimension);
+    if dimension != unit.dimension {
+        let found = units::quantity_name(&dimension);
+        let message = format!("`{}` is {found}, not {}", keep.of.text, units::quantity_name(&unit.dimension));
+        let help = format!("its unit is `{}`", own.0);
+        reading.tell(Code::UnitMismatch, message, wanted, &help);
+    }
+    (wanted.text.clone(), unit.scale)
 }
 
 /// Multiples of an interval up to the end, which is one of them where rounding alone keeps it from being one.

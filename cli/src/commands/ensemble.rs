@@ -20,8 +20,8 @@ use crate::{output, progress};
 #[command(after_long_help = "\
 Examples:
   appell sample study study
-  appell ensemble study/study.toml -o study/results
-  appell ensemble study/study.toml -o study/results --json -")]
+  appell ensemble study/rider.toml -o study/results
+  appell ensemble study/rider.toml -o study/results --json -")]
 pub(crate) struct EnsembleCommand {
     /// The study file
     study: PathBuf,

@@ -10,7 +10,8 @@ use crate::output::{self, shell};
 #[command(after_long_help = "\
 Examples:
   appell sample rig rig
-  appell sample capture capture")]
+  appell sample capture capture
+  appell sample study study")]
 pub(crate) struct Sample {
     #[command(subcommand)]
     what: What,
@@ -29,7 +30,15 @@ enum What {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,
     },
+    /// A study of riders who differ in mass, height and stiffness
+    Study {
+        /// The folder, which is made if it is not there; nothing is overwritten
+        folder: PathBuf,
+    },
 }
+
+/// Name and text of the study.
+const STUDY: (&str, &str) = ("rider.toml", include_str!("../../ensembles/rider.toml"));
 
 impl Sample {
     pub(super) fn run(&self) -> Result<(), Error> {
@@ -40,6 +49,12 @@ impl Sample {
                 format!(
                     "wrote {files} to {at}; next:\n  appell recording {at}\n  appell diagnose --data {at} --html gap.html\n"
                 )
+            }
+            What::Study { folder } => {
+                let (name, text) = STUDY;
+                appell::sample::write(folder, &[(name, text.to_owned())])?;
+                let [study, results] = [name, "results"].map(|n| shell(&folder.join(n).to_string_lossy()));
+                format!("wrote {study}; next:\n  appell ensemble {study} --out {results}\n")
             }
             What::Capture { folder } => {
                 let written = appell_papers::book::euc::sample::capture(folder)?;

@@ -15,6 +15,8 @@ pub struct Keep {
     pub kept: Kept,
     /// The quantity: a name of the spec, or an expression; of an event a comparison such as `theta > 20[deg]`.
     pub of: Text,
+    /// Unit for people, in place of the one of the quantity.
+    pub unit: Option<Text>,
     /// A sentence; may be empty.
     pub about: String,
 }
@@ -42,8 +44,8 @@ pub enum Kept {
 }
 
 const FORMS: [&str; 6] = ["end", "max", "min", "mean", "when", "course"];
-const KEYS: [&str; 9] = [
-    "end", "max", "min", "mean", "when", "course", "at_s", "stop", "about",
+const KEYS: [&str; 10] = [
+    "end", "max", "min", "mean", "when", "course", "at_s", "stop", "unit", "about",
 ];
 /// Particles of a splitting.
 const PARTICLES: u64 = 1000;
@@ -57,6 +59,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
         };
         read.fields.only(entry, &KEYS);
         let about = read.text(entry, "about");
+        let unit = read.text(entry, "unit");
         let at = read.number(entry, "at_s");
         let stop = read.fields.flag(entry, "stop");
         let given: Vec<&str> = FORMS
@@ -99,6 +102,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             name,
             kept,
             of,
+            unit,
             about: about.map_or_else(String::new, |about| about.text),
         });
     }

@@ -96,7 +96,7 @@ fn bands(column: &Column, course: &Course) -> String {
         height: 220.0,
         layers: vec![
             layer("5 to 95 %", band(0), Look::Band(band(4)), 0),
-            layer("25 to 75 %", band(1), Look::Band(band(3)), 0),
+            layer("25 to 75 %", band(1), Look::Core(band(3)), 0),
             layer("median", band(2), Look::Line, 0),
             layer("mean", values(&course.mean), Look::Line, 1),
         ],

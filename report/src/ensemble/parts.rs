@@ -116,7 +116,7 @@ fn factors(about: &About<'_>) -> Part {
 
 fn numbers(about: &About<'_>) -> Part {
     let mut rows = vec![heads(&[
-        "", "mean", "deviation", "5 %", "median", "95 %", "mean, 95 % interval", "median, 95 % interval", "missing",
+        "", "mean", "deviation", "5 %", "median", "95 %", "mean ±", "missing",
     ])];
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
@@ -124,13 +124,8 @@ fn numbers(about: &About<'_>) -> Part {
             continue;
         }
         let mut row = row(column, number);
-        let in_unit = |ends: [f64; 2]| interval(ends.map(|end| column.to_unit(end)));
-        row.push(number.moments.interval().map_or_else(String::new, in_unit));
-        let median = number.quantiles.get(2).map(|q| q.interval);
-        row.push(match median {
-            Some([Some(low), Some(high)]) => in_unit([low, high]),
-            _ => String::new(),
-        });
+        let half = number.moments.interval().map(|[low, high]| 0.5 * (high - low));
+        row.push(half.map_or_else(String::new, |half| short(column.to_unit(half))));
         row.push(match number.moments.missing {
             0 => String::new(),
             missing => missing.to_string(),
@@ -138,9 +133,12 @@ fn numbers(about: &About<'_>) -> Part {
         rows.push(row);
     }
     let mut notes = Vec::new();
-    if about.summary.sampling != Sampling::Random {
+    if about.summary.sampling == Sampling::Random {
+        notes.push("± is half the 95 % interval.".to_owned());
+    } else {
         notes.push(
-            "Intervals are those of independent cases; those of stratified ones are narrower.".to_owned(),
+            "± is half the 95 % interval for independent cases; these are stratified, so that the mean is better known."
+                .to_owned(),
         );
     }
     Part {

@@ -42,14 +42,11 @@ impl Scatter {
         svg.put(&text([LEFT, 16.0]).text(&self.about));
         svg.put(&text([LEFT, area.top - 9.0]).text(&self.labels[1]));
         area.grid(&mut svg, &x_axis, &y_axis);
-        let step = match self.classes.len() {
-            0..=2 => 4,
-            3 => 2,
-            _ => 1,
-        };
+        let last = self.classes.len().saturating_sub(1).max(1);
         let mut right = LEFT;
         for (class, name) in self.classes.iter().enumerate() {
-            let colour = (class * step).min(4);
+            // The ends of the scale, whatever lies between.
+            let colour = (4 * class + last / 2) / last;
             let mut places = String::new();
             for ([x, y], _) in self.points.iter().filter(|(_, own)| *own == class) {
                 if x.is_finite() && y.is_finite() {

@@ -97,8 +97,8 @@ fn statistics_of_an_oscillator_are_those_of_its_distributions() {
     assert_eq!((summary.done, summary.early.len()), (4000, 0));
     for name in ["reached", "middle"] {
         let number = summary.number(column(&ensemble, name)).unwrap();
-        let [low, high] = number.moments.interval().unwrap();
-        assert!(low < 0.0 && 0.0 < high, "{name}: {low} {high}");
+        // Four standard errors.
+        assert!(number.moments.mean.abs() < 0.4 / 4000_f64.sqrt(), "{name}");
         assert!((number.moments.deviation() - 0.1).abs() < 0.003, "{name}");
         let [low, high] = number.quantiles[4].interval.map(Option::unwrap);
         assert!((low..high).contains(&0.164_485), "{name}: {low} {high}");
@@ -216,7 +216,8 @@ fn random_cases_stay_the_same_when_there_are_more() {
     filled(&few, &store, Running::default());
     let missing = many.missing(&store, Running { chunk: Some(30), ..Running::default() });
     assert_eq!(missing.unwrap().len(), 1);
-    assert_eq!(few.rows(0..30).values, many.rows(0..30).values);
+    let bits = |rows: Rows| rows.values.concat().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    assert_eq!(bits(few.rows(0..30)), bits(many.rows(0..30)));
 }
 
 /// y = sin x₁ + 7 sin² x₂ + 0.1 x₃⁴ sin x₁ over the cube from -π to π (T. Ishigami and T. Homma, 1990).
@@ -340,7 +341,9 @@ fn a_motion_that_ends_early_is_a_row_with_its_reason() {
     assert_eq!(reason, "`x` leaves its range");
     let reached = summary.number(column(&ensemble, "reached")).unwrap();
     assert!(*count > 10 && reached.moments.missing == *count, "{count}");
-    assert_eq!(summary.events[0].of + count, 200);
+    // Of those that ended early it is known only where it happened.
+    let event = &summary.events[0];
+    assert!(event.happened > 0 && event.of + count == 200 + event.happened, "{event:?}");
 }
 
 fn told(study: &str) -> String {
@@ -351,18 +354,19 @@ fn told(study: &str) -> String {
 
 #[test]
 fn mistakes_are_told_at_their_places() {
+    let mut others = Vec::new();
     for (from, to, place, says) in [
         ("x = { normal", "y = { normal", "9:1", "there is no parameter or state `y`"),
-        ("[0, 0.1]", "[0, \"1kg\"]", "9:18", "unit-mismatch"),
+        ("[0, 0.1]", "[0, \"1kg\"]", "9:20", "unit-mismatch"),
         ("end = \"x\", at", "end = \"z\", at", "13:19", "z"),
-        ("\"abs(x) > 0.25[m]\"", "\"abs(x) > 0.25[s]\"", "16:17", "unit-mismatch"),
+        ("\"abs(x) > 0.25[m]\"", "\"abs(x) > 0.25[s]\"", "16:27", "unit-mismatch"),
         ("\"abs(x) > 0.25[m]\"", "\"abs(x)\"", "16:16", "an event is a comparison"),
         ("at_s = 1.5", "at_s = 7", "13:1", "not a time of the motion"),
         ("cases = 4000", "cases = 0", "4:9", "at least 1"),
         ("cases = 4000", "casse = 4000", "4:1", "did you mean `cases`"),
-        ("normal = [0, 0.1]", "normal = [0, -0.1]", "9:18", "not negative"),
-        ("normal = [0, 0.1]", "uniform = [0.1, 0]", "9:16", "must increase"),
-        ("normal = [0, 0.1]", "norm = [0, 0.1]", "9:7", "did you mean `normal`"),
+        ("normal = [0, 0.1]", "normal = [0, -0.1]", "9:20", "not negative"),
+        ("normal = [0, 0.1]", "uniform = [0.1, 0]", "9:18", "must increase"),
+        ("normal = [0, 0.1]", "normall = [0, 0.1]", "9:7", "did you mean `normal`"),
         ("oscillator.toml", "osc.toml", "3:9", "there is no shipped mechanism and no file"),
         ("x = { normal", "F = { normal", "9:1", "which is a function of time"),
         ("reached =", "x =", "12:1", "two columns would have the name `x`"),
@@ -370,7 +374,10 @@ fn mistakes_are_told_at_their_places() {
         let wrong = STUDY.replacen(from, to, 1);
         assert_ne!(wrong, STUDY, "{from}");
         let told = told(&wrong);
-        assert!(told.contains(says), "{to}\n{told}");
-        assert!(told.contains(&format!("study.toml:{place}")), "{to}: {place}\n{told}");
+        let is_right = told.contains(says) && told.contains(&format!("study.toml:{place}"));
+        if !is_right {
+            others.push(format!("{to}: {place}, {says}\n{told}"));
+        }
     }
+    assert!(others.is_empty(), "{}", others.join("\n\n"));
 }

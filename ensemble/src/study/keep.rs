@@ -66,6 +66,10 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             .into_iter()
             .filter(|form| entry.get(*form).is_some())
             .collect();
+        // A word that is no key has been told.
+        if given.is_empty() && entry.keys().any(|key| !KEYS.contains(&key.get_ref().as_ref())) {
+            continue;
+        }
         let [form] = given[..] else {
             let message = match given[..] {
                 [] => format!("`{}` does not say what is kept", name.text),

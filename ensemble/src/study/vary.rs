@@ -126,6 +126,10 @@ fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varie
         .into_iter()
         .filter(|form| entry.get(*form).is_some())
         .collect();
+    // A word that is no key has been told.
+    if given.is_empty() && entry.keys().any(|key| !KEYS.contains(&key.get_ref().as_ref())) {
+        return None;
+    }
     let [form] = given[..] else {
         let message = match given[..] {
             [] => format!("`{}` does not say how it varies", name.text),

@@ -25,6 +25,7 @@ mod factors;
 mod layout;
 mod noise;
 mod observer;
+mod rare;
 mod reading;
 mod spec;
 mod variant;
@@ -36,7 +37,7 @@ use std::path::Path;
 use appell_ensemble::design::Design;
 use appell_ensemble::digest::Digest;
 use appell_ensemble::run::{self, Engine as _};
-use appell_ensemble::study::{FEEDBACK, MODEL, Text, Varied};
+use appell_ensemble::study::{FEEDBACK, Keep, MODEL, Text, Varied};
 use appell_spec::Code;
 
 pub use appell_ensemble::chunk::{Chunk, Chunks, Shard};
@@ -60,13 +61,23 @@ pub struct Ensemble {
     design: Design,
     /// Of factors that choose between numbers, the numbers.
     choices: Vec<Vec<f64>>,
-    layout: Layout,
+    task: Task,
+    /// What the probability of a rare event asks of each motion.
+    rare: Option<Task>,
     /// One for each spec and law, laws running fastest.
     variants: Vec<Variant>,
     /// Number of laws between which a factor chooses, or 1.
     laws: usize,
     /// Hash of everything that the rows depend on.
     hash: String,
+}
+
+/// What of a motion is kept, and where.
+struct Task {
+    keep: Vec<Keep>,
+    /// Places among the kept quantities of the study.
+    which: Vec<usize>,
+    layout: Layout,
 }
 
 /// How the missing chunks of a study are run.
@@ -119,7 +130,15 @@ impl Ensemble {
         let Some((design, columns, choices)) = design else {
             return Err(Error::data(file, "there is no design"));
         };
-        let layout = layout::layout(&mut reading, columns, first.model.info(), &first.kept);
+        let info = first.model.info();
+        let task = Task {
+            layout: layout::layout(&mut reading, columns.clone(), &study.keep, info, &first.kept),
+            which: (0..study.keep.len()).collect(),
+            keep: study.keep.clone(),
+        };
+        let rare = study.rare.as_ref().and_then(|rare| {
+            rare::task(&mut reading, rare, &design, columns, info, &first.kept)
+        });
         reading.check()?;
         drop(setup);
         let laws = chosen(&study, FEEDBACK);
@@ -151,7 +170,8 @@ impl Ensemble {
             hash: digest.text(),
             laws,
             variants,
-            layout,
+            task,
+            rare,
             choices,
             design,
             study,
@@ -170,7 +190,7 @@ impl Ensemble {
 
     /// The columns of a row.
     pub fn columns(&self) -> &[Column] {
-        &self.layout.columns
+        &self.task.layout.columns
     }
 
     /// All chunks of cases.
@@ -220,7 +240,12 @@ impl Ensemble {
         let there = self.chunks(None).there(store).map_err(Error::computation)?;
         let columns = self.columns();
         let scan = |see: &mut dyn FnMut(&Rows)| run::scan(store, &there, columns.len(), see);
-        Summary::new(columns, &self.design, self.study.seed, scan).map_err(Error::computation)
+        let summary = Summary::new(columns, &self.design, self.study.seed, scan);
+        let event = self.study.rare.as_ref().map(|rare| rare.event.text.clone());
+        Ok(Summary {
+            rare: event.zip(self.probability(store)?),
+            ..summary.map_err(Error::computation)?
+        })
     }
 
     /// Title of figures and pages.

@@ -346,6 +346,30 @@ fn a_motion_that_ends_early_is_a_row_with_its_reason() {
     assert!(event.happened > 0 && event.of + count == 200 + event.happened, "{event:?}");
 }
 
+/// The amplitude is that of Rayleigh: P(amplitude > 5.26 σ) = 1e-6.
+#[test]
+fn the_probability_of_a_rare_swing_is_found_by_splitting() {
+    let scratch = Scratch::new("rare");
+    let study = STUDY.replace("0.25[m]", "0.5256521769[m]").replace("4000", "10");
+    let ensemble = scratch.ensemble(&format!("{study}[rare]\nevent = \"far\"\nparticles = 2000\n"));
+    let store = scratch.store("out");
+    let watch = Watch {
+        go_on: &|| true,
+        done: &|_| {},
+    };
+    let running = Running::default();
+    let missing = ensemble.missing_replicates(&store, running).unwrap();
+    assert_eq!(missing.len(), 10);
+    ensemble.fill_replicates(&store, &missing[..3], running, watch).unwrap();
+    assert_eq!(ensemble.probability(&store).unwrap(), None);
+    let left = ensemble.missing_replicates(&store, running).unwrap();
+    ensemble.fill_replicates(&store, &left, running, watch).unwrap();
+    let found = ensemble.probability(&store).unwrap().unwrap();
+    let [low, high] = found.interval;
+    assert!(low < 1e-6 && 1e-6 < high && high / low < 4.0, "{found:?}");
+    assert!(found.evaluations < 1e6, "{found:?}");
+}
+
 fn told(study: &str) -> String {
     let scratch = Scratch::new("told");
     let error = Ensemble::parse("study.toml", study, &scratch.0).err().unwrap();

@@ -31,10 +31,10 @@ pub(crate) fn parts() -> ProgressBar {
     bar
 }
 
-/// A bar over cases, with the time left.
-pub(crate) fn cases(all: u64) -> ProgressBar {
-    let bar = ProgressBar::new(all);
-    let template = "{bar:40} {percent} %  {human_pos} of {human_len} cases  {per_sec}  {eta} left";
+/// A bar over cases of some kind, with the time left.
+pub(crate) fn cases(all: u64, kind: &str) -> ProgressBar {
+    let bar = ProgressBar::new(all).with_message(kind.to_owned());
+    let template = "{bar:40} {percent} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);
     }

@@ -238,6 +238,17 @@ impl Design {
         }
     }
 
+    /// The values of the drawn factors at independent normal scores; the others keep theirs.
+    pub fn point_at(&self, scores: &[f64], values: &mut [f64]) {
+        for (place, drawn) in self.drawn.iter().enumerate() {
+            let score = match self.mixing.get(place) {
+                None => scores[place],
+                Some(row) => row.iter().zip(scores).map(|(w, z)| w * z).sum(),
+            };
+            values[drawn.factor] = drawn.distribution.at_score(score);
+        }
+    }
+
     /// The coordinate of a drawn factor in the unit cube, correlations included.
     fn uniform(&self, case: u64, place: usize) -> f64 {
         match self.mixing.get(place) {

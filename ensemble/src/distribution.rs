@@ -53,6 +53,19 @@ impl Distribution {
         }
     }
 
+    /// The number at a normal score: as far out as a standard normal number is there.
+    pub fn at_score(&self, score: f64) -> f64 {
+        match self {
+            // No digit of the tail is lost.
+            Self::Normal([mean, deviation]) => mean + deviation * score,
+            Self::Lognormal([median, deviation]) => median * libm::exp(deviation * score),
+            _ => {
+                let u = normal::probability(score);
+                self.quantile(u.clamp(f64::MIN_POSITIVE, 1.0 - f64::EPSILON / 2.0))
+            }
+        }
+    }
+
     /// The part of all that lies below a number.
     pub fn probability(&self, x: f64) -> f64 {
         match self {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::design::{Design, Sampling};
 use crate::rows::{Column, Role, Rows};
+use crate::splitting::Probability;
 use crate::statistics::moments::Moments;
 use crate::statistics::order::{self, Quantile, Selection};
 use crate::statistics::proportion;
@@ -37,6 +38,8 @@ pub struct Summary {
     pub points: Vec<Vec<f64>>,
     /// Whether the intervals hold for independent cases, or are wider than need be.
     pub sampling: Sampling,
+    /// The rare event with its probability, where one was asked for.
+    pub rare: Option<(String, Probability)>,
 }
 
 /// A column of numbers.
@@ -224,6 +227,7 @@ impl Summary {
             effects: effects.finish(columns, seed),
             points,
             sampling: design.sampling(),
+            rare: None,
         })
     }
 

@@ -12,24 +12,25 @@ use appell_runtime::integrate::{Cause, Direction, Ending, Event, Options};
 use appell_runtime::model::ModelInfo;
 use appell_runtime::simulate::{Method, Observed, Response, SimulationError, Validity};
 
-use super::Ensemble;
+use super::{Ensemble, Task};
 use super::factors::Target;
-use super::noise::Noisy;
+use super::noise::{Draws, Noisy};
 use super::observer::{Gauge, Keeper};
+use super::spec::Quantity;
 use super::variant::Variant;
 
 impl Engine for Ensemble {
     fn columns(&self) -> &[Column] {
-        &self.layout.columns
+        &self.task.layout.columns
     }
 
     fn run(&self, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
-        let mut row = vec![f64::NAN; self.layout.columns.len()];
+        let mut row = vec![f64::NAN; self.task.layout.columns.len()];
         for case in cases {
             if !(watch.go_on)() {
                 return;
             }
-            let (end, reason) = self.case(case, &mut row);
+            let (end, reason) = self.motion(&self.task, Draws::Case(case), &mut row);
             if !reason.is_empty() {
                 self.forget(&mut row);
             }
@@ -46,11 +47,14 @@ struct Start {
 }
 
 impl Ensemble {
-    /// Runs a case; returns when the motion ended, and why it ended early.
-    pub(super) fn case(&self, case: u64, row: &mut [f64]) -> (f64, String) {
+    /// Runs a motion; returns when it ended, and why it ended early.
+    pub(super) fn motion(&self, task: &Task, draws: Draws<'_>, row: &mut [f64]) -> (f64, String) {
         row.fill(f64::NAN);
         let count = self.design.factors().len();
-        self.design.point(case, &mut row[..count]);
+        match draws {
+            Draws::Case(case) => self.design.point(case, &mut row[..count]),
+            Draws::Scores(scores) => self.design.point_at(scores, &mut row[..count]),
+        }
         let [mut model, mut law] = [0; 2];
         for (value, target) in row[..count].iter().zip(&self.variants[0].targets) {
             // The number of a choice.
@@ -73,7 +77,7 @@ impl Ensemble {
             Ok(start) => start,
             Err(reason) => return (0.0, reason),
         };
-        let moved = self.moved(variant, case, start, row);
+        let moved = self.moved(task, variant, draws, start, row);
         moved.unwrap_or_else(|error| (0.0, told(&error, variant)))
     }
 
@@ -81,7 +85,7 @@ impl Ensemble {
     /// happened are left.
     fn forget(&self, row: &mut [f64]) {
         let mut is_unknown = false;
-        for (value, column) in row.iter_mut().zip(&self.layout.columns) {
+        for (value, column) in row.iter_mut().zip(&self.task.layout.columns) {
             is_unknown = match column.role {
                 Role::Value => true,
                 Role::Event => *value == 0.0,
@@ -97,8 +101,9 @@ impl Ensemble {
 
     fn moved(
         &self,
+        task: &Task,
         variant: &Variant,
-        case: u64,
+        draws: Draws<'_>,
         start: Start,
         row: &mut [f64],
     ) -> Result<(f64, String), SimulationError> {
@@ -109,21 +114,23 @@ impl Ensemble {
         let source = Noisy {
             controller: variant.wiring.controller(start.parameters, until),
             noises: &variant.noises,
-            case,
+            draws,
+            drawn: self.design.drawn().count(),
             until,
             scratch: Cell::default(),
         };
         let inputs = ModelInputs::new(model.info(), &source)?;
-        let gauge = RefCell::new(Gauge::new(model, &inputs, &p, &variant.kept));
-        let (mut events, mut kept) = (Vec::new(), Vec::new());
+        let kept: Vec<Quantity> = task.which.iter().map(|&k| variant.kept[k]).collect();
+        let gauge = RefCell::new(Gauge::new(model, &inputs, &p, &kept));
+        let (mut events, mut columns) = (Vec::new(), Vec::new());
         let mut over = false;
-        for (index, keep) in study.keep.iter().enumerate() {
+        for (index, keep) in task.keep.iter().enumerate() {
             let Kept::When { stop } = keep.kept else {
                 continue;
             };
             let gauge = &gauge;
             let g = move |t: f64, x: &[f64]| gauge.borrow_mut().value(index, t, x);
-            let column = self.layout.first[index];
+            let column = task.layout.first[index];
             let holds = g(0.0, &start.initial) > 0.0;
             row[column] = f64::from(u8::from(holds));
             if holds {
@@ -131,7 +138,7 @@ impl Ensemble {
                 over |= stop;
                 continue;
             }
-            kept.push(column);
+            columns.push(column);
             events.push(Event {
                 terminal: stop,
                 ..Event::new(Direction::Rising, g)
@@ -165,11 +172,11 @@ impl Ensemble {
             ..Simulation::new(model)
         };
         let (observed, keeper) = simulation.observe(|span, x| {
-            Keeper::new(&gauge, &study.keep, &self.layout, row, (span[0], x))
+            Keeper::new(&gauge, &task.keep, &task.layout, row, (span[0], x))
         })?;
-        let row = keeper.finish(&self.layout, observed.t);
+        let row = keeper.finish(&task.layout, observed.t);
         for hit in &observed.events {
-            let column = kept[hit.event];
+            let column = columns[hit.event];
             if row[column] == 0.0 {
                 row[column] = 1.0;
                 row[column + 1] = hit.t;
@@ -177,10 +184,10 @@ impl Ensemble {
         }
         let reason = reason(&observed, model.info());
         if reason.is_empty() {
-            for (index, keep) in study.keep.iter().enumerate() {
+            for (index, keep) in task.keep.iter().enumerate() {
                 if keep.kept == Kept::End {
                     let value = gauge.borrow_mut().value(index, observed.t, &observed.state);
-                    row[self.layout.first[index]] = value;
+                    row[task.layout.first[index]] = value;
                 }
             }
         }

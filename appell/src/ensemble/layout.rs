@@ -35,6 +35,7 @@ const TIMES: f64 = 100.0;
 pub(super) fn layout(
     reading: &mut Reading<'_>,
     factors: Vec<Column>,
+    keep: &[Keep],
     info: &ModelInfo,
     kept: &[Kind],
 ) -> Layout {
@@ -48,7 +49,7 @@ pub(super) fn layout(
     };
     // Courses come last: there are many of their columns.
     let mut courses = Vec::new();
-    for (index, (keep, source)) in study.keep.iter().zip(kept).enumerate() {
+    for (index, (keep, source)) in keep.iter().zip(kept).enumerate() {
         let quantity = match *source {
             Kind::State(state) => &info.states[state],
             Kind::Input(input) => &info.inputs[input],

@@ -51,17 +51,41 @@ impl Noise {
         place
     }
 
-    fn value(&self, case: u64, t: f64) -> f64 {
-        let u = self.stream.uniform(case, self.place(t));
-        self.deviation * normal::quantile(u)
+    /// How many numbers a motion up to a time needs.
+    pub(super) fn count(&self, until: f64) -> usize {
+        usize::try_from(self.place(until)).map_or(usize::MAX, |last| last.saturating_add(1))
     }
+
+    /// The value at a time; `from` is where its scores begin.
+    fn value(&self, draws: Draws<'_>, from: usize, t: f64) -> f64 {
+        let place = self.place(t);
+        let score = match draws {
+            Draws::Case(case) => normal::quantile(self.stream.uniform(case, place)),
+            Draws::Scores(scores) => {
+                let place = usize::try_from(place).ok().and_then(|p| p.checked_add(from));
+                place.and_then(|p| scores.get(p)).copied().unwrap_or(0.0)
+            }
+        };
+        self.deviation * score
+    }
+}
+
+/// Where random numbers come from.
+#[derive(Debug, Clone, Copy)]
+pub(super) enum Draws<'a> {
+    /// From the number of the case.
+    Case(u64),
+    /// From normal scores: those of the drawn factors, then those of each noise.
+    Scores(&'a [f64]),
 }
 
 /// A controller under noise.
 pub(super) struct Noisy<'a> {
     pub(super) controller: Controller<'a>,
     pub(super) noises: &'a [Noise],
-    pub(super) case: u64,
+    pub(super) draws: Draws<'a>,
+    /// Number of factors that are drawn, whose scores come first.
+    pub(super) drawn: usize,
     pub(super) until: f64,
     /// State and parameters, kept to be written anew.
     pub(super) scratch: Cell<[Vec<f64>; 2]>,
@@ -78,8 +102,10 @@ impl InputSource for Noisy<'_> {
         measured.extend_from_slice(x);
         parameters.clear();
         parameters.extend_from_slice(self.controller.parameters());
+        let mut from = self.drawn;
         for noise in self.noises {
-            let value = noise.value(self.case, t);
+            let value = noise.value(self.draws, from, t);
+            from = from.saturating_add(noise.count(self.until));
             match noise.onto {
                 Onto::Measured(state) => measured[state] += value,
                 Onto::Parameter(parameter) => parameters[parameter] = value,

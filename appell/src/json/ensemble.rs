@@ -71,6 +71,12 @@ pub fn ensemble(columns: &[Column], summary: &Summary) -> Value {
         "events": events,
         "courses": courses,
         "effects": effects,
+        "rare": summary.rare.as_ref().map(|(event, found)| json!({
+            "event": event,
+            "probability": found.value,
+            "interval_95": found.interval,
+            "motions": found.evaluations,
+        })),
     })
 }
 

@@ -55,15 +55,17 @@ impl EnsembleCommand {
             chunk: self.chunk,
         };
         let ended = self.fill(&ensemble, &store, running)?;
-        let left = ensemble.missing(&store, Running { shard: None, ..running })?;
-        let chunks = ensemble.chunks(self.chunk).count();
-        let there = chunks - left.len() as u64;
+        let whole = Running { shard: None, ..running };
+        let left = ensemble.missing(&store, whole)?.len() + ensemble.missing_replicates(&store, whole)?.len();
+        let replicates = ensemble.replicates().map_or(0, |replicates| replicates.count());
+        let chunks = ensemble.chunks(self.chunk).count() + replicates;
+        let there = chunks - left as u64;
         if ended == Ended::Stopped {
             return Err(Error::Computation(format!(
                 "stopped; {there} of {chunks} chunks are there, and the same command goes on with the others"
             )));
         }
-        if !left.is_empty() {
+        if left > 0 {
             return output::print(&format!(
                 "{there} of {chunks} chunks are there; the others belong to other shards\n"
             ));
@@ -78,11 +80,9 @@ impl EnsembleCommand {
     /// Runs what is missing, under a bar, until Ctrl-C.
     fn fill(&self, ensemble: &Ensemble, store: &Folder, running: Running) -> Result<Ended, Error> {
         let missing = ensemble.missing(store, running)?;
+        let replicates = ensemble.missing_replicates(store, running)?;
         let cases: u64 = missing.iter().map(|c| c.cases.end - c.cases.start).sum();
         let whole = ensemble.design().cases();
-        if cases == 0 {
-            return Ok(Ended::Done);
-        }
         if cases < whole && self.shard.is_none() {
             note(&format!("{} of {whole} cases are there already", whole - cases));
         }
@@ -90,14 +90,23 @@ impl EnsembleCommand {
         let told = Arc::clone(&stopped);
         // Without a handler Ctrl-C ends the process, which loses a chunk.
         let _ = ctrlc::set_handler(move || told.store(true, Ordering::Relaxed));
-        let bar = progress::cases(cases);
-        let watch = Watch {
-            go_on: &|| !stopped.load(Ordering::Relaxed),
-            done: &|cases| bar.inc(cases),
-        };
-        let ended = ensemble.fill(store, &missing, running, watch);
-        bar.finish_and_clear();
-        Ok(ended?)
+        let go_on = || !stopped.load(Ordering::Relaxed);
+        let mut ended = Ended::Done;
+        if cases > 0 {
+            let bar = progress::cases(cases, "cases");
+            let done = |cases| bar.inc(cases);
+            let watch = Watch { go_on: &go_on, done: &done };
+            ended = ensemble.fill(store, &missing, running, watch)?;
+            bar.finish_and_clear();
+        }
+        if !replicates.is_empty() && ended == Ended::Done {
+            let bar = progress::cases(replicates.len() as u64, "replicates of the rare event");
+            let done = |replicates| bar.inc(replicates);
+            let watch = Watch { go_on: &go_on, done: &done };
+            ended = ensemble.fill_replicates(store, &replicates, running, watch)?;
+            bar.finish_and_clear();
+        }
+        Ok(ended)
     }
 
     /// Writes statistics, figures and the page.

@@ -171,10 +171,17 @@ fn events(about: &About<'_>) -> Part {
             median.map_or_else(String::new, |median| short(median.value)),
         ]);
     }
+    let mut notes = Vec::new();
+    if let Some((event, found)) = &about.summary.rare {
+        notes.push(format!(
+            "{event}: probability {:.2e} by splitting (95 %: {:.2e} … {:.2e}; {:.0} motions)",
+            found.value, found.interval[0], found.interval[1], found.evaluations
+        ));
+    }
     Part {
         heading: "What happened",
         rows,
-        notes: Vec::new(),
+        notes,
     }
 }
 

@@ -43,13 +43,13 @@ use appell_spec::Code;
 pub use appell_ensemble::chunk::{Chunk, Chunks, Shard};
 pub use appell_ensemble::rows::{Column, Role, Rows};
 pub use appell_ensemble::run::{Ended, Watch};
-pub use appell_ensemble::store::{Folder, Store, StoreError};
+pub use appell_ensemble::store::{Folder, Memory, Store, StoreError};
 pub use appell_ensemble::study::Study;
 pub use appell_ensemble::summary::Summary;
 pub use appell_report::ensemble::{About, figures, page, text};
 
 use crate::source::Source;
-use crate::{Error, files};
+use crate::{Error, Field, files};
 use factors::Table;
 use layout::Layout;
 use reading::Reading;
@@ -221,6 +221,24 @@ impl Ensemble {
         let chunks = self.chunks(running.chunk);
         let there = chunks.there(store).map_err(Error::computation)?;
         Ok(chunks.missing(&there, running.shard))
+    }
+
+    /// Chunks by their names, those of the rare event among them; an unknown name is an error.
+    pub fn named(&self, names: &[String]) -> Result<[Vec<Chunk>; 2], Error> {
+        let (cases, replicates) = (self.chunks(None), self.replicates());
+        let [mut own, mut rare] = [Vec::new(), Vec::new()];
+        for name in names {
+            let replicate = replicates.as_ref().and_then(|all| all.named(name));
+            match (cases.named(name), replicate) {
+                (Some(chunk), _) if chunk.cases.end <= cases.cases => own.push(chunk),
+                (_, Some(chunk)) => rare.push(chunk),
+                _ => {
+                    let message = format!("`{name}` is no chunk of this study; it may have changed");
+                    return Err(Error::request(Field::Study, message));
+                }
+            }
+        }
+        Ok([own, rare])
     }
 
     /// Runs chunks and writes each to the store when it is done. What is there already is not looked at.

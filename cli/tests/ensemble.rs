@@ -3,7 +3,8 @@
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
-use crate::support::Folder;
+use crate::documents::blocks;
+use crate::support::{Folder, repository};
 
 const STUDY: &str = r#"
 [study]
@@ -95,6 +96,9 @@ fn shards_make_what_one_run_makes() {
 fn the_study_of_the_documents_runs_and_has_its_figures() {
     let folder = Folder::new();
     folder.done(&["sample", "study", "."]);
+    let text = std::fs::read_to_string(repository("docs/ensembles.md")).expect("the document");
+    let shown = blocks(&text, "toml")[0];
+    assert!(folder.read("rider.toml").ends_with(shown), "the document shows another study");
     let told = folder.done(&["ensemble", "rider.toml", "-o", "out", "--json", "-"]);
     assert!(told.stderr.contains("Riders who slow down"), "{}", told.stderr);
     let summary: serde_json::Value = serde_json::from_str(&told.stdout).expect("JSON");

@@ -1,8 +1,10 @@
 //! Where chunks are kept.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File};
 use std::io::{self, Write as _};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 
 use bytes::Bytes;
 
@@ -106,6 +108,33 @@ impl Store for Folder {
         for name in names.iter().filter(|name| name.ends_with(UNFINISHED)) {
             fs::remove_file(self.path.join(name)).map_err(|cause| self.error(name, cause))?;
         }
+        Ok(())
+    }
+}
+
+/// Objects in memory.
+#[derive(Debug, Default)]
+pub struct Memory(Mutex<BTreeMap<String, Bytes>>);
+
+impl Memory {
+    fn objects(&self) -> MutexGuard<'_, BTreeMap<String, Bytes>> {
+        // An object is put as a whole.
+        self.0.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+}
+
+impl Store for Memory {
+    fn names(&self) -> Result<Vec<String>, StoreError> {
+        Ok(self.objects().keys().cloned().collect())
+    }
+
+    fn read(&self, name: &str) -> Result<Bytes, StoreError> {
+        let found = self.objects().get(name).cloned();
+        found.ok_or_else(|| StoreError::new(name, "there is no such object"))
+    }
+
+    fn write(&self, name: &str, bytes: Vec<u8>) -> Result<(), StoreError> {
+        self.objects().insert(name.to_owned(), bytes.into());
         Ok(())
     }
 }

@@ -20,41 +20,18 @@
 mod keep;
 mod motion;
 mod read;
+mod value;
 mod vary;
 
 use appell_recordings::fields::Fields;
-use appell_spec::expr::Span;
 use appell_spec::{Code, Report};
 
 use crate::design::Sampling;
 
-pub use keep::{Keep, Kept};
+pub use keep::{Keep, Kept, Rare};
 pub use motion::{Method, Motion};
+pub use value::{Entry, Text};
 pub use vary::{FEEDBACK, MODEL, Noise, Vary, Varied};
-
-/// A text with its place in the study file, which its `Debug` leaves out.
-#[derive(Clone, PartialEq, Eq)]
-pub struct Text {
-    /// The text; of a number its digits.
-    pub text: String,
-    /// Where it stands, quotes included.
-    pub at: Span,
-}
-
-impl std::fmt::Debug for Text {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        self.text.fmt(f)
-    }
-}
-
-/// A name with a value.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Entry {
-    /// The name.
-    pub name: Text,
-    /// The value.
-    pub value: Text,
-}
 
 /// A study as it is written.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,15 +66,6 @@ pub struct Study {
     pub keep: Vec<Keep>,
     /// The rare event, if that is what is asked for.
     pub rare: Option<Rare>,
-}
-
-/// A rare event, whose probability importance splitting finds.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Rare {
-    /// Name of the kept event.
-    pub event: Text,
-    /// Particles.
-    pub particles: u64,
 }
 
 /// The keys of the sections.

@@ -1,30 +1,16 @@
 //! The statistics of a study, as text and as a page with figures.
 
+mod about;
 mod figures;
 mod page;
 mod parts;
 
-use appell_ensemble::rows::Column;
-use appell_ensemble::summary::Summary;
-
+pub use about::About;
 pub use figures::{Named, figures};
 pub use page::page;
 pub use parts::{Part, parts, sentences};
 
 use crate::text::table;
-
-/// What a report is about.
-#[derive(Debug, Clone, Copy)]
-pub struct About<'a> {
-    /// Its title.
-    pub title: &'a str,
-    /// The study file.
-    pub study: &'a str,
-    /// The columns of the rows.
-    pub columns: &'a [Column],
-    /// Their statistics.
-    pub summary: &'a Summary,
-}
 
 /// The statistics as text.
 pub fn text(about: &About<'_>) -> String {

@@ -33,9 +33,11 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-recordings",
         ],
     ),
+    ("ensemble", &["appell-spec", "appell-recordings"]),
     (
         "report",
         &[
+            "appell-ensemble",
             "appell-spec",
             "appell-codegen",
             "appell-runtime",
@@ -48,6 +50,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     (
         "appell",
         &[
+            "appell-ensemble",
             "appell-spec",
             "appell-codegen",
             "appell-models",
@@ -110,7 +113,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 13] = [
+const NAME_NO_MECHANISM: [&str; 14] = [
     "model_spec",
     "codegen",
     "runtime",
@@ -119,6 +122,7 @@ const NAME_NO_MECHANISM: [&str; 13] = [
     "estimate",
     "recordings",
     "gap",
+    "ensemble",
     "report",
     "appell",
     "lsp",

@@ -62,6 +62,7 @@ pub fn ensemble(columns: &[Column], summary: &Summary) -> Value {
         .map(|(reason, cases)| json!({ "reason": reason, "cases": cases }))
         .collect();
     json!({
+        "schema": "ensemble/1",
         "cases": summary.cases,
         "done": summary.done,
         "sampling": summary.sampling.word(),

@@ -4,7 +4,7 @@ use appell_spec::Code;
 use toml::de::DeTable;
 
 use super::read::Reader;
-use super::{Rare, Text};
+use super::value::Text;
 
 /// An entry of `[keep]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -41,6 +41,15 @@ pub enum Kept {
     },
     /// Its values over time, of which bands are drawn.
     Course,
+}
+
+/// A rare event, whose probability importance splitting finds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rare {
+    /// Name of the kept event.
+    pub event: Text,
+    /// Particles.
+    pub particles: u64,
 }
 
 const FORMS: [&str; 6] = ["end", "max", "min", "mean", "when", "course"];

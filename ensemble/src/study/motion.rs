@@ -4,7 +4,7 @@ use appell_spec::Code;
 use toml::de::DeTable;
 
 use super::read::Reader;
-use super::{Entry, Text};
+use super::value::{Entry, Text};
 
 /// The integrators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

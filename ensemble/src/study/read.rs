@@ -5,7 +5,7 @@ use appell_spec::expr::Span;
 use appell_spec::{Code, did_you_mean, shown};
 use toml::de::{DeTable, DeValue};
 
-use super::{Entry, Text};
+use super::value::{Entry, Text};
 use crate::design::Sampling;
 
 /// The text of the file with what is wrong in it.

@@ -3,8 +3,8 @@
 use appell_spec::Code;
 use toml::de::DeTable;
 
-use super::Text;
 use super::read::Reader;
+use super::value::Text;
 
 /// Entries of `[vary]` that choose between specs and between laws.
 pub const MODEL: &str = "model";

@@ -3,7 +3,7 @@
 use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::summary::{Course, Effects, Number};
 
-use super::About;
+use super::about::About;
 use super::parts::labelled;
 use crate::figure::{Histogram, Layer, Lever, Look, Plot, Scatter, Series, Tornado};
 use crate::text::short;

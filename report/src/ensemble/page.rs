@@ -2,7 +2,9 @@
 
 use maud::{Markup, PreEscaped, html};
 
-use super::{About, Part, figures, parts, sentences};
+use super::about::About;
+use super::figures::figures;
+use super::parts::{Part, parts, sentences};
 use crate::page_shell::PageShell;
 
 /// Light and dark, as the figures inside.

@@ -5,7 +5,7 @@ use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::statistics::sensitivity::Index;
 use appell_ensemble::summary::{Effects, Event, Number};
 
-use super::About;
+use super::about::About;
 use crate::text::short;
 
 /// A table.

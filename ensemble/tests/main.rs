@@ -1,1 +1,0 @@
-//! Ensembles of cases that need no mechanics.

@@ -132,13 +132,20 @@ impl Ensemble {
         };
         let info = first.model.info();
         let task = Task {
-            layout: layout::layout(&mut reading, columns.clone(), &study.keep, info, &first.kept),
+            layout: layout::layout(
+                &mut reading,
+                columns.clone(),
+                &study.keep,
+                info,
+                &first.kept,
+            ),
             which: (0..study.keep.len()).collect(),
             keep: study.keep.clone(),
         };
-        let rare = study.rare.as_ref().and_then(|rare| {
-            rare::task(&mut reading, rare, &design, columns, info, &first.kept)
-        });
+        let rare = study
+            .rare
+            .as_ref()
+            .and_then(|rare| rare::task(&mut reading, rare, &design, columns, info, &first.kept));
         reading.check()?;
         drop(setup);
         let laws = chosen(&study, FEEDBACK);
@@ -155,7 +162,12 @@ impl Ensemble {
                 variants.extend(variant::variant(&mut reading, extended, None, &common)?);
             }
             for law in &laws {
-                variants.extend(variant::variant(&mut reading, extended, Some(law), &common)?);
+                variants.extend(variant::variant(
+                    &mut reading,
+                    extended,
+                    Some(law),
+                    &common,
+                )?);
             }
             reading.check()?;
         }
@@ -196,7 +208,9 @@ impl Ensemble {
     /// All chunks of cases.
     pub fn chunks(&self, size: Option<u64>) -> Chunks {
         let cases = self.design.cases();
-        let usual = cases.div_ceil(CHUNKS).clamp(LEAST_PER_CHUNK, MOST_PER_CHUNK);
+        let usual = cases
+            .div_ceil(CHUNKS)
+            .clamp(LEAST_PER_CHUNK, MOST_PER_CHUNK);
         Chunks {
             study: self.hash.clone(),
             cases,
@@ -233,7 +247,8 @@ impl Ensemble {
                 (Some(chunk), _) if chunk.cases.end <= cases.cases => own.push(chunk),
                 (_, Some(chunk)) => rare.push(chunk),
                 _ => {
-                    let message = format!("`{name}` is no chunk of this study; it may have changed");
+                    let message =
+                        format!("`{name}` is no chunk of this study; it may have changed");
                     return Err(Error::request(Field::Study, message));
                 }
             }

@@ -106,7 +106,10 @@ fn statistics_of_an_oscillator_are_those_of_its_distributions() {
     // The amplitude is that of Rayleigh: P(amplitude > a) = exp(-a² / 2σ²).
     let event = &summary.events[0];
     let known = (-0.25_f64.powi(2) / 0.02).exp();
-    assert!((event.wilson[0]..event.wilson[1]).contains(&known), "{event:?}");
+    assert!(
+        (event.wilson[0]..event.wilson[1]).contains(&known),
+        "{event:?}"
+    );
     let swing = summary.number(column(&ensemble, "swing")).unwrap();
     let [low, high] = swing.moments.interval().unwrap();
     let mean = 0.1 * (std::f64::consts::PI / 2.0).sqrt();
@@ -134,13 +137,23 @@ fn kept_numbers_of_a_case_are_those_of_its_motion() {
         assert!(near(value("reached"), at(4.0)));
         assert!(near(value("middle"), at(1.5)));
         assert!(near(value("path@3"), at(3.0)));
-        assert!(near(value("swing"), amplitude), "{} {amplitude}", value("swing"));
+        assert!(
+            near(value("swing"), amplitude),
+            "{} {amplitude}",
+            value("swing")
+        );
         let when = value("swing_t_s");
         assert!((at(when).abs() - amplitude).abs() < 1e-8);
         // ∫ x² over 4 s by the primitive.
-        let steps: Vec<f64> = (0..4000).map(|k| at((f64::from(k) + 0.5) / 1000.0).powi(2)).collect();
+        let steps: Vec<f64> = (0..4000)
+            .map(|k| at((f64::from(k) + 0.5) / 1000.0).powi(2))
+            .collect();
         let mean = steps.iter().sum::<f64>() / 4000.0;
-        assert!((value("square") - mean).abs() < 1e-7, "{} {mean}", value("square"));
+        assert!(
+            (value("square") - mean).abs() < 1e-7,
+            "{} {mean}",
+            value("square")
+        );
         let far = value("far");
         assert_eq!(far, f64::from(u8::from(amplitude > 0.25)));
         if far > 0.0 {
@@ -170,7 +183,10 @@ fn bits(ensemble: &Ensemble, store: &dyn Store) -> Vec<u64> {
 fn rows_and_statistics_do_not_depend_on_threads_chunks_and_shards() {
     let scratch = Scratch::new("threads");
     for sampling in ["random", "latin", "sobol"] {
-        let study = STUDY.replace("cases = 4000", &format!("cases = 150\nsampling = \"{sampling}\""));
+        let study = STUDY.replace(
+            "cases = 4000",
+            &format!("cases = 150\nsampling = \"{sampling}\""),
+        );
         let ensemble = scratch.ensemble(&study);
         let name = |way: &str| scratch.store(&format!("{sampling}-{way}"));
         let one = name("one");
@@ -214,9 +230,21 @@ fn random_cases_stay_the_same_when_there_are_more() {
     let many = scratch.ensemble(&STUDY.replace("4000", "60"));
     let store = scratch.store("out");
     filled(&few, &store, Running::default());
-    let missing = many.missing(&store, Running { chunk: Some(30), ..Running::default() });
+    let missing = many.missing(
+        &store,
+        Running {
+            chunk: Some(30),
+            ..Running::default()
+        },
+    );
     assert_eq!(missing.unwrap().len(), 1);
-    let bits = |rows: Rows| rows.values.concat().iter().map(|v| v.to_bits()).collect::<Vec<_>>();
+    let bits = |rows: Rows| {
+        rows.values
+            .concat()
+            .iter()
+            .map(|v| v.to_bits())
+            .collect::<Vec<_>>()
+    };
     assert_eq!(bits(few.rows(0..30)), bits(many.rows(0..30)));
 }
 
@@ -247,7 +275,10 @@ y = { end = "sin(x_1) + 7*sin(x_2)^2 + 0.1*x_3^4*sin(x_1)" }
         for (index, known) in [(found.first, first), (found.total, total)] {
             assert!((index.value - known).abs() < 0.01, "{index:?} {known}");
             let [low, high] = index.interval;
-            assert!(low - 0.01 < known && known < high + 0.01, "{index:?} {known}");
+            assert!(
+                low - 0.01 < known && known < high + 0.01,
+                "{index:?} {known}"
+            );
         }
     }
 }
@@ -295,7 +326,10 @@ start = { end = "v", at_s = 0 }
     let rows = ensemble.rows(0..18);
     let value = |name: &str| &rows.values[column(&ensemble, name)];
     assert_eq!(value("feedback")[..9], [0.0; 9]);
-    assert_eq!(value("k")[..9], [3.0, 3.0, 3.0, 4.0, 4.0, 4.0, 5.0, 5.0, 5.0]);
+    assert_eq!(
+        value("k")[..9],
+        [3.0, 3.0, 3.0, 4.0, 4.0, 4.0, 5.0, 5.0, 5.0]
+    );
     assert_eq!(value("m")[..6], [1.0, 2.0, 3.0, 1.0, 2.0, 3.0]);
     assert_eq!(value("x")[..3], [0.1, 0.2, 0.3]);
     assert!(value("x0").iter().all(|x| *x == 0.1 || *x == 0.2));
@@ -305,35 +339,79 @@ start = { end = "v", at_s = 0 }
     assert!(value("swing")[0] > value("swing")[9]);
 }
 
-/// White noise, held for `every`, moves a free mass by a random walk of its velocity.
+/// White noise, held for `every`, moves a free mass by a random walk of its velocity: as a force, and as the error of
+/// the position that a law measures to hold against the spring.
 #[test]
 fn noise_moves_a_mass_as_far_as_it_should() {
     let scratch = Scratch::new("noise");
+    for motion in [
+        "set.k = 0\ninput.F = \"gust\"\n[noise]\ngust = { deviation = 2, every_s = 0.1, unit = \"N\" }",
+        "set.k = 2\ninput.F = \"k*x\"\n[noise]\nx = { deviation = \"100cm\", every_s = 0.1 }",
+    ] {
+        let study = format!(
+            "[study]\nmodel = \"oscillator.toml\"\ncases = 1500\n[motion]\nt_end_s = 1\n{motion}\n\
+             [keep]\nspeed = {{ end = \"v\" }}\n"
+        );
+        let rows = scratch.ensemble(&study).rows(0..1500);
+        let variance = rows.values[0].iter().map(|v| v * v).sum::<f64>() / 1500.0;
+        // Ten independent steps of 0.2 m/s.
+        assert!((variance - 0.4).abs() < 0.04, "{variance}");
+    }
+}
+
+#[test]
+fn an_event_that_stops_ends_the_motion_there() {
+    let scratch = Scratch::new("stop");
+    let study = STUDY.replace("0.25[m]\"", "0.05[m]\", stop = true");
+    let ensemble = scratch.ensemble(&study);
+    let rows = ensemble.rows(0..100);
+    let value = |name: &str| &rows.values[column(&ensemble, name)];
+    let mut stopped = 0;
+    for case in 0..100 {
+        assert_eq!(rows.reasons[case], "");
+        if value("far")[case] > 0.0 {
+            stopped += 1;
+            let t = value("far_t_s")[case];
+            assert_eq!(rows.ends[case], t);
+            let reached = value("reached")[case].abs();
+            assert!(t == 0.0 || (reached - 0.05).abs() < 1e-9, "{reached}");
+        } else {
+            assert_eq!(rows.ends[case], 4.0);
+        }
+    }
+    assert!((50..100).contains(&stopped), "{stopped}");
+}
+
+/// Steps end where an input switches at a time that differs from case to case.
+#[test]
+fn an_input_switches_at_a_time_that_varies() {
+    let scratch = Scratch::new("switch");
     let study = r#"
 [study]
 model = "oscillator.toml"
-cases = 1500
+cases = 20
 [motion]
-t_end_s = 1
+t_end_s = 3
 set.k = 0
-input.F = "gust"
-[noise]
-gust = { deviation = 2, every_s = 0.1, unit = "N" }
+input.F = "if(t < t_push, 0, 1)"
+[vary]
+t_push = { uniform = [1, 2], unit = "s" }
 [keep]
-v = { end = "v" }
+speed = { end = "v" }
 "#;
-    let ensemble = scratch.ensemble(study);
-    let rows = ensemble.rows(0..1500);
-    let v = &rows.values[0];
-    let variance = v.iter().map(|v| v * v).sum::<f64>() / 1500.0;
-    // Ten independent steps of 0.2 m/s.
-    assert!((variance - 0.4).abs() < 0.04, "{variance}");
+    let rows = scratch.ensemble(study).rows(0..20);
+    for (t, v) in rows.values[0].iter().zip(&rows.values[1]) {
+        assert!((v - (3.0 - t)).abs() < 1e-13, "{t} {v}");
+    }
 }
 
 #[test]
 fn a_motion_that_ends_early_is_a_row_with_its_reason() {
     let scratch = Scratch::new("early");
-    let spec = OSCILLATOR.replace("about = \"position\"", "about = \"position\", range = [-0.2, 0.2]");
+    let spec = OSCILLATOR.replace(
+        "about = \"position\"",
+        "about = \"position\", range = [-0.2, 0.2]",
+    );
     std::fs::write(scratch.0.join("oscillator.toml"), spec).unwrap();
     let ensemble = scratch.ensemble(&STUDY.replace("4000", "200"));
     let summary = filled(&ensemble, &scratch.store("out"), Running::default());
@@ -343,15 +421,22 @@ fn a_motion_that_ends_early_is_a_row_with_its_reason() {
     assert!(*count > 10 && reached.moments.missing == *count, "{count}");
     // Of those that ended early it is known only where it happened.
     let event = &summary.events[0];
-    assert!(event.happened > 0 && event.of + count == 200 + event.happened, "{event:?}");
+    assert!(
+        event.happened > 0 && event.of + count == 200 + event.happened,
+        "{event:?}"
+    );
 }
 
 /// The amplitude is that of Rayleigh: P(amplitude > 5.26 σ) = 1e-6.
 #[test]
 fn the_probability_of_a_rare_swing_is_found_by_splitting() {
     let scratch = Scratch::new("rare");
-    let study = STUDY.replace("0.25[m]", "0.5256521769[m]").replace("4000", "10");
-    let ensemble = scratch.ensemble(&format!("{study}[rare]\nevent = \"far\"\nparticles = 2000\n"));
+    let study = STUDY
+        .replace("0.25[m]", "0.5256521769[m]")
+        .replace("4000", "10");
+    let ensemble = scratch.ensemble(&format!(
+        "{study}[rare]\nevent = \"far\"\nparticles = 2000\n"
+    ));
     let store = scratch.store("out");
     let watch = Watch {
         go_on: &|| true,
@@ -360,10 +445,14 @@ fn the_probability_of_a_rare_swing_is_found_by_splitting() {
     let running = Running::default();
     let missing = ensemble.missing_replicates(&store, running).unwrap();
     assert_eq!(missing.len(), 10);
-    ensemble.fill_replicates(&store, &missing[..3], running, watch).unwrap();
+    ensemble
+        .fill_replicates(&store, &missing[..3], running, watch)
+        .unwrap();
     assert_eq!(ensemble.probability(&store).unwrap(), None);
     let left = ensemble.missing_replicates(&store, running).unwrap();
-    ensemble.fill_replicates(&store, &left, running, watch).unwrap();
+    ensemble
+        .fill_replicates(&store, &left, running, watch)
+        .unwrap();
     let found = ensemble.probability(&store).unwrap().unwrap();
     let [low, high] = found.interval;
     assert!(low < 1e-6 && 1e-6 < high && high / low < 4.0, "{found:?}");
@@ -372,7 +461,9 @@ fn the_probability_of_a_rare_swing_is_found_by_splitting() {
 
 fn told(study: &str) -> String {
     let scratch = Scratch::new("told");
-    let error = Ensemble::parse("study.toml", study, &scratch.0).err().unwrap();
+    let error = Ensemble::parse("study.toml", study, &scratch.0)
+        .err()
+        .unwrap();
     error.to_string()
 }
 
@@ -380,20 +471,70 @@ fn told(study: &str) -> String {
 fn mistakes_are_told_at_their_places() {
     let mut others = Vec::new();
     for (from, to, place, says) in [
-        ("x = { normal", "y = { normal", "9:1", "there is no parameter or state `y`"),
+        (
+            "x = { normal",
+            "y = { normal",
+            "9:1",
+            "there is no parameter or state `y`",
+        ),
         ("[0, 0.1]", "[0, \"1kg\"]", "9:20", "unit-mismatch"),
         ("end = \"x\", at", "end = \"z\", at", "13:19", "z"),
-        ("\"abs(x) > 0.25[m]\"", "\"abs(x) > 0.25[s]\"", "16:27", "unit-mismatch"),
-        ("\"abs(x) > 0.25[m]\"", "\"abs(x)\"", "16:16", "an event is a comparison"),
+        (
+            "\"abs(x) > 0.25[m]\"",
+            "\"abs(x) > 0.25[s]\"",
+            "16:27",
+            "unit-mismatch",
+        ),
+        (
+            "\"abs(x) > 0.25[m]\"",
+            "\"abs(x)\"",
+            "16:16",
+            "an event is a comparison",
+        ),
         ("at_s = 1.5", "at_s = 7", "13:1", "not a time of the motion"),
         ("cases = 4000", "cases = 0", "4:9", "at least 1"),
-        ("cases = 4000", "casse = 4000", "4:1", "did you mean `cases`"),
-        ("normal = [0, 0.1]", "normal = [0, -0.1]", "9:20", "not negative"),
-        ("normal = [0, 0.1]", "uniform = [0.1, 0]", "9:18", "must increase"),
-        ("normal = [0, 0.1]", "normall = [0, 0.1]", "9:7", "did you mean `normal`"),
-        ("oscillator.toml", "osc.toml", "3:9", "there is no shipped mechanism and no file"),
-        ("x = { normal", "F = { normal", "9:1", "which is a function of time"),
-        ("reached =", "x =", "12:1", "two columns would have the name `x`"),
+        (
+            "cases = 4000",
+            "casse = 4000",
+            "4:1",
+            "did you mean `cases`",
+        ),
+        (
+            "normal = [0, 0.1]",
+            "normal = [0, -0.1]",
+            "9:20",
+            "not negative",
+        ),
+        (
+            "normal = [0, 0.1]",
+            "uniform = [0.1, 0]",
+            "9:18",
+            "must increase",
+        ),
+        (
+            "normal = [0, 0.1]",
+            "normall = [0, 0.1]",
+            "9:7",
+            "did you mean `normal`",
+        ),
+        (
+            "oscillator.toml",
+            "osc.toml",
+            "3:9",
+            "there is no shipped mechanism and no file",
+        ),
+        (
+            "x = { normal",
+            "F = { normal",
+            "9:1",
+            "which is a function of time",
+        ),
+        (
+            "reached =",
+            "x =",
+            "12:1",
+            "two columns would have the name `x`",
+        ),
     ] {
         let wrong = STUDY.replacen(from, to, 1);
         assert_ne!(wrong, STUDY, "{from}");

@@ -61,9 +61,16 @@ fn a_killed_run_goes_on_and_ends_as_if_nothing_had_happened() {
     child.wait().expect("it ends");
     let survived = chunks(&folder, "killed");
     assert!((5..60).contains(&survived.len()), "{}", survived.len());
-    assert!(survived.iter().all(|chunk| whole.contains(chunk)), "half a chunk");
+    assert!(
+        survived.iter().all(|chunk| whole.contains(chunk)),
+        "half a chunk"
+    );
     let again = folder.done(&["ensemble", "study.toml", "-o", "killed"]);
-    assert!(again.stderr.contains("cases are there already"), "{}", again.stderr);
+    assert!(
+        again.stderr.contains("cases are there already"),
+        "{}",
+        again.stderr
+    );
     assert_eq!(chunks(&folder, "killed"), whole);
     let file = |name: &str| folder.read(&format!("{name}/statistics.json"));
     assert_eq!(file("killed"), file("whole"));
@@ -73,6 +80,37 @@ fn a_killed_run_goes_on_and_ends_as_if_nothing_had_happened() {
         name.to_string_lossy().ends_with(".unfinished")
     });
     assert_eq!(left.count(), 0);
+}
+
+#[cfg(unix)]
+#[test]
+fn an_interrupted_run_keeps_what_is_finished_and_says_so() {
+    let folder = Folder::new();
+    folder.write("study.toml", STUDY);
+    let child = Command::new(env!("CARGO_BIN_EXE_appell"))
+        .args(["ensemble", "study.toml", "-o", "out", "--jobs", "1"])
+        .current_dir(folder.path("."))
+        .stdout(Stdio::null())
+        .stderr(Stdio::piped())
+        .spawn()
+        .expect("the program runs");
+    let mut waited = 0;
+    while chunks(&folder, "out").len() < 2 && waited < 6000 {
+        std::thread::sleep(Duration::from_millis(10));
+        waited += 1;
+    }
+    let interrupt = Command::new("kill")
+        .args(["-INT", &child.id().to_string()])
+        .status();
+    assert!(interrupt.expect("kill").success());
+    let ended = child.wait_with_output().expect("it ends");
+    let told = String::from_utf8_lossy(&ended.stderr);
+    assert_eq!(ended.status.code(), Some(4), "{told}");
+    assert!(
+        told.contains("chunks are there, and the same command goes on"),
+        "{told}"
+    );
+    assert!((2..60).contains(&chunks(&folder, "out").len()));
 }
 
 #[test]
@@ -89,7 +127,11 @@ fn shards_make_what_one_run_makes() {
     assert_eq!(chunks(&folder, "parts"), chunks(&folder, "whole"));
     let file = |name: &str| folder.read(&format!("{name}/statistics.json"));
     assert_eq!(file("parts"), file("whole"));
-    folder.fails(2, &["ensemble", "study.toml", "-o", "parts", "--shard", "4/3"], &["K/N"]);
+    folder.fails(
+        2,
+        &["ensemble", "study.toml", "-o", "parts", "--shard", "4/3"],
+        &["K/N"],
+    );
 }
 
 #[test]
@@ -98,12 +140,25 @@ fn the_study_of_the_documents_runs_and_has_its_figures() {
     folder.done(&["sample", "study", "."]);
     let text = std::fs::read_to_string(repository("docs/ensembles.md")).expect("the document");
     let shown = blocks(&text, "toml")[0];
-    assert!(folder.read("rider.toml").ends_with(shown), "the document shows another study");
+    assert!(
+        folder.read("rider.toml").ends_with(shown),
+        "the document shows another study"
+    );
     let told = folder.done(&["ensemble", "rider.toml", "-o", "out", "--json", "-"]);
-    assert!(told.stderr.contains("Riders who slow down"), "{}", told.stderr);
+    assert!(
+        told.stderr.contains("Riders who slow down"),
+        "{}",
+        told.stderr
+    );
     let summary: serde_json::Value = serde_json::from_str(&told.stdout).expect("JSON");
     assert_eq!(summary["done"], 400);
-    for name in ["lean-bands", "torque-histogram", "torque-levers", "strained-cases"] {
+    assert_eq!(summary["schema"], "ensemble/1");
+    for name in [
+        "lean-bands",
+        "torque-histogram",
+        "torque-levers",
+        "strained-cases",
+    ] {
         let svg = folder.read(&format!("out/{name}.svg"));
         assert!(svg.starts_with("<svg"), "{name}");
     }
@@ -120,5 +175,9 @@ fn mistakes_have_their_place_and_status() {
         &["ensemble", "study.toml", "-o", "out"],
         &["study.toml:9:1", "did you mean `theta`?"],
     );
-    folder.fails(3, &["ensemble", "nothing.toml", "-o", "out"], &["nothing.toml"]);
+    folder.fails(
+        3,
+        &["ensemble", "nothing.toml", "-o", "out"],
+        &["nothing.toml"],
+    );
 }

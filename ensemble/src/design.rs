@@ -328,7 +328,9 @@ fn count_cases(
         Sampling::Sensitivity => drawn as u128 + 2,
         _ => 1,
     };
-    let found = nodes.saturating_mul(u128::from(count)).saturating_mul(roles);
+    let found = nodes
+        .saturating_mul(u128::from(count))
+        .saturating_mul(roles);
     let most = match sampling {
         Sampling::Random | Sampling::Latin => MOST_CASES,
         Sampling::Sobol => sobol::MOST_POINTS,

@@ -111,7 +111,10 @@ mod tests {
             (1e-300, -37.047_096_299_361_2),
         ] {
             let found = quantile(u);
-            assert!((found - z).abs() <= 4e-16 * z.abs().max(1.0) * 4.0, "{u}: {found} {z}");
+            assert!(
+                (found - z).abs() <= 4e-16 * z.abs().max(1.0) * 4.0,
+                "{u}: {found} {z}"
+            );
         }
     }
 

@@ -124,7 +124,10 @@ pub fn scan(
     mut see: impl FnMut(&Rows),
 ) -> Result<(), StoreError> {
     let mut next = 0;
-    for chunk in there.iter().filter(|chunk| chunk.cases.start < chunk.cases.end) {
+    for chunk in there
+        .iter()
+        .filter(|chunk| chunk.cases.start < chunk.cases.end)
+    {
         if chunk.cases.end <= next {
             continue;
         }

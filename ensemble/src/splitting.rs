@@ -71,7 +71,11 @@ impl<'a> Splitting<'a> {
         let mut height = |scores: &[f64]| {
             evaluations += 1;
             let height = self.landscape.height(scores);
-            if height.is_nan() { f64::NEG_INFINITY } else { height }
+            if height.is_nan() {
+                f64::NEG_INFINITY
+            } else {
+                height
+            }
         };
         let mut particles: Vec<(f64, Vec<f64>)> = Vec::with_capacity(n);
         for _ in 0..n {

@@ -31,7 +31,7 @@ use crate::design::Sampling;
 pub use keep::{Keep, Kept, Rare};
 pub use motion::{Method, Motion};
 pub use value::{Entry, Text};
-pub use vary::{FEEDBACK, MODEL, Noise, Vary, Varied};
+pub use vary::{FEEDBACK, MODEL, Noise, Varied, Vary};
 
 /// A study as it is written.
 #[derive(Debug, Clone, PartialEq)]
@@ -114,9 +114,13 @@ impl Study {
         let rare = keep::rare(&mut read, table, &keep);
         let motion = motion::read(&mut read, table);
         let chosen = vary.iter().any(|vary| vary.name.text == MODEL);
-        if model.is_none() && !chosen && table.get("study").is_some() && study.get("model").is_none()
+        if model.is_none()
+            && !chosen
+            && table.get("study").is_some()
+            && study.get("model").is_none()
         {
-            let help = "write `model = \"…\"`, the name of a shipped mechanism or the path of a spec";
+            let help =
+                "write `model = \"…\"`, the name of a shipped mechanism or the path of a spec";
             read.tell(Code::MissingKey, "the key `model` is missing", 0..0, help);
         }
         let has_nodes = points.is_some() || vary.iter().any(|vary| vary.varied.is_grid());

@@ -44,7 +44,9 @@ pub(crate) fn written(rows: &Rows, columns: &[Column], study: &str) -> Result<Ve
         .map(|case| i64::try_from(case).unwrap_or(i64::MAX))
         .collect();
     if let Some(mut column) = group.next_column()? {
-        column.typed::<Int64Type>().write_batch(&cases, None, None)?;
+        column
+            .typed::<Int64Type>()
+            .write_batch(&cases, None, None)?;
         column.close()?;
     }
     for values in rows.values.iter().chain([&rows.ends]) {
@@ -111,7 +113,9 @@ fn rows(bytes: Bytes, columns: usize, first: u64) -> Result<Rows> {
         for (index, list) in (1..).zip(lists) {
             let ColumnReader::DoubleColumnReader(mut reader) = group.get_column_reader(index)?
             else {
-                return Err(ParquetError::General("a column of other numbers".to_owned()));
+                return Err(ParquetError::General(
+                    "a column of other numbers".to_owned(),
+                ));
             };
             reader.read_records(count, None, None, list)?;
         }

@@ -71,7 +71,9 @@ impl Study {
         let all = self.ensemble.chunks(chunk);
         let replicates = self.ensemble.replicates();
         let chunks = (0..all.count()).map(|number| all.chunk(number));
-        let rare = replicates.iter().flat_map(|all| (0..all.count()).map(|n| all.chunk(n)));
+        let rare = replicates
+            .iter()
+            .flat_map(|all| (0..all.count()).map(|n| all.chunk(n)));
         names(chunks.chain(rare).collect()).collect()
     }
 
@@ -160,7 +162,13 @@ impl Study {
                     _ => None,
                 };
                 let [name, about, unit] = [&column.name, &column.about, &column.unit];
-                (name.clone(), about.clone(), unit.clone(), column.scale, course)
+                (
+                    name.clone(),
+                    about.clone(),
+                    unit.clone(),
+                    column.scale,
+                    course,
+                )
             })
             .collect()
     }

@@ -66,8 +66,8 @@ pub use bare::read_bare;
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
 pub use error::DataError;
-pub use format::columns_of as columns;
 pub use finding::{Finding, FindingKind};
+pub use format::columns_of as columns;
 pub use level::{Noise, NoiseSource};
 pub use set::{DataSet, Parameter, Part, Run, Spec};
 

@@ -12,12 +12,12 @@ use appell_runtime::integrate::{Cause, Direction, Ending, Event, Options};
 use appell_runtime::model::ModelInfo;
 use appell_runtime::simulate::{Method, Observed, Response, SimulationError, Validity};
 
-use super::{Ensemble, Task};
 use super::factors::Target;
 use super::noise::{Draws, Noisy};
 use super::observer::{Gauge, Keeper};
 use super::spec::Quantity;
 use super::variant::Variant;
+use super::{Ensemble, Task};
 
 impl Engine for Ensemble {
     fn columns(&self) -> &[Column] {
@@ -171,9 +171,8 @@ impl Ensemble {
             events,
             ..Simulation::new(model)
         };
-        let (observed, keeper) = simulation.observe(|span, x| {
-            Keeper::new(&gauge, &task.keep, &task.layout, row, (span[0], x))
-        })?;
+        let (observed, keeper) = simulation
+            .observe(|span, x| Keeper::new(&gauge, &task.keep, &task.layout, row, (span[0], x)))?;
         let row = keeper.finish(&task.layout, observed.t);
         for hit in &observed.events {
             let column = columns[hit.event];
@@ -211,7 +210,10 @@ fn start(variant: &Variant, factors: &[f64]) -> Result<Start, String> {
         parameters[*index] = value[0];
     }
     let limits = parameters.iter().zip(&variant.limits);
-    if let Some(index) = limits.into_iter().position(|(p, [low, high])| !(*low..=*high).contains(p)) {
+    if let Some(index) = limits
+        .into_iter()
+        .position(|(p, [low, high])| !(*low..=*high).contains(p))
+    {
         let name = &info.parameters[index].name;
         return Err(format!("`{name}` is outside its limits"));
     }
@@ -257,7 +259,10 @@ fn told(error: &SimulationError, variant: &Variant) -> String {
     let info = variant.model.info();
     match error {
         SimulationError::Inconsistent { source, .. } => {
-            let name = info.states.get(source.state).map_or("?", |q| q.name.as_ref());
+            let name = info
+                .states
+                .get(source.state)
+                .map_or("?", |q| q.name.as_ref());
             format!("the mechanism cannot be assembled: no value of `{name}` fits")
         }
         SimulationError::Undetermined { .. } => {

@@ -5,7 +5,7 @@ use std::path::Path;
 use appell_ensemble::design::{Design, DesignError, Factor, Sampling, Variation};
 use appell_ensemble::distribution::Distribution;
 use appell_ensemble::rows::{Column, Role};
-use appell_ensemble::study::{FEEDBACK, MODEL, Study, Text, Vary, Varied};
+use appell_ensemble::study::{FEEDBACK, MODEL, Study, Text, Varied, Vary};
 use appell_spec::Code;
 use appell_spec::did_you_mean;
 use appell_spec::mechanism::ParameterId;
@@ -33,7 +33,10 @@ pub(super) fn targets(reading: &mut Reading<'_>, setup: &Setup<'_>, table: &Tabl
     let vary = study.vary.iter().map(|vary| &vary.name);
     let file = study.table.as_ref();
     let columns = table.names.iter().map(|name| (name.as_str(), file));
-    for (name, at) in vary.map(|name| (name.text.as_str(), Some(name))).chain(columns) {
+    for (name, at) in vary
+        .map(|name| (name.text.as_str(), Some(name)))
+        .chain(columns)
+    {
         let target = match name {
             MODEL => Some(Target::Model),
             FEEDBACK => Some(Target::Feedback),
@@ -161,9 +164,10 @@ pub(super) fn design(
         let mut place = |name: &Text| {
             let place = factors.iter().position(|f| f.name == name.text);
             if place.is_none() {
-                let help = did_you_mean(&name.text, factors.iter().map(|f| f.name.as_str()), || {
-                    "name two entries of `[vary]`".to_owned()
-                });
+                let help =
+                    did_you_mean(&name.text, factors.iter().map(|f| f.name.as_str()), || {
+                        "name two entries of `[vary]`".to_owned()
+                    });
                 let message = format!("`{}` does not vary", name.text);
                 reading.tell(Code::UnknownName, message, name, &help);
             }
@@ -250,7 +254,10 @@ fn variation(
     let several = |reading: &mut Reading<'_>, texts: &[Text], units: &[&Unit]| {
         let values = texts.iter().zip(units);
         let values = values.map(|(text, unit)| reading.constant(setup, text, unit));
-        values.collect::<Vec<_>>().into_iter().collect::<Option<Vec<f64>>>()
+        values
+            .collect::<Vec<_>>()
+            .into_iter()
+            .collect::<Option<Vec<f64>>>()
     };
     let (one, two) = (none(), [&unit, &unit]);
     let distribution = match &vary.varied {
@@ -304,7 +311,10 @@ fn variation(
             let values = several(reading, ends, &two)?;
             let last = count.saturating_sub(1).max(1) as f64;
             let value = |k: u64| values[0] + (values[1] - values[0]) * (k as f64 / last);
-            return Some((Variation::Grid((0..*count).map(value).collect()), Vec::new()));
+            return Some((
+                Variation::Grid((0..*count).map(value).collect()),
+                Vec::new(),
+            ));
         }
     };
     let Some(ends) = &vary.truncate else {

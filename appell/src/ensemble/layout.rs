@@ -82,7 +82,8 @@ pub(super) fn layout(
             Kept::End | Kept::Mean => layout.columns.push(value),
             Kept::At(t) => {
                 if !(0.0..=t_end).contains(&t) {
-                    let message = format!("{t} s is not a time of the motion, which ends at {t_end} s");
+                    let message =
+                        format!("{t} s is not a time of the motion, which ends at {t_end} s");
                     reading.tell(Code::ValueOutsideLimits, message, &keep.name, "");
                 }
                 let column = layout.columns.len();
@@ -145,7 +146,11 @@ fn unit(reading: &mut Reading<'_>, keep: &Keep, quantity: &Quantity) -> (String,
     let dimension = units::parse(&own.0).map_or(unit.dimension, |own| own.dimension);
     if dimension != unit.dimension {
         let found = units::quantity_name(&dimension);
-        let message = format!("`{}` is {found}, not {}", keep.of.text, units::quantity_name(&unit.dimension));
+        let message = format!(
+            "`{}` is {found}, not {}",
+            keep.of.text,
+            units::quantity_name(&unit.dimension)
+        );
         let help = format!("its unit is `{}`", own.0);
         reading.tell(Code::UnitMismatch, message, wanted, &help);
     }

@@ -62,7 +62,9 @@ impl Noise {
         let score = match draws {
             Draws::Case(case) => normal::quantile(self.stream.uniform(case, place)),
             Draws::Scores(scores) => {
-                let place = usize::try_from(place).ok().and_then(|p| p.checked_add(from));
+                let place = usize::try_from(place)
+                    .ok()
+                    .and_then(|p| p.checked_add(from));
                 place.and_then(|p| scores.get(p)).copied().unwrap_or(0.0)
             }
         };

@@ -82,7 +82,13 @@ impl<'a> Gauge<'a> {
 /// Parts of a step between which extrema are sought and means taken.
 const PARTS: usize = 4;
 /// Weights of Boole's rule for the mean over them.
-const WEIGHTS: [f64; PARTS + 1] = [7.0 / 90.0, 32.0 / 90.0, 12.0 / 90.0, 32.0 / 90.0, 7.0 / 90.0];
+const WEIGHTS: [f64; PARTS + 1] = [
+    7.0 / 90.0,
+    32.0 / 90.0,
+    12.0 / 90.0,
+    32.0 / 90.0,
+    7.0 / 90.0,
+];
 
 /// A quantity that is followed all the time.
 struct Followed {
@@ -204,11 +210,19 @@ impl<'a> Keeper<'a> {
         }
         for followed in &mut self.followed {
             if followed.kept == Kept::Mean {
-                let mean: f64 = WEIGHTS.iter().zip(followed.values).map(|(w, v)| w * v).sum();
+                let mean: f64 = WEIGHTS
+                    .iter()
+                    .zip(followed.values)
+                    .map(|(w, v)| w * v)
+                    .sum();
                 followed.best += (step.t - step.t_old) * mean;
                 continue;
             }
-            let sign = if followed.kept == Kept::Min { -1.0 } else { 1.0 };
+            let sign = if followed.kept == Kept::Min {
+                -1.0
+            } else {
+                1.0
+            };
             let values = followed.values.map(|value| sign * value);
             let (part, largest) = largest(&values);
             if largest > followed.best {

@@ -32,7 +32,10 @@ pub(super) fn task(
         return None;
     }
     let study = reading.study;
-    let which = study.keep.iter().position(|k| k.name.text == rare.event.text)?;
+    let which = study
+        .keep
+        .iter()
+        .position(|k| k.name.text == rare.event.text)?;
     let keep = vec![Keep {
         kept: Kept::Max,
         unit: None,

@@ -61,12 +61,7 @@ impl<'s> Reading<'s> {
     }
 
     /// The finite value of a quantity in SI.
-    pub(super) fn constant(
-        &mut self,
-        setup: &Setup<'_>,
-        text: &Text,
-        unit: &Unit,
-    ) -> Option<f64> {
+    pub(super) fn constant(&mut self, setup: &Setup<'_>, text: &Text, unit: &Unit) -> Option<f64> {
         let expr = self.expr(setup, text, "the value", Scope::Constant, unit)?;
         let value = setup.constant(&expr);
         if value.is_none() {

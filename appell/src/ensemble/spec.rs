@@ -11,8 +11,8 @@ use appell_spec::units;
 use appell_spec::{Code, Diagnostic, Reading as Read, Severity};
 
 use super::reading::Reading;
-use crate::source::Source;
 use crate::engine::Engine;
+use crate::source::Source;
 use crate::{Error, Model};
 
 /// Where a kept quantity comes from.
@@ -79,7 +79,9 @@ pub(super) fn extended(
     let mut count = base.outputs.len();
     for (index, keep) in reading.study.keep.iter().enumerate() {
         let text = keep.of.text.trim();
-        let known = states(text).or_else(|| inputs(text)).or_else(|| outputs(text));
+        let known = states(text)
+            .or_else(|| inputs(text))
+            .or_else(|| outputs(text));
         if let (Some(known), false) = (known, matches!(keep.kept, Kept::When { .. })) {
             kept.push(known);
             continue;
@@ -185,22 +187,30 @@ fn take(
     let inner = at.at.start + 1;
     let same = reading.study.text.get(inner..inner + at.text.len()) == Some(at.text.as_str());
     let place = |span: &Span| -> Span {
-        let mapped = start.zip(value).filter(|_| same).and_then(|(start, (_, expression))| {
-            let within = |byte: usize| {
-                let byte = byte.checked_sub(start)?;
-                let mut parts = expression.parts.iter().rev();
-                let (from, to) = parts.find(|(from, _)| *from <= byte)?;
-                Some(inner + (byte - from + to).min(at.text.len()))
-            };
-            Some(within(span.start)?..within(span.end)?)
-        });
-        mapped.filter(|span| span.start <= span.end).unwrap_or(at.at.clone())
+        let mapped = start
+            .zip(value)
+            .filter(|_| same)
+            .and_then(|(start, (_, expression))| {
+                let within = |byte: usize| {
+                    let byte = byte.checked_sub(start)?;
+                    let mut parts = expression.parts.iter().rev();
+                    let (from, to) = parts.find(|(from, _)| *from <= byte)?;
+                    Some(inner + (byte - from + to).min(at.text.len()))
+                };
+                Some(within(span.start)?..within(span.end)?)
+            });
+        mapped
+            .filter(|span| span.start <= span.end)
+            .unwrap_or(at.at.clone())
     };
     let is_right = errors.is_empty();
     for error in errors {
         let mut told = error.clone();
         told.labels = vec![(
-            error.labels.first().map_or(at.at.clone(), |(span, _)| place(span)),
+            error
+                .labels
+                .first()
+                .map_or(at.at.clone(), |(span, _)| place(span)),
             String::new(),
         )];
         if !reading.findings.contains(&told) {

@@ -12,7 +12,8 @@ pub fn ensemble(columns: &[Column], summary: &Summary) -> Value {
     let of = |is: fn(&Role) -> bool| -> serde_json::Map<String, Value> {
         let numbers = summary.numbers.iter();
         let own = numbers.filter(|number| is(&columns[number.column].role));
-        own.map(|n| (name(n.column).to_owned(), number(n))).collect()
+        own.map(|n| (name(n.column).to_owned(), number(n)))
+            .collect()
     };
     let events: serde_json::Map<String, Value> = summary
         .events
@@ -84,7 +85,8 @@ pub fn ensemble(columns: &[Column], summary: &Summary) -> Value {
 fn number(number: &Number) -> Value {
     let moments = &number.moments;
     let has_any = moments.count > 0;
-    let quantile = |q: &Quantile| json!({ "part": q.part, "value": q.value, "interval_95": q.interval });
+    let quantile =
+        |q: &Quantile| json!({ "part": q.part, "value": q.value, "interval_95": q.interval });
     json!({
         "count": moments.count,
         "missing": moments.missing,

@@ -44,6 +44,10 @@ pub(crate) struct EnsembleCommand {
 
 impl EnsembleCommand {
     pub(super) fn run(&self) -> Result<(), Error> {
+        if files::is_stdout(&self.out) {
+            let message = "`--out` is a folder: rows and figures do not go to standard output";
+            return Err(Error::Usage(message.to_owned()));
+        }
         let spinner = progress::spinner("deriving the equations of motion");
         let ensemble = Ensemble::from_file(&self.study);
         spinner.finish_and_clear();
@@ -55,9 +59,15 @@ impl EnsembleCommand {
             chunk: self.chunk,
         };
         let ended = self.fill(&ensemble, &store, running)?;
-        let whole = Running { shard: None, ..running };
-        let left = ensemble.missing(&store, whole)?.len() + ensemble.missing_replicates(&store, whole)?.len();
-        let replicates = ensemble.replicates().map_or(0, |replicates| replicates.count());
+        let whole = Running {
+            shard: None,
+            ..running
+        };
+        let left = ensemble.missing(&store, whole)?.len()
+            + ensemble.missing_replicates(&store, whole)?.len();
+        let replicates = ensemble
+            .replicates()
+            .map_or(0, |replicates| replicates.count());
         let chunks = ensemble.chunks(self.chunk).count() + replicates;
         let there = chunks - left as u64;
         if ended == Ended::Stopped {
@@ -84,7 +94,10 @@ impl EnsembleCommand {
         let cases: u64 = missing.iter().map(|c| c.cases.end - c.cases.start).sum();
         let whole = ensemble.design().cases();
         if cases < whole && self.shard.is_none() {
-            note(&format!("{} of {whole} cases are there already", whole - cases));
+            note(&format!(
+                "{} of {whole} cases are there already",
+                whole - cases
+            ));
         }
         let stopped = Arc::new(AtomicBool::new(false));
         let told = Arc::clone(&stopped);
@@ -95,14 +108,20 @@ impl EnsembleCommand {
         if cases > 0 {
             let bar = progress::cases(cases, "cases");
             let done = |cases| bar.inc(cases);
-            let watch = Watch { go_on: &go_on, done: &done };
+            let watch = Watch {
+                go_on: &go_on,
+                done: &done,
+            };
             ended = ensemble.fill(store, &missing, running, watch)?;
             bar.finish_and_clear();
         }
         if !replicates.is_empty() && ended == Ended::Done {
             let bar = progress::cases(replicates.len() as u64, "replicates of the rare event");
             let done = |replicates| bar.inc(replicates);
-            let watch = Watch { go_on: &go_on, done: &done };
+            let watch = Watch {
+                go_on: &go_on,
+                done: &done,
+            };
             ended = ensemble.fill_replicates(store, &replicates, running, watch)?;
             bar.finish_and_clear();
         }

@@ -53,7 +53,8 @@ impl Sample {
             What::Study { folder } => {
                 let (name, text) = STUDY;
                 appell::sample::write(folder, &[(name, text.to_owned())])?;
-                let [study, results] = [name, "results"].map(|n| shell(&folder.join(n).to_string_lossy()));
+                let [study, results] =
+                    [name, "results"].map(|n| shell(&folder.join(n).to_string_lossy()));
                 format!("wrote {study}; next:\n  appell ensemble {study} --out {results}\n")
             }
             What::Capture { folder } => {

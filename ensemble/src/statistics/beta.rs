@@ -87,7 +87,11 @@ mod tests {
 
     #[test]
     fn quantiles_of_student_are_those_of_the_tables() {
-        for (freedom, t) in [(1.0, 12.706_204_736), (10.0, 2.228_138_852), (1e6, 1.959_966_4)] {
+        for (freedom, t) in [
+            (1.0, 12.706_204_736),
+            (10.0, 2.228_138_852),
+            (1e6, 1.959_966_4),
+        ] {
             let found = student_95(freedom);
             assert!((found - t).abs() < 1e-6 * t, "{freedom}: {found}");
         }

@@ -38,13 +38,24 @@ mod tests {
     use super::*;
 
     fn near(found: [f64; 2], expected: [f64; 2]) -> bool {
-        found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 5e-8)
+        found
+            .iter()
+            .zip(expected)
+            .all(|(a, b)| (a - b).abs() < 5e-8)
     }
 
     #[test]
     fn the_intervals_are_those_of_other_programs() {
-        assert!(near(wilson(8, 20), [0.218_800_69, 0.613_418_56]), "{:?}", wilson(8, 20));
-        assert!(near(exact(8, 20), [0.191_190_12, 0.639_457_37]), "{:?}", exact(8, 20));
+        assert!(
+            near(wilson(8, 20), [0.218_800_69, 0.613_418_56]),
+            "{:?}",
+            wilson(8, 20)
+        );
+        assert!(
+            near(exact(8, 20), [0.191_190_12, 0.639_457_37]),
+            "{:?}",
+            exact(8, 20)
+        );
         assert!(near(exact(0, 10), [0.0, 0.308_497_1]), "{:?}", exact(0, 10));
     }
 }

@@ -128,7 +128,11 @@ impl Sums {
         let points = sums[0];
         let mean = sums[1] / (2.0 * points);
         let variance = sums[2] / (2.0 * points) - mean * mean;
-        (points > 1.0 && variance > 0.0)
-            .then(|| sums[3..].iter().map(|sum| sum / points / variance).collect())
+        (points > 1.0 && variance > 0.0).then(|| {
+            sums[3..]
+                .iter()
+                .map(|sum| sum / points / variance)
+                .collect()
+        })
     }
 }

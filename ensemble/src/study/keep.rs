@@ -76,7 +76,11 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             .filter(|form| entry.get(*form).is_some())
             .collect();
         // A word that is no key has been told.
-        if given.is_empty() && entry.keys().any(|key| !KEYS.contains(&key.get_ref().as_ref())) {
+        if given.is_empty()
+            && entry
+                .keys()
+                .any(|key| !KEYS.contains(&key.get_ref().as_ref()))
+        {
             continue;
         }
         let [form] = given[..] else {
@@ -101,7 +105,8 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             ("course", None) => Kept::Course,
             _ => {
                 let place = entry.get("at_s").map_or(0..0, toml::Spanned::span);
-                let message = "`at_s` belongs to `end`: the value at that time instead of the last one";
+                let message =
+                    "`at_s` belongs to `end`: the value at that time instead of the last one";
                 read.tell(Code::ConflictingKeys, message, place, "leave `at_s` out");
                 continue;
             }

@@ -89,15 +89,18 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Option<Motion>
     });
     let feedback = match section.get("feedback") {
         None => Vec::new(),
-        Some(value) if value.get_ref().is_array() => {
-            read.values(value, None).unwrap_or_default()
-        }
+        Some(value) if value.get_ref().is_array() => read.values(value, None).unwrap_or_default(),
         Some(value) => read.value(value).into_iter().collect(),
     };
     if interval.is_some_and(|interval| t_end / interval > 1e5) {
         let at = section.get("dt_s").map_or(0..0, toml::Spanned::span);
         let message = "a course would have more than 100000 times";
-        read.tell(Code::ValueOutsideLimits, message, at, "choose a longer `dt_s`");
+        read.tell(
+            Code::ValueOutsideLimits,
+            message,
+            at,
+            "choose a longer `dt_s`",
+        );
     }
     Some(Motion {
         t_end,

@@ -29,7 +29,8 @@ impl Reader<'_> {
                 .unwrap_or_default()
                 .replace('_', ""),
             _ => {
-                self.fields.wrong_type(value, "a number, or a text such as \"30cm\"");
+                self.fields
+                    .wrong_type(value, "a number, or a text such as \"30cm\"");
                 return None;
             }
         };
@@ -146,7 +147,9 @@ impl Reader<'_> {
             None => "a list of values".to_owned(),
         };
         let fits = |list: &&toml::de::DeArray<'_>| {
-            count.map_or(list.iter().count() > 0, |count| list.iter().count() == count)
+            count.map_or(list.iter().count() > 0, |count| {
+                list.iter().count() == count
+            })
         };
         let Some(list) = list.filter(fits) else {
             self.fields.wrong_type(value, &wanted);

@@ -127,7 +127,11 @@ fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varie
         .filter(|form| entry.get(*form).is_some())
         .collect();
     // A word that is no key has been told.
-    if given.is_empty() && entry.keys().any(|key| !KEYS.contains(&key.get_ref().as_ref())) {
+    if given.is_empty()
+        && entry
+            .keys()
+            .any(|key| !KEYS.contains(&key.get_ref().as_ref()))
+    {
         return None;
     }
     let [form] = given[..] else {

@@ -80,7 +80,11 @@ fn bands(column: &Column, course: &Course) -> String {
         "" | "1" => String::new(),
         unit => format!(" [{unit}]"),
     };
-    let values = |list: &[f64]| list.iter().map(|&v| column.to_unit(v)).collect::<Vec<f64>>();
+    let values = |list: &[f64]| {
+        list.iter()
+            .map(|&v| column.to_unit(v))
+            .collect::<Vec<f64>>()
+    };
     let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
         series: Series {
             label: label.to_owned(),
@@ -123,9 +127,7 @@ fn histogram(column: &Column, number: &Number) -> String {
 
 /// Factors in the order of their effects, the largest first; those that choose between files are left out.
 fn levers(about: &About<'_>, effects: &Effects) -> Vec<usize> {
-    let is_number = |factor: &usize| {
-        matches!(&about.columns[*factor].role, Role::Factor(items) if items.is_empty())
-    };
+    let is_number = |factor: &usize| matches!(&about.columns[*factor].role, Role::Factor(items) if items.is_empty());
     let mut order: Vec<usize> = (0..effects.ends.len()).filter(is_number).collect();
     let size = |factor: &usize| match &effects.indices {
         Some(indices) => indices.get(*factor).map_or(0.0, |i| i.total.value),
@@ -142,7 +144,11 @@ fn levers(about: &About<'_>, effects: &Effects) -> Vec<usize> {
 fn tornado(about: &About<'_>, effects: &Effects, levers: &[usize]) -> String {
     let column = &about.columns[effects.column];
     let number = about.summary.number(effects.column);
-    let event = about.summary.events.iter().find(|e| e.column == effects.column);
+    let event = about
+        .summary
+        .events
+        .iter()
+        .find(|e| e.column == effects.column);
     let centre = match (number, event) {
         (Some(number), _) => column.to_unit(number.moments.mean),
         (None, Some(event)) => event.happened as f64 / event.of as f64,

@@ -37,16 +37,16 @@ pub fn sentences(about: &About<'_>) -> Vec<String> {
         Sampling::Sensitivity => "Sobol points for sensitivity indices",
     };
     let mut told = vec![if summary.done < summary.cases {
-        format!(
-            "{} of {} cases so far ({how})",
-            summary.done, summary.cases
-        )
+        format!("{} of {} cases so far ({how})", summary.done, summary.cases)
     } else {
         format!("{} cases ({how})", summary.cases)
     }];
     let early: u64 = summary.early.iter().map(|(_, count)| count).sum();
     if early > 0 {
-        let reasons = summary.early.iter().map(|(reason, count)| format!("{reason} ({count})"));
+        let reasons = summary
+            .early
+            .iter()
+            .map(|(reason, count)| format!("{reason} ({count})"));
         told.push(format!(
             "{early} ended early: {}",
             reasons.collect::<Vec<_>>().join("; ")
@@ -116,7 +116,14 @@ fn factors(about: &About<'_>) -> Part {
 
 fn numbers(about: &About<'_>) -> Part {
     let mut rows = vec![heads(&[
-        "", "mean", "deviation", "5 %", "median", "95 %", "mean ±", "missing",
+        "",
+        "mean",
+        "deviation",
+        "5 %",
+        "median",
+        "95 %",
+        "mean ±",
+        "missing",
     ])];
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
@@ -124,7 +131,10 @@ fn numbers(about: &About<'_>) -> Part {
             continue;
         }
         let mut row = row(column, number);
-        let half = number.moments.interval().map(|[low, high]| 0.5 * (high - low));
+        let half = number
+            .moments
+            .interval()
+            .map(|[low, high]| 0.5 * (high - low));
         row.push(half.map_or_else(String::new, |half| short(column.to_unit(half))));
         row.push(match number.moments.missing {
             0 => String::new(),
@@ -150,7 +160,12 @@ fn numbers(about: &About<'_>) -> Part {
 
 fn events(about: &About<'_>) -> Part {
     let mut rows = vec![heads(&[
-        "", "cases", "of", "probability", "95 % interval", "median time [s]",
+        "",
+        "cases",
+        "of",
+        "probability",
+        "95 % interval",
+        "median time [s]",
     ])];
     for Event {
         column,
@@ -186,7 +201,14 @@ fn events(about: &About<'_>) -> Part {
 }
 
 fn sensitivity(about: &About<'_>) -> Vec<Part> {
-    let mut rows = vec![heads(&["", "factor", "first order", "95 %", "total", "95 %"])];
+    let mut rows = vec![heads(&[
+        "",
+        "factor",
+        "first order",
+        "95 %",
+        "total",
+        "95 %",
+    ])];
     for Effects {
         column, indices, ..
     } in &about.summary.effects

@@ -37,7 +37,10 @@ impl Histogram {
             width: WIDTH - LEFT - RIGHT,
             height: HEIGHT,
         };
-        let mut svg = Document::new([WIDTH, area.top + HEIGHT + FOOTER_HEIGHT], &[STYLE, BAR_STYLE]);
+        let mut svg = Document::new(
+            [WIDTH, area.top + HEIGHT + FOOTER_HEIGHT],
+            &[STYLE, BAR_STYLE],
+        );
         svg.put(&text([LEFT, 16.0]).text(&self.counted));
         area.grid(&mut svg, &x_axis, &y_axis);
         let mut bars = String::new();

@@ -66,7 +66,12 @@ impl Tornado {
         for (side, (class, name)) in classes.iter().zip(&self.legend).enumerate() {
             let x = NAMES + 190.0 * side as f64;
             let sample = [("x", x), ("y", 6.0), ("width", 18.0), ("height", 9.0)];
-            svg.put(&Element::new("rect").with("class", class).lengths(sample).empty());
+            svg.put(
+                &Element::new("rect")
+                    .with("class", class)
+                    .lengths(sample)
+                    .empty(),
+            );
             svg.put(&text([x + 23.0, 15.0]).text(name));
         }
         for (row, lever) in levers.iter().enumerate() {

@@ -41,6 +41,8 @@ use appell_ensemble::study::{FEEDBACK, Keep, MODEL, Text, Varied};
 use appell_spec::Code;
 
 pub use appell_ensemble::chunk::{Chunk, Chunks, Shard};
+#[cfg(feature = "object-store")]
+pub use appell_ensemble::objects::Objects;
 pub use appell_ensemble::rows::{Column, Role, Rows};
 pub use appell_ensemble::run::{Ended, Watch};
 pub use appell_ensemble::store::{Folder, Memory, Store, StoreError};

@@ -16,6 +16,8 @@ pub mod digest;
 mod directions;
 pub mod distribution;
 pub mod normal;
+#[cfg(feature = "object-store")]
+pub mod objects;
 mod permutation;
 pub mod random;
 pub mod rows;

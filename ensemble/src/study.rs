@@ -124,6 +124,15 @@ impl Study {
             read.tell(Code::MissingKey, "the key `model` is missing", 0..0, help);
         }
         let has_nodes = points.is_some() || vary.iter().any(|vary| vary.varied.is_grid());
+        if let Some(model) = model.as_ref().filter(|_| chosen) {
+            let message = "`model` stands here and in `[vary]`";
+            read.tell(
+                Code::ConflictingKeys,
+                message,
+                model.at.clone(),
+                "remove one of them",
+            );
+        }
         if count.is_none() && !has_nodes && study.get("cases").is_none() {
             let help = "write how many, such as `cases = 1000`, under `[study]`";
             read.tell(Code::MissingKey, "the key `cases` is missing", 0..0, help);

@@ -1,7 +1,7 @@
 //! The incomplete beta function, and the distributions that follow from it.
 
-/// Terms of the continued fraction.
-const MOST_TERMS: usize = 1000;
+/// Terms of the continued fraction, which needs some √(a + b).
+const MOST_TERMS: u32 = 1_000_000;
 /// Halvings of an interval, down to neighbouring numbers.
 const HALVINGS: usize = 200;
 
@@ -32,7 +32,7 @@ fn fraction(x: f64, a: f64, b: f64) -> f64 {
     let mut d = 1.0 / safe(1.0 - (a + b) * x / (a + 1.0));
     let mut product = d;
     for m in 1..=MOST_TERMS {
-        let m = m as f64;
+        let m = f64::from(m);
         let even = m * (b - m) * x / ((a + 2.0 * m - 1.0) * (a + 2.0 * m));
         let odd = -(a + m) * (a + b + m) * x / ((a + 2.0 * m) * (a + 2.0 * m + 1.0));
         let mut change = 1.0;

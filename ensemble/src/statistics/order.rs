@@ -184,8 +184,11 @@ mod tests {
     #[test]
     fn numbers_of_all_ranks_are_those_of_the_sorted_list() {
         let stream = Stream::new(1, "x");
-        let mut numbers: Vec<f64> = (0..500)
-            .map(|i| (stream.uniform(i, 0) - 0.5) * 10f64.powi((i % 40) as i32 - 20))
+        let mut numbers: Vec<f64> = (0..500_u16)
+            .map(|i| {
+                let power = i32::from(i % 40) - 20;
+                (stream.uniform(u64::from(i), 0) - 0.5) * 10f64.powi(power)
+            })
             .collect();
         numbers.extend([0.0, -0.0, 1.0, 1.0, f64::MAX, f64::MIN]);
         let ranks: Vec<u64> = (0..numbers.len() as u64).collect();

@@ -62,6 +62,7 @@ fields! {
     Sources "sources" "Sources of an FMU without machine code.",
     Bias "bias" "Columns with a constant bias.",
     Letters "parameters" "Numbers of a robot that become parameters.",
+    Study "study" "Study of an ensemble.",
 }
 
 impl fmt::Display for Field {

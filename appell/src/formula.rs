@@ -62,6 +62,9 @@ impl Workbench {
     }
 }
 
+/// As many inputs and signals need no memory of their own.
+const FEW_INPUTS: usize = 16;
+
 /// Expressions as one function of time, state and parameters.
 pub(crate) struct StateFunction {
     schedule: Schedule,
@@ -177,45 +180,57 @@ impl StateFunction {
     /// Evaluates at time `t`, state `x` and parameters `p` into the first entries of `values`.
     pub(crate) fn values(&self, t: f64, x: &[f64], p: &[f64], values: &mut [f64]) {
         let values = &mut values[..self.count];
-        let mut u = vec![0.0; self.declared + self.derivatives.len() + self.signals.len()];
+        if values.is_empty() {
+            return;
+        }
+        let mut few = [0.0; FEW_INPUTS];
+        let mut many = Vec::new();
+        let u = match few.get_mut(..self.inputs()) {
+            Some(few) => few,
+            None => {
+                many.resize(self.inputs(), 0.0);
+                &mut many[..]
+            }
+        };
         for (u, (signal, order)) in u[self.declared..].iter_mut().zip(self.tabulated()) {
             *u = signal.derivative(t, order);
         }
+        let u = &*u;
         match &self.native {
-            Some(native) => native.call(At { t, x, u: &u, p }, [values]),
-            None => values.copy_from_slice(&interpret(&self.schedule, t, x, &u, p)[0]),
+            Some(native) => native.call(At { t, x, u, p }, [values]),
+            None => values.copy_from_slice(&interpret(&self.schedule, t, x, u, p)[0]),
         }
     }
 }
 
 /// Collects the times at which an expression switches because it compares linear functions of `t`, or takes
-/// the sign of one.
-pub(crate) fn switching_times(expr: &SpecExpr, times: &mut Vec<f64>) {
+/// the sign of one; `p` are the parameters.
+pub(crate) fn switching_times(expr: &SpecExpr, p: &[f64], times: &mut Vec<f64>) {
     let mut zero_of = |function: Option<Linear>| times.extend(function.and_then(Linear::zero));
     match &expr.kind {
         ExprKind::Number(_) | ExprKind::Quantity(_) => {}
-        ExprKind::Negate(a) => switching_times(a, times),
+        ExprKind::Negate(a) => switching_times(a, p, times),
         ExprKind::Binary(_, a, b) => {
-            switching_times(a, times);
-            switching_times(b, times);
+            switching_times(a, p, times);
+            switching_times(b, p, times);
         }
         ExprKind::Call(function, arguments) => {
             if let (Named::Sign | Named::Abs, [argument]) = (function, &arguments[..]) {
-                zero_of(Linear::of(argument));
+                zero_of(Linear::of(argument, p));
             }
             for argument in arguments {
-                switching_times(argument, times);
+                switching_times(argument, p, times);
             }
         }
         ExprKind::Choice {
             compared, branches, ..
         } => {
-            let [left, right] = compared.each_ref().map(Linear::of);
+            let [left, right] = compared.each_ref().map(|side| Linear::of(side, p));
             zero_of(left.zip(right).map(|(left, right)| left.plus(right, -1.0)));
             compared
                 .iter()
                 .chain(branches.iter())
-                .for_each(|a| switching_times(a, times));
+                .for_each(|a| switching_times(a, p, times));
         }
     }
 }
@@ -228,8 +243,8 @@ struct Linear {
 }
 
 impl Linear {
-    /// An expression of numbers and `t`, if it is linear in `t`.
-    fn of(expr: &SpecExpr) -> Option<Self> {
+    /// An expression of numbers, parameters and `t`, if it is linear in `t`.
+    fn of(expr: &SpecExpr, p: &[f64]) -> Option<Self> {
         let constant = |constant: f64| Self {
             constant,
             slope: 0.0,
@@ -238,13 +253,14 @@ impl Linear {
             ExprKind::Number(n) => {
                 constant(appell_codegen::symbolic::Rational::from_big(n.clone()).to_f64())
             }
+            ExprKind::Quantity(Quantity::Parameter(id)) => constant(*p.get(id.index())?),
             ExprKind::Quantity(Quantity::Time) => Self {
                 constant: 0.0,
                 slope: 1.0,
             },
-            ExprKind::Negate(a) => constant(0.0).plus(Self::of(a)?, -1.0),
+            ExprKind::Negate(a) => constant(0.0).plus(Self::of(a, p)?, -1.0),
             ExprKind::Binary(operation, a, b) => {
-                let (a, b) = (Self::of(a)?, Self::of(b)?);
+                let (a, b) = (Self::of(a, p)?, Self::of(b, p)?);
                 match operation {
                     BinaryOp::Add => a.plus(b, 1.0),
                     BinaryOp::Subtract => a.plus(b, -1.0),
@@ -288,13 +304,14 @@ mod tests {
             ("sign(t/2 - 4)", vec![8.0]),
             ("if(t*t < 4, 1, 0)", vec![]),
             ("if(x < 1, 1, 0)", vec![]),
+            ("if(t < 3*m_cart/(5[kg/s]), 1, 0)", vec![1.2]),
         ] {
             let snippet = Snippet::alone(text);
             let unit = Unit::si(Dimension::NONE);
             let expr = formula(spec, &snippet, "the input", Scope::Law, &unit)
                 .unwrap_or_else(|report| panic!("{text}: {report:?}"));
             let mut times = Vec::new();
-            switching_times(&expr, &mut times);
+            switching_times(&expr, &[2.0], &mut times);
             assert_eq!(times, expected, "{text}");
         }
     }

@@ -1,6 +1,7 @@
 //! Results as JSON, in SI.
 
 mod design;
+mod ensemble;
 mod identification;
 mod inverse;
 mod motion;
@@ -13,6 +14,7 @@ pub use crate::gap_report::json as diagnosis;
 pub use crate::steady::chart::json as chart;
 pub use crate::steady::export::json as steady;
 pub use design::{design, schedule};
+pub use ensemble::ensemble;
 pub use identification::identification;
 pub use inverse::inverse;
 pub use motion::{extrema, motion};

@@ -20,6 +20,7 @@
 //! | [`diagnose()`], [`diagnosis::Library`] | `appell diagnose` |
 //! | [`sample::rig`], [`sample::robot`] | `appell sample` |
 //! | [`robot::read`], [`robot::import`] | `appell import` |
+//! | [`ensemble::Ensemble`] | `appell ensemble` |
 //! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
@@ -35,6 +36,7 @@ pub mod control;
 pub mod derivation;
 pub mod diagnosis;
 pub mod engine;
+pub mod ensemble;
 mod error;
 pub mod evaluation;
 mod field;

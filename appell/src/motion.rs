@@ -218,7 +218,8 @@ impl Motion {
         let held_from = plan
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
-        let mut controller = plan.controller(&setup, self.t_end)?;
+        let wiring = plan.wiring(&setup, self.t_end)?;
+        let mut controller = wiring.controller(setup.parameters.clone(), self.t_end);
         if self.method == Method::Taylor {
             controller.expand(rates()?, model.info());
         }

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod control;
+mod ensemble;
 mod errors;
 mod robots;
 mod taylor;

@@ -8,6 +8,7 @@ mod demo;
 mod derive;
 mod diagnose;
 mod draw;
+mod ensemble;
 mod evaluate;
 mod export;
 mod identify;
@@ -53,6 +54,7 @@ pub(crate) enum Command {
     Export(export::Export),
     Evaluate(evaluate::Evaluate),
     Simulate(Box<simulate::Simulate>),
+    Ensemble(ensemble::EnsembleCommand),
     Control(Box<control::Control>),
     Sample(sample::Sample),
     Recording(recording::Recording),
@@ -84,6 +86,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Export(command) => command.run(),
         Command::Evaluate(command) => command.run(),
         Command::Simulate(command) => command.run(),
+        Command::Ensemble(command) => command.run(),
         Command::Control(command) => command.run(),
         Command::Sample(command) => command.run(),
         Command::Recording(command) => command.run(),

@@ -31,6 +31,17 @@ pub(crate) fn parts() -> ProgressBar {
     bar
 }
 
+/// A bar over cases of some kind, with the time left.
+pub(crate) fn cases(all: u64, kind: &str) -> ProgressBar {
+    let bar = ProgressBar::new(all).with_message(kind.to_owned());
+    let template = "{bar:40} {percent} %  {human_pos} of {human_len} {msg}  {per_sec}  {eta} left";
+    if let Ok(style) = ProgressStyle::with_template(template) {
+        bar.set_style(style);
+    }
+    bar.enable_steady_tick(Duration::from_millis(250));
+    bar
+}
+
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,

@@ -16,6 +16,7 @@ mod definitions;
 mod destinations;
 mod diagnose;
 mod documents;
+mod ensemble;
 mod evaluate;
 mod events;
 mod examples;

@@ -7,6 +7,7 @@
 )]
 
 mod arrays;
+mod ensemble;
 mod errors;
 mod model;
 mod motion;
@@ -17,6 +18,8 @@ use pyo3::prelude::*;
 
 #[pymodule]
 mod _appell {
+    #[pymodule_export]
+    use super::ensemble::Study;
     #[pymodule_export]
     use super::model::{Model, shipped};
     #[pymodule_export]

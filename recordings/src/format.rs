@@ -87,3 +87,25 @@ fn columns(
         }
     }
 }
+
+/// Names and values of all columns of a table in any format; values that are no numbers are NaN.
+pub fn columns_of(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>), DataError> {
+    let format = Format::of(path);
+    if !matches!(format, Format::Csv) {
+        let columns = columns(path, format, &|_| true, MAX_NUMBERS)?;
+        return Ok((columns.names, columns.values));
+    }
+    let text = crate::table::bytes(path)?;
+    let mut rows = csv::Rows::new(path, text.as_slice())?;
+    let names = rows.header().to_vec();
+    let mut values = vec![Vec::new(); names.len()];
+    while rows.advance()? {
+        if let Some(uneven) = rows.uneven() {
+            return Err(uneven);
+        }
+        for (column, values) in values.iter_mut().enumerate() {
+            values.push(rows.cell(column).parse().unwrap_or(f64::NAN));
+        }
+    }
+    Ok((names, values))
+}

@@ -67,6 +67,7 @@ pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
+pub use format::columns_of as columns;
 pub use level::{Noise, NoiseSource};
 pub use set::{DataSet, Parameter, Part, Run, Spec};
 

@@ -7,18 +7,24 @@
 mod axis;
 mod branches;
 mod eigenvalues;
+mod histogram;
 mod inputs;
 mod map;
 mod plot;
+mod scatter;
 mod surface;
+mod tornado;
 
 use appell_runtime::model::Quantity;
 use appell_runtime::simulate::Breach;
 use appell_runtime::trajectory::Trajectory;
 use axis::{Axis, number};
+pub use histogram::Histogram;
 pub use map::{Curve, Map, Stroke};
 pub use plot::{Layer, Look, Plot};
+pub use scatter::Scatter;
 pub use surface::{Patch, Path, Surface};
+pub use tornado::{Lever, Tornado};
 
 use crate::svg::{Document, Element, path, text};
 use std::fmt::Write as _;

@@ -5,12 +5,14 @@
 //! - [`svg`]: their elements;
 //! - [`derivation`]: the derivation as text, LaTeX or HTML;
 //! - [`mod@film`]: the page with the animated mechanism;
+//! - [`ensemble`]: the statistics of a study, as text and as a page;
 //! - [`gap`], [`identification`], [`recording`]: results from recordings, as text and pages;
 //! - [`page_shell`]: the document around all pages;
 //! - [`text`]: tables as text, readable numbers.
 
 pub mod derivation;
 pub mod drawing;
+pub mod ensemble;
 pub mod figure;
 pub mod film;
 pub mod gap;

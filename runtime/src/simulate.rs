@@ -7,8 +7,8 @@ mod validity;
 use crate::condition::velocity_condition;
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure, IntegrationError, Options, Outcome,
-    Projection, Range, Rk4, Solver, Switches, Taylor, Watch,
+    Cause, Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure, IntegrationError, Observer,
+    Options, Outcome, Projection, Range, Rk4, Solver, Statistics, Switches, Taylor, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::{Inconsistent, Moving, Positions};
@@ -92,6 +92,23 @@ impl std::fmt::Debug for Simulation<'_> {
             .field("sampling", &self.sampling)
             .finish_non_exhaustive()
     }
+}
+
+/// A motion that was shown to an observer.
+#[derive(Debug, Clone)]
+pub struct Observed {
+    /// When it ended, in s.
+    pub t: f64,
+    /// The state there, in SI.
+    pub state: Vec<f64>,
+    /// Why it ended.
+    pub ending: Result<Ending, Cause>,
+    /// Events found, in the order of time.
+    pub events: Vec<EventHit>,
+    /// Limits of the model that it passes.
+    pub breaches: Vec<Breach>,
+    /// Its cost.
+    pub statistics: Statistics,
 }
 
 /// Why there is no complete trajectory.
@@ -184,31 +201,83 @@ impl<'a> Simulation<'a> {
 
     /// Integrates and records.
     pub fn run(mut self) -> Result<Trajectory, SimulationError> {
+        let (model, sampling, extras) = (self.model, self.sampling, self.extras);
+        let (p, progress) = (self.parameters.clone(), self.progress.take());
+        let inputs = ModelInputs::new(model.info(), self.inputs)?;
+        let (observed, mut recorder) = self.observed(&inputs, |span, x| {
+            let mut recorder = Recorder::new(sampling, span, x);
+            recorder.progress = progress;
+            recorder
+        })?;
+        recorder.finish(observed.t, &observed.state);
+        let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
+        let (times, mut states) = (recorder.times, recorder.states);
+        // Between steps the interpolant is as far off as the tolerances allow.
+        if let Some(mut projection) = projection(model, &p, &inputs) {
+            let rows = states.chunks_mut(observed.state.len().max(1));
+            for (&t, state) in times.iter().zip(rows) {
+                (projection.0)(t, state);
+            }
+        }
+        let mut motion = Trajectory::evaluate(model, &p, times, &states, fill, extras);
+        motion.breaches = observed.breaches;
+        motion.events = observed.events;
+        motion.statistics = observed.statistics;
+        match observed.ending {
+            Ok(ending) => {
+                motion.ending = Some(ending);
+                Ok(motion)
+            }
+            Err(cause) => Err(SimulationError::Integration {
+                failure: Failure {
+                    cause,
+                    t: observed.t,
+                    state: observed.state,
+                    hits: motion.events.clone(),
+                    statistics: motion.statistics,
+                },
+                trajectory: Box::new(motion),
+            }),
+        }
+    }
+
+    /// Integrates and shows each step to an observer, who is made for the span and the state at its start; nothing is
+    /// recorded.
+    pub fn observe<O: Observer>(
+        self,
+        observer: impl FnOnce([f64; 2], &[f64]) -> O,
+    ) -> Result<(Observed, O), SimulationError> {
+        let inputs = ModelInputs::new(self.model.info(), self.inputs)?;
+        self.observed(&inputs, observer)
+    }
+
+    fn observed<O: Observer>(
+        mut self,
+        inputs: &ModelInputs<'_>,
+        observer: impl FnOnce([f64; 2], &[f64]) -> O,
+    ) -> Result<(Observed, O), SimulationError> {
         self.check()?;
         let info = self.model.info();
-        let inputs = ModelInputs::new(info, self.inputs)?;
-        let series = self.series(&inputs)?;
-        let (events, progress) = (std::mem::take(&mut self.events), self.progress.take());
+        let series = self.series(inputs)?;
+        let events = std::mem::take(&mut self.events);
         let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
         let (model, p) = (self.model, self.parameters.as_slice());
-        let mut x = self.consistent_start(&inputs)?;
-        self.determined_start(&inputs, &x)?;
+        let mut x = self.consistent_start(inputs)?;
+        self.determined_start(inputs, &x)?;
         let initial_state = x.clone();
-        let limits = Limits::new(model, &inputs, p, self.validity);
-        let (breaches, ends_at_once) = limits.at_start(self.span[0], &initial_state);
-        if ends_at_once {
-            self.span[1] = self.span[0];
-        }
+        let limits = Limits::new(model, inputs, p, self.validity);
+        let (mut breaches, ends_at_once) = limits.at_start(self.span[0], &initial_state);
+        let [start, end] = self.span;
+        let span = [start, if ends_at_once { start } else { end }];
         let own_events = events.len();
         let mut watch = Watch {
             switching_times: &switching_times,
             switches: switches(model, p, &initial_state),
             ranges: &ranges,
-            projection: projection(model, p, &inputs),
+            projection: projection(model, p, inputs),
             events: events.into_iter().chain(limits.events()).collect(),
         };
-        let mut recorder = Recorder::new(self.sampling, self.span, &initial_state);
-        recorder.progress = progress;
+        let mut observer = observer(span, &initial_state);
         let mut u = vec![0.0; info.input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);
@@ -223,64 +292,51 @@ impl<'a> Simulation<'a> {
                         inputs.polynomials(t, x, u);
                     }),
                 };
-                let (span, options) = (self.span, &self.options);
+                let options = &self.options;
                 Taylor::new().integrate(
                     &equations,
                     span,
                     &mut x,
                     options,
                     &mut watch,
-                    &mut recorder,
+                    &mut observer,
                 )
             }
-            None => self.integrate(rates, &mut x, &mut watch, &mut recorder),
+            None => self.integrate(rates, span, &mut x, &mut watch, &mut observer),
         };
-
-        let recorded = |t_end, hits: Vec<EventHit>, statistics| {
-            recorder.finish(t_end, &x);
-            let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
-            let (times, mut states) = (recorder.times, recorder.states);
-            // Between steps the interpolant is as far off as the tolerances allow.
-            if let Some(mut projection) = projection(model, p, &inputs) {
-                let rows = states.chunks_mut(x.len().max(1));
-                for (&t, state) in times.iter().zip(rows) {
-                    (projection.0)(t, state);
-                }
-            }
-            let mut motion = Trajectory::evaluate(model, p, times, &states, fill, self.extras);
-            motion.breaches = breaches;
-            for hit in hits {
-                match hit.event.checked_sub(own_events) {
-                    None => motion.events.push(hit),
-                    Some(limit) => motion.breaches.extend(limits.found(limit, hit)),
-                }
-            }
-            motion.statistics = statistics;
-            motion
-        };
-        match result {
+        let (t, hits, statistics, ending) = match result {
             Ok(outcome) => {
-                let mut motion = recorded(outcome.t, outcome.hits, outcome.statistics);
-                motion.ending = Some(match outcome.ending {
+                let ending = match outcome.ending {
                     Ending::Event(event) if event >= own_events => Ending::Stopped,
                     Ending::Finished if ends_at_once => Ending::Stopped,
                     ending => ending,
-                });
-                Ok(motion)
+                };
+                (outcome.t, outcome.hits, outcome.statistics, Ok(ending))
             }
-            Err(IntegrationError::Failure(mut failure)) => {
-                let hits = std::mem::take(&mut failure.hits);
-                let trajectory = Box::new(recorded(failure.t, hits, failure.statistics));
-                failure.hits.clone_from(&trajectory.events);
-                Err(SimulationError::Integration {
-                    failure,
-                    trajectory,
-                })
+            Err(IntegrationError::Failure(failure)) => {
+                let Failure { t, hits, .. } = failure;
+                (t, hits, failure.statistics, Err(failure.cause))
             }
             Err(IntegrationError::InvalidArgument { what, value }) => {
-                Err(SimulationError::Argument { what, value })
+                return Err(SimulationError::Argument { what, value });
+            }
+        };
+        let mut events = Vec::new();
+        for hit in hits {
+            match hit.event.checked_sub(own_events) {
+                None => events.push(hit),
+                Some(limit) => breaches.extend(limits.found(limit, hit)),
             }
         }
+        let observed = Observed {
+            t,
+            state: x,
+            ending,
+            events,
+            breaches,
+            statistics,
+        };
+        Ok((observed, observer))
     }
 
     /// The equations to be expanded, if the method asks for them.
@@ -335,22 +391,23 @@ impl<'a> Simulation<'a> {
     }
 
     /// Runs the integrator of choice; `x` goes from the first to the last state.
-    fn integrate(
+    fn integrate<O: Observer>(
         &self,
         rates: impl FnMut(f64, &[f64], &mut [f64]),
+        span: [f64; 2],
         x: &mut [f64],
         watch: &mut Watch<'_>,
-        recorder: &mut Recorder<'_>,
+        observer: &mut O,
     ) -> Result<Outcome, IntegrationError> {
-        let (span, options) = (self.span, &self.options);
+        let options = &self.options;
         match self.method {
             Method::Dop853 => {
-                Solver::<Dop853>::new().integrate(rates, span, x, options, watch, recorder)
+                Solver::<Dop853>::new().integrate(rates, span, x, options, watch, observer)
             }
             Method::Dopri5 => {
-                Solver::<Dopri5>::new().integrate(rates, span, x, options, watch, recorder)
+                Solver::<Dopri5>::new().integrate(rates, span, x, options, watch, observer)
             }
-            Method::Rk4 { step } => Rk4::new().integrate(rates, span, x, step, watch, recorder),
+            Method::Rk4 { step } => Rk4::new().integrate(rates, span, x, step, watch, observer),
             // Without series, which `run` looks for.
             Method::Taylor => Err(IntegrationError::InvalidArgument {
                 what: "number of series",

@@ -34,9 +34,11 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         ],
     ),
     ("robots", &["appell-spec"]),
+    ("ensemble", &["appell-spec", "appell-recordings"]),
     (
         "report",
         &[
+            "appell-ensemble",
             "appell-spec",
             "appell-codegen",
             "appell-runtime",
@@ -49,6 +51,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     (
         "appell",
         &[
+            "appell-ensemble",
             "appell-spec",
             "appell-codegen",
             "appell-models",
@@ -122,6 +125,7 @@ const NAME_NO_MECHANISM: [&str; 14] = [
     "recordings",
     "gap",
     "robots",
+    "ensemble",
     "report",
     "appell",
     "lsp",

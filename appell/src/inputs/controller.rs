@@ -1,7 +1,9 @@
 //! The inputs of a simulation as one function of time and state.
 
+use std::cell::Cell;
 use std::sync::Arc;
 
+use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
 use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::jit::JitSeries;
@@ -24,24 +26,36 @@ use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, bracketed};
 use crate::{Error, Field};
 
-/// The sum of expressions, feedback laws and recordings.
-pub struct Controller {
+/// The sum of expressions, feedback laws and recordings in one motion.
+pub struct Controller<'w> {
+    wiring: &'w Wiring,
+    parameters: Vec<f64>,
+    /// Measurements of the discrete-time laws.
+    samplers: Vec<Sampler>,
+    switching_times: Vec<f64>,
+    /// Values of the function, kept to be written anew.
+    values: Cell<Vec<f64>>,
+    /// The equations of motion with expressions and laws put in.
+    series: Option<JitSeries>,
+}
+
+/// What all motions under the same expressions, laws and recordings share.
+pub struct Wiring {
     /// One value per entry of `slots`.
     function: StateFunction,
     slots: Vec<Slot>,
-    parameters: Vec<f64>,
     recorded: Option<TabulatedInputs>,
     driven: Vec<DrivenInputs>,
     sampled: Vec<SampledLaw>,
     scheduled: Vec<ScheduledLaw>,
     switching_times: Vec<f64>,
-    /// The equations of motion with expressions and laws put in.
-    series: Option<JitSeries>,
+    /// Expressions that may switch at times which depend on parameters.
+    switching: Vec<Expr>,
 }
 
 /// A discrete-time law.
 struct SampledLaw {
-    sampler: Sampler,
+    sampling: Sampling,
     inputs: Vec<usize>,
     pending_gains: Vec<Vec<f64>>,
 }
@@ -89,6 +103,7 @@ pub struct Plan {
     recorded: Option<Table>,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
+    switching: Vec<Expr>,
     /// Inputs set by an expression or a recording.
     set: Vec<usize>,
 }
@@ -106,6 +121,7 @@ impl Plan {
             recorded: None,
             driven: Vec::new(),
             switching_times: Vec::new(),
+            switching: Vec::new(),
             set: Vec::new(),
         }
     }
@@ -138,7 +154,7 @@ impl Plan {
         self.exprs
             .push(lowered.ok_or("an expression divides by the number zero")?);
         self.slots.push(slot);
-        switching_times(expr, &mut self.switching_times);
+        self.switching.push(expr.clone());
         Ok(())
     }
 
@@ -146,7 +162,6 @@ impl Plan {
     pub fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Error> {
         let Assignment { name, value } = assignment;
         let input = setup.input(Field::Input, name)?;
-        self.take(Field::Input, input, setup)?;
         let unit = &setup.mechanism.inputs[InputId::new(input)].label.unit;
         let text = bracketed(value);
         let expr = formula(
@@ -157,7 +172,14 @@ impl Plan {
             unit,
         )
         .map_err(Error::expression(Field::Input, name, &text))?;
-        self.push(Slot::Input(input), &expr)
+        self.input(input, &expr, setup)
+    }
+
+    /// Adds an expression that has been read.
+    pub fn input(&mut self, input: usize, expr: &Expr, setup: &Setup<'_>) -> Result<(), Error> {
+        self.take(Field::Input, input, setup)?;
+        let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
+        self.push(Slot::Input(input), expr)
             .map_err(|reason| Error::request(Field::Input, format!("{name}: {reason}")))
     }
 
@@ -233,13 +255,12 @@ impl Plan {
         Ok(())
     }
 
-    /// The inputs as a function of time and state, for a motion from 0 to `until` in s.
-    pub fn controller(self, setup: &Setup<'_>, until: f64) -> Result<Controller, Error> {
+    /// The inputs as functions of time and state, for motions of at most `until` in s.
+    pub fn wiring(self, setup: &Setup<'_>, until: f64) -> Result<Wiring, Error> {
         let function = self.bench.function(setup.info, self.exprs)?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
         slots.extend(self.zero.into_iter().map(Slot::Desired));
-        let mut switching_times = self.switching_times;
         let mut sampled = Vec::new();
         for (law, inputs) in self.sampled {
             if until / law.sampling.period() > MOST_MEASUREMENTS {
@@ -250,24 +271,21 @@ impl Plan {
                 );
                 return Err(Error::request(Field::Feedback, message));
             }
-            let sampler = Sampler::new(law.sampling, until);
-            switching_times.extend(sampler.switching_times());
             sampled.push(SampledLaw {
-                sampler,
+                sampling: law.sampling,
                 inputs,
                 pending_gains: law.pending_gains,
             });
         }
-        Ok(Controller {
+        Ok(Wiring {
             function,
             slots,
-            parameters: setup.parameters.clone(),
             recorded: self.recorded.map(|table| table.values),
             driven: self.driven,
             sampled,
             scheduled: self.scheduled,
-            switching_times,
-            series: None,
+            switching_times: self.switching_times,
+            switching: self.switching,
         })
     }
 }
@@ -275,35 +293,23 @@ impl Plan {
 /// Maximum number of measurements in a motion.
 const MOST_MEASUREMENTS: f64 = 1e6;
 
-impl Controller {
-    /// Prepares Taylor series of the motion under these inputs; `rates` are the model's.
-    pub fn expand(&mut self, rates: &Schedule, info: &ModelInfo) {
-        let law = law::schedule(&self.function, &self.slots, &self.scheduled, info);
-        let lengths = Lengths {
-            inputs: self.function.inputs(),
-            ..Lengths::from(info)
-        };
-        self.series = Some(JitSeries::new(expand_under(&law, rates, lengths)));
-    }
-
-    /// Adds what acts between samples.
-    fn add_sampled(
-        &self,
-        t: f64,
-        x: &[f64],
-        values: &[f64],
-        mut add: impl FnMut(usize, f64),
-        count: usize,
-    ) {
-        for (law, sampled) in self.sampled.iter().enumerate() {
-            let acting = sampled.sampler.acting(t, |pending| {
-                let mut asked = vec![0.0; count];
-                self.feedback(Some(law), x, values, &mut asked);
-                sampled.asked(&asked, &pending.concat())
-            });
-            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
-                add(input, *acting);
-            }
+impl Wiring {
+    /// The inputs of a motion from 0 to `until` in s.
+    pub fn controller(&self, parameters: Vec<f64>, until: f64) -> Controller<'_> {
+        let mut times = self.switching_times.clone();
+        for expr in &self.switching {
+            switching_times(expr, &parameters, &mut times);
+        }
+        let sampler = |law: &SampledLaw| Sampler::new(law.sampling, until);
+        let samplers: Vec<Sampler> = self.sampled.iter().map(sampler).collect();
+        times.extend(samplers.iter().flat_map(Sampler::switching_times));
+        Controller {
+            wiring: self,
+            parameters,
+            samplers,
+            switching_times: times,
+            values: Cell::default(),
+            series: None,
         }
     }
 
@@ -320,32 +326,75 @@ impl Controller {
     }
 }
 
-impl InputSource for Controller {
-    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        match &self.recorded {
+impl Controller<'_> {
+    /// Prepares Taylor series of the motion under these inputs; `rates` are the model's.
+    pub fn expand(&mut self, rates: &Schedule, info: &ModelInfo) {
+        let Wiring {
+            function,
+            slots,
+            scheduled,
+            ..
+        } = self.wiring;
+        let law = law::schedule(function, slots, scheduled, info);
+        let lengths = Lengths {
+            inputs: function.inputs(),
+            ..Lengths::from(info)
+        };
+        self.series = Some(JitSeries::new(expand_under(&law, rates, lengths)));
+    }
+
+    /// Adds what discrete-time laws hold between samples to `count` inputs.
+    fn add_held(
+        &self,
+        t: f64,
+        x: &[f64],
+        values: &[f64],
+        count: usize,
+        mut add: impl FnMut(usize, f64),
+    ) {
+        let wiring = self.wiring;
+        let laws = wiring.sampled.iter().zip(&self.samplers);
+        for (law, (sampled, sampler)) in laws.enumerate() {
+            let acting = sampler.acting(t, |pending| {
+                let mut asked = vec![0.0; count];
+                wiring.feedback(Some(law), x, values, &mut asked);
+                sampled.asked(&asked, &pending.concat())
+            });
+            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
+                add(input, *acting);
+            }
+        }
+    }
+
+    /// The inputs with other parameters, as long as those of the motion, in the expressions.
+    pub fn inputs_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
+        let wiring = self.wiring;
+        match &wiring.recorded {
             Some(recorded) => recorded.inputs(t, x, u),
             None => u.fill(0.0),
         }
-        if !self.driven.is_empty() {
+        if !wiring.driven.is_empty() {
             let mut own = vec![0.0; u.len()];
-            for (inputs, source) in &self.driven {
+            for (inputs, source) in &wiring.driven {
                 source.inputs(t, x, &mut own);
                 for &input in inputs {
                     u[input] += own[input];
                 }
             }
         }
-        let mut values = vec![0.0; self.slots.len()];
-        self.function.values(t, x, &self.parameters, &mut values);
-        for (slot, value) in self.slots.iter().zip(&values) {
+        let mut values = self.values.take();
+        values.clear();
+        values.resize(wiring.slots.len(), 0.0);
+        wiring.function.values(t, x, p, &mut values);
+        for (slot, value) in wiring.slots.iter().zip(&values) {
             if let Slot::Input(input) = *slot {
                 u[input] += value;
             }
         }
-        self.feedback(None, x, &values, u);
-        for (law, scheduled) in self.scheduled.iter().enumerate() {
-            scheduled.add(x, &self.parameters, u, |y| {
-                for (slot, value) in self.slots.iter().zip(&values) {
+        wiring.feedback(None, x, &values, u);
+        for (law, scheduled) in wiring.scheduled.iter().enumerate() {
+            scheduled.add(x, p, u, |y| {
+                for (slot, value) in wiring.slots.iter().zip(&values) {
                     if let Slot::Beside(of, place) = *slot
                         && of == law
                     {
@@ -355,7 +404,19 @@ impl InputSource for Controller {
             });
         }
         let count = u.len();
-        self.add_sampled(t, x, &values, |input, acting| u[input] += acting, count);
+        self.add_held(t, x, &values, count, |input, held| u[input] += held);
+        self.values.set(values);
+    }
+
+    /// The parameters of the motion.
+    pub fn parameters(&self) -> &[f64] {
+        &self.parameters
+    }
+}
+
+impl InputSource for Controller<'_> {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        self.inputs_with(&self.parameters, t, x, u);
     }
 
     fn switching_times(&self) -> Vec<f64> {
@@ -367,15 +428,16 @@ impl InputSource for Controller {
     }
 
     fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
-        let (declared, signals) = u.split_at_mut(self.function.declared().min(u.len()));
-        self.function.polynomials(t, signals);
-        match &self.recorded {
+        let wiring = self.wiring;
+        let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
+        wiring.function.polynomials(t, signals);
+        match &wiring.recorded {
             Some(recorded) => {
                 recorded.polynomials(t, x, declared);
             }
             None => declared.fill(Cubic::default()),
         }
-        for (inputs, source) in &self.driven {
+        for (inputs, source) in &wiring.driven {
             let mut own = vec![Cubic::default(); declared.len()];
             if !source.polynomials(t, x, &mut own) {
                 return false;
@@ -386,12 +448,13 @@ impl InputSource for Controller {
                 }
             }
         }
-        if !self.sampled.is_empty() {
-            let mut values = vec![0.0; self.slots.len()];
-            self.function.values(t, x, &self.parameters, &mut values);
+        if !wiring.sampled.is_empty() {
+            let mut values = vec![0.0; wiring.slots.len()];
+            wiring.function.values(t, x, &self.parameters, &mut values);
             let count = declared.len();
-            let add = |input: usize, acting| declared[input][0] += acting;
-            self.add_sampled(t, x, &values, add, count);
+            self.add_held(t, x, &values, count, |input, held| {
+                declared[input][0] += held
+            });
         }
         true
     }

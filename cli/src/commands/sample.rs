@@ -11,7 +11,8 @@ use crate::output::{self, shell};
 Examples:
   appell sample rig rig
   appell sample capture capture
-  appell sample robot robot")]
+  appell sample robot robot
+  appell sample study study")]
 pub(crate) struct Sample {
     #[command(subcommand)]
     what: What,
@@ -35,7 +36,15 @@ enum What {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,
     },
+    /// A study of riders who differ in mass, height and stiffness
+    Study {
+        /// The folder, which is made if it is not there; nothing is overwritten
+        folder: PathBuf,
+    },
 }
+
+/// Name and text of the study.
+const STUDY: (&str, &str) = ("rider.toml", include_str!("../../ensembles/rider.toml"));
 
 impl Sample {
     pub(super) fn run(&self) -> Result<(), Error> {
@@ -55,6 +64,13 @@ impl Sample {
                     "wrote {} to {at}; next:\n  appell import {first}\n",
                     files.join(", ")
                 )
+            }
+            What::Study { folder } => {
+                let (name, text) = STUDY;
+                appell::sample::write(folder, &[(name, text.to_owned())])?;
+                let [study, results] =
+                    [name, "results"].map(|n| shell(&folder.join(n).to_string_lossy()));
+                format!("wrote {study}; next:\n  appell ensemble {study} --out {results}\n")
             }
             What::Capture { folder } => {
                 let written = appell_papers::book::euc::sample::capture(folder)?;

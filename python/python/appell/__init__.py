@@ -14,6 +14,7 @@ from importlib.metadata import version as _version
 from pathlib import Path as _Path
 
 from . import _appell
+from ._ensemble import Ensemble, ensemble
 from ._errors import ComputationError, DataError, Diagnostic, EndsEarly, Error, RequestError, SpecError, Unstable
 from ._model import Derivation, Model, Quantity
 from ._motion import Motion
@@ -26,9 +27,9 @@ __version__ = _version("appell")
 
 __all__ = [
     "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "EndsEarly", "Energies",
-    "Error",
+    "Ensemble", "Error",
     "Identification", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
-    "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "diagnose", "identify", "labelled", "load", "sample_rig",
+    "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "diagnose", "ensemble", "identify", "labelled", "load", "sample_rig",
     "shipped",
 ]  # fmt: skip
 

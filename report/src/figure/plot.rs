@@ -37,12 +37,16 @@ pub enum Look {
     Points,
     /// The band between the series and these values.
     Band(Vec<f64>),
+    /// The same, as the core of another band.
+    Core(Vec<f64>),
 }
 
 /// Added to the style of the figures.
 const PLOT_STYLE: &str = "\
 .band{stroke:none;fill-opacity:.25}.dots{stroke-width:3.2;stroke-linecap:round;stroke-opacity:.55;fill:none}
+.core{stroke:none;fill-opacity:.45}
 .f0{fill:#0072b2}.f1{fill:#d55e00}.f2{fill:#009e73}.f3{fill:#cc79a7}.f4{fill:#e69f00}.f5{fill:#56b4e9}
+@media(prefers-color-scheme:dark){.f0{fill:#56b4e9}.f1{fill:#e69f00}.f4{fill:#f0e442}.f5{fill:#d55e00}}
 ";
 /// Room for the name of the vertical axis.
 const HEAD: f64 = 22.0;
@@ -81,7 +85,7 @@ impl Plot {
 impl Layer {
     fn heights(&self) -> impl Iterator<Item = f64> {
         let other: &[f64] = match &self.look {
-            Look::Band(other) => other,
+            Look::Band(other) | Look::Core(other) => other,
             Look::Line | Look::Points => &[],
         };
         self.series.y.iter().chain(other).copied()
@@ -93,6 +97,7 @@ impl Layer {
             Look::Line => format!("line c{colour}"),
             Look::Points => format!("dots c{colour}"),
             Look::Band(_) => format!("band f{colour}"),
+            Look::Core(_) => format!("core f{colour}"),
         };
         path(&class, line).empty()
     }
@@ -101,7 +106,7 @@ impl Layer {
         match self.look {
             Look::Line => format!("M{x:.1} {y:.1}h18"),
             Look::Points => format!("M{:.1} {y:.1}h0", x + 9.0),
-            Look::Band(_) => format!("M{x:.1} {:.1}h18v9h-18z", y - 4.5),
+            Look::Band(_) | Look::Core(_) => format!("M{x:.1} {:.1}h18v9h-18z", y - 4.5),
         }
     }
 
@@ -122,7 +127,7 @@ impl Layer {
                 }
                 path
             }
-            Look::Band(other) => {
+            Look::Band(other) | Look::Core(other) => {
                 let there = area.line(&self.series, x_axis, y_axis);
                 let back = Series {
                     label: String::new(),

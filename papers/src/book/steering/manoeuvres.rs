@@ -96,7 +96,8 @@ impl Run {
         law.start(&mut setup)?;
         let mut plan = Plan::new(&setup);
         plan.feedback(law)?;
-        let controller = plan.controller(&setup, 10.0)?;
+        let wiring = plan.wiring(&setup, 10.0)?;
+        let controller = wiring.controller(setup.parameters.clone(), 10.0);
         let simulation = Simulation {
             parameters: setup.parameters.clone(),
             initial_state: setup.initial.clone(),

@@ -1,0 +1,368 @@
+//! Ensembles: many motions whose parameters, starts, inputs, laws or specs vary, from a study file.
+//!
+//! ```
+//! use appell::ensemble::{Ensemble, Folder};
+//!
+//! let study = r#"
+//! [study]
+//! model = "pendulum"
+//! cases = 20
+//! [motion]
+//! t_end_s = 1
+//! [vary]
+//! theta = { normal = ["20deg", "2deg"] }
+//! [keep]
+//! reached = { end = "theta" }
+//! "#;
+//! let ensemble = Ensemble::parse("study.toml", study, std::path::Path::new("."))?;
+//! let rows = ensemble.rows(0..20);
+//! assert_eq!(rows.len(), 20);
+//! # Ok::<(), appell::Error>(())
+//! ```
+
+mod engine;
+mod factors;
+mod layout;
+mod noise;
+mod observer;
+mod rare;
+mod reading;
+mod spec;
+mod variant;
+
+use std::fmt::Write as _;
+use std::ops::Range;
+use std::path::Path;
+
+use appell_ensemble::design::Design;
+use appell_ensemble::digest::Digest;
+use appell_ensemble::run::{self, Engine as _};
+use appell_ensemble::study::{FEEDBACK, Keep, MODEL, Text, Varied};
+use appell_spec::Code;
+
+pub use appell_ensemble::chunk::{Chunk, Chunks, Shard};
+#[cfg(feature = "object-store")]
+pub use appell_ensemble::objects::Objects;
+pub use appell_ensemble::rows::{Column, Role, Rows};
+pub use appell_ensemble::run::{Ended, Watch};
+pub use appell_ensemble::store::{Folder, Memory, Store, StoreError};
+pub use appell_ensemble::study::Study;
+pub use appell_ensemble::summary::Summary;
+pub use appell_report::ensemble::{About, figures, page, text};
+
+use crate::source::Source;
+use crate::{Error, Field, files};
+use factors::Table;
+use layout::Layout;
+use reading::Reading;
+use variant::{Common, Variant};
+
+/// A study with everything that its cases share.
+pub struct Ensemble {
+    study: Study,
+    design: Design,
+    /// Of factors that choose between numbers, the numbers.
+    choices: Vec<Vec<f64>>,
+    task: Task,
+    /// What the probability of a rare event asks of each motion.
+    rare: Option<Task>,
+    /// One for each spec and law, laws running fastest.
+    variants: Vec<Variant>,
+    /// Number of laws between which a factor chooses, or 1.
+    laws: usize,
+    /// Hash of everything that the rows depend on.
+    hash: String,
+}
+
+/// What of a motion is kept, and where.
+struct Task {
+    keep: Vec<Keep>,
+    /// Places among the kept quantities of the study.
+    which: Vec<usize>,
+    layout: Layout,
+}
+
+/// How the missing chunks of a study are run.
+#[derive(Debug, Clone, Copy, Default)]
+pub struct Running {
+    /// Threads; by default one for each processor.
+    pub jobs: Option<usize>,
+    /// The part of the chunks that is run; all of them by default.
+    pub shard: Option<Shard>,
+    /// Cases of a chunk; by default as the study says, or as fits their number.
+    pub chunk: Option<u64>,
+}
+
+/// Chunks of a study that does not say how large they are, and the fewest and the most cases of such a chunk.
+const CHUNKS: u64 = 64;
+const LEAST_PER_CHUNK: u64 = 16;
+const MOST_PER_CHUNK: u64 = 4096;
+
+impl Ensemble {
+    /// The ensemble of a study file. Specs, laws and tables that it names lie beside it.
+    pub fn from_file(path: &Path) -> Result<Self, Error> {
+        let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
+        let folder = path.parent().unwrap_or(Path::new("."));
+        Self::parse(&path.to_string_lossy(), &text, folder)
+    }
+
+    /// The ensemble of the text of a study file; `folder` has the files that it names.
+    pub fn parse(file: &str, text: &str, folder: &Path) -> Result<Self, Error> {
+        let study = Study::parse(file, text)?;
+        let mut reading = Reading::new(&study);
+        let table = Table::read(&study, folder)?;
+        let own = own(&study);
+        let mut digest = Digest::default();
+        let mut models = Vec::new();
+        for name in chosen(&study, MODEL).iter().chain(&study.model) {
+            let source = source(&mut reading, name, folder)?;
+            let Some(source) = source else { continue };
+            digest.add(source.text.as_bytes());
+            models.extend(spec::extended(&mut reading, &source, &own)?);
+        }
+        reading.check()?;
+        let Some(first) = models.first() else {
+            return Err(Error::data(file, "there is no model"));
+        };
+        let (setup, _) = variant::nominal(&mut reading, &first.model)?;
+        let targets = factors::targets(&mut reading, &setup, &table);
+        reading.check()?;
+        let design = factors::design(&mut reading, &setup, &targets, &table)?;
+        reading.check()?;
+        let Some((design, columns, choices)) = design else {
+            return Err(Error::data(file, "there is no design"));
+        };
+        let info = first.model.info();
+        let task = Task {
+            layout: layout::layout(
+                &mut reading,
+                columns.clone(),
+                &study.keep,
+                info,
+                &first.kept,
+            ),
+            which: (0..study.keep.len()).collect(),
+            keep: study.keep.clone(),
+        };
+        let rare = study
+            .rare
+            .as_ref()
+            .and_then(|rare| rare::task(&mut reading, rare, &design, columns, info, &first.kept));
+        reading.check()?;
+        drop(setup);
+        let laws = chosen(&study, FEEDBACK);
+        let mut variants = Vec::new();
+        for extended in &models {
+            let (setup, _) = variant::nominal(&mut reading, &extended.model)?;
+            let targets = factors::targets(&mut reading, &setup, &table);
+            drop(setup);
+            let common = Common {
+                folder,
+                targets: &targets,
+            };
+            if laws.is_empty() {
+                variants.extend(variant::variant(&mut reading, extended, None, &common)?);
+            }
+            for law in &laws {
+                variants.extend(variant::variant(
+                    &mut reading,
+                    extended,
+                    Some(law),
+                    &common,
+                )?);
+            }
+            reading.check()?;
+        }
+        for law in study.motion.feedback.iter().chain(&laws) {
+            let path = folder.join(&law.text);
+            digest.add(&std::fs::read(&path).map_err(Error::reading(&path))?);
+        }
+        digest.add(&table.bytes);
+        digest.add(meaning(&study, &design).as_bytes());
+        let laws = laws.len().max(1);
+        Ok(Self {
+            hash: digest.text(),
+            laws,
+            variants,
+            task,
+            rare,
+            choices,
+            design,
+            study,
+        })
+    }
+
+    /// The study.
+    pub fn study(&self) -> &Study {
+        &self.study
+    }
+
+    /// The values of the factors in all cases.
+    pub fn design(&self) -> &Design {
+        &self.design
+    }
+
+    /// The columns of a row.
+    pub fn columns(&self) -> &[Column] {
+        &self.task.layout.columns
+    }
+
+    /// All chunks of cases.
+    pub fn chunks(&self, size: Option<u64>) -> Chunks {
+        let cases = self.design.cases();
+        let usual = cases
+            .div_ceil(CHUNKS)
+            .clamp(LEAST_PER_CHUNK, MOST_PER_CHUNK);
+        Chunks {
+            study: self.hash.clone(),
+            cases,
+            size: size.or(self.study.chunk).unwrap_or(usual).max(1),
+        }
+    }
+
+    /// Rows of cases, without a store.
+    pub fn rows(&self, cases: Range<u64>) -> Rows {
+        let room = usize::try_from(cases.end.saturating_sub(cases.start)).unwrap_or(0);
+        let mut rows = Rows::new(cases.start, self.columns().len(), room);
+        let watch = Watch {
+            go_on: &|| true,
+            done: &|_| {},
+        };
+        self.run(cases, &watch, &mut rows);
+        rows
+    }
+
+    /// The chunks that a store lacks.
+    pub fn missing(&self, store: &dyn Store, running: Running) -> Result<Vec<Chunk>, Error> {
+        let chunks = self.chunks(running.chunk);
+        let there = chunks.there(store).map_err(Error::computation)?;
+        Ok(chunks.missing(&there, running.shard))
+    }
+
+    /// Chunks by their names, those of the rare event among them; an unknown name is an error.
+    pub fn named(&self, names: &[String]) -> Result<[Vec<Chunk>; 2], Error> {
+        let (cases, replicates) = (self.chunks(None), self.replicates());
+        let [mut own, mut rare] = [Vec::new(), Vec::new()];
+        for name in names {
+            let replicate = replicates.as_ref().and_then(|all| all.named(name));
+            match (cases.named(name), replicate) {
+                (Some(chunk), _) if chunk.cases.end <= cases.cases => own.push(chunk),
+                (_, Some(chunk)) => rare.push(chunk),
+                _ => {
+                    let message =
+                        format!("`{name}` is no chunk of this study; it may have changed");
+                    return Err(Error::request(Field::Study, message));
+                }
+            }
+        }
+        Ok([own, rare])
+    }
+
+    /// Runs chunks and writes each to the store when it is done. What is there already is not looked at.
+    pub fn fill(
+        &self,
+        store: &dyn Store,
+        missing: &[Chunk],
+        running: Running,
+        watch: Watch<'_>,
+    ) -> Result<Ended, Error> {
+        let chunks = self.chunks(running.chunk);
+        run::run(self, &chunks, missing, store, running.jobs, watch).map_err(Error::computation)
+    }
+
+    /// The statistics of the rows that a store holds.
+    pub fn summary(&self, store: &dyn Store) -> Result<Summary, Error> {
+        let there = self.chunks(None).there(store).map_err(Error::computation)?;
+        let columns = self.columns();
+        let scan = |see: &mut dyn FnMut(&Rows)| run::scan(store, &there, columns.len(), see);
+        let summary = Summary::new(columns, &self.design, self.study.seed, scan);
+        let event = self.study.rare.as_ref().map(|rare| rare.event.text.clone());
+        Ok(Summary {
+            rare: event.zip(self.probability(store)?),
+            ..summary.map_err(Error::computation)?
+        })
+    }
+
+    /// Title of figures and pages.
+    pub fn title(&self) -> &str {
+        if self.study.title.is_empty() {
+            &self.variants[0].model.info().title
+        } else {
+            &self.study.title
+        }
+    }
+
+    /// What a report of statistics is about.
+    pub fn about<'a>(&'a self, summary: &'a Summary) -> About<'a> {
+        About {
+            title: self.title(),
+            study: &self.study.text,
+            columns: self.columns(),
+            summary,
+        }
+    }
+
+    /// Shows the rows of a store in the order of the cases.
+    pub fn scan(&self, store: &dyn Store, see: impl FnMut(&Rows)) -> Result<(), Error> {
+        let there = self.chunks(None).there(store).map_err(Error::computation)?;
+        run::scan(store, &there, self.columns().len(), see).map_err(Error::computation)
+    }
+}
+
+/// Quantities that belong to the study alone: those with a unit.
+fn own(study: &Study) -> Vec<spec::Own<'_>> {
+    let varied = study.vary.iter().map(|v| (&v.name, v.unit.as_ref()));
+    let noises = study.noise.iter().map(|n| (&n.name, n.unit.as_ref()));
+    let own = varied.chain(noises).filter_map(|(name, unit)| {
+        let unit = unit?;
+        Some(spec::Own { name, unit })
+    });
+    own.collect()
+}
+
+/// The files between which an entry of `[vary]` chooses.
+fn chosen(study: &Study, name: &str) -> Vec<Text> {
+    let vary = study.vary.iter().find(|vary| vary.name.text == name);
+    match vary.map(|vary| &vary.varied) {
+        Some(Varied::Choice(items, _) | Varied::Grid(items)) => items.clone(),
+        _ => Vec::new(),
+    }
+}
+
+/// A shipped spec, or a file beside the study.
+fn source(reading: &mut Reading<'_>, name: &Text, folder: &Path) -> Result<Option<Source>, Error> {
+    if crate::source::Shipped::find(&name.text).is_some() {
+        return Source::shipped(&name.text).map(Some);
+    }
+    let path = folder.join(&name.text);
+    if path.exists() {
+        return Source::read(&path).map(Some);
+    }
+    let similar = appell_spec::did_you_mean(&name.text, crate::source::names(), || {
+        "write the name of a shipped mechanism, or the path of a spec from the folder of the study"
+            .to_owned()
+    });
+    let message = format!("there is no shipped mechanism and no file `{}`", name.text);
+    reading.tell(Code::UnknownReference, message, name, &similar);
+    Ok(None)
+}
+
+/// What of a study its rows depend on, as a text.
+fn meaning(study: &Study, design: &Design) -> String {
+    let mut text = format!(
+        "{} {:?} {} {:?} {:?} {:?} {:?} {:?}",
+        env!("CARGO_PKG_VERSION"),
+        study.sampling,
+        study.seed,
+        study.correlations,
+        study.motion,
+        study.vary,
+        study.noise,
+        study.keep,
+    );
+    if design.depends_on_count() {
+        // Writing to a string cannot fail.
+        let _ = write!(text, " {}", study.count);
+    }
+    text
+}

@@ -1,0 +1,203 @@
+//! Where the numbers of a motion go in its row.
+
+use appell_ensemble::TAKEN;
+use appell_ensemble::rows::{Column, Role};
+use appell_ensemble::study::{Keep, Kept};
+use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::{Code, units};
+
+use super::reading::Reading;
+use super::spec::Quantity as Kind;
+
+/// A number that is kept at a time.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Moment {
+    pub(super) t: f64,
+    /// The kept quantity.
+    pub(super) keep: usize,
+    pub(super) column: usize,
+}
+
+/// The columns of a row after the factors.
+#[derive(Debug)]
+pub(super) struct Layout {
+    pub(super) columns: Vec<Column>,
+    /// The first column of each kept quantity.
+    pub(super) first: Vec<usize>,
+    /// By their times.
+    pub(super) moments: Vec<Moment>,
+}
+
+/// Times of a course without an interval.
+const TIMES: f64 = 100.0;
+
+/// The columns that a study keeps.
+pub(super) fn layout(
+    reading: &mut Reading<'_>,
+    factors: Vec<Column>,
+    keep: &[Keep],
+    info: &ModelInfo,
+    kept: &[Kind],
+) -> Layout {
+    let study = reading.study;
+    let t_end = study.motion.t_end;
+    let interval = study.motion.interval.unwrap_or(t_end / TIMES);
+    let mut layout = Layout {
+        columns: factors,
+        first: Vec::new(),
+        moments: Vec::new(),
+    };
+    // Courses come last: there are many of their columns.
+    let mut courses = Vec::new();
+    for (index, (keep, source)) in keep.iter().zip(kept).enumerate() {
+        let quantity = match *source {
+            Kind::State(state) => &info.states[state],
+            Kind::Input(input) => &info.inputs[input],
+            Kind::Output(output) => &info.outputs[output],
+        };
+        let is_own = !keep.about.is_empty();
+        let about = if is_own {
+            keep.about.clone()
+        } else {
+            sentence(keep)
+        };
+        let (unit, scale) = unit(reading, keep, quantity);
+        let value = Column {
+            name: keep.name.text.clone(),
+            about,
+            unit,
+            scale,
+            role: Role::Value,
+        };
+        layout.first.push(layout.columns.len());
+        let when = Column {
+            name: format!("{}_t_s", keep.name.text),
+            about: format!("when: {}", value.about),
+            unit: "s".to_owned(),
+            scale: 1.0,
+            role: Role::When,
+        };
+        match keep.kept {
+            Kept::Course => courses.push((index, value)),
+            Kept::End | Kept::Mean => layout.columns.push(value),
+            Kept::At(t) => {
+                if !(0.0..=t_end).contains(&t) {
+                    let message =
+                        format!("{t} s is not a time of the motion, which ends at {t_end} s");
+                    reading.tell(Code::ValueOutsideLimits, message, &keep.name, "");
+                }
+                let column = layout.columns.len();
+                layout.moments.push(Moment {
+                    t,
+                    keep: index,
+                    column,
+                });
+                layout.columns.push(value);
+            }
+            Kept::Max | Kept::Min => layout.columns.extend([value, when]),
+            Kept::When { .. } => {
+                let event = Column {
+                    unit: String::new(),
+                    scale: 1.0,
+                    role: Role::Event,
+                    ..value
+                };
+                layout.columns.extend([event, when]);
+            }
+        }
+    }
+    for (index, value) in courses {
+        layout.first[index] = layout.columns.len();
+        for t in times(t_end, interval) {
+            let column = layout.columns.len();
+            layout.moments.push(Moment {
+                t,
+                keep: index,
+                column,
+            });
+            layout.columns.push(Column {
+                name: format!("{}@{t}", value.name),
+                role: Role::Course {
+                    of: value.name.clone(),
+                    t,
+                },
+                ..value.clone()
+            });
+        }
+    }
+    layout.moments.sort_by(|a, b| a.t.total_cmp(&b.t));
+    unique(reading, &layout.columns);
+    layout
+}
+
+/// Unit of a kept quantity: that of the study, if it fits, or its own.
+fn unit(reading: &mut Reading<'_>, keep: &Keep, quantity: &Quantity) -> (String, f64) {
+    let own = (quantity.unit.to_string(), quantity.scale);
+    let Some(wanted) = &keep.unit else {
+        return own;
+    };
+    let unit = match units::parse(&wanted.text) {
+        Ok(unit) => unit,
+        Err(error) => {
+            reading.tell(Code::UnknownUnit, error.to_string(), wanted, "");
+            return own;
+        }
+    };
+    let dimension = units::parse(&own.0).map_or(unit.dimension, |own| own.dimension);
+    if dimension != unit.dimension {
+        let found = units::quantity_name(&dimension);
+        let message = format!(
+            "`{}` is {found}, not {}",
+            keep.of.text,
+            units::quantity_name(&unit.dimension)
+        );
+        let help = format!("its unit is `{}`", own.0);
+        reading.tell(Code::UnitMismatch, message, wanted, &help);
+    }
+    (wanted.text.clone(), unit.scale)
+}
+
+/// Multiples of an interval up to the end, which is one of them where rounding alone keeps it from being one.
+fn times(t_end: f64, interval: f64) -> impl Iterator<Item = f64> {
+    let time = move |k: u32| {
+        let t = f64::from(k) * interval;
+        if (t - t_end).abs() < 1e-9 * interval {
+            t_end
+        } else {
+            t
+        }
+    };
+    (0..).map(time).take_while(move |t| *t <= t_end)
+}
+
+/// What a column is, without a sentence of the study's own.
+fn sentence(keep: &Keep) -> String {
+    let of = &keep.of.text;
+    match keep.kept {
+        Kept::End => format!("{of} at the end"),
+        Kept::At(t) => format!("{of} at {t} s"),
+        Kept::Max => format!("largest {of}"),
+        Kept::Min => format!("smallest {of}"),
+        Kept::Mean => format!("mean of {of}"),
+        Kept::When { .. } | Kept::Course => of.clone(),
+    }
+}
+
+fn unique(reading: &mut Reading<'_>, columns: &[Column]) {
+    let study = reading.study;
+    for (i, column) in columns.iter().enumerate() {
+        let taken = TAKEN.contains(&column.name.as_str());
+        if taken || columns[..i].iter().any(|other| other.name == column.name) {
+            let at = study.keep.iter().map(|keep| &keep.name);
+            let at = at.chain(study.vary.iter().map(|vary| &vary.name));
+            let own = |name: &&appell_ensemble::study::Text| {
+                let rest = column.name.strip_prefix(name.text.as_str());
+                rest.is_some_and(|rest| rest.is_empty() || rest == "_t_s" || rest.starts_with('@'))
+            };
+            if let Some(at) = at.clone().find(own) {
+                let message = format!("two columns would have the name `{}`", column.name);
+                reading.tell(Code::DuplicateName, message, at, "give it another name");
+            }
+        }
+    }
+}

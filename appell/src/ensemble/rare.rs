@@ -1,0 +1,151 @@
+//! The probability of a rare event of a study, by splitting.
+
+use appell_ensemble::chunk::{Chunk, Chunks};
+use appell_ensemble::design::Design;
+use appell_ensemble::rows::{Column, Rows};
+use appell_ensemble::run::{self, Ended, Watch};
+use appell_ensemble::splitting::{Landscape, Probability, REPLICATES, Splitting};
+use appell_ensemble::store::Store;
+use appell_ensemble::study::{Keep, Kept, Rare};
+use appell_runtime::model::ModelInfo;
+use appell_spec::Code;
+
+use super::noise::Draws;
+use super::reading::Reading;
+use super::spec::Quantity;
+use super::{Ensemble, Running, Task, layout};
+use crate::Error;
+
+/// What each motion is asked for: how far the comparison of the event comes.
+pub(super) fn task(
+    reading: &mut Reading<'_>,
+    rare: &Rare,
+    design: &Design,
+    factors: Vec<Column>,
+    info: &ModelInfo,
+    kept: &[Quantity],
+) -> Option<Task> {
+    if design.drawn().count() < design.factors().len() {
+        let message = "the probability of a rare event needs factors that are drawn";
+        let help = "leave grids and tables out";
+        reading.tell(Code::ConflictingKeys, message, &rare.event, help);
+        return None;
+    }
+    let study = reading.study;
+    let which = study
+        .keep
+        .iter()
+        .position(|k| k.name.text == rare.event.text)?;
+    let keep = vec![Keep {
+        kept: Kept::Max,
+        unit: None,
+        ..study.keep[which].clone()
+    }];
+    let layout = layout::layout(reading, factors, &keep, info, &[kept[which]]);
+    Some(Task {
+        keep,
+        which: vec![which],
+        layout,
+    })
+}
+
+/// How far the comparison comes in a motion.
+struct Peak<'e> {
+    ensemble: &'e Ensemble,
+    task: &'e Task,
+}
+
+impl Landscape for Peak<'_> {
+    fn dimension(&self) -> usize {
+        let Ensemble {
+            design,
+            variants,
+            study,
+            ..
+        } = self.ensemble;
+        let noises = variants.iter().map(|variant| {
+            let counts = variant.noises.iter().map(|n| n.count(study.motion.t_end));
+            counts.sum::<usize>()
+        });
+        design.drawn().count() + noises.max().unwrap_or(0)
+    }
+
+    fn height(&self, scores: &[f64]) -> f64 {
+        let mut row = vec![f64::NAN; self.task.layout.columns.len()];
+        let draws = Draws::Scores(scores);
+        self.ensemble.motion(self.task, draws, &mut row);
+        row[self.task.layout.first[0]]
+    }
+}
+
+impl Ensemble {
+    /// Replicates of the rare event as chunks; none where the study has no such event.
+    pub fn replicates(&self) -> Option<Chunks> {
+        self.rare.as_ref().map(|_| {
+            let particles = self.study.rare.as_ref().map_or(0, |rare| rare.particles);
+            Chunks {
+                study: format!("{}-rare-{particles}", self.hash),
+                cases: REPLICATES,
+                size: 1,
+            }
+        })
+    }
+
+    /// The replicates that a store lacks.
+    pub fn missing_replicates(
+        &self,
+        store: &dyn Store,
+        running: Running,
+    ) -> Result<Vec<Chunk>, Error> {
+        let Some(chunks) = self.replicates() else {
+            return Ok(Vec::new());
+        };
+        let there = chunks.there(store).map_err(Error::computation)?;
+        Ok(chunks.missing(&there, running.shard))
+    }
+
+    /// Runs replicates and writes each to the store when it is done; the watch counts replicates.
+    pub fn fill_replicates(
+        &self,
+        store: &dyn Store,
+        missing: &[Chunk],
+        running: Running,
+        watch: Watch<'_>,
+    ) -> Result<Ended, Error> {
+        let (Some(task), Some(chunks)) = (&self.rare, self.replicates()) else {
+            return Ok(Ended::Done);
+        };
+        let peak = Peak {
+            ensemble: self,
+            task,
+        };
+        let splitting = Splitting::new(&peak, self.particles(), self.study.seed);
+        run::run(&splitting, &chunks, missing, store, running.jobs, watch)
+            .map_err(Error::computation)
+    }
+
+    /// Particles of a replicate.
+    fn particles(&self) -> usize {
+        let all = self.study.rare.as_ref().map_or(0, |rare| rare.particles);
+        usize::try_from(all / REPLICATES).unwrap_or(usize::MAX)
+    }
+
+    /// The probability of the rare event, once all replicates are there.
+    pub fn probability(&self, store: &dyn Store) -> Result<Option<Probability>, Error> {
+        let Some(chunks) = self.replicates() else {
+            return Ok(None);
+        };
+        let there = chunks.there(store).map_err(Error::computation)?;
+        if !chunks.missing(&there, None).is_empty() {
+            return Ok(None);
+        }
+        let mut all = Rows::new(0, 2, 0);
+        run::scan(store, &there, 2, |rows| {
+            for row in 0..rows.len() {
+                all.push(&[rows.values[0][row], rows.values[1][row]], 0.0, "");
+            }
+        })
+        .map_err(Error::computation)?;
+        Ok(Probability::new(&all))
+    }
+}

@@ -1,0 +1,82 @@
+//! Values of a study file with the names of a spec, and what is wrong with them.
+
+use appell_ensemble::study::{Study, Text};
+use appell_spec::expr::Expr;
+use appell_spec::units::Unit;
+use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula};
+
+use crate::Error;
+use crate::setup::{Setup, bracketed};
+
+/// A study file with what is wrong in it.
+pub(super) struct Reading<'s> {
+    pub(super) study: &'s Study,
+    pub(super) findings: Vec<Diagnostic>,
+}
+
+impl<'s> Reading<'s> {
+    pub(super) fn new(study: &'s Study) -> Self {
+        Self {
+            study,
+            findings: Vec::new(),
+        }
+    }
+
+    pub(super) fn tell(&mut self, code: Code, message: impl Into<String>, at: &Text, help: &str) {
+        let diagnostic = Diagnostic::error(code, message).at(at.at.clone(), "");
+        let help = (!help.is_empty()).then(|| help.to_owned());
+        let diagnostic = diagnostic.maybe_help(help);
+        // Several specs show the same mistake.
+        if !self.findings.contains(&diagnostic) {
+            self.findings.push(diagnostic);
+        }
+    }
+
+    /// The value of a quantity.
+    pub(super) fn expr(
+        &mut self,
+        setup: &Setup<'_>,
+        text: &Text,
+        what: &'static str,
+        scope: Scope,
+        unit: &Unit,
+    ) -> Option<Expr> {
+        let bracketed = bracketed(text.text.trim());
+        let snippet = Snippet {
+            document: &self.study.text,
+            text: &bracketed,
+            whole: text.at.clone(),
+        };
+        match formula(setup.spec, &snippet, what, scope, unit) {
+            Ok(expr) => Some(expr),
+            Err(findings) => {
+                for finding in findings {
+                    if !self.findings.contains(&finding) {
+                        self.findings.push(finding);
+                    }
+                }
+                None
+            }
+        }
+    }
+
+    /// The finite value of a quantity in SI.
+    pub(super) fn constant(&mut self, setup: &Setup<'_>, text: &Text, unit: &Unit) -> Option<f64> {
+        let expr = self.expr(setup, text, "the value", Scope::Constant, unit)?;
+        let value = setup.constant(&expr);
+        if value.is_none() {
+            let message = format!("`{}` is not a finite number", text.text);
+            self.tell(Code::NotFinite, message, text, "");
+        }
+        value
+    }
+
+    /// An error with all findings, if there are any.
+    pub(super) fn check(&mut self) -> Result<(), Error> {
+        if self.findings.is_empty() {
+            return Ok(());
+        }
+        let findings = std::mem::take(&mut self.findings);
+        Err(Report::new(self.study.file.as_str(), self.study.text.as_str(), findings).into())
+    }
+}

@@ -1,0 +1,237 @@
+//! The spec of a study: that of the mechanism with the quantities of the study's own as parameters, and the kept
+//! expressions as outputs.
+
+use std::fmt::Write as _;
+use std::sync::Arc;
+
+use appell_ensemble::study::{Keep, Kept, Text};
+use appell_spec::compose::Composition;
+use appell_spec::expr::Span;
+use appell_spec::units;
+use appell_spec::{Code, Diagnostic, Reading as Read, Severity};
+
+use super::reading::Reading;
+use crate::engine::Engine;
+use crate::source::Source;
+use crate::{Error, Model};
+
+/// Where a kept quantity comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Quantity {
+    State(usize),
+    Input(usize),
+    Output(usize),
+}
+
+/// A quantity of the study's own.
+pub(super) struct Own<'s> {
+    pub(super) name: &'s Text,
+    pub(super) unit: &'s Text,
+}
+
+/// The model of a spec with the quantities of a study.
+pub(super) struct Extended {
+    pub(super) model: Arc<Model>,
+    /// One for each kept quantity.
+    pub(super) kept: Arc<Vec<Quantity>>,
+}
+
+/// Extends a spec; nothing where the study is wrong, which is told.
+pub(super) fn extended(
+    reading: &mut Reading<'_>,
+    source: &Source,
+    own: &[Own<'_>],
+) -> Result<Option<Extended>, Error> {
+    let base = appell_spec::load(&source.file, &source.text)?.mechanism;
+    let mut composition = Composition::new(&source.text).map_err(Error::computation)?;
+    let before = reading.findings.len();
+    for Own { name, unit } in own {
+        if let Err(error) = units::parse(&unit.text) {
+            reading.tell(Code::UnknownUnit, error.to_string(), unit, "");
+            continue;
+        }
+        let fragment = format!(
+            "[parameters]\n{} = {{ value = 1, unit = {}, at_least = -1e300, at_most = 1e300, about = \"of the study\" }}\n",
+            quoted(&name.text),
+            quoted(&unit.text)
+        );
+        let together = extend(&composition, &fragment)?;
+        if take(reading, &together, name, None) {
+            composition.add(&fragment).map_err(Error::computation)?;
+        }
+    }
+    let states = |name: &str| {
+        let speeds = base.pseudo_velocities.iter().map(|s| &s.label.name);
+        let mut all = speeds.chain(base.coordinates.iter().map(|c| &c.label.name));
+        all.position(|own| own == name).map(Quantity::State)
+    };
+    let inputs = |name: &str| {
+        let mut all = base.inputs.iter();
+        all.position(|own| own.label.name == name)
+            .map(Quantity::Input)
+    };
+    let outputs = |name: &str| {
+        let mut all = base.outputs.iter();
+        all.position(|own| own.label.name == name)
+            .map(Quantity::Output)
+    };
+    let mut kept = Vec::new();
+    let mut count = base.outputs.len();
+    for (index, keep) in reading.study.keep.iter().enumerate() {
+        let text = keep.of.text.trim();
+        let known = states(text)
+            .or_else(|| inputs(text))
+            .or_else(|| outputs(text));
+        if let (Some(known), false) = (known, matches!(keep.kept, Kept::When { .. })) {
+            kept.push(known);
+            continue;
+        }
+        let Some(expression) = expression(reading, keep) else {
+            continue;
+        };
+        let name = format!("kept_{index}_of_the_study");
+        let fragment = format!(
+            "[outputs]\n{name} = {{ value = {}, about = \"kept\" }}\n",
+            quoted(&expression.text)
+        );
+        let together = extend(&composition, &fragment)?;
+        if take(reading, &together, &keep.of, Some((&name, &expression))) {
+            composition.add(&fragment).map_err(Error::computation)?;
+        }
+        kept.push(Quantity::Output(count));
+        count += 1;
+    }
+    if reading.findings.len() > before {
+        return Ok(None);
+    }
+    let source = Source {
+        file: source.file.clone(),
+        text: composition.text(),
+        shipped: None,
+    };
+    let model = Model::of(source, Some(Engine::Jit))?;
+    Ok(Some(Extended {
+        model: Arc::new(model),
+        kept: Arc::new(kept),
+    }))
+}
+
+fn extend(composition: &Composition, fragment: &str) -> Result<String, Error> {
+    let mut next = composition.clone();
+    next.add(fragment).map_err(Error::computation)?;
+    Ok(next.text())
+}
+
+/// An expression with the number of bytes of the study file before each of its parts.
+struct Expression {
+    text: String,
+    /// Places in the text, and in the value of the study file, from which on characters agree.
+    parts: Vec<(usize, usize)>,
+}
+
+/// The expression of a kept quantity; a comparison becomes the difference that is positive where it holds.
+fn expression(reading: &mut Reading<'_>, keep: &Keep) -> Option<Expression> {
+    let text = keep.of.text.as_str();
+    if !matches!(keep.kept, Kept::When { .. }) {
+        return Some(Expression {
+            text: text.to_owned(),
+            parts: vec![(0, 0)],
+        });
+    }
+    let mut depth = 0_usize;
+    let mut signs = text.char_indices().filter(|(_, c)| {
+        match c {
+            '(' | '[' => depth += 1,
+            ')' | ']' => depth = depth.saturating_sub(1),
+            _ => {}
+        }
+        depth == 0 && matches!(c, '<' | '>')
+    });
+    let (Some((at, sign)), None) = (signs.next(), signs.next()) else {
+        let message = "an event is a comparison";
+        let help = "write it as in `abs(theta) > 20[deg]`, with `>` or `<`";
+        reading.tell(Code::ExpressionSyntax, message, &keep.of, help);
+        return None;
+    };
+    let after = at + 1 + usize::from(text[at + 1..].starts_with('='));
+    let (left, right) = (&text[..at], &text[after..]);
+    let (first, second) = if sign == '>' {
+        ((left, 0), (right, after))
+    } else {
+        ((right, after), (left, 0))
+    };
+    Some(Expression {
+        text: format!("({}) - ({})", first.0, second.0),
+        parts: vec![(1, first.1), (first.0.len() + 5, second.1)],
+    })
+}
+
+/// Whether an extended spec is right; if not, it is told at the place of the study file.
+fn take(
+    reading: &mut Reading<'_>,
+    spec: &str,
+    at: &Text,
+    value: Option<(&str, &Expression)>,
+) -> bool {
+    let read = Read::new("", spec);
+    let errors: Vec<&Diagnostic> = read
+        .findings
+        .iter()
+        .filter(|finding| finding.severity == Severity::Error)
+        .collect();
+    let start = value.and_then(|(name, _)| {
+        let item = spec.rfind(name)?;
+        Some(item + spec[item..].find('"')? + 1)
+    });
+    // Between the quotes, unless escapes make the text another one.
+    let inner = at.at.start + 1;
+    let same = reading.study.text.get(inner..inner + at.text.len()) == Some(at.text.as_str());
+    let place = |span: &Span| -> Span {
+        let mapped = start
+            .zip(value)
+            .filter(|_| same)
+            .and_then(|(start, (_, expression))| {
+                let within = |byte: usize| {
+                    let byte = byte.checked_sub(start)?;
+                    let mut parts = expression.parts.iter().rev();
+                    let (from, to) = parts.find(|(from, _)| *from <= byte)?;
+                    Some(inner + (byte - from + to).min(at.text.len()))
+                };
+                Some(within(span.start)?..within(span.end)?)
+            });
+        mapped
+            .filter(|span| span.start <= span.end)
+            .unwrap_or(at.at.clone())
+    };
+    let is_right = errors.is_empty();
+    for error in errors {
+        let mut told = error.clone();
+        told.labels = vec![(
+            error
+                .labels
+                .first()
+                .map_or(at.at.clone(), |(span, _)| place(span)),
+            String::new(),
+        )];
+        if !reading.findings.contains(&told) {
+            reading.findings.push(told);
+        }
+    }
+    is_right
+}
+
+/// A text as a string of TOML.
+fn quoted(text: &str) -> String {
+    let mut quoted = "\"".to_owned();
+    for c in text.chars() {
+        match c {
+            '"' | '\\' => quoted.extend(['\\', c]),
+            c if c.is_control() => {
+                // Writing to a string cannot fail.
+                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
+            }
+            c => quoted.push(c),
+        }
+    }
+    quoted + "\""
+}

@@ -1,0 +1,202 @@
+//! A spec under a law: everything that its cases share, set up once.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use appell_ensemble::study::{Entry, Text};
+use appell_spec::expr::Expr;
+use appell_spec::mechanism::{InputId, ParameterId};
+use appell_spec::{Code, Scope, did_you_mean};
+
+use super::factors::{self, Target};
+use super::noise::{Noise, Onto};
+use super::reading::Reading;
+use super::spec::{Extended, Quantity};
+use crate::formula::{StateFunction, Workbench};
+use crate::inputs::controller::{Plan, Wiring};
+use crate::inputs::feedback;
+use crate::setup::Setup;
+use crate::{Error, Model};
+
+/// A spec under a law.
+pub(super) struct Variant {
+    pub(super) model: Arc<Model>,
+    pub(super) wiring: Wiring,
+    pub(super) parameters: Vec<f64>,
+    /// Limits of the parameters.
+    pub(super) limits: Vec<[f64; 2]>,
+    pub(super) initial: Vec<f64>,
+    /// Parameters that follow from others, in their order.
+    pub(super) set: Vec<(usize, StateFunction)>,
+    /// Initial values that follow from parameters.
+    pub(super) start: Vec<(usize, StateFunction)>,
+    /// What each factor sets.
+    pub(super) targets: Vec<Target>,
+    pub(super) noises: Vec<Noise>,
+    pub(super) kept: Arc<Vec<Quantity>>,
+}
+
+/// What several variants of a study have in common.
+pub(super) struct Common<'a> {
+    pub(super) folder: &'a Path,
+    pub(super) targets: &'a [Target],
+}
+
+/// The setup of a spec with the nominal values of a study.
+pub(super) fn nominal<'m>(
+    reading: &mut Reading<'_>,
+    model: &'m Model,
+) -> Result<(Setup<'m>, Derived), Error> {
+    let mut setup = model.setup()?;
+    setup.watch_ranges = false;
+    let study = reading.study;
+    let mut derived = Derived::default();
+    for Entry { name, value } in &study.motion.set {
+        let Some(Target::Parameter(index)) = factors::named(&setup, &name.text) else {
+            let names = setup.info.parameters.iter().map(|p| p.name.as_ref());
+            let help = did_you_mean(&name.text, names, String::new);
+            let message = format!("there is no parameter `{}`", name.text);
+            reading.tell(Code::UnknownName, message, name, &help);
+            continue;
+        };
+        if study.vary.iter().any(|vary| vary.name.text == name.text) {
+            let message = format!("`{}` is set here and varies", name.text);
+            reading.tell(Code::ConflictingKeys, message, name, "remove one of them");
+            continue;
+        }
+        let unit = setup.mechanism.parameters[ParameterId::new(index)]
+            .label
+            .unit
+            .clone();
+        let expr = reading.expr(&setup, value, "the value", Scope::Constant, &unit);
+        if let Some(expr) = expr {
+            setup.parameters[index] = setup.constant(&expr).unwrap_or(f64::NAN);
+            derived.set.push((index, expr));
+        }
+    }
+    for Entry { name, value } in &study.motion.initial {
+        let Some(index) = setup.info.state_index(&name.text) else {
+            let names = setup.info.states.iter().map(|state| state.name.as_ref());
+            let help = did_you_mean(&name.text, names, String::new);
+            let message = format!("there is no state `{}`", name.text);
+            reading.tell(Code::UnknownName, message, name, &help);
+            continue;
+        };
+        let unit = setup.unit_of_state(index).clone();
+        let expr = reading.expr(&setup, value, "the initial value", Scope::Constant, &unit);
+        if let Some(expr) = expr {
+            setup.initial[index] = setup.constant(&expr).unwrap_or(f64::NAN);
+            derived.start.push((index, expr));
+        }
+    }
+    Ok((setup, derived))
+}
+
+/// Values that follow from parameters.
+#[derive(Default)]
+pub(super) struct Derived {
+    set: Vec<(usize, Expr)>,
+    start: Vec<(usize, Expr)>,
+}
+
+/// A spec under the law of a choice, if there is one; nothing where the study is wrong, which is told.
+pub(super) fn variant(
+    reading: &mut Reading<'_>,
+    extended: &Extended,
+    law: Option<&Text>,
+    common: &Common<'_>,
+) -> Result<Option<Variant>, Error> {
+    let model = &extended.model;
+    let (mut setup, derived) = nominal(reading, model)?;
+    let study = reading.study;
+    let mut plan = Plan::new(&setup);
+    let mut start = Vec::new();
+    for file in study.motion.feedback.iter().chain(law) {
+        let law = feedback::read(&common.folder.join(&file.text), &setup)?;
+        law.start(&mut setup)?;
+        start.extend(law.initial.clone());
+        plan.feedback(law)?;
+    }
+    // What the study gives comes after what laws give.
+    for (index, expr) in &derived.start {
+        setup.initial[*index] = setup.constant(expr).unwrap_or(f64::NAN);
+    }
+    start.extend(derived.start);
+    for Entry { name, value } in &study.motion.input {
+        let Some(index) = setup.info.input_index(&name.text) else {
+            let names = setup.info.inputs.iter().map(|input| input.name.as_ref());
+            let help = did_you_mean(&name.text, names, String::new);
+            let message = format!("there is no input `{}`", name.text);
+            reading.tell(Code::UnknownName, message, name, &help);
+            continue;
+        };
+        let unit = setup.mechanism.inputs[InputId::new(index)]
+            .label
+            .unit
+            .clone();
+        let expr = reading.expr(&setup, value, "the input", Scope::Law, &unit);
+        if let Some(expr) = expr {
+            plan.input(index, &expr, &setup)?;
+        }
+    }
+    let mut noises = Vec::new();
+    for noise in &study.noise {
+        let target = factors::named(&setup, &noise.name.text);
+        let (onto, unit) = match target {
+            Some(Target::State(index)) => {
+                (Onto::Measured(index), setup.unit_of_state(index).clone())
+            }
+            Some(Target::Parameter(index)) if noise.unit.is_some() => {
+                let label = &setup.mechanism.parameters[ParameterId::new(index)].label;
+                (Onto::Parameter(index), label.unit.clone())
+            }
+            _ => {
+                let message = format!("there is no state `{}`", noise.name.text);
+                let help = "noise is on a state that laws measure, or a quantity of the study's own with its `unit`";
+                reading.tell(Code::UnknownName, message, &noise.name, help);
+                continue;
+            }
+        };
+        if let Some(deviation) = reading.constant(&setup, &noise.deviation, &unit) {
+            noises.push(Noise::new(
+                study.seed,
+                &noise.name.text,
+                onto,
+                deviation,
+                noise.every,
+            ));
+        }
+    }
+    if !reading.findings.is_empty() {
+        return Ok(None);
+    }
+    let compile = |exprs: Vec<(usize, Expr)>| -> Result<Vec<(usize, StateFunction)>, Error> {
+        let mut functions = Vec::new();
+        for (index, expr) in exprs {
+            let mut bench = Workbench::new(&setup.mechanism);
+            let lowered = bench.lower(&expr).ok_or_else(|| {
+                Error::data(&study.file, "an expression divides by the number zero")
+            })?;
+            functions.push((index, bench.function(setup.info, vec![lowered])?));
+        }
+        Ok(functions)
+    };
+    let limits = setup.mechanism.parameters.iter().map(|parameter| {
+        [
+            parameter.at_least.unwrap_or(f64::NEG_INFINITY),
+            parameter.at_most.unwrap_or(f64::INFINITY),
+        ]
+    });
+    Ok(Some(Variant {
+        model: Arc::clone(model),
+        limits: limits.collect(),
+        wiring: plan.wiring(&setup, study.motion.t_end)?,
+        set: compile(derived.set)?,
+        start: compile(start)?,
+        parameters: setup.parameters.clone(),
+        initial: setup.initial.clone(),
+        targets: common.targets.to_vec(),
+        noises,
+        kept: Arc::clone(&extended.kept),
+    }))
+}

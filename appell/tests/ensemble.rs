@@ -1,0 +1,548 @@
+//! Ensembles: statistics of motions whose distributions are known, and rows that depend on their cases alone.
+
+use std::path::{Path, PathBuf};
+
+use appell::ensemble::{Ensemble, Folder, Role, Rows, Running, Store, Summary, Watch};
+use appell::json;
+
+/// A mass on a spring, ω = 2 1/s. With x and v/ω normal of one deviation at the start they are so at all times.
+const OSCILLATOR: &str = r#"
+[mechanism]
+name = "oscillator"
+title = "Mass on a spring"
+[parameters]
+m = { value = 1, unit = "kg", about = "mass", at_least = 0 }
+k = { value = 4, unit = "N/m", about = "stiffness", at_least = 0 }
+[coordinates]
+x = { unit = "m", about = "position" }
+[inputs]
+F = { unit = "N", about = "force" }
+[points]
+P = { from = "O", in = "ground", at = ["x", 0, 0], about = "mass" }
+[bodies.mass]
+centre = "P"
+mass = "m"
+[pseudo_velocities]
+v = { value = "dot(x)", unit = "m/s", about = "velocity" }
+[loads]
+spring = { kind = "generalized", velocity = "v", force = "F - k*x", about = "spring and force" }
+"#;
+
+const STUDY: &str = r#"
+[study]
+model = "oscillator.toml"
+cases = 4000
+[motion]
+t_end_s = 4
+dt_s = 1
+[vary]
+x = { normal = [0, 0.1] }
+v = { normal = [0, 0.2] }
+[keep]
+reached = { end = "x" }
+middle = { end = "x", at_s = 1.5 }
+swing = { max = "abs(x)" }
+square = { mean = "x*x" }
+far = { when = "abs(x) > 0.25[m]" }
+path = { course = "x" }
+"#;
+
+/// A folder that is removed at the end of the test.
+struct Scratch(PathBuf);
+
+impl Scratch {
+    fn new(name: &str) -> Self {
+        let process = std::process::id();
+        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{process}"));
+        std::fs::create_dir_all(&path).unwrap();
+        std::fs::write(path.join("oscillator.toml"), OSCILLATOR).unwrap();
+        Self(path)
+    }
+
+    fn ensemble(&self, study: &str) -> Ensemble {
+        Ensemble::parse("study.toml", study, &self.0).unwrap()
+    }
+
+    fn store(&self, name: &str) -> Folder {
+        Folder::new(&self.0.join(name)).unwrap()
+    }
+}
+
+impl Drop for Scratch {
+    fn drop(&mut self) {
+        let _ = std::fs::remove_dir_all(&self.0);
+    }
+}
+
+fn filled(ensemble: &Ensemble, store: &dyn Store, running: Running) -> Summary {
+    let missing = ensemble.missing(store, running).unwrap();
+    let watch = Watch {
+        go_on: &|| true,
+        done: &|_| {},
+    };
+    ensemble.fill(store, &missing, running, watch).unwrap();
+    ensemble.summary(store).unwrap()
+}
+
+fn column(ensemble: &Ensemble, name: &str) -> usize {
+    let mut columns = ensemble.columns().iter();
+    columns.position(|column| column.name == name).unwrap()
+}
+
+#[test]
+fn statistics_of_an_oscillator_are_those_of_its_distributions() {
+    let scratch = Scratch::new("oscillator");
+    let ensemble = scratch.ensemble(STUDY);
+    let summary = filled(&ensemble, &scratch.store("out"), Running::default());
+    assert_eq!((summary.done, summary.early.len()), (4000, 0));
+    for name in ["reached", "middle"] {
+        let number = summary.number(column(&ensemble, name)).unwrap();
+        // Four standard errors.
+        assert!(number.moments.mean.abs() < 0.4 / 4000_f64.sqrt(), "{name}");
+        assert!((number.moments.deviation() - 0.1).abs() < 0.003, "{name}");
+        let [low, high] = number.quantiles[4].interval.map(Option::unwrap);
+        assert!((low..high).contains(&0.164_485), "{name}: {low} {high}");
+    }
+    // The amplitude is that of Rayleigh: P(amplitude > a) = exp(-a² / 2σ²).
+    let event = &summary.events[0];
+    let known = (-0.25_f64.powi(2) / 0.02).exp();
+    assert!(
+        (event.wilson[0]..event.wilson[1]).contains(&known),
+        "{event:?}"
+    );
+    let swing = summary.number(column(&ensemble, "swing")).unwrap();
+    let [low, high] = swing.moments.interval().unwrap();
+    let mean = 0.1 * (std::f64::consts::PI / 2.0).sqrt();
+    assert!((low..high).contains(&mean), "{low} {high} {mean}");
+    // 5 % and 95 % at every time.
+    for (place, z) in [(0, -1.644_854), (2, 0.0), (4, 1.644_854)] {
+        for value in &summary.courses[0].bands[place] {
+            assert!((value - 0.1 * z).abs() < 0.008, "{place}: {value}");
+        }
+    }
+    assert_eq!(summary.courses[0].times, [0.0, 1.0, 2.0, 3.0, 4.0]);
+}
+
+#[test]
+fn kept_numbers_of_a_case_are_those_of_its_motion() {
+    let scratch = Scratch::new("numbers");
+    let ensemble = scratch.ensemble(STUDY);
+    let rows = ensemble.rows(0..50);
+    for case in 0..50 {
+        let value = |name: &str| rows.values[column(&ensemble, name)][case];
+        let (x, v) = (value("x"), value("v"));
+        let at = |t: f64| x * (2.0 * t).cos() + 0.5 * v * (2.0 * t).sin();
+        let amplitude = x.hypot(0.5 * v);
+        let near = |found: f64, wanted: f64| (found - wanted).abs() < 1e-8;
+        assert!(near(value("reached"), at(4.0)));
+        assert!(near(value("middle"), at(1.5)));
+        assert!(near(value("path@3"), at(3.0)));
+        assert!(
+            near(value("swing"), amplitude),
+            "{} {amplitude}",
+            value("swing")
+        );
+        let when = value("swing_t_s");
+        assert!((at(when).abs() - amplitude).abs() < 1e-8);
+        // ∫ x² over 4 s by the primitive.
+        let steps: Vec<f64> = (0..4000)
+            .map(|k| at((f64::from(k) + 0.5) / 1000.0).powi(2))
+            .collect();
+        let mean = steps.iter().sum::<f64>() / 4000.0;
+        assert!(
+            (value("square") - mean).abs() < 1e-7,
+            "{} {mean}",
+            value("square")
+        );
+        let far = value("far");
+        assert_eq!(far, f64::from(u8::from(amplitude > 0.25)));
+        if far > 0.0 {
+            let t = value("far_t_s");
+            assert!(t == 0.0 || near(at(t).abs(), 0.25), "{t}");
+        } else {
+            assert!(value("far_t_s").is_nan());
+        }
+    }
+}
+
+/// Bits of all rows.
+fn bits(ensemble: &Ensemble, store: &dyn Store) -> Vec<u64> {
+    let mut bits = Vec::new();
+    ensemble
+        .scan(store, |rows: &Rows| {
+            for row in 0..rows.len() {
+                bits.extend(rows.values.iter().map(|column| column[row].to_bits()));
+                bits.push(rows.ends[row].to_bits());
+            }
+        })
+        .unwrap();
+    bits
+}
+
+#[test]
+fn rows_and_statistics_do_not_depend_on_threads_chunks_and_shards() {
+    let scratch = Scratch::new("threads");
+    for sampling in ["random", "latin", "sobol"] {
+        let study = STUDY.replace(
+            "cases = 4000",
+            &format!("cases = 150\nsampling = \"{sampling}\""),
+        );
+        let ensemble = scratch.ensemble(&study);
+        let name = |way: &str| scratch.store(&format!("{sampling}-{way}"));
+        let one = name("one");
+        let alone = Running {
+            jobs: Some(1),
+            chunk: Some(150),
+            ..Running::default()
+        };
+        let reference = json::ensemble(ensemble.columns(), &filled(&ensemble, &one, alone));
+        let expected = bits(&ensemble, &one);
+        let threads = name("threads");
+        let many = Running {
+            jobs: Some(3),
+            chunk: Some(7),
+            ..Running::default()
+        };
+        let summary = filled(&ensemble, &threads, many);
+        assert_eq!(json::ensemble(ensemble.columns(), &summary), reference);
+        assert_eq!(bits(&ensemble, &threads), expected);
+        // Shards of one size, then what is missing in chunks of another.
+        let shards = name("shards");
+        let shard = Running {
+            shard: Some("2/3".parse().unwrap()),
+            ..many
+        };
+        filled(&ensemble, &shards, shard);
+        let other = Running {
+            chunk: Some(11),
+            ..Running::default()
+        };
+        let summary = filled(&ensemble, &shards, other);
+        assert_eq!(json::ensemble(ensemble.columns(), &summary), reference);
+        assert_eq!(bits(&ensemble, &shards), expected);
+    }
+}
+
+#[test]
+fn random_cases_stay_the_same_when_there_are_more() {
+    let scratch = Scratch::new("more");
+    let few = scratch.ensemble(&STUDY.replace("4000", "30"));
+    let many = scratch.ensemble(&STUDY.replace("4000", "60"));
+    let store = scratch.store("out");
+    filled(&few, &store, Running::default());
+    let missing = many.missing(
+        &store,
+        Running {
+            chunk: Some(30),
+            ..Running::default()
+        },
+    );
+    assert_eq!(missing.unwrap().len(), 1);
+    let bits = |rows: Rows| {
+        rows.values
+            .concat()
+            .iter()
+            .map(|v| v.to_bits())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(bits(few.rows(0..30)), bits(many.rows(0..30)));
+}
+
+/// y = sin x₁ + 7 sin² x₂ + 0.1 x₃⁴ sin x₁ over the cube from -π to π (T. Ishigami and T. Homma, 1990).
+#[test]
+fn sensitivity_indices_of_the_ishigami_function_are_the_known_ones() {
+    let scratch = Scratch::new("ishigami");
+    let study = r#"
+[study]
+model = "oscillator.toml"
+cases = 2048
+sampling = "sensitivity"
+[motion]
+t_end_s = 1e-3
+[vary]
+x_1 = { uniform = ["-pi", "pi"], unit = "1" }
+x_2 = { uniform = ["-pi", "pi"], unit = "1" }
+x_3 = { uniform = ["-pi", "pi"], unit = "1" }
+[keep]
+y = { end = "sin(x_1) + 7*sin(x_2)^2 + 0.1*x_3^4*sin(x_1)" }
+"#;
+    let ensemble = scratch.ensemble(study);
+    assert_eq!(ensemble.design().cases(), 2048 * 5);
+    let summary = filled(&ensemble, &scratch.store("out"), Running::default());
+    let indices = summary.effects[0].indices.as_ref().unwrap();
+    let known = [[0.3139, 0.5576], [0.4424, 0.4424], [0.0, 0.2437]];
+    for (found, [first, total]) in indices.iter().zip(known) {
+        for (index, known) in [(found.first, first), (found.total, total)] {
+            assert!((index.value - known).abs() < 0.01, "{index:?} {known}");
+            let [low, high] = index.interval;
+            assert!(
+                low - 0.01 < known && known < high + 0.01,
+                "{index:?} {known}"
+            );
+        }
+    }
+}
+
+#[test]
+fn correlated_factors_are_as_correlated_as_they_should_be() {
+    let scratch = Scratch::new("correlated");
+    let study = STUDY.replace(
+        "cases = 4000",
+        "cases = 2000\ncorrelations = [[\"x\", \"v\", -0.7]]",
+    );
+    let rows = scratch.ensemble(&study).rows(0..2000);
+    let [x, v] = [&rows.values[0], &rows.values[1]];
+    let product = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
+    let found = product(x, v) / (product(x, x) * product(v, v)).sqrt();
+    assert!((found + 0.7).abs() < 0.03, "{found}");
+}
+
+#[test]
+fn grids_choices_tables_and_laws_vary() {
+    let scratch = Scratch::new("grids");
+    let law = |gain: u32| {
+        format!("mechanism = \"oscillator\"\ninput = \"F\"\nstates = [\"v\"]\ngains = [{gain}]\n")
+    };
+    std::fs::write(scratch.0.join("soft.toml"), law(1)).unwrap();
+    std::fs::write(scratch.0.join("hard.toml"), law(8)).unwrap();
+    std::fs::write(scratch.0.join("points.csv"), "m,x\n1,0.1\n2,0.2\n3,0.3\n").unwrap();
+    let study = r#"
+[study]
+model = "oscillator.toml"
+table = "points.csv"
+[motion]
+t_end_s = 2
+initial.v = "x0/(1[s])"
+[vary]
+feedback = { grid = ["soft.toml", "hard.toml"] }
+k = { range = [3, 5], count = 3 }
+x0 = { choice = ["10cm", "20cm"], unit = "cm" }
+[keep]
+swing = { max = "abs(x)" }
+start = { end = "v", at_s = 0 }
+"#;
+    let ensemble = scratch.ensemble(study);
+    assert_eq!(ensemble.design().cases(), 2 * 3 * 3);
+    let rows = ensemble.rows(0..18);
+    let value = |name: &str| &rows.values[column(&ensemble, name)];
+    assert_eq!(value("feedback")[..9], [0.0; 9]);
+    assert_eq!(
+        value("k")[..9],
+        [3.0, 3.0, 3.0, 4.0, 4.0, 4.0, 5.0, 5.0, 5.0]
+    );
+    assert_eq!(value("m")[..6], [1.0, 2.0, 3.0, 1.0, 2.0, 3.0]);
+    assert_eq!(value("x")[..3], [0.1, 0.2, 0.3]);
+    assert!(value("x0").iter().all(|x| *x == 0.1 || *x == 0.2));
+    assert_eq!(value("start"), value("x0"));
+    assert!(matches!(&ensemble.columns()[0].role, Role::Factor(items) if items.len() == 2));
+    // More damping, less swing.
+    assert!(value("swing")[0] > value("swing")[9]);
+}
+
+/// White noise, held for `every`, moves a free mass by a random walk of its velocity: as a force, and as the error of
+/// the position that a law measures to hold against the spring.
+#[test]
+fn noise_moves_a_mass_as_far_as_it_should() {
+    let scratch = Scratch::new("noise");
+    for motion in [
+        "set.k = 0\ninput.F = \"gust\"\n[noise]\ngust = { deviation = 2, every_s = 0.1, unit = \"N\" }",
+        "set.k = 2\ninput.F = \"k*x\"\n[noise]\nx = { deviation = \"100cm\", every_s = 0.1 }",
+    ] {
+        let study = format!(
+            "[study]\nmodel = \"oscillator.toml\"\ncases = 1500\n[motion]\nt_end_s = 1\n{motion}\n\
+             [keep]\nspeed = {{ end = \"v\" }}\n"
+        );
+        let rows = scratch.ensemble(&study).rows(0..1500);
+        let variance = rows.values[0].iter().map(|v| v * v).sum::<f64>() / 1500.0;
+        // Ten independent steps of 0.2 m/s.
+        assert!((variance - 0.4).abs() < 0.04, "{variance}");
+    }
+}
+
+#[test]
+fn an_event_that_stops_ends_the_motion_there() {
+    let scratch = Scratch::new("stop");
+    let study = STUDY.replace("0.25[m]\"", "0.05[m]\", stop = true");
+    let ensemble = scratch.ensemble(&study);
+    let rows = ensemble.rows(0..100);
+    let value = |name: &str| &rows.values[column(&ensemble, name)];
+    let mut stopped = 0;
+    for case in 0..100 {
+        assert_eq!(rows.reasons[case], "");
+        if value("far")[case] > 0.0 {
+            stopped += 1;
+            let t = value("far_t_s")[case];
+            assert_eq!(rows.ends[case], t);
+            let reached = value("reached")[case].abs();
+            assert!(t == 0.0 || (reached - 0.05).abs() < 1e-9, "{reached}");
+        } else {
+            assert_eq!(rows.ends[case], 4.0);
+        }
+    }
+    assert!((50..100).contains(&stopped), "{stopped}");
+}
+
+/// Steps end where an input switches at a time that differs from case to case.
+#[test]
+fn an_input_switches_at_a_time_that_varies() {
+    let scratch = Scratch::new("switch");
+    let study = r#"
+[study]
+model = "oscillator.toml"
+cases = 20
+[motion]
+t_end_s = 3
+set.k = 0
+input.F = "if(t < t_push, 0, 1)"
+[vary]
+t_push = { uniform = [1, 2], unit = "s" }
+[keep]
+speed = { end = "v" }
+"#;
+    let rows = scratch.ensemble(study).rows(0..20);
+    for (t, v) in rows.values[0].iter().zip(&rows.values[1]) {
+        assert!((v - (3.0 - t)).abs() < 1e-13, "{t} {v}");
+    }
+}
+
+#[test]
+fn a_motion_that_ends_early_is_a_row_with_its_reason() {
+    let scratch = Scratch::new("early");
+    let spec = OSCILLATOR.replace(
+        "about = \"position\"",
+        "about = \"position\", range = [-0.2, 0.2]",
+    );
+    std::fs::write(scratch.0.join("oscillator.toml"), spec).unwrap();
+    let ensemble = scratch.ensemble(&STUDY.replace("4000", "200"));
+    let summary = filled(&ensemble, &scratch.store("out"), Running::default());
+    let (reason, count) = &summary.early[0];
+    assert_eq!(reason, "`x` leaves its range");
+    let reached = summary.number(column(&ensemble, "reached")).unwrap();
+    assert!(*count > 10 && reached.moments.missing == *count, "{count}");
+    // Of those that ended early it is known only where it happened.
+    let event = &summary.events[0];
+    assert!(
+        event.happened > 0 && event.of + count == 200 + event.happened,
+        "{event:?}"
+    );
+}
+
+/// The amplitude is that of Rayleigh: P(amplitude > 5.26 σ) = 1e-6.
+#[test]
+fn the_probability_of_a_rare_swing_is_found_by_splitting() {
+    let scratch = Scratch::new("rare");
+    let study = STUDY
+        .replace("0.25[m]", "0.5256521769[m]")
+        .replace("4000", "10");
+    let ensemble = scratch.ensemble(&format!(
+        "{study}[rare]\nevent = \"far\"\nparticles = 2000\n"
+    ));
+    let store = scratch.store("out");
+    let watch = Watch {
+        go_on: &|| true,
+        done: &|_| {},
+    };
+    let running = Running::default();
+    let missing = ensemble.missing_replicates(&store, running).unwrap();
+    assert_eq!(missing.len(), 10);
+    ensemble
+        .fill_replicates(&store, &missing[..3], running, watch)
+        .unwrap();
+    assert_eq!(ensemble.probability(&store).unwrap(), None);
+    let left = ensemble.missing_replicates(&store, running).unwrap();
+    ensemble
+        .fill_replicates(&store, &left, running, watch)
+        .unwrap();
+    let found = ensemble.probability(&store).unwrap().unwrap();
+    let [low, high] = found.interval;
+    assert!(low < 1e-6 && 1e-6 < high && high / low < 4.0, "{found:?}");
+    assert!(found.evaluations < 1e6, "{found:?}");
+}
+
+fn told(study: &str) -> String {
+    let scratch = Scratch::new("told");
+    let error = Ensemble::parse("study.toml", study, &scratch.0)
+        .err()
+        .unwrap();
+    error.to_string()
+}
+
+#[test]
+fn mistakes_are_told_at_their_places() {
+    let mut others = Vec::new();
+    for (from, to, place, says) in [
+        (
+            "x = { normal",
+            "y = { normal",
+            "9:1",
+            "there is no parameter or state `y`",
+        ),
+        ("[0, 0.1]", "[0, \"1kg\"]", "9:20", "unit-mismatch"),
+        ("end = \"x\", at", "end = \"z\", at", "13:19", "z"),
+        (
+            "\"abs(x) > 0.25[m]\"",
+            "\"abs(x) > 0.25[s]\"",
+            "16:27",
+            "unit-mismatch",
+        ),
+        (
+            "\"abs(x) > 0.25[m]\"",
+            "\"abs(x)\"",
+            "16:16",
+            "an event is a comparison",
+        ),
+        ("at_s = 1.5", "at_s = 7", "13:1", "not a time of the motion"),
+        ("cases = 4000", "cases = 0", "4:9", "at least 1"),
+        (
+            "cases = 4000",
+            "casse = 4000",
+            "4:1",
+            "did you mean `cases`",
+        ),
+        (
+            "normal = [0, 0.1]",
+            "normal = [0, -0.1]",
+            "9:20",
+            "not negative",
+        ),
+        (
+            "normal = [0, 0.1]",
+            "uniform = [0.1, 0]",
+            "9:18",
+            "must increase",
+        ),
+        (
+            "normal = [0, 0.1]",
+            "normall = [0, 0.1]",
+            "9:7",
+            "did you mean `normal`",
+        ),
+        (
+            "oscillator.toml",
+            "osc.toml",
+            "3:9",
+            "there is no shipped mechanism and no file",
+        ),
+        (
+            "x = { normal",
+            "F = { normal",
+            "9:1",
+            "which is a function of time",
+        ),
+        (
+            "reached =",
+            "x =",
+            "12:1",
+            "two columns would have the name `x`",
+        ),
+    ] {
+        let wrong = STUDY.replacen(from, to, 1);
+        assert_ne!(wrong, STUDY, "{from}");
+        let told = told(&wrong);
+        let is_right = told.contains(says) && told.contains(&format!("study.toml:{place}"));
+        if !is_right {
+            others.push(format!("{to}: {place}, {says}\n{told}"));
+        }
+    }
+    assert!(others.is_empty(), "{}", others.join("\n\n"));
+}

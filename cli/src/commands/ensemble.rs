@@ -1,0 +1,147 @@
+//! `appell ensemble`
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+
+use appell::ensemble::{self, Ended, Ensemble, Folder, Running, Shard, Store as _, Summary, Watch};
+use appell::{files, json};
+
+use crate::failure::{Error, note};
+use crate::{output, progress};
+
+/// Runs many motions whose parameters, starts, inputs, laws or specs vary, and tells their statistics.
+///
+/// A study file says what is moved, what varies and what is kept (docs/ensembles.md). The rows of the cases go to the
+/// folder as Parquet, in chunks that are written as a whole: what was interrupted goes on where it was, by the same
+/// command. No result depends on the number of threads, on chunks or shards.
+#[derive(Debug, clap::Args)]
+#[command(name = "ensemble")]
+#[command(after_long_help = "\
+Examples:
+  appell sample study study
+  appell ensemble study/rider.toml -o study/results
+  appell ensemble study/rider.toml -o study/results --json -")]
+pub(crate) struct EnsembleCommand {
+    /// The study file
+    study: PathBuf,
+    /// Folder for chunks, statistics, figures and the page
+    #[arg(long, short, value_name = "FOLDER")]
+    out: PathBuf,
+    /// Threads [default: one for each processor]
+    #[arg(long, value_name = "N")]
+    jobs: Option<usize>,
+    /// Run the K-th of N parts, as on a cluster; whoever comes last tells the statistics
+    #[arg(long, value_name = "K/N")]
+    shard: Option<Shard>,
+    /// Cases of a chunk [default: the study's, or a 64th of the cases, at most 4096]
+    #[arg(long, value_name = "N")]
+    chunk: Option<u64>,
+    /// Write the statistics as JSON, in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl EnsembleCommand {
+    pub(super) fn run(&self) -> Result<(), Error> {
+        if files::is_stdout(&self.out) {
+            let message = "`--out` is a folder: rows and figures do not go to standard output";
+            return Err(Error::Usage(message.to_owned()));
+        }
+        let spinner = progress::spinner("deriving the equations of motion");
+        let ensemble = Ensemble::from_file(&self.study);
+        spinner.finish_and_clear();
+        let ensemble = ensemble?;
+        let store = Folder::new(&self.out).map_err(appell::Error::computation)?;
+        let running = Running {
+            jobs: self.jobs,
+            shard: self.shard,
+            chunk: self.chunk,
+        };
+        let ended = self.fill(&ensemble, &store, running)?;
+        let whole = Running {
+            shard: None,
+            ..running
+        };
+        let left = ensemble.missing(&store, whole)?.len()
+            + ensemble.missing_replicates(&store, whole)?.len();
+        let replicates = ensemble
+            .replicates()
+            .map_or(0, |replicates| replicates.count());
+        let chunks = ensemble.chunks(self.chunk).count() + replicates;
+        let there = chunks - left as u64;
+        if ended == Ended::Stopped {
+            return Err(Error::Computation(format!(
+                "stopped; {there} of {chunks} chunks are there, and the same command goes on with the others"
+            )));
+        }
+        if left > 0 {
+            return output::print(&format!(
+                "{there} of {chunks} chunks are there; the others belong to other shards\n"
+            ));
+        }
+        store.tidy().map_err(appell::Error::computation)?;
+        let spinner = progress::spinner("computing statistics");
+        let summary = ensemble.summary(&store);
+        spinner.finish_and_clear();
+        self.tell(&ensemble, &summary?)
+    }
+
+    /// Runs what is missing, under a bar, until Ctrl-C.
+    fn fill(&self, ensemble: &Ensemble, store: &Folder, running: Running) -> Result<Ended, Error> {
+        let missing = ensemble.missing(store, running)?;
+        let replicates = ensemble.missing_replicates(store, running)?;
+        let cases: u64 = missing.iter().map(|c| c.cases.end - c.cases.start).sum();
+        let whole = ensemble.design().cases();
+        if cases < whole && self.shard.is_none() {
+            note(&format!(
+                "{} of {whole} cases are there already",
+                whole - cases
+            ));
+        }
+        let stopped = Arc::new(AtomicBool::new(false));
+        let told = Arc::clone(&stopped);
+        // Without a handler Ctrl-C ends the process, which loses a chunk.
+        let _ = ctrlc::set_handler(move || told.store(true, Ordering::Relaxed));
+        let go_on = || !stopped.load(Ordering::Relaxed);
+        let mut ended = Ended::Done;
+        if cases > 0 {
+            let bar = progress::cases(cases, "cases");
+            let done = |cases| bar.inc(cases);
+            let watch = Watch {
+                go_on: &go_on,
+                done: &done,
+            };
+            ended = ensemble.fill(store, &missing, running, watch)?;
+            bar.finish_and_clear();
+        }
+        if !replicates.is_empty() && ended == Ended::Done {
+            let bar = progress::cases(replicates.len() as u64, "replicates of the rare event");
+            let done = |replicates| bar.inc(replicates);
+            let watch = Watch {
+                go_on: &go_on,
+                done: &done,
+            };
+            ended = ensemble.fill_replicates(store, &replicates, running, watch)?;
+            bar.finish_and_clear();
+        }
+        Ok(ended)
+    }
+
+    /// Writes statistics, figures and the page.
+    fn tell(&self, ensemble: &Ensemble, summary: &Summary) -> Result<(), Error> {
+        let about = ensemble.about(summary);
+        let told = json::ensemble(ensemble.columns(), summary);
+        files::write_json(&self.out.join("statistics.json"), &told)?;
+        files::write(&self.out.join("report.html"), &ensemble::page(&about))?;
+        for figure in ensemble::figures(&about) {
+            files::write(&self.out.join(format!("{}.svg", figure.name)), &figure.svg)?;
+        }
+        if let Some(path) = &self.json {
+            files::write_json(path, &told)?;
+        }
+        let page = self.out.join("report.html");
+        let text = format!("{}\nfigures: {}\n", ensemble::text(&about), page.display());
+        output::print_beside(&text, &[&self.json])
+    }
+}

@@ -1,0 +1,33 @@
+//! Ensembles of cases.
+//!
+//! - [`study`]: the study file;
+//! - [`random`], [`distribution`], [`design`]: which values the factors have in each case, from its number alone;
+//! - [`rows`], [`chunk`], [`store`]: what is kept of each case, in pieces that are written as a whole;
+//! - [`mod@run`]: the missing pieces, on several threads, through the narrow trait [`run::Engine`];
+//! - [`summary`], [`statistics`]: what the rows say;
+//! - [`splitting`]: probabilities of rare events.
+//!
+//! A row depends on its case alone, and statistics see rows in the order of cases: no result depends on the number
+//! of threads, on the size of the chunks, or on who ran them.
+
+pub mod chunk;
+pub mod design;
+pub mod digest;
+mod directions;
+pub mod distribution;
+pub mod normal;
+#[cfg(feature = "object-store")]
+pub mod objects;
+mod permutation;
+pub mod random;
+pub mod rows;
+pub mod run;
+mod sobol;
+pub mod splitting;
+pub mod statistics;
+pub mod store;
+pub mod study;
+pub mod summary;
+mod table_file;
+
+pub use table_file::TAKEN;

@@ -1,0 +1,7 @@
+//! Statistics with intervals, at 95 %.
+
+pub mod beta;
+pub mod moments;
+pub mod order;
+pub mod proportion;
+pub mod sensitivity;

@@ -1,0 +1,153 @@
+//! `[keep]` and `[rare]`: what is kept of each motion, and which rare event is sought.
+
+use appell_spec::Code;
+use toml::de::DeTable;
+
+use super::read::Reader;
+use super::value::Text;
+
+/// An entry of `[keep]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Keep {
+    /// Its name, that of a column.
+    pub name: Text,
+    /// What of a quantity is kept.
+    pub kept: Kept,
+    /// The quantity: a name of the spec, or an expression; of an event a comparison such as `theta > 20[deg]`.
+    pub of: Text,
+    /// Unit for people, in place of the one of the quantity.
+    pub unit: Option<Text>,
+    /// A sentence; may be empty.
+    pub about: String,
+}
+
+/// What of a quantity is kept.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Kept {
+    /// Its last value.
+    End,
+    /// Its value at a time in s.
+    At(f64),
+    /// Its largest value, and when.
+    Max,
+    /// Its smallest value, and when.
+    Min,
+    /// Its mean over time.
+    Mean,
+    /// Whether a comparison becomes true, and when for the first time.
+    When {
+        /// Whether the motion ends there.
+        stop: bool,
+    },
+    /// Its values over time, of which bands are drawn.
+    Course,
+}
+
+/// A rare event, whose probability importance splitting finds.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Rare {
+    /// Name of the kept event.
+    pub event: Text,
+    /// Particles.
+    pub particles: u64,
+}
+
+const FORMS: [&str; 6] = ["end", "max", "min", "mean", "when", "course"];
+const KEYS: [&str; 10] = [
+    "end", "max", "min", "mean", "when", "course", "at_s", "stop", "unit", "about",
+];
+/// Particles of a splitting.
+const PARTICLES: u64 = 1000;
+
+pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
+    let mut all: Vec<Keep> = Vec::new();
+    for (name, value) in read.items(table, "keep") {
+        let wanted = "a table such as { max = \"abs(theta)\" }";
+        let Some(entry) = read.table(value, wanted) else {
+            continue;
+        };
+        read.fields.only(entry, &KEYS);
+        let about = read.text(entry, "about");
+        let unit = read.text(entry, "unit");
+        let at = read.number(entry, "at_s");
+        let stop = read.fields.flag(entry, "stop");
+        let given: Vec<&str> = FORMS
+            .into_iter()
+            .filter(|form| entry.get(*form).is_some())
+            .collect();
+        // A word that is no key has been told.
+        if given.is_empty()
+            && entry
+                .keys()
+                .any(|key| !KEYS.contains(&key.get_ref().as_ref()))
+        {
+            continue;
+        }
+        let [form] = given[..] else {
+            let message = match given[..] {
+                [] => format!("`{}` does not say what is kept", name.text),
+                _ => format!("`{}` keeps two things", name.text),
+            };
+            let help = format!("write one of {}", FORMS.join(", "));
+            read.tell(Code::ConflictingKeys, message, name.at, &help);
+            continue;
+        };
+        let Some(of) = entry.get(form).and_then(|value| read.value(value)) else {
+            continue;
+        };
+        let kept = match (form, at) {
+            ("end", Some(at)) => Kept::At(at),
+            ("end", None) => Kept::End,
+            ("max", None) => Kept::Max,
+            ("min", None) => Kept::Min,
+            ("mean", None) => Kept::Mean,
+            ("when", None) => Kept::When { stop },
+            ("course", None) => Kept::Course,
+            _ => {
+                let place = entry.get("at_s").map_or(0..0, toml::Spanned::span);
+                let message =
+                    "`at_s` belongs to `end`: the value at that time instead of the last one";
+                read.tell(Code::ConflictingKeys, message, place, "leave `at_s` out");
+                continue;
+            }
+        };
+        if stop && !matches!(kept, Kept::When { .. }) {
+            let place = entry.get("stop").map_or(0..0, toml::Spanned::span);
+            let message = "`stop` belongs to `when`";
+            read.tell(Code::ConflictingKeys, message, place, "leave `stop` out");
+        }
+        all.push(Keep {
+            name,
+            kept,
+            of,
+            unit,
+            about: about.map_or_else(String::new, |about| about.text),
+        });
+    }
+    if all.is_empty() && table.get("keep").is_none_or(|v| v.get_ref().is_table()) {
+        let help = "write what is kept under `[keep]`, such as `reached = { end = \"x\" }`";
+        read.tell(Code::MissingSection, "nothing is kept", 0..0, help);
+    }
+    all
+}
+
+pub(super) fn rare(read: &mut Reader<'_>, table: &DeTable<'_>, keep: &[Keep]) -> Option<Rare> {
+    let section = read.fields.section(table, "rare")?;
+    read.fields.only(section, &["event", "particles"]);
+    let particles = read.count(section, "particles").unwrap_or(PARTICLES);
+    let Some(event) = read.text(section, "event") else {
+        let help = "write `event = \"…\"`, a name of `[keep]` with `when`";
+        let message = "a rare event needs `event`";
+        read.tell(Code::MissingKey, message, 0..0, help);
+        return None;
+    };
+    let is_event = |k: &&Keep| matches!(k.kept, Kept::When { .. });
+    let mut events = keep.iter().filter(is_event);
+    if !events.any(|keep| keep.name.text == event.text) {
+        let message = format!("`[keep]` has no event `{}`", event.text);
+        let help = "name an entry with `when`";
+        read.tell(Code::UnknownReference, message, event.at, help);
+        return None;
+    }
+    Some(Rare { event, particles })
+}

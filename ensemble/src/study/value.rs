@@ -1,0 +1,27 @@
+//! Values with their places.
+
+use appell_spec::expr::Span;
+
+/// A text with its place in the study file, which its `Debug` leaves out.
+#[derive(Clone, PartialEq, Eq)]
+pub struct Text {
+    /// The text; of a number its digits.
+    pub text: String,
+    /// Where it stands, quotes included.
+    pub at: Span,
+}
+
+impl std::fmt::Debug for Text {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.text.fmt(f)
+    }
+}
+
+/// A name with a value.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Entry {
+    /// The name.
+    pub name: Text,
+    /// The value.
+    pub value: Text,
+}

@@ -1,0 +1,229 @@
+//! `[vary]` and `[noise]`: what varies, and how.
+
+use appell_spec::Code;
+use toml::de::DeTable;
+
+use super::read::Reader;
+use super::value::Text;
+
+/// Entries of `[vary]` that choose between specs and between laws.
+pub const MODEL: &str = "model";
+/// See [`MODEL`].
+pub const FEEDBACK: &str = "feedback";
+
+/// An entry of `[vary]`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Vary {
+    /// A parameter or a state of the spec, a quantity of the study's own, or [`MODEL`] or [`FEEDBACK`].
+    pub name: Text,
+    /// How it varies.
+    pub varied: Varied,
+    /// Ends beyond which nothing is drawn.
+    pub truncate: Option<[Text; 2]>,
+    /// Unit of a quantity of the study's own.
+    pub unit: Option<Text>,
+    /// A sentence; may be empty.
+    pub about: String,
+}
+
+/// How a quantity varies.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Varied {
+    /// Normal about the value of the spec, with this part of it as standard deviation.
+    Scatter(Text),
+    /// Mean, standard deviation.
+    Normal([Text; 2]),
+    /// Ends.
+    Uniform([Text; 2]),
+    /// Median, standard deviation of the logarithm.
+    Lognormal([Text; 2]),
+    /// Lower end, mode, upper end.
+    Triangular([Text; 3]),
+    /// One of these, with weights.
+    Choice(Vec<Text>, Vec<f64>),
+    /// All of these.
+    Grid(Vec<Text>),
+    /// As many values as this between two ends.
+    Range([Text; 2], u64),
+}
+
+impl Varied {
+    /// Whether all values are taken instead of a draw.
+    pub fn is_grid(&self) -> bool {
+        matches!(self, Self::Grid(_) | Self::Range(..))
+    }
+}
+
+/// Noise over time: independent normal numbers, each held for a while.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Noise {
+    /// A state, which laws and inputs then measure with the noise, or a quantity of the study's own.
+    pub name: Text,
+    /// Standard deviation.
+    pub deviation: Text,
+    /// How long each number is held, in s.
+    pub every: f64,
+    /// Unit of a quantity of the study's own.
+    pub unit: Option<Text>,
+}
+
+const FORMS: [&str; 8] = [
+    "scatter",
+    "normal",
+    "uniform",
+    "lognormal",
+    "triangular",
+    "choice",
+    "grid",
+    "range",
+];
+const KEYS: [&str; 13] = [
+    "scatter",
+    "normal",
+    "uniform",
+    "lognormal",
+    "triangular",
+    "choice",
+    "grid",
+    "range",
+    "count",
+    "weights",
+    "truncate",
+    "unit",
+    "about",
+];
+
+pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Vary> {
+    let mut all = Vec::new();
+    for (name, value) in read.items(table, "vary") {
+        let Some(entry) = read.table(value, "a table such as { normal = [5, 0.2] }") else {
+            continue;
+        };
+        read.fields.only(entry, &KEYS);
+        let unit = read.text(entry, "unit");
+        let about = read.text(entry, "about");
+        let truncate = entry.get("truncate").and_then(|value| pair(read, value));
+        if let Some(varied) = form(read, entry, &name) {
+            if truncate.is_some() && (varied.is_grid() || matches!(varied, Varied::Choice(..))) {
+                let message = "a list is not truncated";
+                let at = entry.get("truncate").map_or(0..0, toml::Spanned::span);
+                read.tell(Code::ConflictingKeys, message, at, "leave `truncate` out");
+            }
+            all.push(Vary {
+                name,
+                varied,
+                truncate,
+                unit,
+                about: about.map_or_else(String::new, |about| about.text),
+            });
+        }
+    }
+    all
+}
+
+fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varied> {
+    let given: Vec<&str> = FORMS
+        .into_iter()
+        .filter(|form| entry.get(*form).is_some())
+        .collect();
+    // A word that is no key has been told.
+    if given.is_empty()
+        && entry
+            .keys()
+            .any(|key| !KEYS.contains(&key.get_ref().as_ref()))
+    {
+        return None;
+    }
+    let [form] = given[..] else {
+        let message = match given[..] {
+            [] => format!("`{}` does not say how it varies", name.text),
+            _ => format!("`{}` varies in two ways", name.text),
+        };
+        let help = format!("write one of {}", FORMS.join(", "));
+        read.tell(Code::ConflictingKeys, message, name.at.clone(), &help);
+        return None;
+    };
+    let value = entry.get(form)?;
+    let chooses = [MODEL, FEEDBACK].contains(&name.text.as_str());
+    if chooses && !matches!(form, "choice" | "grid") {
+        let message = format!("`{}` is one of several files", name.text);
+        let help = "write `choice = [\"one.toml\", \"other.toml\"]`, or `grid` for each of them";
+        read.tell(Code::UnknownWord, message, value.span(), help);
+        return None;
+    }
+    Some(match form {
+        "scatter" => Varied::Scatter(read.value(value)?),
+        "normal" => Varied::Normal(pair(read, value)?),
+        "uniform" => Varied::Uniform(pair(read, value)?),
+        "lognormal" => Varied::Lognormal(pair(read, value)?),
+        "triangular" => Varied::Triangular(read.values(value, Some(3))?.try_into().ok()?),
+        "choice" => {
+            let items = read.values(value, None)?;
+            let weights = weights(read, entry, items.len())?;
+            Varied::Choice(items, weights)
+        }
+        "grid" => Varied::Grid(read.values(value, None)?),
+        _ => {
+            let ends = pair(read, value)?;
+            let Some(count) = read.count(entry, "count") else {
+                let help = "write how many values, such as `count = 11`";
+                let message = "a range needs `count`";
+                read.tell(Code::MissingKey, message, value.span(), help);
+                return None;
+            };
+            Varied::Range(ends, count)
+        }
+    })
+}
+
+fn pair(read: &mut Reader<'_>, value: &appell_recordings::fields::Value<'_>) -> Option<[Text; 2]> {
+    read.values(value, Some(2))?.try_into().ok()
+}
+
+/// Weights of choices, by default equal ones.
+fn weights(read: &mut Reader<'_>, entry: &DeTable<'_>, count: usize) -> Option<Vec<f64>> {
+    let Some(value) = entry.get("weights") else {
+        return Some(vec![1.0; count]);
+    };
+    let texts = read.values(value, Some(count))?;
+    let numbers = texts.iter().map(|text| text.text.parse::<f64>().ok());
+    let numbers: Option<Vec<f64>> = numbers.collect();
+    let fit = |numbers: &Vec<f64>| {
+        numbers.iter().all(|w| w.is_finite() && *w >= 0.0) && numbers.iter().any(|w| *w > 0.0)
+    };
+    let numbers = numbers.filter(fit);
+    if numbers.is_none() {
+        let message = "weights are numbers from 0 on, not all of them 0";
+        read.tell(Code::ValueOutsideLimits, message, value.span(), "");
+    }
+    numbers
+}
+
+pub(super) fn noise(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Noise> {
+    let mut all = Vec::new();
+    for (name, value) in read.items(table, "noise") {
+        let wanted = "a table such as { deviation = \"0.2deg\", every_s = 0.01 }";
+        let Some(entry) = read.table(value, wanted) else {
+            continue;
+        };
+        read.fields.only(entry, &["deviation", "every_s", "unit"]);
+        let deviation = entry.get("deviation").and_then(|value| read.value(value));
+        let every = read.positive(entry, "every_s");
+        let unit = read.text(entry, "unit");
+        for key in ["deviation", "every_s"] {
+            if entry.get(key).is_none() {
+                let message = format!("the key `{key}` is missing");
+                read.tell(Code::MissingKey, message, name.at.clone(), wanted);
+            }
+        }
+        if let Some((deviation, every)) = deviation.zip(every) {
+            all.push(Noise {
+                name,
+                deviation,
+                every,
+                unit,
+            });
+        }
+    }
+    all
+}

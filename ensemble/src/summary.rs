@@ -1,0 +1,396 @@
+//! What the rows of a study say: statistics with intervals, in memory that does not grow with the number of cases.
+
+use std::collections::BTreeMap;
+
+use crate::design::{Design, Sampling};
+use crate::rows::{Column, Role, Rows};
+use crate::splitting::Probability;
+use crate::statistics::moments::Moments;
+use crate::statistics::order::{self, Quantile, Selection};
+use crate::statistics::proportion;
+use crate::statistics::sensitivity::{Indices, Sums};
+
+/// Quantiles of every number, and of bands over time.
+pub const PARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
+/// Bars of a histogram.
+const BARS: usize = 40;
+/// Cases that figures show as points.
+const POINTS: usize = 2000;
+
+/// The statistics of a study.
+#[derive(Debug, Clone)]
+pub struct Summary {
+    /// All cases of the study.
+    pub cases: u64,
+    /// Those whose rows are there.
+    pub done: u64,
+    /// Reasons of early ends, with their numbers, the most frequent first.
+    pub early: Vec<(String, u64)>,
+    /// Factors and kept numbers.
+    pub numbers: Vec<Number>,
+    /// Events.
+    pub events: Vec<Event>,
+    /// Courses.
+    pub courses: Vec<Course>,
+    /// Effects of the factors on kept numbers and events.
+    pub effects: Vec<Effects>,
+    /// The first cases, one list a column; courses are left out.
+    pub points: Vec<Vec<f64>>,
+    /// Whether the intervals hold for independent cases, or are wider than need be.
+    pub sampling: Sampling,
+    /// The rare event with its probability, where one was asked for.
+    pub rare: Option<(String, Probability)>,
+}
+
+/// A column of numbers.
+#[derive(Debug, Clone)]
+pub struct Number {
+    /// The column.
+    pub column: usize,
+    /// Count, mean, extremes.
+    pub moments: Moments,
+    /// Quantiles at [`PARTS`]; none without numbers.
+    pub quantiles: Vec<Quantile>,
+    /// Cases in equal parts from the smallest to the largest number.
+    pub bars: Vec<u64>,
+}
+
+/// An event.
+#[derive(Debug, Clone)]
+pub struct Event {
+    /// The column.
+    pub column: usize,
+    /// Cases in which it is known.
+    pub of: u64,
+    /// Cases in which it happened.
+    pub happened: u64,
+    /// Interval by Wilson.
+    pub wilson: [f64; 2],
+    /// Interval by Clopper and Pearson.
+    pub exact: [f64; 2],
+}
+
+/// Quantiles over time.
+#[derive(Debug, Clone)]
+pub struct Course {
+    /// Its name.
+    pub name: String,
+    /// Its first column.
+    pub column: usize,
+    /// Times in s.
+    pub times: Vec<f64>,
+    /// For each of [`PARTS`] the quantile over time; NaN where there is no number.
+    pub bands: Vec<Vec<f64>>,
+    /// The mean over time.
+    pub mean: Vec<f64>,
+}
+
+/// How a number or an event depends on the factors.
+#[derive(Debug, Clone)]
+pub struct Effects {
+    /// The column of the number or event.
+    pub column: usize,
+    /// For each factor the means where it is in its lowest and in its highest quarter; NaN where there are none.
+    pub ends: Vec<[f64; 2]>,
+    /// For each factor its indices, where the sampling is made for them.
+    pub indices: Option<Vec<Indices>>,
+}
+
+/// A column while its numbers are shown.
+struct Seen {
+    column: usize,
+    moments: Moments,
+    selection: Selection,
+    /// Ranks of the quantiles.
+    ranks: Vec<[Option<u64>; 4]>,
+}
+
+impl Summary {
+    /// The statistics of rows that `scan` shows in the order of cases, as often as it is called.
+    pub fn new<E>(
+        columns: &[Column],
+        design: &Design,
+        seed: u64,
+        mut scan: impl FnMut(&mut dyn FnMut(&Rows)) -> Result<(), E>,
+    ) -> Result<Self, E> {
+        let ordered = |column: &&(usize, &Column)| !matches!(column.1.role, Role::Event);
+        let all: Vec<(usize, &Column)> = columns.iter().enumerate().collect();
+        let mut seen: Vec<Seen> = all
+            .iter()
+            .filter(ordered)
+            .map(|(column, _)| Seen {
+                column: *column,
+                moments: Moments::default(),
+                selection: Selection::new(&[]),
+                ranks: Vec::new(),
+            })
+            .collect();
+        let mut done = 0;
+        let mut early: BTreeMap<String, u64> = BTreeMap::new();
+        let is_event = |(_, column): &&(usize, &Column)| column.role == Role::Event;
+        let mut events: Vec<(usize, u64, u64)> = all
+            .iter()
+            .filter(is_event)
+            .map(|(column, _)| (*column, 0, 0))
+            .collect();
+        let shown = |column: &Column| !matches!(column.role, Role::Course { .. });
+        let mut points: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
+        scan(&mut |rows| {
+            done += rows.len() as u64;
+            for reason in rows.reasons.iter().filter(|reason| !reason.is_empty()) {
+                *early.entry(reason.clone()).or_default() += 1;
+            }
+            for seen in &mut seen {
+                let values = rows.values[seen.column].iter();
+                values.for_each(|&value| seen.moments.add(value));
+            }
+            for (column, of, happened) in &mut events {
+                for value in rows.values[*column].iter().filter(|v| v.is_finite()) {
+                    *of += 1;
+                    *happened += u64::from(*value != 0.0);
+                }
+            }
+            for ((points, values), _) in points
+                .iter_mut()
+                .zip(&rows.values)
+                .zip(columns)
+                .filter(|(_, column)| shown(column))
+            {
+                let room = POINTS.saturating_sub(points.len());
+                points.extend(values.iter().take(room));
+            }
+        })?;
+        for seen in &mut seen {
+            let count = seen.moments.count;
+            seen.ranks = PARTS.map(|part| order::ranks(part, count)).to_vec();
+            let is_course = matches!(columns[seen.column].role, Role::Course { .. });
+            if is_course {
+                // Bands have no intervals.
+                seen.ranks.iter_mut().for_each(|r| r[2..].fill(None));
+            }
+            let ranks: Vec<u64> = seen.ranks.iter().flatten().copied().flatten().collect();
+            seen.selection = Selection::new(&ranks);
+        }
+        for _ in 0..order::PASSES {
+            scan(&mut |rows| {
+                for seen in &mut seen {
+                    let values = rows.values[seen.column].iter();
+                    let finite = values.filter(|value| value.is_finite());
+                    finite.for_each(|&value| seen.selection.see(value));
+                }
+            })?;
+            seen.iter_mut().for_each(|seen| seen.selection.advance());
+        }
+        let quantiles: BTreeMap<usize, Vec<Quantile>> = seen
+            .iter()
+            .map(|seen| (seen.column, seen.quantiles()))
+            .collect();
+        let mut numbers: Vec<Number> = seen
+            .iter()
+            .filter(|seen| !matches!(columns[seen.column].role, Role::Course { .. }))
+            .map(|seen| Number {
+                column: seen.column,
+                moments: seen.moments,
+                quantiles: quantiles[&seen.column].clone(),
+                bars: vec![0; BARS],
+            })
+            .collect();
+        let mut effects = Collected::new(columns, design, &numbers, &quantiles);
+        scan(&mut |rows| {
+            for number in &mut numbers {
+                let Moments { min, max, .. } = number.moments;
+                let values = rows.values[number.column].iter();
+                for value in values.filter(|value| value.is_finite()) {
+                    number.bars[bar(*value, min, max)] += 1;
+                }
+            }
+            effects.see(rows);
+        })?;
+        let mut early: Vec<(String, u64)> = early.into_iter().collect();
+        early.sort_by(|a, b| b.1.cmp(&a.1));
+        Ok(Self {
+            cases: design.cases(),
+            done,
+            early,
+            events: events
+                .into_iter()
+                .map(|(column, of, happened)| Event {
+                    column,
+                    of,
+                    happened,
+                    wilson: proportion::wilson(happened, of),
+                    exact: proportion::exact(happened, of),
+                })
+                .collect(),
+            courses: courses(columns, &seen, &quantiles),
+            numbers,
+            effects: effects.finish(columns, seed),
+            points,
+            sampling: design.sampling(),
+            rare: None,
+        })
+    }
+
+    /// The number of a column.
+    pub fn number(&self, column: usize) -> Option<&Number> {
+        self.numbers.iter().find(|number| number.column == column)
+    }
+}
+
+impl Seen {
+    fn quantiles(&self) -> Vec<Quantile> {
+        let numbers = self.selection.numbers();
+        let mut from = 0;
+        let mut quantiles = Vec::new();
+        for (part, ranks) in PARTS.iter().zip(&self.ranks) {
+            let count = ranks.iter().flatten().count();
+            let own = &numbers[from..from + count];
+            from += count;
+            quantiles.extend(Quantile::new(*part, self.moments.count, *ranks, own));
+        }
+        quantiles
+    }
+}
+
+/// The bar of a number between the ends.
+fn bar(value: f64, min: f64, max: f64) -> usize {
+    let part = (value - min) / (max - min);
+    if !part.is_finite() {
+        return 0;
+    }
+    // Between 0 and the number of bars.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let bar = (part * BARS as f64) as usize;
+    bar.min(BARS - 1)
+}
+
+fn courses(
+    columns: &[Column],
+    seen: &[Seen],
+    quantiles: &BTreeMap<usize, Vec<Quantile>>,
+) -> Vec<Course> {
+    let mut courses: Vec<Course> = Vec::new();
+    for seen in seen {
+        let Role::Course { of, t } = &columns[seen.column].role else {
+            continue;
+        };
+        if courses.last().is_none_or(|course| course.name != *of) {
+            courses.push(Course {
+                name: of.clone(),
+                column: seen.column,
+                times: Vec::new(),
+                bands: vec![Vec::new(); PARTS.len()],
+                mean: Vec::new(),
+            });
+        }
+        let Some(course) = courses.last_mut() else {
+            continue;
+        };
+        course.times.push(*t);
+        let has_any = seen.moments.count > 0;
+        course
+            .mean
+            .push(if has_any { seen.moments.mean } else { f64::NAN });
+        let own = &quantiles[&seen.column];
+        for (place, band) in course.bands.iter_mut().enumerate() {
+            band.push(own.get(place).map_or(f64::NAN, |quantile| quantile.value));
+        }
+    }
+    courses
+}
+
+/// Effects while rows are shown.
+struct Collected {
+    /// Factors with the ends of their outer quarters.
+    factors: Vec<(usize, [f64; 2])>,
+    /// Columns of numbers and events.
+    of: Vec<usize>,
+    /// For each of these and each factor the means in the quarters.
+    ends: Vec<Vec<[Moments; 2]>>,
+    sums: Vec<Sums>,
+    /// Values of the cases of a point so far, for each column.
+    point: Vec<Vec<f64>>,
+}
+
+impl Collected {
+    fn new(
+        columns: &[Column],
+        design: &Design,
+        numbers: &[Number],
+        quantiles: &BTreeMap<usize, Vec<Quantile>>,
+    ) -> Self {
+        let factor = |column: usize| {
+            let own = quantiles.get(&column)?;
+            let at = |place: usize| own.get(place).map(|q| q.value);
+            Some((column, [at(1)?, at(3)?]))
+        };
+        let count = design.factors().len();
+        let factors: Vec<(usize, [f64; 2])> = (0..count).filter_map(factor).collect();
+        let is_answer = |c: &Column| matches!(c.role, Role::Value | Role::Event);
+        let of: Vec<usize> = (0..columns.len())
+            .filter(|&column| is_answer(&columns[column]))
+            .collect();
+        let drawn = design.drawn().count();
+        let points = design.cases() / (drawn as u64 + 2);
+        let shift = |column: &usize| {
+            let number = numbers.iter().find(|number| number.column == *column);
+            number.map_or(0.0, |number| number.moments.mean)
+        };
+        let sums = match design.sampling() {
+            Sampling::Sensitivity => of
+                .iter()
+                .map(|column| Sums::new(drawn, points, shift(column)))
+                .collect(),
+            _ => Vec::new(),
+        };
+        Self {
+            ends: vec![vec![[Moments::default(); 2]; factors.len()]; of.len()],
+            point: vec![Vec::new(); of.len()],
+            factors,
+            of,
+            sums,
+        }
+    }
+
+    fn see(&mut self, rows: &Rows) {
+        for (ends, &column) in self.ends.iter_mut().zip(&self.of) {
+            for ([low, high], &(factor, [from, to])) in ends.iter_mut().zip(&self.factors) {
+                let pairs = rows.values[factor].iter().zip(&rows.values[column]);
+                for (&x, &y) in pairs.filter(|(_, y)| y.is_finite()) {
+                    if x <= from {
+                        low.add(y);
+                    }
+                    if x >= to {
+                        high.add(y);
+                    }
+                }
+            }
+        }
+        for ((sums, point), &column) in self.sums.iter_mut().zip(&mut self.point).zip(&self.of) {
+            let size = self.factors.len() as u64 + 2;
+            for (case, &value) in (rows.first..).zip(&rows.values[column]) {
+                point.push(value);
+                if case % size == size - 1 {
+                    sums.add(case / size, point);
+                    point.clear();
+                }
+            }
+        }
+    }
+
+    fn finish(self, columns: &[Column], seed: u64) -> Vec<Effects> {
+        let mean = |moments: Moments| {
+            let has_any = moments.count > 0;
+            if has_any { moments.mean } else { f64::NAN }
+        };
+        let effects = self.of.iter().enumerate().map(|(place, &column)| Effects {
+            column,
+            ends: self.ends[place].iter().map(|ends| ends.map(mean)).collect(),
+            indices: self
+                .sums
+                .get(place)
+                .and_then(|sums| sums.indices(seed, &columns[column].name)),
+        });
+        effects.collect()
+    }
+}

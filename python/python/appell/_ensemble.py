@@ -1,0 +1,163 @@
+"""Ensembles: many motions of a study, in chunks that anybody may run."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from . import _appell
+from ._notebook import Page, framed
+
+
+class Ensemble:
+    """The rows of a study, as far as they are there; a page in a notebook.
+
+    It can be sent to other processes, which then find the rows where they are kept.
+    """
+
+    def __init__(self, study: str | Path, out: str | Path | None = None, *, folder: str | Path | None = None):
+        study = str(study)
+        if "\n" in study and folder is None:
+            folder = "."
+        self._made = (study, None if out is None else str(out), None if folder is None else str(folder))
+        self._native = _appell.Study(study, self._made[2], self._made[1])
+
+    def __reduce__(self):
+        study, out, folder = self._made
+        return _restored, (study, out, folder)
+
+    @property
+    def cases(self) -> int:
+        """Number of all cases."""
+        return self._native.cases
+
+    def chunks(self, chunk: int | None = None) -> list[str]:
+        """Names of all chunks, of `chunk` cases each."""
+        return self._native.chunks(chunk)
+
+    def missing(self, *, shard: str | None = None, chunk: int | None = None) -> list[str]:
+        """Names of the chunks that are not there."""
+        return self._native.missing(shard, chunk)
+
+    def run(
+        self,
+        chunks: Sequence[str] | None = None,
+        *,
+        jobs: int | None = None,
+        shard: str | None = None,
+        chunk: int | None = None,
+        progress: Callable[[str], Any] | None = None,
+    ) -> Ensemble:
+        """Runs chunks by their names, or those that are missing, on `jobs` threads."""
+        self._native.run(None if chunks is None else list(chunks), jobs, shard, chunk, progress)
+        for kept in ("_rows", "_all"):
+            self.__dict__.pop(kept, None)
+        return self
+
+    @cached_property
+    def _rows(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, list[str]]:
+        return self._native.rows()
+
+    @cached_property
+    def _all(self) -> tuple[str, str, str]:
+        return self._native.told()
+
+    @property
+    def columns(self) -> list[str]:
+        """Names of the factors and of what is kept; `course` has the courses."""
+        return [name for name, _, _, _, course in self._native.columns() if course is None]
+
+    @property
+    def courses(self) -> list[str]:
+        """Names of the courses."""
+        return list(dict.fromkeys(course[0] for *_, course in self._native.columns() if course))
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A column in SI, a number a case."""
+        for index, (own, *_, course) in enumerate(self._native.columns()):
+            if own == name and course is None:
+                return self._rows[1][index]
+        raise KeyError(f"there is no column `{name}`; there are {', '.join(self.columns)}")
+
+    def course(self, name: str) -> tuple[np.ndarray, np.ndarray]:
+        """The times of a course in s, and its values in SI, a row a case; nan from an early end on."""
+        columns = enumerate(self._native.columns())
+        found = [(index, course[1]) for index, (*_, course) in columns if course and course[0] == name]
+        if not found:
+            raise KeyError(f"there is no course `{name}`; there are {', '.join(self.courses)}")
+        times = np.array([t for _, t in found])
+        return times, np.column_stack([self._rows[1][index] for index, _ in found])
+
+    @property
+    def case(self) -> np.ndarray:
+        """Numbers of the cases whose rows are there."""
+        return self._rows[0].astype(np.int64)
+
+    @property
+    def t_end(self) -> np.ndarray:
+        """When each motion ended, in s."""
+        return self._rows[2]
+
+    @property
+    def reasons(self) -> list[str]:
+        """Why each motion ended early; empty where it did not."""
+        return self._rows[3]
+
+    @cached_property
+    def told(self) -> dict[str, Any]:
+        """The statistics in SI, as `appell ensemble --json` writes them."""
+        return json.loads(self._all[0])
+
+    @property
+    def page(self) -> Page:
+        """Statistics and figures."""
+        return Page(self._all[2], 1000)
+
+    def _repr_html_(self) -> str:
+        return framed(self._all[2], 1000)
+
+    def __repr__(self) -> str:
+        return self._all[1]
+
+
+def _restored(study: str, out: str | None, folder: str | None) -> Ensemble:
+    return Ensemble(study, out, folder=folder)
+
+
+def ensemble(
+    study: str | Path,
+    out: str | Path | None = None,
+    *,
+    folder: str | Path | None = None,
+    chunks: Sequence[str] | None = None,
+    jobs: int | None = None,
+    shard: str | None = None,
+    chunk: int | None = None,
+    progress: Callable[[str], Any] | None = None,
+) -> Ensemble:
+    """Runs a study: the path of a study file, or its text, whose files lie in `folder`.
+
+    Rows go to the folder `out` in chunks, or stay in memory. What is there already is not run again; `chunks` names
+    those to run, as `Ensemble.missing` lists them.
+
+    >>> import appell
+    >>> swings = appell.ensemble('''
+    ... [study]
+    ... model = "pendulum"
+    ... cases = 50
+    ... [motion]
+    ... t_end_s = 1
+    ... [vary]
+    ... theta = { normal = ["20deg", "2deg"] }
+    ... [keep]
+    ... reached = { end = "theta" }
+    ... ''')
+    >>> swings["reached"].shape
+    (50,)
+    """
+    return Ensemble(study, out, folder=folder).run(chunks, jobs=jobs, shard=shard, chunk=chunk, progress=progress)

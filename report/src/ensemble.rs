@@ -1,0 +1,29 @@
+//! The statistics of a study, as text and as a page with figures.
+
+mod about;
+mod figures;
+mod page;
+mod parts;
+
+pub use about::About;
+pub use figures::{Named, figures};
+pub use page::page;
+pub use parts::{Part, parts, sentences};
+
+use crate::text::table;
+
+/// The statistics as text.
+pub fn text(about: &About<'_>) -> String {
+    let mut text = format!("{}\n", about.title);
+    for sentence in sentences(about) {
+        text += &format!("  {sentence}\n");
+    }
+    for part in parts(about) {
+        text += &format!("\n{}\n", part.heading);
+        text += &table(&part.rows, 1..part.rows.first().map_or(1, Vec::len));
+        for note in &part.notes {
+            text += &format!("  {note}\n");
+        }
+    }
+    text
+}

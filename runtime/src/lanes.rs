@@ -8,11 +8,12 @@
 //!
 //! Emitted models evaluate blocks with the functions of [`crate::elementary`], and
 //! [`Model::rates_own`](crate::model::Model::rates_own) and its like evaluate one place with
-//! the same bits. Other models go through their blocks place by place.
+//! the same bits. Functions with linear systems that are solved with pivoting go place by place there.
+//! Other models go place by place with the functions of the standard library, bit for bit: the *plain mode*.
 //!
 //! The files: [`dispatch`] finds the processor's vectors, [`lane`] takes numbers from lanes and puts
-//! them there, [`fast`] is the scalar of a lane, [`evaluate`] runs equations over blocks and places, and
-//! [`plain`] goes place by place.
+//! them there, [`fast`] is the scalar of a lane, [`evaluate`] runs equations over blocks and places,
+//! [`functions`] single functions over blocks, and [`plain`] goes place by place.
 
 // What is not inlined is not compiled for the vectors of the processor.
 #![allow(clippy::inline_always)]
@@ -23,6 +24,8 @@ mod dispatch;
 mod evaluate;
 #[cfg(any(feature = "std", feature = "libm"))]
 mod fast;
+#[cfg(any(feature = "std", feature = "libm"))]
+pub mod functions;
 mod lane;
 #[cfg(feature = "std")]
 mod plain;

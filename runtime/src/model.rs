@@ -347,7 +347,9 @@ pub trait Model: Sync {
     /// [`crate::elementary`]. The answer of this trait is the *plain mode*: it goes place by place with
     /// [`Model::rates`], bit for bit.
     fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
-        place_by_place(at, [rates], |at, [rates]| self.rates(at, rates));
+        place_by_place(at, [rates], |t, [x, u, p], [rates]| {
+            self.rates(At { t, x, u, p }, rates);
+        });
     }
     /// [`Model::jacobians`] at every place of a block, as [`Model::rates_lanes`].
     fn jacobians_lanes(
@@ -357,13 +359,15 @@ pub trait Model: Sync {
         a: &mut [[f64; LANES]],
         b: &mut [[f64; LANES]],
     ) {
-        let jacobians =
-            |at: At<'_>, [rates, a, b]: [&mut [f64]; 3]| self.jacobians(at, rates, a, b);
-        place_by_place(at, [rates, a, b], jacobians);
+        place_by_place(at, [rates, a, b], |t, [x, u, p], [rates, a, b]| {
+            self.jacobians(At { t, x, u, p }, rates, a, b);
+        });
     }
     /// [`Model::outputs`] at every place of a block, as [`Model::rates_lanes`].
     fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
-        place_by_place(at, [outputs], |at, [outputs]| self.outputs(at, outputs));
+        place_by_place(at, [outputs], |t, [x, u, p], [outputs]| {
+            self.outputs(At { t, x, u, p }, outputs);
+        });
     }
     /// ẋ with the elementary functions of [`Model::rates_lanes`]: what it gives at one place, bit for
     /// bit.

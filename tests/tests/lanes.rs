@@ -67,7 +67,8 @@ fn by_place(model: &dyn Model, at: AtLanes<'_>, own: bool) -> [Vec<[f64; LANES]>
     let (n, m) = (info.state_len(), info.input_len());
     let mut all = [n, n, n * n, n * m, info.output_len()].map(|len| vec![[0.0; LANES]; len]);
     let results = all.each_mut().map(Vec::as_mut_slice);
-    place_by_place(at, results, |at, [rates, same, a, b, outputs]| {
+    place_by_place(at, results, |t, [x, u, p], [rates, same, a, b, outputs]| {
+        let at = At { t, x, u, p };
         if own {
             model.rates_own(at, rates);
             model.jacobians_own(at, same, a, b);
@@ -274,5 +275,54 @@ fn what_leaves_the_straight_way_is_not_hidden_by_a_choice() {
         Choosing::place(at, [&mut place, &mut [], &mut []]);
         assert_eq!(bits(place[0]), bits(alone.a.0[0]), "place {lane}");
         assert_eq!(bits(place[1]), bits(alone.b.0[0]), "place {lane}");
+    }
+}
+
+#[test]
+fn functions_of_blocks_have_the_bits_of_functions_of_numbers() {
+    use appell_runtime::elementary as own;
+    use appell_runtime::lanes::functions as blocks;
+    type OfBlock = fn(&[f64; LANES], &mut [f64; LANES]);
+    type OfNumber = fn(f64) -> f64;
+    let unary: [(OfBlock, OfNumber); 11] = [
+        (blocks::sin, own::sin),
+        (blocks::cos, own::cos),
+        (blocks::tan, own::tan),
+        (blocks::asin, own::asin),
+        (blocks::acos, own::acos),
+        (blocks::atan, own::atan),
+        (blocks::sinh, own::sinh),
+        (blocks::cosh, own::cosh),
+        (blocks::tanh, own::tanh),
+        (blocks::exp, own::exp),
+        (blocks::ln, own::ln),
+    ];
+    let mut random = Random::of("functions of blocks");
+    let same = |a: f64, b: f64| a.to_bits() == b.to_bits() || (a.is_nan() && b.is_nan());
+    for round in 0..200 {
+        let mut draw = || std::array::from_fn(|_| random.between(-3.0, 3.0));
+        let (mut x, y): ([f64; LANES], [f64; LANES]) = (draw(), draw());
+        if round % 2 == 1 {
+            x[round % LANES] = [FAR_TURNED, f64::NAN, -0.0, f64::INFINITY][round / 2 % 4];
+        }
+        let (mut found, mut second) = ([0.0; LANES], [0.0; LANES]);
+        for (place, (of_block, of_number)) in unary.iter().enumerate() {
+            of_block(&x, &mut found);
+            let all = (0..LANES).all(|lane| same(found[lane], of_number(x[lane])));
+            assert!(all, "function {place} at {x:?}: {found:?}");
+        }
+        blocks::sin_cos(&x, &mut found, &mut second);
+        let all = (0..LANES).all(|lane| {
+            let (sin, cos) = own::sin_cos(x[lane]);
+            same(found[lane], sin) && same(second[lane], cos)
+        });
+        assert!(all, "sin_cos at {x:?}");
+        blocks::atan2(&y, &x, &mut found);
+        blocks::powf(&x, &y, &mut second);
+        let all = (0..LANES).all(|lane| {
+            same(found[lane], own::atan2(y[lane], x[lane]))
+                && same(second[lane], own::powf(x[lane], y[lane]))
+        });
+        assert!(all, "atan2 and powf at {x:?}, {y:?}");
     }
 }

@@ -117,8 +117,8 @@ impl OnDemand {
     ) {
         match self.lanes(program, sizes, target) {
             Some(vector) => vector.call(at, out),
-            None => place_by_place(at, out, |at, out| {
-                self.call(program, sizes, at, &[], out);
+            None => place_by_place(at, out, |t, [x, u, p], out| {
+                self.call(program, sizes, At { t, x, u, p }, &[], out);
             }),
         }
     }

@@ -387,7 +387,7 @@ pub fn generalized_forces<T: Real>(
 /// From `block.toml`.
 /// Operations: 15 (4 +, 9 ×, 2 ÷), sine or cosine of 1 angle, 1 function.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -425,7 +425,7 @@ pub fn rates<T: Real>(
 /// From `block.toml`.
 /// Operations: 27 (6 +, 18 ×, 2 ÷, 1 sign), sine or cosine of 1 angle, 1 function.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn jacobians<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -655,7 +655,7 @@ pub fn constraint_forces<T: Real>(
 /// From `block.toml`.
 /// Operations: 16 (4 +, 9 ×, 2 ÷, 1 sign), sine or cosine of 1 angle, 1 function.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn outputs<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -981,6 +981,7 @@ pub fn output_adjoint<T: Real>(
 pub struct Block;
 
 const _: () = {
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -1002,6 +1003,23 @@ const _: () = {
 
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
+    }
+
+    ::appell_runtime::in_lanes! {
+        RatesInLanes = rates(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v, s },
+        Inputs[1] { F }) => [2] (whole[v_dot, s_dot]) [0] () [0] ()
+    }
+
+    ::appell_runtime::in_lanes! {
+        JacobiansInLanes = jacobians(Parameters[6] { m, beta, mu, eps, g, k }, State[2] {
+        v, s }, Inputs[1] { F }) => [2] (rates[v_dot, s_dot]) [4] (a[v_dot, s_dot] [v,
+        s]) [2] (b[v_dot, s_dot] [F])
+    }
+
+    ::appell_runtime::in_lanes! {
+        OutputsInLanes = outputs(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v,
+        s }, Inputs[1] { F }) => [6] (whole[n, across, rubbing, pulling, pushing, a]) [0]
+        () [0] ()
     }
 
     impl model::Model for Block {
@@ -1145,6 +1163,42 @@ const _: () = {
             write(by.u, &all.u.to_array());
             write(by.p, &all.p.to_array());
         }
+
+        fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
+            RatesInLanes::block(at, [rates, &mut [], &mut []]);
+        }
+
+        fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
+            RatesInLanes::place(at, [rates, &mut [], &mut []]);
+        }
+
+        fn jacobians_lanes(
+            &self,
+            at: AtLanes<'_>,
+            rates: &mut [[f64; LANES]],
+            a: &mut [[f64; LANES]],
+            b: &mut [[f64; LANES]],
+        ) {
+            JacobiansInLanes::block(at, [rates, a, b]);
+        }
+
+        fn jacobians_own(
+            &self,
+            at: At<'_>,
+            rates: &mut [f64],
+            a: &mut [f64],
+            b: &mut [f64],
+        ) {
+            JacobiansInLanes::place(at, [rates, a, b]);
+        }
+
+        fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
+            OutputsInLanes::block(at, [outputs, &mut [], &mut []]);
+        }
+
+        fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
+            OutputsInLanes::place(at, [outputs, &mut [], &mut []]);
+        }
     }
 
     impl model::Named for Block {
@@ -1236,149 +1290,22 @@ pub static INFO: model::ModelInfo = model::ModelInfo {
     explicit_time: false,
 };
 
-impl<T> From<[T; 6]> for Parameters<T> {
-    fn from([m, beta, mu, eps, g, k]: [T; 6]) -> Self {
-        Self { m, beta, mu, eps, g, k }
-    }
-}
+::appell_runtime::vector!(Parameters { m, beta, mu, eps, g, k });
 
-impl<T> From<Parameters<T>> for [T; 6] {
-    fn from(Parameters { m, beta, mu, eps, g, k }: Parameters<T>) -> Self {
-        [m, beta, mu, eps, g, k]
-    }
-}
+::appell_runtime::vector!(State { v, s }, Rates);
 
-::appell_runtime::vector!(Parameters, 6);
+::appell_runtime::vector!(Inputs { F });
 
-impl<T> From<[T; 2]> for State<T> {
-    fn from([v, s]: [T; 2]) -> Self {
-        Self { v, s }
-    }
-}
+::appell_runtime::vector!(Outputs { n, across, rubbing, pulling, pushing, a });
 
-impl<T> From<State<T>> for [T; 2] {
-    fn from(State { v, s }: State<T>) -> Self {
-        [v, s]
-    }
-}
+::appell_runtime::vector!(Rates { v_dot, s_dot });
 
-::appell_runtime::vector!(State, 2, Rates);
+::appell_runtime::vector!(Accelerations { v_dot });
 
-impl<T> From<[T; 1]> for Inputs<T> {
-    fn from([F]: [T; 1]) -> Self {
-        Self { F }
-    }
-}
+::appell_runtime::vector!(CoordinateRates { s_dot });
 
-impl<T> From<Inputs<T>> for [T; 1] {
-    fn from(Inputs { F }: Inputs<T>) -> Self {
-        [F]
-    }
-}
+::appell_runtime::vector!(GeneralizedForces { v });
 
-::appell_runtime::vector!(Inputs, 1);
+::appell_runtime::vector!(ConstraintResidual {});
 
-impl<T> From<[T; 6]> for Outputs<T> {
-    fn from([n, across, rubbing, pulling, pushing, a]: [T; 6]) -> Self {
-        Self {
-            n,
-            across,
-            rubbing,
-            pulling,
-            pushing,
-            a,
-        }
-    }
-}
-
-impl<T> From<Outputs<T>> for [T; 6] {
-    fn from(Outputs { n, across, rubbing, pulling, pushing, a }: Outputs<T>) -> Self {
-        [n, across, rubbing, pulling, pushing, a]
-    }
-}
-
-::appell_runtime::vector!(Outputs, 6);
-
-impl<T> From<[T; 2]> for Rates<T> {
-    fn from([v_dot, s_dot]: [T; 2]) -> Self {
-        Self { v_dot, s_dot }
-    }
-}
-
-impl<T> From<Rates<T>> for [T; 2] {
-    fn from(Rates { v_dot, s_dot }: Rates<T>) -> Self {
-        [v_dot, s_dot]
-    }
-}
-
-::appell_runtime::vector!(Rates, 2);
-
-impl<T> From<[T; 1]> for Accelerations<T> {
-    fn from([v_dot]: [T; 1]) -> Self {
-        Self { v_dot }
-    }
-}
-
-impl<T> From<Accelerations<T>> for [T; 1] {
-    fn from(Accelerations { v_dot }: Accelerations<T>) -> Self {
-        [v_dot]
-    }
-}
-
-::appell_runtime::vector!(Accelerations, 1);
-
-impl<T> From<[T; 1]> for CoordinateRates<T> {
-    fn from([s_dot]: [T; 1]) -> Self {
-        Self { s_dot }
-    }
-}
-
-impl<T> From<CoordinateRates<T>> for [T; 1] {
-    fn from(CoordinateRates { s_dot }: CoordinateRates<T>) -> Self {
-        [s_dot]
-    }
-}
-
-::appell_runtime::vector!(CoordinateRates, 1);
-
-impl<T> From<[T; 1]> for GeneralizedForces<T> {
-    fn from([v]: [T; 1]) -> Self {
-        Self { v }
-    }
-}
-
-impl<T> From<GeneralizedForces<T>> for [T; 1] {
-    fn from(GeneralizedForces { v }: GeneralizedForces<T>) -> Self {
-        [v]
-    }
-}
-
-::appell_runtime::vector!(GeneralizedForces, 1);
-
-impl<T> From<[T; 0]> for ConstraintResidual {
-    fn from([]: [T; 0]) -> Self {
-        Self {}
-    }
-}
-
-impl<T> From<ConstraintResidual> for [T; 0] {
-    fn from(ConstraintResidual {}: ConstraintResidual) -> Self {
-        []
-    }
-}
-
-::appell_runtime::vector!(ConstraintResidual, 0);
-
-impl<T> From<[T; 1]> for ConstraintForces<T> {
-    fn from([C]: [T; 1]) -> Self {
-        Self { C }
-    }
-}
-
-impl<T> From<ConstraintForces<T>> for [T; 1] {
-    fn from(ConstraintForces { C }: ConstraintForces<T>) -> Self {
-        [C]
-    }
-}
-
-::appell_runtime::vector!(ConstraintForces, 1);
+::appell_runtime::vector!(ConstraintForces { C });

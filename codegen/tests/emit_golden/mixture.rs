@@ -121,7 +121,7 @@ pub struct Jacobians<T> {
 /// From `mechanisms/type.toml`.
 /// Operations: 25 (16 +, 8 ×, 1 ÷), sine or cosine of 1 angle, 13 functions, 2 choices, 2 linear systems.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn rates<T: Real>(
     t: T,
     parameters: &Parameters<T>,
@@ -175,7 +175,7 @@ pub fn rates<T: Real>(
 /// From `mechanisms/type.toml`.
 /// Operations: 61 (32 +, 18 ×, 5 ÷, 6 sign), sine or cosine of 1 angle, 14 functions, 7 choices, 7 linear systems.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn jacobians<T: Real>(
     t: T,
     parameters: &Parameters<T>,
@@ -369,7 +369,7 @@ pub fn parameter_jacobian<T: Real>(
 /// From `mechanisms/type.toml`.
 /// Operations: 1 (1 +), 2 functions, 1 choice.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn outputs<T: Real>(
     t: T,
     parameters: &Parameters<T>,
@@ -391,100 +391,16 @@ pub fn outputs<T: Real>(
     }
 }
 
-impl<T> From<[T; 2]> for Parameters<T> {
-    fn from([INFO_, K]: [T; 2]) -> Self {
-        Self { INFO_, K }
-    }
-}
+::appell_runtime::vector!(Parameters { INFO_, K });
 
-impl<T> From<Parameters<T>> for [T; 2] {
-    fn from(Parameters { INFO_, K }: Parameters<T>) -> Self {
-        [INFO_, K]
-    }
-}
+::appell_runtime::vector!(State { type_, p, half }, Rates);
 
-::appell_runtime::vector!(Parameters, 2);
+::appell_runtime::vector!(Inputs {});
 
-impl<T> From<[T; 3]> for State<T> {
-    fn from([type_, p, half]: [T; 3]) -> Self {
-        Self { type_, p, half }
-    }
-}
+::appell_runtime::vector!(Outputs { switch, self_, angle });
 
-impl<T> From<State<T>> for [T; 3] {
-    fn from(State { type_, p, half }: State<T>) -> Self {
-        [type_, p, half]
-    }
-}
+::appell_runtime::vector!(Rates { type_dot, p_dot, half_dot });
 
-::appell_runtime::vector!(State, 3, Rates);
+::appell_runtime::vector!(Accelerations { type_dot });
 
-impl<T> From<[T; 0]> for Inputs {
-    fn from([]: [T; 0]) -> Self {
-        Self {}
-    }
-}
-
-impl<T> From<Inputs> for [T; 0] {
-    fn from(Inputs {}: Inputs) -> Self {
-        []
-    }
-}
-
-::appell_runtime::vector!(Inputs, 0);
-
-impl<T> From<[T; 3]> for Outputs<T> {
-    fn from([switch, self_, angle]: [T; 3]) -> Self {
-        Self { switch, self_, angle }
-    }
-}
-
-impl<T> From<Outputs<T>> for [T; 3] {
-    fn from(Outputs { switch, self_, angle }: Outputs<T>) -> Self {
-        [switch, self_, angle]
-    }
-}
-
-::appell_runtime::vector!(Outputs, 3);
-
-impl<T> From<[T; 3]> for Rates<T> {
-    fn from([type_dot, p_dot, half_dot]: [T; 3]) -> Self {
-        Self { type_dot, p_dot, half_dot }
-    }
-}
-
-impl<T> From<Rates<T>> for [T; 3] {
-    fn from(Rates { type_dot, p_dot, half_dot }: Rates<T>) -> Self {
-        [type_dot, p_dot, half_dot]
-    }
-}
-
-::appell_runtime::vector!(Rates, 3);
-
-impl<T> From<[T; 1]> for Accelerations<T> {
-    fn from([type_dot]: [T; 1]) -> Self {
-        Self { type_dot }
-    }
-}
-
-impl<T> From<Accelerations<T>> for [T; 1] {
-    fn from(Accelerations { type_dot }: Accelerations<T>) -> Self {
-        [type_dot]
-    }
-}
-
-::appell_runtime::vector!(Accelerations, 1);
-
-impl<T> From<[T; 2]> for CoordinateRates<T> {
-    fn from([p_dot, half_dot]: [T; 2]) -> Self {
-        Self { p_dot, half_dot }
-    }
-}
-
-impl<T> From<CoordinateRates<T>> for [T; 2] {
-    fn from(CoordinateRates { p_dot, half_dot }: CoordinateRates<T>) -> Self {
-        [p_dot, half_dot]
-    }
-}
-
-::appell_runtime::vector!(CoordinateRates, 2);
+::appell_runtime::vector!(CoordinateRates { p_dot, half_dot });

@@ -570,7 +570,7 @@ pub fn generalized_forces<T: Real>(
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 99 (30 +, 65 ×, 4 ÷), sine or cosine of 2 angles.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -668,7 +668,7 @@ pub fn rates<T: Real>(
 /// From `mechanisms/unicycle.toml`.
 /// Operations: 261 (70 +, 179 ×, 4 ÷, 8 sign), sine or cosine of 2 angles.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn jacobians<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -1238,6 +1238,7 @@ pub fn energies<T: Real>(
 pub struct Unicycle;
 
 const _: () = {
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -1259,6 +1260,24 @@ const _: () = {
 
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
+    }
+
+    ::appell_runtime::in_lanes! {
+        RatesInLanes = rates(Parameters[4] { m, m0, R, g }, State[10] { omega_1, omega_2,
+        omega_3, sigma, theta, r, psi, phi, x_G, y_G }, Inputs[1] { u }) => [10]
+        (whole[omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot, theta_dot, r_dot,
+        psi_dot, phi_dot, x_G_dot, y_G_dot]) [0] () [0] ()
+    }
+
+    ::appell_runtime::in_lanes! {
+        JacobiansInLanes = jacobians(Parameters[4] { m, m0, R, g }, State[10] { omega_1,
+        omega_2, omega_3, sigma, theta, r, psi, phi, x_G, y_G }, Inputs[1] { u }) => [10]
+        (rates[omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot, theta_dot, r_dot,
+        psi_dot, phi_dot, x_G_dot, y_G_dot]) [100] (a[omega_1_dot, omega_2_dot,
+        omega_3_dot, sigma_dot, theta_dot, r_dot, psi_dot, phi_dot, x_G_dot, y_G_dot]
+        [omega_1, omega_2, omega_3, sigma, theta, r, psi, phi, x_G, y_G]) [10]
+        (b[omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot, theta_dot, r_dot, psi_dot,
+        phi_dot, x_G_dot, y_G_dot] [u])
     }
 
     impl model::Model for Unicycle {
@@ -1337,6 +1356,34 @@ const _: () = {
         fn constraint_forces(&self, _at: At<'_>, _none: &mut [f64]) {}
 
         fn outputs(&self, _at: At<'_>, _none: &mut [f64]) {}
+
+        fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
+            RatesInLanes::block(at, [rates, &mut [], &mut []]);
+        }
+
+        fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
+            RatesInLanes::place(at, [rates, &mut [], &mut []]);
+        }
+
+        fn jacobians_lanes(
+            &self,
+            at: AtLanes<'_>,
+            rates: &mut [[f64; LANES]],
+            a: &mut [[f64; LANES]],
+            b: &mut [[f64; LANES]],
+        ) {
+            JacobiansInLanes::block(at, [rates, a, b]);
+        }
+
+        fn jacobians_own(
+            &self,
+            at: At<'_>,
+            rates: &mut [f64],
+            a: &mut [f64],
+            b: &mut [f64],
+        ) {
+            JacobiansInLanes::place(at, [rates, a, b]);
+        }
     }
 
     impl model::Named for Unicycle {
@@ -1419,232 +1466,27 @@ pub static INFO: model::ModelInfo = model::ModelInfo {
     explicit_time: false,
 };
 
-impl<T> From<[T; 4]> for Parameters<T> {
-    fn from([m, m0, R, g]: [T; 4]) -> Self {
-        Self { m, m0, R, g }
-    }
-}
+::appell_runtime::vector!(Parameters { m, m0, R, g });
 
-impl<T> From<Parameters<T>> for [T; 4] {
-    fn from(Parameters { m, m0, R, g }: Parameters<T>) -> Self {
-        [m, m0, R, g]
-    }
-}
+::appell_runtime::vector!(
+    State { omega_1, omega_2, omega_3, sigma, theta, r, psi, phi, x_G, y_G }, Rates
+);
 
-::appell_runtime::vector!(Parameters, 4);
+::appell_runtime::vector!(Inputs { u });
 
-impl<T> From<[T; 10]> for State<T> {
-    fn from(
-        [omega_1,
-        omega_2,
-        omega_3,
-        sigma,
-        theta,
-        r,
-        psi,
-        phi,
-        x_G,
-        y_G,
-        ]: [T; 10],
-    ) -> Self {
-        Self {
-            omega_1,
-            omega_2,
-            omega_3,
-            sigma,
-            theta,
-            r,
-            psi,
-            phi,
-            x_G,
-            y_G,
-        }
-    }
-}
+::appell_runtime::vector!(Outputs {});
 
-impl<T> From<State<T>> for [T; 10] {
-    fn from(
-        State {
-            omega_1,
-            omega_2,
-            omega_3,
-            sigma,
-            theta,
-            r,
-            psi,
-            phi,
-            x_G,
-            y_G,
-        }: State<T>,
-    ) -> Self {
-        [omega_1, omega_2, omega_3, sigma, theta, r, psi, phi, x_G, y_G]
-    }
-}
+::appell_runtime::vector!(
+    Rates { omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot, theta_dot, r_dot, psi_dot,
+    phi_dot, x_G_dot, y_G_dot }
+);
 
-::appell_runtime::vector!(State, 10, Rates);
+::appell_runtime::vector!(
+    Accelerations { omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot }
+);
 
-impl<T> From<[T; 1]> for Inputs<T> {
-    fn from([u]: [T; 1]) -> Self {
-        Self { u }
-    }
-}
+::appell_runtime::vector!(
+    CoordinateRates { theta_dot, r_dot, psi_dot, phi_dot, x_G_dot, y_G_dot }
+);
 
-impl<T> From<Inputs<T>> for [T; 1] {
-    fn from(Inputs { u }: Inputs<T>) -> Self {
-        [u]
-    }
-}
-
-::appell_runtime::vector!(Inputs, 1);
-
-impl<T> From<[T; 0]> for Outputs {
-    fn from([]: [T; 0]) -> Self {
-        Self {}
-    }
-}
-
-impl<T> From<Outputs> for [T; 0] {
-    fn from(Outputs {}: Outputs) -> Self {
-        []
-    }
-}
-
-::appell_runtime::vector!(Outputs, 0);
-
-impl<T> From<[T; 10]> for Rates<T> {
-    fn from(
-        [omega_1_dot,
-        omega_2_dot,
-        omega_3_dot,
-        sigma_dot,
-        theta_dot,
-        r_dot,
-        psi_dot,
-        phi_dot,
-        x_G_dot,
-        y_G_dot,
-        ]: [T; 10],
-    ) -> Self {
-        Self {
-            omega_1_dot,
-            omega_2_dot,
-            omega_3_dot,
-            sigma_dot,
-            theta_dot,
-            r_dot,
-            psi_dot,
-            phi_dot,
-            x_G_dot,
-            y_G_dot,
-        }
-    }
-}
-
-impl<T> From<Rates<T>> for [T; 10] {
-    fn from(
-        Rates {
-            omega_1_dot,
-            omega_2_dot,
-            omega_3_dot,
-            sigma_dot,
-            theta_dot,
-            r_dot,
-            psi_dot,
-            phi_dot,
-            x_G_dot,
-            y_G_dot,
-        }: Rates<T>,
-    ) -> Self {
-        [
-            omega_1_dot,
-            omega_2_dot,
-            omega_3_dot,
-            sigma_dot,
-            theta_dot,
-            r_dot,
-            psi_dot,
-            phi_dot,
-            x_G_dot,
-            y_G_dot,
-        ]
-    }
-}
-
-::appell_runtime::vector!(Rates, 10);
-
-impl<T> From<[T; 4]> for Accelerations<T> {
-    fn from([omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot]: [T; 4]) -> Self {
-        Self {
-            omega_1_dot,
-            omega_2_dot,
-            omega_3_dot,
-            sigma_dot,
-        }
-    }
-}
-
-impl<T> From<Accelerations<T>> for [T; 4] {
-    fn from(
-        Accelerations {
-            omega_1_dot,
-            omega_2_dot,
-            omega_3_dot,
-            sigma_dot,
-        }: Accelerations<T>,
-    ) -> Self {
-        [omega_1_dot, omega_2_dot, omega_3_dot, sigma_dot]
-    }
-}
-
-::appell_runtime::vector!(Accelerations, 4);
-
-impl<T> From<[T; 6]> for CoordinateRates<T> {
-    fn from([theta_dot, r_dot, psi_dot, phi_dot, x_G_dot, y_G_dot]: [T; 6]) -> Self {
-        Self {
-            theta_dot,
-            r_dot,
-            psi_dot,
-            phi_dot,
-            x_G_dot,
-            y_G_dot,
-        }
-    }
-}
-
-impl<T> From<CoordinateRates<T>> for [T; 6] {
-    fn from(
-        CoordinateRates {
-            theta_dot,
-            r_dot,
-            psi_dot,
-            phi_dot,
-            x_G_dot,
-            y_G_dot,
-        }: CoordinateRates<T>,
-    ) -> Self {
-        [theta_dot, r_dot, psi_dot, phi_dot, x_G_dot, y_G_dot]
-    }
-}
-
-::appell_runtime::vector!(CoordinateRates, 6);
-
-impl<T> From<[T; 4]> for GeneralizedForces<T> {
-    fn from([omega_1, omega_2, omega_3, sigma]: [T; 4]) -> Self {
-        Self {
-            omega_1,
-            omega_2,
-            omega_3,
-            sigma,
-        }
-    }
-}
-
-impl<T> From<GeneralizedForces<T>> for [T; 4] {
-    fn from(
-        GeneralizedForces { omega_1, omega_2, omega_3, sigma }: GeneralizedForces<T>,
-    ) -> Self {
-        [omega_1, omega_2, omega_3, sigma]
-    }
-}
-
-::appell_runtime::vector!(GeneralizedForces, 4);
+::appell_runtime::vector!(GeneralizedForces { omega_1, omega_2, omega_3, sigma });

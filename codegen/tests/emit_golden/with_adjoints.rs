@@ -375,7 +375,7 @@ pub fn generalized_forces<T: Real>(
 /// From `pendulum.toml`.
 /// Operations: 8 (2 +, 5 ×, 1 ÷), sine or cosine of 1 angle.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -413,7 +413,7 @@ pub fn rates<T: Real>(
 /// From `pendulum.toml`.
 /// Operations: 11 (2 +, 7 ×, 1 ÷, 1 sign), sine or cosine of 1 angle.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn jacobians<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -602,7 +602,7 @@ pub fn constraint_forces<T: Real>(
 /// From `pendulum.toml`.
 /// Operations: 13 (3 +, 9 ×, 1 sign), sine or cosine of 1 angle.
 #[must_use]
-#[inline]
+#[inline(always)]
 pub fn outputs<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -820,6 +820,7 @@ pub fn output_adjoint<T: Real>(
 pub struct Pendulum;
 
 const _: () = {
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -841,6 +842,22 @@ const _: () = {
 
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
+    }
+
+    ::appell_runtime::in_lanes! {
+        RatesInLanes = rates(Parameters[4] { m, l, I, g }, State[2] { omega, theta },
+        Inputs[1] { tau }) => [2] (whole[omega_dot, theta_dot]) [0] () [0] ()
+    }
+
+    ::appell_runtime::in_lanes! {
+        JacobiansInLanes = jacobians(Parameters[4] { m, l, I, g }, State[2] { omega,
+        theta }, Inputs[1] { tau }) => [2] (rates[omega_dot, theta_dot]) [4]
+        (a[omega_dot, theta_dot] [omega, theta]) [2] (b[omega_dot, theta_dot] [tau])
+    }
+
+    ::appell_runtime::in_lanes! {
+        OutputsInLanes = outputs(Parameters[4] { m, l, I, g }, State[2] { omega, theta },
+        Inputs[1] { tau }) => [3] (whole[x_G, z_G, energy]) [0] () [0] ()
     }
 
     impl model::Model for Pendulum {
@@ -971,6 +988,42 @@ const _: () = {
             write(by.u, &all.u.to_array());
             write(by.p, &all.p.to_array());
         }
+
+        fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
+            RatesInLanes::block(at, [rates, &mut [], &mut []]);
+        }
+
+        fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
+            RatesInLanes::place(at, [rates, &mut [], &mut []]);
+        }
+
+        fn jacobians_lanes(
+            &self,
+            at: AtLanes<'_>,
+            rates: &mut [[f64; LANES]],
+            a: &mut [[f64; LANES]],
+            b: &mut [[f64; LANES]],
+        ) {
+            JacobiansInLanes::block(at, [rates, a, b]);
+        }
+
+        fn jacobians_own(
+            &self,
+            at: At<'_>,
+            rates: &mut [f64],
+            a: &mut [f64],
+            b: &mut [f64],
+        ) {
+            JacobiansInLanes::place(at, [rates, a, b]);
+        }
+
+        fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
+            OutputsInLanes::block(at, [outputs, &mut [], &mut []]);
+        }
+
+        fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
+            OutputsInLanes::place(at, [outputs, &mut [], &mut []]);
+        }
     }
 
     impl model::Named for Pendulum {
@@ -1067,142 +1120,22 @@ pub static INFO: model::ModelInfo = model::ModelInfo {
     explicit_time: false,
 };
 
-impl<T> From<[T; 4]> for Parameters<T> {
-    fn from([m, l, I, g]: [T; 4]) -> Self {
-        Self { m, l, I, g }
-    }
-}
+::appell_runtime::vector!(Parameters { m, l, I, g });
 
-impl<T> From<Parameters<T>> for [T; 4] {
-    fn from(Parameters { m, l, I, g }: Parameters<T>) -> Self {
-        [m, l, I, g]
-    }
-}
+::appell_runtime::vector!(State { omega, theta }, Rates);
 
-::appell_runtime::vector!(Parameters, 4);
+::appell_runtime::vector!(Inputs { tau });
 
-impl<T> From<[T; 2]> for State<T> {
-    fn from([omega, theta]: [T; 2]) -> Self {
-        Self { omega, theta }
-    }
-}
+::appell_runtime::vector!(Outputs { x_G, z_G, energy });
 
-impl<T> From<State<T>> for [T; 2] {
-    fn from(State { omega, theta }: State<T>) -> Self {
-        [omega, theta]
-    }
-}
+::appell_runtime::vector!(Rates { omega_dot, theta_dot });
 
-::appell_runtime::vector!(State, 2, Rates);
+::appell_runtime::vector!(Accelerations { omega_dot });
 
-impl<T> From<[T; 1]> for Inputs<T> {
-    fn from([tau]: [T; 1]) -> Self {
-        Self { tau }
-    }
-}
+::appell_runtime::vector!(CoordinateRates { theta_dot });
 
-impl<T> From<Inputs<T>> for [T; 1] {
-    fn from(Inputs { tau }: Inputs<T>) -> Self {
-        [tau]
-    }
-}
+::appell_runtime::vector!(GeneralizedForces { omega });
 
-::appell_runtime::vector!(Inputs, 1);
+::appell_runtime::vector!(ConstraintResidual {});
 
-impl<T> From<[T; 3]> for Outputs<T> {
-    fn from([x_G, z_G, energy]: [T; 3]) -> Self {
-        Self { x_G, z_G, energy }
-    }
-}
-
-impl<T> From<Outputs<T>> for [T; 3] {
-    fn from(Outputs { x_G, z_G, energy }: Outputs<T>) -> Self {
-        [x_G, z_G, energy]
-    }
-}
-
-::appell_runtime::vector!(Outputs, 3);
-
-impl<T> From<[T; 2]> for Rates<T> {
-    fn from([omega_dot, theta_dot]: [T; 2]) -> Self {
-        Self { omega_dot, theta_dot }
-    }
-}
-
-impl<T> From<Rates<T>> for [T; 2] {
-    fn from(Rates { omega_dot, theta_dot }: Rates<T>) -> Self {
-        [omega_dot, theta_dot]
-    }
-}
-
-::appell_runtime::vector!(Rates, 2);
-
-impl<T> From<[T; 1]> for Accelerations<T> {
-    fn from([omega_dot]: [T; 1]) -> Self {
-        Self { omega_dot }
-    }
-}
-
-impl<T> From<Accelerations<T>> for [T; 1] {
-    fn from(Accelerations { omega_dot }: Accelerations<T>) -> Self {
-        [omega_dot]
-    }
-}
-
-::appell_runtime::vector!(Accelerations, 1);
-
-impl<T> From<[T; 1]> for CoordinateRates<T> {
-    fn from([theta_dot]: [T; 1]) -> Self {
-        Self { theta_dot }
-    }
-}
-
-impl<T> From<CoordinateRates<T>> for [T; 1] {
-    fn from(CoordinateRates { theta_dot }: CoordinateRates<T>) -> Self {
-        [theta_dot]
-    }
-}
-
-::appell_runtime::vector!(CoordinateRates, 1);
-
-impl<T> From<[T; 1]> for GeneralizedForces<T> {
-    fn from([omega]: [T; 1]) -> Self {
-        Self { omega }
-    }
-}
-
-impl<T> From<GeneralizedForces<T>> for [T; 1] {
-    fn from(GeneralizedForces { omega }: GeneralizedForces<T>) -> Self {
-        [omega]
-    }
-}
-
-::appell_runtime::vector!(GeneralizedForces, 1);
-
-impl<T> From<[T; 0]> for ConstraintResidual {
-    fn from([]: [T; 0]) -> Self {
-        Self {}
-    }
-}
-
-impl<T> From<ConstraintResidual> for [T; 0] {
-    fn from(ConstraintResidual {}: ConstraintResidual) -> Self {
-        []
-    }
-}
-
-::appell_runtime::vector!(ConstraintResidual, 0);
-
-impl<T> From<[T; 0]> for ConstraintForces {
-    fn from([]: [T; 0]) -> Self {
-        Self {}
-    }
-}
-
-impl<T> From<ConstraintForces> for [T; 0] {
-    fn from(ConstraintForces {}: ConstraintForces) -> Self {
-        []
-    }
-}
-
-::appell_runtime::vector!(ConstraintForces, 0);
+::appell_runtime::vector!(ConstraintForces {});

@@ -1,6 +1,7 @@
 //! A schedule at eight places at once.
 
 use appell_runtime::lanes::{self, AtLanes, LANES};
+use appell_runtime::model::At;
 
 use super::super::check::{Checked, check, lengths};
 use super::super::native::NativeFunction;
@@ -141,9 +142,9 @@ fn place_by_place<const N: usize>(
     results: [&mut [[f64; LANES]]; N],
 ) {
     let mut places = 0..;
-    lanes::place_by_place(at, results, |at, results| {
+    lanes::place_by_place(at, results, |t, [x, u, p], results| {
         let place = places.next().unwrap_or(0);
         let weights: Vec<f64> = weights.iter().map(|block| block[place]).collect();
-        native.call_weighted(at, &weights, results);
+        native.call_weighted(At { t, x, u, p }, &weights, results);
     });
 }

@@ -13,8 +13,13 @@
 //! The files: [`arithmetic`] computes with pairs of numbers, [`trigonometric`], [`inverse`],
 //! [`exponential`], [`hyperbolic`], [`logarithm`] and [`power`] hold the functions.
 
-// A function that is not inlined has no lanes: it would be called once for each of them.
-#![allow(clippy::inline_always)]
+// A function that is not inlined has no lanes: it would be called once for each of them. Special values
+// are told exactly, without branches.
+#![allow(
+    clippy::inline_always,
+    clippy::float_cmp,
+    clippy::needless_bitwise_bool
+)]
 
 mod arithmetic;
 mod exponential;

@@ -1,5 +1,7 @@
 //! Blocks of places: every lane has the bits of its place alone, at every width of the processor's vectors.
 
+#![allow(non_snake_case, reason = "letters of the spec")]
+
 use appell_models::Shipped;
 use appell_models::unicycle::{self, Inputs, Parameters, State, rates};
 use appell_runtime::Real;

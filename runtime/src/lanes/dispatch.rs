@@ -70,6 +70,7 @@ impl Level {
         }
         #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
         {
+            let _ = self;
             let mut task = task;
             task();
             true

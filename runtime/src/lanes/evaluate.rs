@@ -83,7 +83,7 @@ pub trait Equations<
                 only(at.u, lane),
                 only(at.p, lane),
             );
-            let results = alone::<Self, X, U, P, A, B, C>(&t, &x, &u, &p);
+            let results = alone::<Self, X, U, P, A, B, C>(t, &x, &u, &p);
             put(results.0, first, lane);
             put(results.1, second, lane);
             put(results.2, third, lane);
@@ -100,7 +100,7 @@ pub trait Equations<
     fn place(at: At<'_>, results: [&mut [f64]; 3]) {
         let [x, u, p] = [at.x, at.u, at.p].map(|numbers| numbers.as_chunks().0);
         let [first, second, third] = results.map(|numbers| numbers.as_chunks_mut().0);
-        let found = alone::<Self, X, U, P, A, B, C>(&[at.t], array(x), array(u), array(p));
+        let found = alone::<Self, X, U, P, A, B, C>([at.t], array(x), array(u), array(p));
         *array_mut(first) = found.0;
         *array_mut(second) = found.1;
         *array_mut(third) = found.2;
@@ -121,7 +121,7 @@ fn alone<
     const B: usize,
     const C: usize,
 >(
-    t: &[f64; 1],
+    t: [f64; 1],
     x: &One<X>,
     u: &One<U>,
     p: &One<P>,
@@ -131,10 +131,10 @@ fn alone<
     // One number needs no wider vectors.
     let done = Level::Avx2.run_in_vectors(
         #[inline(always)]
-        || unknown = E::evaluate::<Fast, 1>(t, x, u, p, &mut first, &mut second, &mut third),
+        || unknown = E::evaluate::<Fast, 1>(&t, x, u, p, &mut first, &mut second, &mut third),
     );
     if unknown || !done {
-        E::evaluate::<Lanes<1, Own>, 1>(t, x, u, p, &mut first, &mut second, &mut third);
+        E::evaluate::<Lanes<1, Own>, 1>(&t, x, u, p, &mut first, &mut second, &mut third);
     }
     (first, second, third)
 }

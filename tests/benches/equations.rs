@@ -5,7 +5,7 @@
 
 use std::hint::black_box;
 
-use appell_codegen::jit::JitModel;
+use appell_codegen::jit::{Elementary, JitModel, Target};
 use appell_models::unicycle::{self, Inputs, Parameters, Rates, State};
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::Model;
@@ -155,9 +155,23 @@ fn equations(criterion: &mut Criterion) {
     group.finish();
 }
 
+/// States and inputs of eight places.
+type Block = (Vec<[f64; LANES]>, Vec<[f64; LANES]>);
+
+fn at<'a>((x, u): &'a Block, p: &'a [[f64; LANES]]) -> AtLanes<'a> {
+    let t = &[0.0; LANES];
+    AtLanes { t, x, u, p }
+}
+
 /// A model evaluated at blocks of eight places; the numbers are those of one place.
 fn lanes(criterion: &mut Criterion) {
-    let model = JitModel::new(shipped::program("unicycle")).unwrap();
+    let own = Target {
+        elementary: Elementary::Own,
+        ..Target::default()
+    };
+    let model = JitModel::new(shipped::program("unicycle"))
+        .expect("rates compile")
+        .with_lanes_for(own);
     let info = model.info();
     let (n, m) = (info.state_len(), info.input_len());
     let mut dice = Random::of("lanes");
@@ -165,25 +179,21 @@ fn lanes(criterion: &mut Criterion) {
         let block = |_| std::array::from_fn(|_| dice.between(-0.3, 0.3));
         (0..len).map(block).collect()
     };
-    let states: Vec<_> = (0..STATES / LANES)
+    let states: Vec<Block> = (0..STATES / LANES)
         .map(|_| (blocks(n), blocks(m)))
         .collect();
-    let p: Vec<_> = info
+    let p: Vec<[f64; LANES]> = info
         .default_parameters()
         .iter()
         .map(|&value| [value; LANES])
         .collect();
-    let at = |(x, u): &'_ (Vec<_>, Vec<_>)| -> AtLanes<'_> {
-        let t = &[0.0; LANES];
-        AtLanes { t, x, u, p: &p }
-    };
     let [mut rates, mut a, mut b] = [n, n * n, n * m].map(|len| vec![[0.0; LANES]; len]);
     let mut group = criterion.benchmark_group("unicycle, eight places");
     group.throughput(criterion::Throughput::Elements(STATES as u64));
     group.bench_function("rates, compiled in the process", |bencher| {
         bencher.iter(|| {
             for block in &states {
-                model.rates_lanes(black_box(at(block)), &mut rates);
+                model.rates_lanes(black_box(at(block, &p)), &mut rates);
                 black_box(&rates);
             }
         });
@@ -193,7 +203,7 @@ fn lanes(criterion: &mut Criterion) {
         |bencher| {
             bencher.iter(|| {
                 for block in &states {
-                    model.jacobians_lanes(black_box(at(block)), &mut rates, &mut a, &mut b);
+                    model.jacobians_lanes(black_box(at(block, &p)), &mut rates, &mut a, &mut b);
                     black_box((&rates, &a, &b));
                 }
             });

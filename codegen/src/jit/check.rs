@@ -71,6 +71,15 @@ pub(super) fn check(schedule: &Schedule, sizes: Sizes) -> Result<Checked<'_>, Ji
     })
 }
 
+/// Lengths of the results of a schedule.
+pub(super) fn lengths(schedule: &Schedule) -> Vec<usize> {
+    schedule
+        .results
+        .iter()
+        .map(|result| result.entries.len())
+        .collect()
+}
+
 struct Checker {
     sizes: Sizes,
     defined: Vec<bool>,

@@ -4,10 +4,9 @@ use appell_runtime::model::At;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
-use super::check::{Sizes, check};
+use super::check::{Sizes, check, lengths};
 use super::elementary::Elementary;
 use super::memory::Code;
-use super::on_demand::lengths;
 use super::translate::{signature, translate};
 use super::{JitError, host};
 use crate::schedule::Schedule;

@@ -5,6 +5,7 @@ use std::sync::OnceLock;
 use appell_runtime::lanes::{AtLanes, LANES, place_by_place};
 use appell_runtime::model::At;
 
+use super::check::lengths;
 use super::native::check_lengths;
 use super::{Elementary, JitError, NativeFunction, Sizes, Target, VectorFunction};
 use crate::program::{Function, FunctionKind, Program};
@@ -224,13 +225,4 @@ fn find(program: &Program, kind: FunctionKind) -> Option<&Function> {
         .functions
         .iter()
         .find(|function| function.kind == kind)
-}
-
-/// Lengths of the results of a schedule.
-pub(super) fn lengths(schedule: &Schedule) -> Vec<usize> {
-    schedule
-        .results
-        .iter()
-        .map(|result| result.entries.len())
-        .collect()
 }

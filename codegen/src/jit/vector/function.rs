@@ -3,9 +3,8 @@
 use appell_runtime::lanes::{self, AtLanes, LANES};
 use appell_runtime::model::At;
 
-use super::super::check::{Checked, check};
+use super::super::check::{Checked, check, lengths};
 use super::super::native::NativeFunction;
-use super::super::on_demand::lengths;
 use super::super::{JitError, Sizes};
 use super::machine::{Machine, Target};
 use crate::schedule::Schedule;

@@ -41,7 +41,7 @@ fn of<B: Blocks, const N: usize>(routine: Routine) -> usize {
     }
 }
 
-macro_rules! unary {
+macro_rules! unary_routines {
     ($($function:ident $name:ident),+) => {
         fn unary<B: Blocks, const N: usize>(function: Function) -> Option<Unary<N>> {
             Some(match function {
@@ -65,12 +65,12 @@ macro_rules! unary {
     };
 }
 
-unary!(
+unary_routines!(
     Sin sin, Cos cos, Asin asin, Acos acos, Atan atan, Sinh sinh, Cosh cosh, Tanh tanh, Exp exp,
     Ln ln
 );
 
-macro_rules! binary {
+macro_rules! binary_routines {
     ($($name:ident),+) => {
         $(
             /// # Safety
@@ -88,7 +88,7 @@ macro_rules! binary {
     };
 }
 
-binary!(atan2, powf);
+binary_routines!(atan2, powf);
 
 /// # Safety
 ///

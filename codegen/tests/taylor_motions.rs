@@ -31,7 +31,7 @@ fn mass(force: &str) -> JitModel {
 }
 
 /// x = cos t by Taylor series.
-fn oscillation<'a>(model: &'a dyn Model, tolerance: f64, t_end: f64) -> Simulation<'a> {
+fn oscillation(model: &dyn Model, tolerance: f64, t_end: f64) -> Simulation<'_> {
     Simulation {
         method: Method::Taylor,
         span: [0.0, t_end],

@@ -82,8 +82,7 @@ impl Expansion {
     /// The coefficient of an argument.
     pub(super) fn of_argument(&mut self, argument: Argument) -> Option<Id> {
         Some(match argument {
-            Argument::State(_) => self.sweep.argument(argument),
-            Argument::Input(_) => self.sweep.argument(argument),
+            Argument::State(_) | Argument::Input(_) => self.sweep.argument(argument),
             Argument::Time => self.order(OrderNumber::Time),
             Argument::Parameter(_) | Argument::Weight(_) | Argument::OutputWeight(_) => {
                 return None;

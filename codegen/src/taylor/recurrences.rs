@@ -7,7 +7,7 @@
 use super::coefficients::{Expansion, derived, plain};
 use super::graph::{Id, Node, Solution};
 use crate::schedule::Operation;
-use crate::symbolic::{Function, Rational, Relation};
+use crate::symbolic::{Function, Relation};
 use appell_runtime::series::Guard;
 
 impl Expansion {
@@ -86,7 +86,7 @@ impl Expansion {
 
     /// A coefficient over a value of order zero.
     fn over(&mut self, coefficient: Id, divisor: Id) -> Id {
-        let inverse = match self.zero.constant(divisor).map(Rational::clone) {
+        let inverse = match self.zero.constant(divisor).cloned() {
             Some(number) if !number.is_zero() => self.zero.intern(Node::Constant(number.recip())),
             _ => self.zero.reciprocal(divisor),
         };
@@ -188,9 +188,6 @@ impl Expansion {
     /// d v' = x y' − y x' with d = x² + y².
     fn atan2(&mut self, v: Id, y: Id, x: Id) -> Option<Id> {
         let (y_k, x_k) = (self.coefficient(y), self.coefficient(x));
-        if y_k.or(x_k).is_none() {
-            return None;
-        }
         let mut right = None;
         if let Some(y_k) = y_k {
             right = Some(self.scaled(x, y_k));

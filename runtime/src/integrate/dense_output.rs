@@ -64,9 +64,10 @@ impl DenseOutput {
     /// Component `i` of the state at `t` and its derivative.
     pub(super) fn component_and_slope(&self, t: f64, i: usize) -> (f64, f64) {
         let factors = self.factors(t);
-        let factor_slopes = match self.is_taylor {
-            true => [1.0, 1.0],
-            false => [1.0 / self.h, -1.0 / self.h],
+        let factor_slopes = if self.is_taylor {
+            [1.0, 1.0]
+        } else {
+            [1.0 / self.h, -1.0 / self.h]
         };
         let highest = self.coefficients.len() / self.n - 1;
         let (mut value, mut slope) = (self.coefficients[highest * self.n + i], 0.0);

@@ -92,9 +92,10 @@ impl Expansion {
         {
             let (sums, [left, right]) = self.products.summed(k);
             let (known, rest) = x.split_at_mut((k + 1) * n);
-            let next = match k < order {
-                true => &mut rest[..n],
-                false => &mut self.beyond[..],
+            let next = if k < order {
+                &mut rest[..n]
+            } else {
+                &mut self.beyond[..]
             };
             let from = Sweep {
                 k: k as f64,

@@ -41,7 +41,7 @@ impl std::str::FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('/');
-        let parts = parts.and_then(|(k, n)| Some([k.trim(), n.trim()].map(|p| p.parse::<u64>())));
+        let parts = parts.map(|(k, n)| [k.trim(), n.trim()].map(str::parse::<u64>));
         match parts {
             Some([Ok(number), Ok(of)]) if (1..=of).contains(&number) => Ok(Self { number, of }),
             _ => Err("write K/N with K from 1 to N, such as 3/16".to_owned()),

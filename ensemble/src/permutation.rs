@@ -2,7 +2,7 @@
 
 use crate::random::{Stream, mixed};
 
-const ROUNDS: u64 = 6;
+const ROUNDS: usize = 6;
 
 /// A permutation of the numbers below its length: a Feistel network on enough bits, applied until the number is
 /// below the length (J. Black and P. Rogaway, *Ciphers with arbitrary finite domains*, 2002).
@@ -11,14 +11,14 @@ pub(crate) struct Permutation {
     length: u64,
     /// Bits of each half.
     half: u32,
-    keys: [u64; ROUNDS as usize],
+    keys: [u64; ROUNDS],
 }
 
 impl Permutation {
     /// Of the numbers below `length`.
     pub(crate) fn new(length: u64, stream: Stream) -> Self {
         let bits = 64 - length.saturating_sub(1).leading_zeros();
-        let mut keys = [0; ROUNDS as usize];
+        let mut keys = [0; ROUNDS];
         for (round, key) in (0..).zip(&mut keys) {
             *key = stream.bits(u64::MAX, 2 + round);
         }

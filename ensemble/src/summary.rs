@@ -105,6 +105,103 @@ struct Seen {
     ranks: Vec<[Option<u64>; 4]>,
 }
 
+/// What one look at the rows tells.
+struct Counts {
+    done: u64,
+    early: BTreeMap<String, u64>,
+    /// Columns of events, in how many cases each is known, and in how many it happened.
+    events: Vec<(usize, u64, u64)>,
+    points: Vec<Vec<f64>>,
+    seen: Vec<Seen>,
+}
+
+impl Counts {
+    fn new(columns: &[Column]) -> Self {
+        let is_event = |column: &usize| columns[*column].role == Role::Event;
+        let all = 0..columns.len();
+        let seen = all
+            .clone()
+            .filter(|column| !is_event(column))
+            .map(|column| Seen {
+                column,
+                moments: Moments::default(),
+                selection: Selection::new(&[]),
+                ranks: Vec::new(),
+            });
+        Self {
+            done: 0,
+            early: BTreeMap::new(),
+            seen: seen.collect(),
+            events: all.filter(is_event).map(|column| (column, 0, 0)).collect(),
+            points: vec![Vec::new(); columns.len()],
+        }
+    }
+
+    fn see(&mut self, rows: &Rows, columns: &[Column]) {
+        self.done += rows.len() as u64;
+        for reason in rows.reasons.iter().filter(|reason| !reason.is_empty()) {
+            *self.early.entry(reason.clone()).or_default() += 1;
+        }
+        for seen in &mut self.seen {
+            for &value in &rows.values[seen.column] {
+                seen.moments.add(value);
+            }
+        }
+        for (column, of, happened) in &mut self.events {
+            for value in rows.values[*column].iter().filter(|v| v.is_finite()) {
+                *of += 1;
+                *happened += u64::from(*value != 0.0);
+            }
+        }
+        let lists = self.points.iter_mut().zip(&rows.values).zip(columns);
+        for ((points, values), column) in lists {
+            if !is_course(column) {
+                let room = POINTS.saturating_sub(points.len());
+                points.extend(values.iter().take(room));
+            }
+        }
+    }
+
+    /// Finds the quantiles of all columns.
+    fn seek<E>(
+        &mut self,
+        columns: &[Column],
+        scan: &mut impl FnMut(&mut dyn FnMut(&Rows)) -> Result<(), E>,
+    ) -> Result<BTreeMap<usize, Vec<Quantile>>, E> {
+        for seen in &mut self.seen {
+            let count = seen.moments.count;
+            seen.ranks = PARTS.map(|part| order::ranks(part, count)).to_vec();
+            if is_course(&columns[seen.column]) {
+                // Bands have no intervals.
+                for ranks in &mut seen.ranks {
+                    ranks[2..].fill(None);
+                }
+            }
+            let ranks: Vec<u64> = seen.ranks.iter().flatten().copied().flatten().collect();
+            seen.selection = Selection::new(&ranks);
+        }
+        for _ in 0..order::PASSES {
+            scan(&mut |rows| {
+                for seen in &mut self.seen {
+                    let values = rows.values[seen.column].iter();
+                    for &value in values.filter(|value| value.is_finite()) {
+                        seen.selection.see(value);
+                    }
+                }
+            })?;
+            for seen in &mut self.seen {
+                seen.selection.advance();
+            }
+        }
+        let found = self.seen.iter().map(|seen| (seen.column, seen.quantiles()));
+        Ok(found.collect())
+    }
+}
+
+fn is_course(column: &Column) -> bool {
+    matches!(column.role, Role::Course { .. })
+}
+
 impl Summary {
     /// The statistics of rows that `scan` shows in the order of cases, as often as it is called.
     pub fn new<E>(
@@ -113,81 +210,12 @@ impl Summary {
         seed: u64,
         mut scan: impl FnMut(&mut dyn FnMut(&Rows)) -> Result<(), E>,
     ) -> Result<Self, E> {
-        let ordered = |column: &&(usize, &Column)| !matches!(column.1.role, Role::Event);
-        let all: Vec<(usize, &Column)> = columns.iter().enumerate().collect();
-        let mut seen: Vec<Seen> = all
-            .iter()
-            .filter(ordered)
-            .map(|(column, _)| Seen {
-                column: *column,
-                moments: Moments::default(),
-                selection: Selection::new(&[]),
-                ranks: Vec::new(),
-            })
-            .collect();
-        let mut done = 0;
-        let mut early: BTreeMap<String, u64> = BTreeMap::new();
-        let is_event = |(_, column): &&(usize, &Column)| column.role == Role::Event;
-        let mut events: Vec<(usize, u64, u64)> = all
-            .iter()
-            .filter(is_event)
-            .map(|(column, _)| (*column, 0, 0))
-            .collect();
-        let shown = |column: &Column| !matches!(column.role, Role::Course { .. });
-        let mut points: Vec<Vec<f64>> = vec![Vec::new(); columns.len()];
-        scan(&mut |rows| {
-            done += rows.len() as u64;
-            for reason in rows.reasons.iter().filter(|reason| !reason.is_empty()) {
-                *early.entry(reason.clone()).or_default() += 1;
-            }
-            for seen in &mut seen {
-                let values = rows.values[seen.column].iter();
-                values.for_each(|&value| seen.moments.add(value));
-            }
-            for (column, of, happened) in &mut events {
-                for value in rows.values[*column].iter().filter(|v| v.is_finite()) {
-                    *of += 1;
-                    *happened += u64::from(*value != 0.0);
-                }
-            }
-            for ((points, values), _) in points
-                .iter_mut()
-                .zip(&rows.values)
-                .zip(columns)
-                .filter(|(_, column)| shown(column))
-            {
-                let room = POINTS.saturating_sub(points.len());
-                points.extend(values.iter().take(room));
-            }
-        })?;
-        for seen in &mut seen {
-            let count = seen.moments.count;
-            seen.ranks = PARTS.map(|part| order::ranks(part, count)).to_vec();
-            let is_course = matches!(columns[seen.column].role, Role::Course { .. });
-            if is_course {
-                // Bands have no intervals.
-                seen.ranks.iter_mut().for_each(|r| r[2..].fill(None));
-            }
-            let ranks: Vec<u64> = seen.ranks.iter().flatten().copied().flatten().collect();
-            seen.selection = Selection::new(&ranks);
-        }
-        for _ in 0..order::PASSES {
-            scan(&mut |rows| {
-                for seen in &mut seen {
-                    let values = rows.values[seen.column].iter();
-                    let finite = values.filter(|value| value.is_finite());
-                    finite.for_each(|&value| seen.selection.see(value));
-                }
-            })?;
-            seen.iter_mut().for_each(|seen| seen.selection.advance());
-        }
-        let quantiles: BTreeMap<usize, Vec<Quantile>> = seen
-            .iter()
-            .map(|seen| (seen.column, seen.quantiles()))
-            .collect();
+        let mut counts = Counts::new(columns);
+        scan(&mut |rows| counts.see(rows, columns))?;
+        let quantiles = counts.seek(columns, &mut scan)?;
+        let seen = counts.seen.iter();
         let mut numbers: Vec<Number> = seen
-            .iter()
-            .filter(|seen| !matches!(columns[seen.column].role, Role::Course { .. }))
+            .filter(|seen| !is_course(&columns[seen.column]))
             .map(|seen| Number {
                 column: seen.column,
                 moments: seen.moments,
@@ -206,14 +234,14 @@ impl Summary {
             }
             effects.see(rows);
         })?;
-        let mut early: Vec<(String, u64)> = early.into_iter().collect();
-        early.sort_by(|a, b| b.1.cmp(&a.1));
+        let mut early: Vec<(String, u64)> = counts.early.into_iter().collect();
+        early.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+        let events = counts.events.into_iter();
         Ok(Self {
             cases: design.cases(),
-            done,
+            done: counts.done,
             early,
             events: events
-                .into_iter()
                 .map(|(column, of, happened)| Event {
                     column,
                     of,
@@ -222,10 +250,10 @@ impl Summary {
                     exact: proportion::exact(happened, of),
                 })
                 .collect(),
-            courses: courses(columns, &seen, &quantiles),
+            courses: courses(columns, &counts.seen, &quantiles),
             numbers,
             effects: effects.finish(columns, seed),
-            points,
+            points: counts.points,
             sampling: design.sampling(),
             rare: None,
         })

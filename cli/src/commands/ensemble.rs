@@ -19,7 +19,6 @@ use crate::{output, progress};
 #[command(name = "ensemble")]
 #[command(after_long_help = "\
 Examples:
-  appell sample study study
   appell ensemble study/rider.toml -o study/results
   appell ensemble study/rider.toml -o study/results --json -")]
 pub(crate) struct EnsembleCommand {

@@ -14,6 +14,7 @@ from importlib.metadata import version as _version
 from pathlib import Path as _Path
 
 from . import _appell
+from ._cluster import spread
 from ._ensemble import Ensemble, ensemble
 from ._errors import ComputationError, DataError, Diagnostic, EndsEarly, Error, RequestError, SpecError, Unstable
 from ._model import Derivation, Model, Quantity
@@ -30,7 +31,7 @@ __all__ = [
     "Ensemble", "Error",
     "Identification", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
     "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "diagnose", "ensemble", "identify", "labelled", "load", "sample_rig",
-    "shipped",
+    "shipped", "spread",
 ]  # fmt: skip
 
 

@@ -11,7 +11,12 @@ from typing import Any
 import numpy as np
 
 from . import _appell
+from ._cluster import spread
 from ._notebook import Page, framed
+
+
+# Chunks of one call on a cluster, and calls that there should at least be.
+GROUP, FEWEST_CALLS = 16, 64
 
 
 class Ensemble:
@@ -55,9 +60,41 @@ class Ensemble:
     ) -> Ensemble:
         """Runs chunks by their names, or those that are missing, on `jobs` threads."""
         self._native.run(None if chunks is None else list(chunks), jobs, shard, chunk, progress)
+        self._forget()
+        return self
+
+    def spread(
+        self,
+        address: str | None = None,
+        *,
+        shard: str | None = None,
+        chunk: int | None = None,
+        progress: Callable[[str], Any] | None = None,
+    ) -> Ensemble:
+        """Runs the chunks that are missing on a Ray cluster, see `appell.spread`.
+
+        Rows do not pass through this process: every worker writes the chunks that it finishes to `out`, a folder that
+        all machines see under this path, as they see the study. A chunk whose worker or machine is lost is run again.
+        """
+        study, out, folder = self._made
+        if out is None:
+            raise ValueError("a cluster needs a folder for the rows, `out`, that all machines see")
+        missing = self.missing(shard=shard, chunk=chunk)
+        # A call is as many chunks as last some seconds, and there are several for each processor.
+        group = max(1, min(GROUP, len(missing) // FEWEST_CALLS))
+        groups = [missing[first : first + group] for first in range(0, len(missing), group)]
+        done = 0
+        made = (study if "\n" in study else _absolute(study), _absolute(out), folder and _absolute(folder))
+        for number, _ in spread(_run, [(made, names, chunk) for names in groups], address):
+            done += len(groups[number])
+            if progress is not None:
+                progress(f"chunk {done} of {len(missing)}")
+        self._forget()
+        return self
+
+    def _forget(self) -> None:
         for kept in ("_rows", "_all"):
             self.__dict__.pop(kept, None)
-        return self
 
     @cached_property
     def _rows(self) -> tuple[np.ndarray, list[np.ndarray], np.ndarray, list[str]]:
@@ -125,6 +162,27 @@ class Ensemble:
         return self._all[1]
 
 
+# The ensembles that a worker has compiled, the last one alone.
+_compiled: dict[tuple[Any, ...], Ensemble] = {}
+
+
+def _run(made: tuple[str, str | None, str | None], names: Sequence[str], chunk: int | None) -> int:
+    """Runs chunks in a worker, but for those that a lost worker finished; returns how many."""
+    if made not in _compiled:
+        _compiled.clear()
+        _compiled[made] = _restored(*made)
+    study = _compiled[made]
+    left = set(names).intersection(study.missing(chunk=chunk))
+    for name in names:
+        if name in left:
+            study.run([name], jobs=1)
+    return len(left)
+
+
+def _absolute(path: str) -> str:
+    return str(Path(path).absolute())
+
+
 def _restored(study: str, out: str | None, folder: str | None) -> Ensemble:
     return Ensemble(study, out, folder=folder)
 
@@ -139,11 +197,13 @@ def ensemble(
     shard: str | None = None,
     chunk: int | None = None,
     progress: Callable[[str], Any] | None = None,
+    ray: str | bool | None = None,
 ) -> Ensemble:
     """Runs a study: the path of a study file, or its text, whose files lie in `folder`.
 
     Rows go to the folder `out` in chunks, or stay in memory. What is there already is not run again; `chunks` names
-    those to run, as `Ensemble.missing` lists them.
+    those to run, as `Ensemble.missing` lists them. `ray` is the address of a Ray cluster that runs them, or `True` for
+    the one that this machine belongs to or for this machine alone; see `Ensemble.spread`.
 
     >>> import appell
     >>> swings = appell.ensemble('''
@@ -160,4 +220,9 @@ def ensemble(
     >>> swings["reached"].shape
     (50,)
     """
-    return Ensemble(study, out, folder=folder).run(chunks, jobs=jobs, shard=shard, chunk=chunk, progress=progress)
+    made = Ensemble(study, out, folder=folder)
+    if ray is None or ray is False:
+        return made.run(chunks, jobs=jobs, shard=shard, chunk=chunk, progress=progress)
+    if chunks is not None or jobs is not None:
+        raise ValueError("a cluster runs all chunks that are missing, on all of its processors: leave out chunks and jobs")
+    return made.spread(None if ray is True else ray, shard=shard, chunk=chunk, progress=progress)

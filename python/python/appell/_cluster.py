@@ -24,7 +24,7 @@ def spread(
     worker or its machine is lost, so the function must be one that may run twice; its exceptions are raised here.
 
     Function, arguments and results travel by pickle: recordings and results by their paths, large ones to a folder that
-    all machines see.
+    all machines see:
 
     ```python
     def diagnosed(folder):

@@ -11,8 +11,8 @@
 //! the same bits. Functions with linear systems that are solved with pivoting go place by place there.
 //! Other models go place by place with the functions of the standard library, bit for bit: the *plain mode*.
 //!
-//! The files: [`dispatch`] finds the processor's vectors, [`lane`] takes numbers from lanes and puts
-//! them there, [`fast`] is the scalar of a lane, [`evaluate`] runs equations over blocks and places,
+//! The files: [`dispatch`] finds the processor's vectors, [`lane`] is what a lane holds, [`fast`] the scalar of
+//! one, [`written_out`] makes equations from emitted functions, [`evaluate`] runs equations over blocks and places,
 //! [`functions`] single functions over blocks, and [`plain`] goes place by place.
 
 // What is not inlined is not compiled for the vectors of the processor.
@@ -29,6 +29,7 @@ pub mod functions;
 mod lane;
 #[cfg(feature = "std")]
 mod plain;
+mod written_out;
 
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use dispatch::{Level, dispatch};

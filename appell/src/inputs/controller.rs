@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
-use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::jit::JitSeries;
 use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
@@ -19,8 +18,8 @@ use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
-use crate::inputs::feedback::{Feedback, Gains, Sampled, SchedulingVariable};
-use crate::inputs::law;
+use crate::inputs::feedback::{Feedback, Gains, Sampled};
+use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
 use crate::inputs::tabulated::Table;
 use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, bracketed};
@@ -60,36 +59,8 @@ struct SampledLaw {
     pending_gains: Vec<Vec<f64>>,
 }
 
-/// Meaning of a value of the function.
-pub(super) enum Slot {
-    /// A term of an input.
-    Input(usize),
-    /// The desired value of a state.
-    Desired(Term),
-    /// Desired deviation from the steady motions of a scheduled law: index of the law, index of the state.
-    Beside(usize, usize),
-}
-
 /// Inputs that a program computes, and which these are.
 type DrivenInputs = (Vec<usize>, Arc<dyn InputSource + Send + Sync>);
-
-/// A gain-scheduled law.
-pub(super) struct ScheduledLaw {
-    pub(super) over: SchedulingVariable,
-    pub(super) schedule: GainSchedule,
-    pub(super) inputs: Vec<usize>,
-    pub(super) states: Vec<usize>,
-}
-
-/// Proportional feedback of the deviation of one state to one input.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Term {
-    pub(super) input: usize,
-    pub(super) state: usize,
-    pub(super) gain: f64,
-    /// The sampled law to which it belongs.
-    pub(super) law: Option<usize>,
-}
 
 /// Collects the sources of the inputs.
 pub struct Plan {

@@ -1,12 +1,40 @@
 //! Expressions and feedback laws as operations in front of the equations of motion.
 
+use appell_analysis::control::schedule::GainSchedule;
 use appell_codegen::schedule::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use appell_codegen::symbolic::{Rational, Relation};
 use appell_runtime::model::ModelInfo;
 
-use super::controller::{ScheduledLaw, Slot};
 use super::feedback::SchedulingVariable;
 use crate::formula::StateFunction;
+
+/// Meaning of a value of the function.
+pub(super) enum Slot {
+    /// A term of an input.
+    Input(usize),
+    /// The desired value of a state.
+    Desired(Term),
+    /// Desired deviation from the steady motions of a scheduled law: index of the law, index of the state.
+    Beside(usize, usize),
+}
+
+/// Proportional feedback of the deviation of one state to one input.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Term {
+    pub(super) input: usize,
+    pub(super) state: usize,
+    pub(super) gain: f64,
+    /// The sampled law to which it belongs.
+    pub(super) law: Option<usize>,
+}
+
+/// A gain-scheduled law.
+pub(super) struct ScheduledLaw {
+    pub(super) over: SchedulingVariable,
+    pub(super) schedule: GainSchedule,
+    pub(super) inputs: Vec<usize>,
+    pub(super) states: Vec<usize>,
+}
 
 /// The inputs of a model, in its order: what drives it from outside, plus expressions, less feedback.
 pub(super) fn schedule(

@@ -144,10 +144,10 @@ mod tests {
     #[test]
     fn choices_come_in_proportion_to_their_weights() {
         let choice = Distribution::Choice(vec![1.0, 0.0, 3.0]);
-        let found = |u| choice.quantile(u);
-        assert_eq!(
-            [found(0.1), found(0.249), found(0.251), found(0.999)],
-            [0.0, 0.0, 2.0, 2.0]
-        );
+        let found: Vec<f64> = [0.1, 0.249, 0.251, 0.999]
+            .into_iter()
+            .map(|u| choice.quantile(u))
+            .collect();
+        assert_eq!(found, [0.0, 0.0, 2.0, 2.0]);
     }
 }

@@ -138,7 +138,9 @@ pub fn scan(
         if known > 0 {
             // The same cases in another chunk: the same rows.
             let lists = rows.values.iter_mut().chain([&mut rows.ends]);
-            lists.for_each(|list| drop(list.drain(..known.min(list.len()))));
+            for list in lists {
+                list.drain(..known.min(list.len()));
+            }
             rows.reasons.drain(..known.min(rows.reasons.len()));
             rows.first += known as u64;
         }

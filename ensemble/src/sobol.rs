@@ -92,7 +92,7 @@ mod tests {
     /// The points of the sequence in order of their index, which are those of other programs in another order.
     #[test]
     fn the_first_points_are_the_published_ones() {
-        let point = |index| [0, 1, 2, 3].map(|dimension| plain(dimension, index));
+        let point = |index| (0..4).map(|d| plain(d, index)).collect::<Vec<f64>>();
         assert_eq!(point(0), [0.0; 4]);
         assert_eq!(point(1), [0.5; 4]);
         assert_eq!(point(2), [0.25, 0.75, 0.75, 0.75]);

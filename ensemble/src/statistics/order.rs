@@ -194,12 +194,14 @@ mod tests {
         let ranks: Vec<u64> = (0..numbers.len() as u64).collect();
         let mut selection = Selection::new(&ranks);
         for _ in 0..PASSES {
-            numbers.iter().for_each(|&number| selection.see(number));
+            for &number in &numbers {
+                selection.see(number);
+            }
             selection.advance();
         }
         numbers.sort_by(f64::total_cmp);
         let found = selection.numbers();
-        assert!(numbers.iter().zip(&found).all(|(a, b)| a == b), "{found:?}");
+        assert_eq!(numbers, found);
     }
 
     /// The ranks of the tables: of 100 numbers the 40th and the 61st hold the median.

@@ -145,6 +145,14 @@ impl Build {
         self
     }
 
+    /// Emits code for blocks of eight places, which `Model::rates_lanes` and its like run; without it they go place by
+    /// place. It takes seconds to compile.
+    #[must_use]
+    pub fn lanes(mut self) -> Self {
+        self.options.lanes = true;
+        self
+    }
+
     /// Writes the equations as C99 too: `NAME.h` and `NAME.c`, where `NAME` is that of the mechanism in C.
     #[must_use]
     pub fn c(mut self, options: c::Options) -> Self {

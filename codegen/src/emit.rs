@@ -38,6 +38,8 @@ pub struct Options {
     pub model_impl: bool,
     /// What the schedules are made for.
     pub tuning: Tuning,
+    /// Whether the model has code of its own for blocks of eight places.
+    pub lanes: bool,
     /// Text of the spec, kept in the constant `SPEC`.
     pub spec: Option<String>,
 }
@@ -49,6 +51,7 @@ impl Default for Options {
             runtime: "::appell_runtime".to_owned(),
             model_impl: true,
             tuning: Tuning::default(),
+            lanes: false,
             spec: None,
         }
     }
@@ -101,7 +104,11 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
         solves |= cost.solves > 0;
         results.extend(types.results_struct(function));
         items.push(syn::Item::Fn(function::function(
-            &types, function, &schedule, &cost,
+            &types,
+            function,
+            &schedule,
+            &cost,
+            options.lanes,
         )?));
         costs.push((function.kind, cost));
     }
@@ -119,8 +126,15 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut file: syn::File = parse(head)?;
     file.items.extend(items);
     if options.model_impl {
-        file.items
-            .extend(parse(model::implementation(&types, &runtime, &costs)?)?.items);
+        file.items.extend(
+            parse(model::implementation(
+                &types,
+                &runtime,
+                &costs,
+                options.lanes,
+            )?)?
+            .items,
+        );
         file.items.extend(parse(model::info(&program.info))?.items);
     }
     let conversions = types.conversions(&functions, options.model_impl, &runtime);

@@ -63,6 +63,7 @@ pub(super) fn function(
     function: &Function,
     schedule: &Schedule,
     cost: &OperationCount,
+    lanes: bool,
 ) -> Result<ItemFn, Error> {
     for array in &function.results {
         let expected = types.len(array.layout);
@@ -132,7 +133,7 @@ pub(super) fn function(
         [Space::Parameters, Space::State, Space::Inputs]
             .map(|space| types.vector(space, &quote!(T)));
     // What is not inlined into a loop over lanes has no lanes.
-    let inline = if in_lanes(function.kind) {
+    let inline = if lanes && in_lanes(function.kind) {
         quote!(#[inline(always)])
     } else {
         quote!(#[inline])

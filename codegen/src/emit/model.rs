@@ -251,6 +251,7 @@ pub(super) fn implementation(
     types: &Types<'_>,
     runtime: &syn::Path,
     costs: &[(FunctionKind, OperationCount)],
+    lanes: bool,
 ) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
     let title = escaped(&types.program.info.title);
@@ -278,10 +279,13 @@ pub(super) fn implementation(
         provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
         gradient_method(types, FunctionKind::OutputAdjoint)?,
     ];
-    let (equations, in_lanes) = (
-        lanes::equations(types, runtime),
-        lanes::methods(types, costs),
-    );
+    let (equations, in_lanes) = if lanes {
+        let used = quote!(use #runtime::lanes::{AtLanes, Equations, LANES};);
+        let equations = lanes::equations(types, runtime);
+        (quote!(#used #equations), lanes::methods(types, costs))
+    } else {
+        (TokenStream::new(), TokenStream::new())
+    };
     let named = named(types, &name);
     let blank = blank_tokens();
     Ok(quote! {
@@ -292,7 +296,6 @@ pub(super) fn implementation(
 
         #blank
         const _: () = {
-            use #runtime::lanes::{AtLanes, Equations, LANES};
             #helpers
             #equations
 

@@ -115,7 +115,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 14] = [
+const NAME_NO_MECHANISM: [&str; 15] = [
     "model_spec",
     "codegen",
     "runtime",

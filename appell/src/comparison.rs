@@ -40,7 +40,7 @@ impl Source {
     /// use appell::comparison::Agreement;
     ///
     /// let pendulum = Source::shipped("pendulum")?;
-    /// let typed = "dot(omega) = -m*g*l*sin(theta)/(I + m*l^2)".parse().unwrap();
+    /// let typed = "dot(omega) = (tau - m*g*l*sin(theta))/(I + m*l^2)".parse().unwrap();
     /// let compared = pendulum.compare(&[typed])?;
     /// assert_eq!(compared.equations[0].1, Agreement::Identical);
     /// # Ok::<(), appell::Error>(())

@@ -108,9 +108,6 @@ impl Source {
 
     /// The module that a build script includes.
     pub fn rust(&self) -> Result<String, Error> {
-        if let Some(shipped) = self.shipped {
-            return Ok(shipped.code.to_owned());
-        }
         let program = appell_codegen::compile(&self.file, &self.text, &FunctionKind::STANDARD)?;
         let options = Options {
             spec: Some(self.text.clone()),

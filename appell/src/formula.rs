@@ -304,7 +304,7 @@ mod tests {
             ("sign(t/2 - 4)", vec![8.0]),
             ("if(t*t < 4, 1, 0)", vec![]),
             ("if(x < 1, 1, 0)", vec![]),
-            ("if(t < 3*m_cart/(5[kg/s]), 1, 0)", vec![1.2]),
+            ("if(t < m_cart/(5[kg/s]), 1, 0)", vec![0.4]),
         ] {
             let snippet = Snippet::alone(text);
             let unit = Unit::si(Dimension::NONE);

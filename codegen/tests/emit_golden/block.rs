@@ -981,7 +981,6 @@ pub fn output_adjoint<T: Real>(
 pub struct Block;
 
 const _: () = {
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -1004,6 +1003,7 @@ const _: () = {
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
     }
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
 
     ::appell_runtime::in_lanes! {
         RatesInLanes = rates(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v, s },

@@ -1238,7 +1238,6 @@ pub fn energies<T: Real>(
 pub struct Unicycle;
 
 const _: () = {
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -1261,6 +1260,7 @@ const _: () = {
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
     }
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
 
     ::appell_runtime::in_lanes! {
         RatesInLanes = rates(Parameters[4] { m, m0, R, g }, State[10] { omega_1, omega_2,

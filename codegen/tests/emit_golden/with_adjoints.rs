@@ -820,7 +820,6 @@ pub fn output_adjoint<T: Real>(
 pub struct Pendulum;
 
 const _: () = {
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -843,6 +842,7 @@ const _: () = {
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
     }
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
 
     ::appell_runtime::in_lanes! {
         RatesInLanes = rates(Parameters[4] { m, l, I, g }, State[2] { omega, theta },

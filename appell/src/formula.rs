@@ -185,12 +185,11 @@ impl StateFunction {
         }
         let mut few = [0.0; FEW_INPUTS];
         let mut many = Vec::new();
-        let u = match few.get_mut(..self.inputs()) {
-            Some(few) => few,
-            None => {
-                many.resize(self.inputs(), 0.0);
-                &mut many[..]
-            }
+        let u = if let Some(few) = few.get_mut(..self.inputs()) {
+            few
+        } else {
+            many.resize(self.inputs(), 0.0);
+            &mut many[..]
         };
         for (u, (signal, order)) in u[self.declared..].iter_mut().zip(self.tabulated()) {
             *u = signal.derivative(t, order);

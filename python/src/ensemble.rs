@@ -19,6 +19,8 @@ pub(crate) struct Study {
     store: Arc<dyn Store>,
 }
 
+/// A column: name, about, unit, scale; of a course its name and the time.
+type Told = (String, String, String, f64, Option<(String, f64)>);
 type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 
 fn running(jobs: Option<usize>, shard: Option<&str>, chunk: Option<u64>) -> PyResult<Running> {
@@ -153,7 +155,7 @@ impl Study {
     }
 
     /// Name, meaning, unit and scale of the columns; of courses also their name and time.
-    fn columns(&self) -> Vec<(String, String, String, f64, Option<(String, f64)>)> {
+    fn columns(&self) -> Vec<Told> {
         let columns = self.ensemble.columns().iter();
         columns
             .map(|column| {

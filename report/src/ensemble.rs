@@ -10,19 +10,22 @@ pub use figures::{Named, figures};
 pub use page::page;
 pub use parts::{Part, parts, sentences};
 
+use std::fmt::Write as _;
+
 use crate::text::table;
 
 /// The statistics as text.
 pub fn text(about: &About<'_>) -> String {
     let mut text = format!("{}\n", about.title);
+    // Writing to a string cannot fail.
     for sentence in sentences(about) {
-        text += &format!("  {sentence}\n");
+        let _ = writeln!(text, "  {sentence}");
     }
     for part in parts(about) {
-        text += &format!("\n{}\n", part.heading);
+        let _ = writeln!(text, "\n{}", part.heading);
         text += &table(&part.rows, 1..part.rows.first().map_or(1, Vec::len));
         for note in &part.notes {
-            text += &format!("  {note}\n");
+            let _ = writeln!(text, "  {note}");
         }
     }
     text

@@ -71,7 +71,7 @@ fn see(seen: &mut Seen) -> impl FnMut(&Step<'_>) -> ControlFlow<()> {
         let mut middle = step.x.to_vec();
         step.interior
             .unwrap()
-            .state((step.t_old + step.t) / 2.0, &mut middle);
+            .state(f64::midpoint(step.t_old, step.t), &mut middle);
         for (t, x) in [(step.t_old, &middle[..]), (step.t, step.x)] {
             seen.push([&[t], x].concat().into_iter().map(f64::to_bits).collect());
         }

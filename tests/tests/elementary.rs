@@ -2,6 +2,7 @@
 
 use appell_runtime::elementary as own;
 use appell_tests::reference;
+use std::collections::BTreeMap;
 
 /// Most units in the last place that a value may be off.
 const ULPS: f64 = 1.0;
@@ -33,7 +34,7 @@ fn ulp(x: f64) -> f64 {
 #[test]
 fn elementary_functions_are_within_one_unit_in_the_last_place() {
     let table = reference::text("elementary.csv");
-    let mut worst: std::collections::BTreeMap<&str, (f64, &str)> = Default::default();
+    let mut worst: BTreeMap<&str, (f64, &str)> = BTreeMap::default();
     for row in table.lines().skip(1) {
         let cells: Vec<&str> = row.split(',').collect();
         let number = |cell: &str| cell.parse::<f64>().unwrap_or(f64::NAN);

@@ -125,13 +125,16 @@ impl Table {
     }
 }
 
+/// The values of all cases, the columns of the factors, and the values of those that are chosen.
+type Drawn = (Design, Vec<Column>, Vec<Vec<f64>>);
+
 /// The values of all cases, with the columns of the factors.
 pub(super) fn design(
     reading: &mut Reading<'_>,
     setup: &Setup<'_>,
     targets: &[Target],
     table: &Table,
-) -> Result<Option<(Design, Vec<Column>, Vec<Vec<f64>>)>, Error> {
+) -> Result<Option<Drawn>, Error> {
     let study = reading.study;
     let (mut factors, mut columns, mut choices) = (Vec::new(), Vec::new(), Vec::new());
     for (vary, &target) in study.vary.iter().zip(targets) {

@@ -424,7 +424,7 @@ impl InputSource for Controller<'_> {
             wiring.function.values(t, x, &self.parameters, &mut values);
             let count = declared.len();
             self.add_held(t, x, &values, count, |input, held| {
-                declared[input][0] += held
+                declared[input][0] += held;
             });
         }
         true

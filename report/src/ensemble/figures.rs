@@ -129,12 +129,12 @@ fn histogram(column: &Column, number: &Number) -> String {
 fn levers(about: &About<'_>, effects: &Effects) -> Vec<usize> {
     let is_number = |factor: &usize| matches!(&about.columns[*factor].role, Role::Factor(items) if items.is_empty());
     let mut order: Vec<usize> = (0..effects.ends.len()).filter(is_number).collect();
-    let size = |factor: &usize| match &effects.indices {
-        Some(indices) => indices.get(*factor).map_or(0.0, |i| i.total.value),
-        None => {
-            let [low, high] = effects.ends[*factor];
-            (high - low).abs()
+    let size = |factor: &usize| {
+        if let Some(indices) = &effects.indices {
+            return indices.get(*factor).map_or(0.0, |i| i.total.value);
         }
+        let [low, high] = effects.ends[*factor];
+        (high - low).abs()
     };
     order.retain(|factor| size(factor).is_finite());
     order.sort_by(|a, b| size(b).total_cmp(&size(a)));
@@ -177,12 +177,13 @@ fn tornado(about: &About<'_>, effects: &Effects, levers: &[usize]) -> String {
 fn cases(about: &About<'_>, column: usize, axes: [usize; 2]) -> String {
     let of = &about.columns[column];
     let points = &about.summary.points;
-    let (classes, class): (Vec<String>, Box<dyn Fn(f64) -> usize>) = match of.role {
-        Role::Event => (
-            vec!["not".to_owned(), of.name.clone()],
-            Box::new(|value: f64| usize::from(value != 0.0)),
-        ),
-        _ => {
+    let (classes, class): (Vec<String>, Box<dyn Fn(f64) -> usize>) =
+        if matches!(of.role, Role::Event) {
+            (
+                vec!["not".to_owned(), of.name.clone()],
+                Box::new(|value: f64| usize::from(value != 0.0)),
+            )
+        } else {
             let number = about.summary.number(column);
             let quantiles = number.map_or(&[][..], |number| &number.quantiles);
             let inner = quantiles.get(1..4).unwrap_or_default();
@@ -198,8 +199,7 @@ fn cases(about: &About<'_>, column: usize, axes: [usize; 2]) -> String {
             }
             let class = move |value: f64| limits.iter().filter(|limit| value > **limit).count();
             (names, Box::new(class))
-        }
-    };
+        };
     let place = |axis: usize, case: usize| {
         let column = axes[axis];
         points[column]

@@ -27,11 +27,11 @@ chunk = 20
 t_end_s = 20
 rtol = 1e-11
 [vary]
-theta_1 = { uniform = ["-2rad", "2rad"] }
-theta_2 = { uniform = ["-2rad", "2rad"] }
+theta1 = { uniform = ["-2rad", "2rad"] }
+theta2 = { uniform = ["-2rad", "2rad"] }
 [keep]
-reached = { end = "theta_2" }
-turned = { when = "abs(theta_2) > 3" }
+reached = { end = "theta2" }
+turned = { when = "abs(theta2) > 3" }
 """
 
 

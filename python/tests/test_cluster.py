@@ -38,8 +38,9 @@ turned = { when = "abs(theta2) > 3" }
 @pytest.fixture(scope="module")
 def cluster():
     """Three machines, each with a processor."""
-    cluster = Cluster(initialize_head=True, head_node_args={"num_cpus": 1, "include_dashboard": False})
-    machines = [cluster.add_node(num_cpus=1) for _ in range(2)]
+    machine = {"num_cpus": 1, "object_store_memory": 100 * 2**20}
+    cluster = Cluster(initialize_head=True, head_node_args={**machine, "include_dashboard": False})
+    machines = [cluster.add_node(**machine) for _ in range(2)]
     ray.init(address=cluster.address, log_to_driver=False)
     yield cluster, machines
     ray.shutdown()

@@ -170,6 +170,18 @@ impl StateFunction {
         }
     }
 
+    /// Whether there are inputs after the declared ones.
+    pub(crate) fn has_signals(&self) -> bool {
+        self.inputs() > self.declared
+    }
+
+    /// The inputs after the declared ones at `t` in s.
+    pub(crate) fn fill_signals(&self, t: f64, u: &mut [f64]) {
+        for (u, (signal, order)) in u.iter_mut().zip(self.tabulated()) {
+            *u = signal.derivative(t, order);
+        }
+    }
+
     /// The signals and orders of their derivatives that are inputs.
     fn tabulated(&self) -> impl Iterator<Item = (&Signal, u8)> {
         let derivatives = self.derivatives.iter();
@@ -191,9 +203,7 @@ impl StateFunction {
             many.resize(self.inputs(), 0.0);
             &mut many[..]
         };
-        for (u, (signal, order)) in u[self.declared..].iter_mut().zip(self.tabulated()) {
-            *u = signal.derivative(t, order);
-        }
+        self.fill_signals(t, &mut u[self.declared..]);
         let u = &*u;
         match &self.native {
             Some(native) => native.call(At { t, x, u, p }, [values]),

@@ -2,6 +2,7 @@
 
 pub use appell_runtime::inputs::InputSource;
 
+pub(crate) mod closed_loop;
 pub mod controller;
 pub mod feedback;
 mod law;

@@ -126,8 +126,8 @@ impl Model {
         compute(engine::Equations::for_estimation(&self.source)?.model())
     }
 
-    /// The operations of the rates, which Taylor series expand.
-    fn rates(&self) -> Result<&Operations, Error> {
+    /// The operations of the rates, which Taylor series and closed loops are made from.
+    pub(crate) fn rates(&self) -> Result<&Operations, Error> {
         if let Some(rates) = self.rates.get() {
             return Ok(rates);
         }

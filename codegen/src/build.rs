@@ -153,6 +153,13 @@ impl Build {
         self
     }
 
+    /// Emits the recurrences of Taylor coefficients, which `Method::Taylor` integrates by.
+    #[must_use]
+    pub fn series(mut self) -> Self {
+        self.options.series = true;
+        self
+    }
+
     /// Writes the equations as C99 too: `NAME.h` and `NAME.c`, where `NAME` is that of the mechanism in C.
     #[must_use]
     pub fn c(mut self, options: c::Options) -> Self {

@@ -1,10 +1,10 @@
 //! Readable Rust from a program. Nothing else in this crate knows how Rust is written.
 //!
-//! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`body`] turns a
-//! schedule into statements, [`model`] implements the run-time trait, [`lanes`] its part for
-//! blocks of places, [`equations`] writes what a
-//! function computes as a person does, [`picture`] draws small matrices, [`layout`] places comments and blank lines, [`markdown`] writes the page about the
-//! model, and [`syntax`] holds short constructors.
+//! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`statements`] turns the
+//! steps of a schedule into statements, [`body`] adds arguments and results, [`model`] implements the run-time trait,
+//! [`lanes`] its part for blocks of places, [`series`] its Taylor series, [`equations`] writes what a function computes as
+//! a person does, [`picture`] draws small matrices, [`layout`] places comments and blank lines, [`markdown`] writes the
+//! page about the model, and [`syntax`] holds short constructors.
 
 mod body;
 mod equations;
@@ -15,6 +15,8 @@ mod layout;
 mod markdown;
 mod model;
 mod picture;
+mod series;
+mod statements;
 mod syntax;
 mod types;
 
@@ -40,6 +42,8 @@ pub struct Options {
     pub tuning: Tuning,
     /// Whether the model has code of its own for blocks of eight places.
     pub lanes: bool,
+    /// Whether the model has the recurrences of its Taylor coefficients.
+    pub series: bool,
     /// Text of the spec, kept in the constant `SPEC`.
     pub spec: Option<String>,
 }
@@ -52,6 +56,7 @@ impl Default for Options {
             model_impl: true,
             tuning: Tuning::default(),
             lanes: false,
+            series: false,
             spec: None,
         }
     }
@@ -113,6 +118,11 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
         costs.push((function.kind, cost));
     }
 
+    let series = (options.model_impl && options.series)
+        .then(|| series::emitted(program, &runtime, options.tuning))
+        .flatten();
+    solves |= series.as_ref().is_some_and(|series| series.solves);
+
     let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
     let model = options.model_impl.then(|| quote!(use #runtime::model;));
     let structs = types.structs(&functions, options.model_impl);
@@ -132,6 +142,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
                 &runtime,
                 &costs,
                 options.lanes,
+                series,
             )?)?
             .items,
         );

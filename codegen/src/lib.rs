@@ -13,6 +13,7 @@ pub mod interpreted;
 pub mod jit;
 pub mod linearisation;
 pub mod mechanics;
+pub mod operations;
 pub mod program;
 pub mod python;
 pub mod schedule;

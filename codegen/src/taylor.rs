@@ -5,26 +5,24 @@
 //! programs, both of them [`Schedule`]s: one for order zero, and the *sweep*, the same for every order,
 //! whose factors are values of order zero. Before each sweep the sums of all products are taken at once.
 //!
-//! `flatten` reads a schedule into a `graph`, `recurrences` has the rule of each operation, `coefficients`
-//! collects what they need, `bind` writes the two programs.
+//! `recurrences` has the rule of each operation, `coefficients` collects what they need; both work on the graphs of
+//! [`operations`](crate::operations).
 
-mod bind;
 mod coefficients;
-mod flatten;
-mod graph;
 mod interpreted;
 mod recurrences;
 
 pub use interpreted::InterpretedSeries;
 
-use appell_runtime::model::ModelInfo;
+use appell_runtime::model::{List, ModelInfo};
 use appell_runtime::series::{OrderNumber, Shape};
 
-use crate::schedule::{Argument, Schedule};
-use bind::{bind, live};
+use crate::operations::bind::{bind, live};
+use crate::operations::closed_loop::{in_loop, under};
+use crate::operations::flatten::flatten;
+use crate::operations::graph::{Graph, Id};
+use crate::schedule::Schedule;
 use coefficients::Expansion;
-use flatten::flatten;
-use graph::{Graph, Id};
 
 /// The two programs of an expansion.
 #[derive(Debug, Clone)]
@@ -72,12 +70,8 @@ pub fn expand(rates: &Schedule, lengths: Lengths) -> SeriesProgram {
 /// the law's arguments, which the rates share but for the inputs.
 pub fn expand_under(law: &Schedule, rates: &Schedule, lengths: Lengths) -> SeriesProgram {
     let mut graph = Graph::default();
-    let inputs = flatten(law, &mut graph, Graph::argument).swap_remove(0);
-    let given = |graph: &mut Graph, argument| match argument {
-        Argument::Input(input) => inputs[input as usize],
-        other => graph.argument(other),
-    };
-    let rates = flatten(rates, &mut graph, given).swap_remove(0);
+    let inputs = under(law, &mut graph, &[]);
+    let rates = in_loop(rates, &mut graph, &inputs);
     series(graph, &rates, lengths)
 }
 
@@ -99,7 +93,7 @@ fn series(zero: Graph, rates: &[Id], lengths: Lengths) -> SeriesProgram {
             None => expansion.sweep.number(0),
         });
     }
-    let (guarded, guards): (Vec<Id>, _) = expansion.guards.clone().into_iter().unzip();
+    let (guarded, guards): (Vec<Id>, Vec<_>) = expansion.guards.clone().into_iter().unzip();
     let guard_coefficients = guarded.iter().map(|&guard| {
         let coefficient = expansion.coefficient(guard);
         coefficient.unwrap_or_else(|| expansion.sweep.number(0))
@@ -112,7 +106,7 @@ fn series(zero: Graph, rates: &[Id], lengths: Lengths) -> SeriesProgram {
         parameters: lengths.parameters,
         kept: kept.len(),
         products: expansion.products.len(),
-        guards,
+        guards: List::Owned(guards),
     };
     let start = [
         ("next", rates.to_vec()),

@@ -15,14 +15,16 @@ use std::ops::Range;
 pub trait Landscape: Sync {
     /// How many numbers.
     fn dimension(&self) -> usize;
-    /// The function.
-    fn height(&self, scores: &[f64]) -> f64;
+    /// The function at several places.
+    fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64>;
 }
 
 /// Moves of a particle that goes on from another one.
 const MOVES: usize = 10;
 /// Part of the particles that goes on from others at a level: one of so many.
 const LOWEST: usize = 4;
+/// Places that are asked for at once, between which a climb may be stopped.
+const TOGETHER: usize = 64;
 /// Levels after which the climb is given up: the probability is then below 1e-100.
 const MOST_LEVELS: usize = 1000;
 /// Replicates of a splitting.
@@ -68,23 +70,25 @@ impl<'a> Splitting<'a> {
         };
         let (n, d) = (self.particles, self.landscape.dimension());
         let mut evaluations = 0_u64;
-        let mut height = |scores: &[f64]| {
-            evaluations += 1;
-            let height = self.landscape.height(scores);
-            if height.is_nan() {
-                f64::NEG_INFINITY
-            } else {
-                height
+        let mut heights = |all: &[Vec<f64>]| -> Option<Vec<f64>> {
+            let mut heights = Vec::with_capacity(all.len());
+            for some in all.chunks(TOGETHER) {
+                if !(watch.go_on)() {
+                    return None;
+                }
+                evaluations += some.len() as u64;
+                heights.extend(self.landscape.heights(some));
             }
+            for height in heights.iter_mut().filter(|height| height.is_nan()) {
+                *height = f64::NEG_INFINITY;
+            }
+            Some(heights)
         };
-        let mut particles: Vec<(f64, Vec<f64>)> = Vec::with_capacity(n);
-        for _ in 0..n {
-            if !(watch.go_on)() {
-                return None;
-            }
-            let scores: Vec<f64> = (0..d).map(|_| draws.normal()).collect();
-            particles.push((height(&scores), scores));
-        }
+        let start: Vec<Vec<f64>> = (0..n)
+            .map(|_| (0..d).map(|_| draws.normal()).collect())
+            .collect();
+        let mut particles: Vec<(f64, Vec<f64>)> =
+            heights(&start)?.into_iter().zip(start).collect();
         let (mut probability, mut stride) = (1.0, 0.5_f64);
         for _ in 0..MOST_LEVELS {
             particles.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -101,21 +105,22 @@ impl<'a> Splitting<'a> {
             probability *= 1.0 - low as f64 / n as f64;
             let (mut tried, mut taken) = (0_u32, 0_u32);
             for particle in 0..low {
-                if !(watch.go_on)() {
-                    return None;
-                }
                 let parent = low + draws.below(n - low);
                 particles[particle] = particles[parent].clone();
-                for _ in 0..MOVES {
-                    let keep = (1.0 - stride * stride).sqrt();
-                    let near = particles[particle].1.iter();
-                    let scores: Vec<f64> =
-                        near.map(|z| keep * z + stride * draws.normal()).collect();
-                    let reached = height(&scores);
+            }
+            let keep = (1.0 - stride * stride).sqrt();
+            for _ in 0..MOVES {
+                let mut near = |(_, scores): &(f64, Vec<f64>)| -> Vec<f64> {
+                    let scores = scores.iter();
+                    scores.map(|z| keep * z + stride * draws.normal()).collect()
+                };
+                let proposed: Vec<Vec<f64>> = particles[..low].iter().map(&mut near).collect();
+                let reached = heights(&proposed)?;
+                for (particle, proposed) in particles.iter_mut().zip(reached.into_iter().zip(proposed)) {
                     tried += 1;
-                    if reached > level {
+                    if proposed.0 > level {
                         taken += 1;
-                        particles[particle] = (reached, scores);
+                        *particle = proposed;
                     }
                 }
             }
@@ -224,8 +229,9 @@ mod tests {
             10
         }
 
-        fn height(&self, scores: &[f64]) -> f64 {
-            scores.iter().sum::<f64>() / 10_f64.sqrt() - self.0
+        fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64> {
+            let height = |scores: &Vec<f64>| scores.iter().sum::<f64>() / 10_f64.sqrt() - self.0;
+            scores.iter().map(height).collect()
         }
     }
 

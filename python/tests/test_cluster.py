@@ -1,7 +1,10 @@
 """A Ray cluster: workers and machines are lost, rows are not."""
 
 import os
+import shutil
 import signal
+import subprocess
+import sys
 import threading
 import time
 from pathlib import Path
@@ -101,6 +104,31 @@ def test_a_lost_worker_and_a_lost_machine_change_no_bit(cluster, tmp_path):
     assert len(rows(tmp_path / "alone")) == 60
     again = appell.ensemble(STUDY, tmp_path / "spread")
     assert again.told == alone.told
+
+
+def test_the_command_runs_on_a_cluster(cluster, tmp_path):
+    appell_command = os.environ.get("APPELL_COMMAND") or shutil.which("appell")
+    if appell_command is None:
+        pytest.skip("the command `appell` is not there; APPELL_COMMAND tells its path")
+    study = tmp_path / "study.toml"
+    study.write_text(STUDY.replace("cases = 1200", "cases = 100"))
+    alone = appell.ensemble(study, tmp_path / "alone")
+    command = [appell_command, "ensemble", study, "--out", tmp_path / "spread"]
+    command += ["--ray", cluster[0].address]
+    told = subprocess.run(
+        command, env={**os.environ, "APPELL_PYTHON": sys.executable}, capture_output=True, text=True, check=True
+    )
+    assert str(alone).splitlines()[0] in told.stdout
+    assert rows(tmp_path / "spread") == rows(tmp_path / "alone")
+    refused = subprocess.run(
+        command, env={**os.environ, "APPELL_PYTHON": "no-such-python"}, capture_output=True, text=True
+    )
+    assert refused.returncode == 0, "all chunks are there"
+    command[4] = tmp_path / "other"
+    refused = subprocess.run(
+        command, env={**os.environ, "APPELL_PYTHON": "no-such-python"}, capture_output=True, text=True
+    )
+    assert refused.returncode != 0 and "pip install appell ray" in refused.stderr
 
 
 def test_any_function_is_spread(cluster):

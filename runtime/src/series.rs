@@ -5,6 +5,8 @@
 //! values *kept* at order zero, and what lower orders contribute to products comes in sums over pairs of
 //! coefficients, Σ aⱼ bₖ₋ⱼ for 1 ≤ j < k, which the caller takes.
 
+use crate::model::List;
+
 /// Equations ẋ = f(t, x, u, p) with the recurrences of their Taylor coefficients.
 pub trait Series: Send + Sync {
     /// Lengths of what the methods read and write.
@@ -37,7 +39,7 @@ pub struct Shape {
     /// Pairs of series whose products are summed.
     pub products: usize,
     /// What the signs of the guards decide.
-    pub guards: Vec<Guard>,
+    pub guards: List<Guard>,
 }
 
 /// How a value g decides what the equations are. Where its answer changes, a series ends.

@@ -1,24 +1,24 @@
 //! The motion of a model under its inputs.
 
 mod describe;
+mod prepared;
 mod recorder;
 mod validity;
 
-use crate::condition::velocity_condition;
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
     Cause, Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure, IntegrationError, Observer,
-    Options, Outcome, Projection, Range, Rk4, Solver, Statistics, Switches, Taylor, Watch,
+    Options, Outcome, Rk4, Solver, Statistics, Taylor, Watch,
 };
 use crate::model::{At, Model};
-use crate::positions::{Inconsistent, Moving, Positions};
+use crate::positions::Inconsistent;
 use crate::series::{Cubic, Series};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 pub use describe::describe;
-use describe::describe_state;
+pub use prepared::{Prepared, Viewer, observe_block};
+use prepared::projection;
 use recorder::Recorder;
-use validity::Limits;
 pub use validity::{Breach, Limit, Response, Validity};
 
 /// Beyond this condition number no digit of a velocity is left.
@@ -256,29 +256,15 @@ impl<'a> Simulation<'a> {
         inputs: &ModelInputs<'_>,
         observer: impl FnOnce([f64; 2], &[f64]) -> O,
     ) -> Result<(Observed, O), SimulationError> {
-        self.check()?;
-        let info = self.model.info();
-        let series = self.series(inputs)?;
         let events = std::mem::take(&mut self.events);
-        let (switching_times, ranges) = (inputs.switching_times(), self.ranges());
-        let (model, p) = (self.model, self.parameters.as_slice());
-        let mut x = self.consistent_start(inputs)?;
-        self.determined_start(inputs, &x)?;
-        let initial_state = x.clone();
-        let limits = Limits::new(model, inputs, p, self.validity);
-        let (mut breaches, ends_at_once) = limits.at_start(self.span[0], &initial_state);
-        let [start, end] = self.span;
-        let span = [start, if ends_at_once { start } else { end }];
-        let own_events = events.len();
-        let mut watch = Watch {
-            switching_times: &switching_times,
-            switches: switches(model, p, &initial_state),
-            ranges: &ranges,
-            projection: projection(model, p, inputs),
-            events: events.into_iter().chain(limits.events()).collect(),
-        };
-        let mut observer = observer(span, &initial_state);
-        let mut u = vec![0.0; info.input_len()];
+        let own = events.len();
+        let prepared = Prepared::new(&self, inputs)?;
+        let series = self.series(inputs)?;
+        let (model, p, span) = (self.model, prepared.p, prepared.span());
+        let mut x = prepared.start().to_vec();
+        let mut observer = observer(span, &x);
+        let mut watch = prepared.watch(events);
+        let mut u = vec![0.0; model.info().input_len()];
         let rates = |t: f64, x: &[f64], rates: &mut [f64]| {
             inputs.fill(t, x, &mut u);
             model.rates(At { t, x, u: &u, p }, rates);
@@ -304,39 +290,8 @@ impl<'a> Simulation<'a> {
             }
             None => self.integrate(rates, span, &mut x, &mut watch, &mut observer),
         };
-        let (t, hits, statistics, ending) = match result {
-            Ok(outcome) => {
-                let ending = match outcome.ending {
-                    Ending::Event(event) if event >= own_events => Ending::Stopped,
-                    Ending::Finished if ends_at_once => Ending::Stopped,
-                    ending => ending,
-                };
-                (outcome.t, outcome.hits, outcome.statistics, Ok(ending))
-            }
-            Err(IntegrationError::Failure(failure)) => {
-                let Failure { t, hits, .. } = failure;
-                (t, hits, failure.statistics, Err(failure.cause))
-            }
-            Err(IntegrationError::InvalidArgument { what, value }) => {
-                return Err(SimulationError::Argument { what, value });
-            }
-        };
-        let mut events = Vec::new();
-        for hit in hits {
-            match hit.event.checked_sub(own_events) {
-                None => events.push(hit),
-                Some(limit) => breaches.extend(limits.found(limit, hit)),
-            }
-        }
-        let observed = Observed {
-            t,
-            state: x,
-            ending,
-            events,
-            breaches,
-            statistics,
-        };
-        Ok((observed, observer))
+        drop(watch);
+        Ok((prepared.observed(x, result, own)?, observer))
     }
 
     /// The equations to be expanded, if the method asks for them.
@@ -358,36 +313,6 @@ impl<'a> Simulation<'a> {
             what: "inputs that a program computes have",
             remedy: "give them as expressions, laws or tables, or choose another method",
         })
-    }
-
-    /// The initial state with its dependent coordinates found by Newton's method from their values
-    /// as guesses.
-    fn consistent_start(&self, inputs: &ModelInputs<'_>) -> Result<Vec<f64>, SimulationError> {
-        let (model, t, mut x) = (self.model, self.span[0], self.initial_state.clone());
-        if let Some(mut positions) = Positions::of(model) {
-            let mut u = vec![0.0; model.info().input_len()];
-            inputs.fill(t, &x, &mut u);
-            let p = &self.parameters;
-            let restored = positions.restore(model, t, &mut x, &u, p, Moving::Dependent);
-            restored.map_err(|source| SimulationError::Inconsistent {
-                source,
-                message: source.describe(model.info()),
-            })?;
-        }
-        Ok(x)
-    }
-
-    /// An error where rounding alone determines the generalised velocities.
-    fn determined_start(&self, inputs: &ModelInputs<'_>, x: &[f64]) -> Result<(), SimulationError> {
-        let (model, t, p) = (self.model, self.span[0], self.parameters.as_slice());
-        let mut u = vec![0.0; model.info().input_len()];
-        inputs.fill(t, x, &mut u);
-        let condition = velocity_condition(model, At { t, x, u: &u, p });
-        if condition < LOST {
-            return Ok(());
-        }
-        let state = describe_state(x, model.info());
-        Err(SimulationError::Undetermined { condition, state })
     }
 
     /// Runs the integrator of choice; `x` goes from the first to the last state.
@@ -437,43 +362,4 @@ impl<'a> Simulation<'a> {
             _ => Ok(()),
         }
     }
-
-    /// The states with a finite limit, if they are watched.
-    fn ranges(&self) -> Vec<Range> {
-        let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
-        let states = self.model.info().states.iter().enumerate();
-        states
-            .filter(|(_, state)| self.validity.ranges == Response::Stop && limited(state.range))
-            .map(|(component, state)| Range {
-                component,
-                limits: state.range,
-            })
-            .collect()
-    }
-}
-
-/// The way back to the position constraints of a model.
-fn projection<'a>(
-    model: &'a dyn Model,
-    p: &'a [f64],
-    inputs: &'a ModelInputs<'_>,
-) -> Option<Projection<'a>> {
-    let mut positions = Positions::of(model)?;
-    let mut u = vec![0.0; model.info().input_len()];
-    Some(Projection(Box::new(move |t, x| {
-        inputs.fill(t, x, &mut u);
-        let restored = positions.restore(model, t, x, &u, p, Moving::All);
-        restored.is_ok()
-    })))
-}
-
-/// What time alone switches in a model.
-fn switches<'a>(model: &'a dyn Model, p: &'a [f64], x: &'a [f64]) -> Option<Switches<'a>> {
-    // They depend neither on the state nor on the inputs, but every function has these arguments.
-    let u = vec![0.0; model.info().input_len()];
-    let count = model.switch_len();
-    (count > 0).then(|| Switches {
-        count,
-        function: Box::new(move |t, values| model.switches(At { t, x, u: &u, p }, values)),
-    })
 }

@@ -1,16 +1,22 @@
-//! Runs the cases of a study, one motion after the other. Whatever runs several at once replaces this file.
+//! Runs the cases of a study, eight motions at once.
 
+use std::array::from_fn;
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 use appell_ensemble::rows::{Column, Role, Rows};
 use appell_ensemble::run::{Engine, Watch};
-use appell_ensemble::study::{Kept, Method as Word};
+use appell_ensemble::study::{Kept, Method};
 use appell_runtime::Simulation;
 use appell_runtime::inputs::ModelInputs;
-use appell_runtime::integrate::{Cause, Direction, Ending, Event, Options};
+use appell_runtime::integrate::{
+    BlockSolver, Cause, Direction, Dop853, Dopri5, Ending, Event, Options,
+};
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::ModelInfo;
-use appell_runtime::simulate::{Method, Observed, Response, SimulationError, Validity};
+use appell_runtime::simulate::{
+    Observed, Prepared, Response, SimulationError, Validity, Viewer, observe_block,
+};
 
 use super::factors::Target;
 use super::noise::{Draws, Noisy};
@@ -19,24 +25,54 @@ use super::spec::Quantity;
 use super::variant::Variant;
 use super::{Ensemble, Task};
 
+/// Cases that are set up together, from which blocks of the same spec and law are made.
+const TOGETHER: u64 = 64;
+
 impl Engine for Ensemble {
     fn columns(&self) -> &[Column] {
         &self.task.layout.columns
     }
 
     fn run(&self, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
-        let mut row = vec![f64::NAN; self.task.layout.columns.len()];
-        for case in cases {
+        let mut solvers = Solvers::default();
+        let mut next = cases.start;
+        while next < cases.end {
             if !(watch.go_on)() {
                 return;
             }
-            let (end, reason) = self.motion(&self.task, Draws::Case(case), &mut row);
-            if !reason.is_empty() {
-                self.forget(&mut row);
+            let some = next..cases.end.min(next + TOGETHER);
+            let draws: Vec<Draws<'_>> = some.clone().map(Draws::Case).collect();
+            for mut row in self.motions(&self.task, &draws, &mut solvers) {
+                if !row.reason.is_empty() {
+                    self.forget(&mut row.values);
+                }
+                rows.push(&row.values, row.end, &row.reason);
             }
-            rows.push(&row, end, &reason);
-            (watch.done)(1);
+            (watch.done)(some.end - some.start);
+            next = some.end;
         }
+    }
+}
+
+/// Work arrays of both methods.
+#[derive(Default)]
+pub(super) struct Solvers {
+    dop853: BlockSolver<Dop853>,
+    dopri5: BlockSolver<Dopri5>,
+}
+
+/// What came of a case.
+pub(super) struct Row {
+    pub(super) values: Vec<f64>,
+    /// When the motion ended, in s.
+    end: f64,
+    /// Why it ended early.
+    reason: String,
+}
+
+impl Row {
+    fn fail(&mut self, reason: String) {
+        (self.end, self.reason) = (0.0, reason);
     }
 }
 
@@ -46,10 +82,46 @@ struct Start {
     initial: Vec<f64>,
 }
 
+/// A case that has its start.
+struct Ride<'r> {
+    draws: Draws<'r>,
+    start: Start,
+    row: &'r mut Row,
+}
+
 impl Ensemble {
-    /// Runs a motion; returns when it ended, and why it ended early.
-    pub(super) fn motion(&self, task: &Task, draws: Draws<'_>, row: &mut [f64]) -> (f64, String) {
-        row.fill(f64::NAN);
+    /// Runs motions; returns a row for each.
+    pub(super) fn motions(
+        &self,
+        task: &Task,
+        draws: &[Draws<'_>],
+        solvers: &mut Solvers,
+    ) -> Vec<Row> {
+        let empty = || Row {
+            values: vec![f64::NAN; task.layout.columns.len()],
+            end: 0.0,
+            reason: String::new(),
+        };
+        let mut rows: Vec<Row> = draws.iter().map(|_| empty()).collect();
+        let mut rides: Vec<Vec<Ride<'_>>> = self.variants.iter().map(|_| Vec::new()).collect();
+        for (row, &draws) in rows.iter_mut().zip(draws) {
+            let variant = self.draw(draws, &mut row.values);
+            let factors = &row.values[..self.design.factors().len()];
+            match start(&self.variants[variant], factors) {
+                Ok(start) => rides[variant].push(Ride { draws, start, row }),
+                Err(reason) => row.fail(reason),
+            }
+        }
+        for (variant, mut rides) in self.variants.iter().zip(rides) {
+            for block in rides.chunks_mut(LANES) {
+                self.block(task, variant, block, solvers);
+            }
+        }
+        rows
+    }
+
+    /// Writes the factors of a case; returns the number of its variant.
+    fn draw(&self, draws: Draws<'_>, row: &mut [f64]) -> usize {
         let count = self.design.factors().len();
         match draws {
             Draws::Case(case) => self.design.point(case, &mut row[..count]),
@@ -72,13 +144,7 @@ impl Ensemble {
                 *value = *item;
             }
         }
-        let variant = &self.variants[model * self.laws + law];
-        let start = match start(variant, &row[..count]) {
-            Ok(start) => start,
-            Err(reason) => return (0.0, reason),
-        };
-        let moved = self.moved(task, variant, draws, start, row);
-        moved.unwrap_or_else(|error| (0.0, told(&error, variant)))
+        model * self.laws + law
     }
 
     /// Of a motion that ended early nobody knows the numbers of the whole: its courses until then and the events that
@@ -99,67 +165,117 @@ impl Ensemble {
         }
     }
 
-    fn moved(
+    /// Runs up to eight motions under one spec and law.
+    fn block(
         &self,
         task: &Task,
         variant: &Variant,
-        draws: Draws<'_>,
-        start: Start,
-        row: &mut [f64],
-    ) -> Result<(f64, String), SimulationError> {
-        let study = &self.study;
-        let until = study.motion.t_end;
+        rides: &mut [Ride<'_>],
+        solvers: &mut Solvers,
+    ) {
+        let sources: Vec<Noisy<'_>> = rides.iter().map(|ride| self.source(variant, ride)).collect();
+        let (starts, mut rows): (Vec<&Start>, Vec<&mut Row>) =
+            rides.iter_mut().map(|ride| (&ride.start, &mut *ride.row)).unzip();
         let model = variant.model.equations();
-        let p = start.parameters.clone();
-        let source = Noisy {
-            controller: variant.wiring.controller(start.parameters, until),
+        let inputs = sources.iter().map(|source| ModelInputs::new(model.info(), source));
+        let inputs = match inputs.collect::<Result<Vec<_>, _>>() {
+            Ok(inputs) => inputs,
+            Err(error) => {
+                let reason = told(&error.into(), variant);
+                return rows.iter_mut().for_each(|row| row.fail(reason.clone()));
+            }
+        };
+        let kept: Vec<Quantity> = task.which.iter().map(|&k| variant.kept[k]).collect();
+        let gauges = starts.iter().zip(&inputs);
+        let gauges: Vec<_> = gauges
+            .map(|(start, inputs)| {
+                RefCell::new(Gauge::new(model, inputs, &start.parameters, &kept))
+            })
+            .collect();
+        let (mut awaited, mut simulations) = (Vec::new(), Vec::new());
+        for (((start, row), gauge), source) in
+            starts.iter().zip(&mut rows).zip(&gauges).zip(&sources)
+        {
+            let events = Awaited::new(task, gauge, &start.initial, &mut row.values);
+            simulations.push(self.simulation(variant, start, source, events.is_over));
+            awaited.push(events);
+        }
+        // Those that have a start, and which these are.
+        let (mut prepared, mut which) = (Vec::new(), Vec::new());
+        for (place, (simulation, inputs)) in simulations.iter().zip(&inputs).enumerate() {
+            match Prepared::new(simulation, inputs) {
+                Ok(start) => {
+                    prepared.push(start);
+                    which.push(place);
+                }
+                Err(error) => rows[place].fail(told(&error, variant)),
+            }
+        }
+        let mut values: Vec<Option<&mut [f64]>> =
+            rows.iter_mut().map(|row| Some(row.values.as_mut_slice())).collect();
+        let viewers = prepared.iter().zip(&which).filter_map(|(prepared, &place)| {
+            let gauge = &gauges[place];
+            let from = (prepared.span()[0], prepared.start());
+            let row = values[place].take()?;
+            Some(Viewer {
+                events: awaited[place].events(task, gauge),
+                observer: Keeper::new(gauge, &task.keep, &task.layout, row, from),
+            })
+        });
+        let viewers = viewers.collect();
+        let sources: Vec<&Noisy<'_>> = which.iter().map(|&place| &sources[place]).collect();
+        let rates = Rates::new(variant, sources, &prepared);
+        let ended = self.observe(solvers, &prepared, viewers, rates);
+        let mut ends = Vec::new();
+        for (ended, place) in ended.into_iter().zip(which) {
+            let end = ended.map(|(observed, keeper)| {
+                let values = keeper.finish(&task.layout, observed.t);
+                awaited[place].happened(&observed, values);
+                let reason = reason(&observed, model.info());
+                if reason.is_empty() {
+                    let mut gauge = gauges[place].borrow_mut();
+                    for (index, keep) in task.keep.iter().enumerate() {
+                        if keep.kept == Kept::End {
+                            let value = gauge.value(index, observed.t, &observed.state);
+                            values[task.layout.first[index]] = value;
+                        }
+                    }
+                }
+                (observed.t, reason)
+            });
+            ends.push((place, end.unwrap_or_else(|error| (0.0, told(&error, variant)))));
+        }
+        for (place, (end, reason)) in ends {
+            (rows[place].end, rows[place].reason) = (end, reason);
+        }
+    }
+
+    /// The inputs of a motion.
+    fn source<'v>(&self, variant: &'v Variant, ride: &Ride<'v>) -> Noisy<'v> {
+        let until = self.study.motion.t_end;
+        Noisy {
+            controller: variant.wiring.controller(ride.start.parameters.clone(), until),
             noises: &variant.noises,
-            draws,
+            draws: ride.draws,
             drawn: self.design.drawn().count(),
             until,
             scratch: Cell::default(),
-        };
-        let inputs = ModelInputs::new(model.info(), &source)?;
-        let kept: Vec<Quantity> = task.which.iter().map(|&k| variant.kept[k]).collect();
-        let gauge = RefCell::new(Gauge::new(model, &inputs, &p, &kept));
-        let (mut events, mut columns) = (Vec::new(), Vec::new());
-        let mut over = false;
-        for (index, keep) in task.keep.iter().enumerate() {
-            let Kept::When { stop } = keep.kept else {
-                continue;
-            };
-            let gauge = &gauge;
-            let g = move |t: f64, x: &[f64]| gauge.borrow_mut().value(index, t, x);
-            let column = task.layout.first[index];
-            let holds = g(0.0, &start.initial) > 0.0;
-            row[column] = f64::from(u8::from(holds));
-            if holds {
-                row[column + 1] = 0.0;
-                over |= stop;
-                continue;
-            }
-            columns.push(column);
-            events.push(Event {
-                terminal: stop,
-                ..Event::new(Direction::Rising, g)
-            });
         }
-        let motion = &study.motion;
-        let options = Options::with_tolerances(motion.rtol, motion.atol);
-        let max_steps = motion.max_steps.and_then(|most| usize::try_from(most).ok());
-        let simulation = Simulation {
-            parameters: p.clone(),
-            initial_state: start.initial,
-            inputs: &source,
-            span: [0.0, if over { 0.0 } else { until }],
-            method: match motion.method {
-                Word::Dop853 => Method::Dop853,
-                Word::Dopri5 => Method::Dopri5,
-            },
-            options: Options {
-                max_steps: max_steps.unwrap_or(options.max_steps),
-                ..options
-            },
+    }
+
+    fn simulation<'v>(
+        &self,
+        variant: &'v Variant,
+        start: &Start,
+        inputs: &'v Noisy<'v>,
+        is_over: bool,
+    ) -> Simulation<'v> {
+        let motion = &self.study.motion;
+        Simulation {
+            parameters: start.parameters.clone(),
+            initial_state: start.initial.clone(),
+            inputs,
+            span: [0.0, if is_over { 0.0 } else { motion.t_end }],
             validity: Validity {
                 ranges: if motion.ignore_ranges {
                     Response::Ignore
@@ -168,29 +284,137 @@ impl Ensemble {
                 },
                 ..Validity::default()
             },
-            events,
-            ..Simulation::new(model)
+            ..Simulation::new(variant.model.equations())
+        }
+    }
+
+    fn observe<'w>(
+        &self,
+        solvers: &mut Solvers,
+        prepared: &'w [Prepared<'w>],
+        viewers: Vec<Viewer<'w, Keeper<'w>>>,
+        mut rates: Rates<'_>,
+    ) -> Vec<Result<(Observed, Keeper<'w>), SimulationError>> {
+        let motion = &self.study.motion;
+        let options = Options::with_tolerances(motion.rtol, motion.atol);
+        let max_steps = motion.max_steps.and_then(|most| usize::try_from(most).ok());
+        let options = Options {
+            max_steps: max_steps.unwrap_or(options.max_steps),
+            ..options
         };
-        let (observed, keeper) = simulation
-            .observe(|span, x| Keeper::new(&gauge, &task.keep, &task.layout, row, (span[0], x)))?;
-        let row = keeper.finish(&task.layout, observed.t);
+        let rates = |t: &Block, x: &[Block], out: &mut [Block]| rates.write(t, x, out);
+        match motion.method {
+            Method::Dop853 => {
+                observe_block(&mut solvers.dop853, &options, prepared, viewers, rates)
+            }
+            Method::Dopri5 => {
+                observe_block(&mut solvers.dopri5, &options, prepared, viewers, rates)
+            }
+        }
+    }
+}
+
+/// A number of each of eight motions.
+type Block = [f64; LANES];
+
+/// The rates of the motions of a block under their inputs.
+struct Rates<'r> {
+    variant: &'r Variant,
+    sources: Vec<&'r Noisy<'r>>,
+    p: Vec<Block>,
+    u: Vec<Block>,
+    /// State and inputs of one motion.
+    one: [Vec<f64>; 2],
+}
+
+impl<'r> Rates<'r> {
+    fn new(
+        variant: &'r Variant,
+        sources: Vec<&'r Noisy<'r>>,
+        prepared: &[Prepared<'_>],
+    ) -> Self {
+        let info = variant.model.info();
+        // Where there is no motion, the first one's parameters keep the arithmetic ordinary.
+        let of = |l: usize| prepared.get(l).or(prepared.first());
+        let parameter = |i: usize| from_fn(|l| of(l).map_or(0.0, |p| p.parameters()[i]));
+        let inputs = variant.closed.inputs();
+        Self {
+            variant,
+            sources,
+            p: (0..info.parameter_len()).map(parameter).collect(),
+            u: vec![[0.0; LANES]; inputs],
+            one: [vec![0.0; info.state_len()], vec![0.0; inputs]],
+        }
+    }
+
+    fn write(&mut self, t: &Block, x: &[Block], rates: &mut [Block]) {
+        let closed = &self.variant.closed;
+        if closed.is_driven() {
+            let [state, outside] = &mut self.one;
+            for (l, source) in self.sources.iter().enumerate() {
+                for (state, x) in state.iter_mut().zip(x) {
+                    *state = x[l];
+                }
+                source.fill_outside(t[l], state, outside);
+                for (u, outside) in self.u.iter_mut().zip(&*outside) {
+                    u[l] = *outside;
+                }
+            }
+        }
+        let (u, p) = (self.u.as_slice(), self.p.as_slice());
+        closed.rates(AtLanes { t, x, u, p }, rates);
+    }
+}
+
+/// The events that a motion may still show.
+struct Awaited {
+    /// Places among what is kept, and in the row.
+    places: Vec<(usize, usize)>,
+    /// Whether one that ends the motion has happened at the start.
+    is_over: bool,
+}
+
+impl Awaited {
+    /// Writes what has happened at the start.
+    fn new(task: &Task, gauge: &RefCell<Gauge<'_>>, x: &[f64], row: &mut [f64]) -> Self {
+        let (mut places, mut is_over) = (Vec::new(), false);
+        for (index, keep) in task.keep.iter().enumerate() {
+            let Kept::When { stop } = keep.kept else {
+                continue;
+            };
+            let column = task.layout.first[index];
+            let holds = gauge.borrow_mut().value(index, 0.0, x) > 0.0;
+            row[column] = f64::from(u8::from(holds));
+            if holds {
+                row[column + 1] = 0.0;
+                is_over |= stop;
+            } else {
+                places.push((index, column));
+            }
+        }
+        Self { places, is_over }
+    }
+
+    fn events<'g>(&self, task: &Task, gauge: &'g RefCell<Gauge<'g>>) -> Vec<Event<'g>> {
+        let event = |&(index, _): &(usize, usize)| {
+            let g = move |t: f64, x: &[f64]| gauge.borrow_mut().value(index, t, x);
+            Event {
+                terminal: task.keep[index].kept == Kept::When { stop: true },
+                ..Event::new(Direction::Rising, g)
+            }
+        };
+        self.places.iter().map(event).collect()
+    }
+
+    /// Writes which events happened, and when first.
+    fn happened(&self, observed: &Observed, row: &mut [f64]) {
         for hit in &observed.events {
-            let column = columns[hit.event];
+            let (_, column) = self.places[hit.event];
             if row[column] == 0.0 {
                 row[column] = 1.0;
                 row[column + 1] = hit.t;
             }
         }
-        let reason = reason(&observed, model.info());
-        if reason.is_empty() {
-            for (index, keep) in task.keep.iter().enumerate() {
-                if keep.kept == Kept::End {
-                    let value = gauge.borrow_mut().value(index, observed.t, &observed.state);
-                    row[task.layout.first[index]] = value;
-                }
-            }
-        }
-        Ok((observed.t, reason))
     }
 }
 

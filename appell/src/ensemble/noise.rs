@@ -7,22 +7,14 @@ use appell_ensemble::normal;
 use appell_ensemble::random::Stream;
 use appell_runtime::inputs::InputSource;
 
+use crate::inputs::closed_loop::Onto;
 use crate::inputs::controller::Controller;
-
-/// What has the noise.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Onto {
-    /// A state, as laws and inputs measure it.
-    Measured(usize),
-    /// A quantity of the study's own.
-    Parameter(usize),
-}
 
 /// A noise.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Noise {
     stream: Stream,
-    onto: Onto,
+    pub(super) onto: Onto,
     deviation: f64,
     every: f64,
 }
@@ -93,28 +85,52 @@ pub(super) struct Noisy<'a> {
     pub(super) scratch: Cell<[Vec<f64>; 2]>,
 }
 
-impl InputSource for Noisy<'_> {
-    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
-        if self.noises.is_empty() {
-            self.controller.inputs(t, x, u);
-            return;
-        }
-        let [mut measured, mut parameters] = self.scratch.take();
-        measured.clear();
-        measured.extend_from_slice(x);
-        parameters.clear();
-        parameters.extend_from_slice(self.controller.parameters());
+impl Noisy<'_> {
+    /// The noises at a time.
+    fn values(&self, t: f64) -> impl Iterator<Item = (Onto, f64)> {
         let mut from = self.drawn;
-        for noise in self.noises {
+        self.noises.iter().map(move |noise| {
             let value = noise.value(self.draws, from, t);
             from = from.saturating_add(noise.count(self.until));
-            match noise.onto {
+            (noise.onto, value)
+        })
+    }
+
+    /// Calls a function with the parameters and the state that laws see.
+    fn with_seen(&self, t: f64, x: &[f64], call: impl FnOnce(&[f64], &[f64])) {
+        let parameters = self.controller.parameters();
+        if self.noises.is_empty() {
+            call(parameters, x);
+            return;
+        }
+        let [mut measured, mut seen] = self.scratch.take();
+        measured.clear();
+        measured.extend_from_slice(x);
+        seen.clear();
+        seen.extend_from_slice(parameters);
+        for (onto, value) in self.values(t) {
+            match onto {
                 Onto::Measured(state) => measured[state] += value,
-                Onto::Parameter(parameter) => parameters[parameter] = value,
+                Onto::Parameter(parameter) => seen[parameter] = value,
             }
         }
-        self.controller.inputs_with(&parameters, t, &measured, u);
-        self.scratch.set([measured, parameters]);
+        call(&seen, &measured);
+        self.scratch.set([measured, seen]);
+    }
+
+    /// The inputs of the closed loop: those from outside, then the noises.
+    pub(super) fn fill_outside(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        let (outside, noises) = u.split_at_mut(u.len() - self.noises.len());
+        self.with_seen(t, x, |p, x| self.controller.fill_outside(p, t, x, outside));
+        for (noise, (_, value)) in noises.iter_mut().zip(self.values(t)) {
+            *noise = value;
+        }
+    }
+}
+
+impl InputSource for Noisy<'_> {
+    fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
+        self.with_seen(t, x, |p, x| self.controller.inputs_with(p, t, x, u));
     }
 
     fn switching_times(&self) -> Vec<f64> {

@@ -10,6 +10,7 @@ use appell_ensemble::study::{Keep, Kept, Rare};
 use appell_runtime::model::ModelInfo;
 use appell_spec::Code;
 
+use super::engine::Solvers;
 use super::noise::Draws;
 use super::reading::Reading;
 use super::spec::Quantity;
@@ -70,11 +71,11 @@ impl Landscape for Peak<'_> {
         design.drawn().count() + noises.max().unwrap_or(0)
     }
 
-    fn height(&self, scores: &[f64]) -> f64 {
-        let mut row = vec![f64::NAN; self.task.layout.columns.len()];
-        let draws = Draws::Scores(scores);
-        self.ensemble.motion(self.task, draws, &mut row);
-        row[self.task.layout.first[0]]
+    fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64> {
+        let draws: Vec<Draws<'_>> = scores.iter().map(|one| Draws::Scores(one)).collect();
+        let rows = self.ensemble.motions(self.task, &draws, &mut Solvers::default());
+        let column = self.task.layout.first[0];
+        rows.iter().map(|row| row.values[column]).collect()
     }
 }
 

@@ -9,10 +9,11 @@ use appell_spec::mechanism::{InputId, ParameterId};
 use appell_spec::{Code, Scope, did_you_mean};
 
 use super::factors::{self, Target};
-use super::noise::{Noise, Onto};
+use super::noise::Noise;
 use super::reading::Reading;
 use super::spec::{Extended, Quantity};
 use crate::formula::{StateFunction, Workbench};
+use crate::inputs::closed_loop::{ClosedLoop, Onto};
 use crate::inputs::controller::{Plan, Wiring};
 use crate::inputs::feedback;
 use crate::setup::Setup;
@@ -22,6 +23,8 @@ use crate::{Error, Model};
 pub(super) struct Variant {
     pub(super) model: Arc<Model>,
     pub(super) wiring: Wiring,
+    /// The equations of motion under the wiring.
+    pub(super) closed: ClosedLoop,
     pub(super) parameters: Vec<f64>,
     /// Limits of the parameters.
     pub(super) limits: Vec<[f64; 2]>,
@@ -187,10 +190,13 @@ pub(super) fn variant(
             parameter.at_most.unwrap_or(f64::INFINITY),
         ]
     });
+    let wiring = plan.wiring(&setup, study.motion.t_end)?;
+    let seen: Vec<Onto> = noises.iter().map(|noise| noise.onto).collect();
     Ok(Some(Variant {
         model: Arc::clone(model),
         limits: limits.collect(),
-        wiring: plan.wiring(&setup, study.motion.t_end)?,
+        closed: wiring.closed_loop(model.rates()?, setup.info, &seen),
+        wiring,
         set: compile(derived.set)?,
         start: compile(start)?,
         parameters: setup.parameters.clone(),

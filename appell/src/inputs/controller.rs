@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
-use appell_codegen::jit::JitSeries;
+use appell_codegen::jit::{JitSeries, Sizes};
 use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
 use appell_codegen::taylor::{Lengths, expand_under};
@@ -18,6 +18,7 @@ use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
+use crate::inputs::closed_loop::{ClosedLoop, Onto, Outside};
 use crate::inputs::feedback::{Feedback, Gains, Sampled};
 use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
 use crate::inputs::tabulated::Table;
@@ -284,6 +285,27 @@ impl Wiring {
         }
     }
 
+    /// Expressions and continuous-time laws as operations.
+    fn law(&self, info: &ModelInfo) -> Schedule {
+        law::schedule(&self.function, &self.slots, &self.scheduled, info)
+    }
+
+    /// The equations of motion with expressions and laws put in; `rates` are the model's. `seen` is what laws see,
+    /// by inputs after those of [`Controller::fill_outside`].
+    pub(crate) fn closed_loop(
+        &self,
+        rates: &Schedule,
+        info: &ModelInfo,
+        seen: &[Onto],
+    ) -> ClosedLoop {
+        let given = self.recorded.is_some() || !self.driven.is_empty();
+        let outside = Outside {
+            inputs: self.function.inputs(),
+            is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
+        };
+        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), outside, seen)
+    }
+
     /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
     fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
         for (slot, value) in self.slots.iter().zip(values) {
@@ -300,17 +322,11 @@ impl Wiring {
 impl Controller<'_> {
     /// Prepares Taylor series of the motion under these inputs; `rates` are the model's.
     pub fn expand(&mut self, rates: &Schedule, info: &ModelInfo) {
-        let Wiring {
-            function,
-            slots,
-            scheduled,
-            ..
-        } = self.wiring;
-        let law = law::schedule(function, slots, scheduled, info);
         let lengths = Lengths {
-            inputs: function.inputs(),
+            inputs: self.wiring.function.inputs(),
             ..Lengths::from(info)
         };
+        let law = self.wiring.law(info);
         self.series = Some(JitSeries::new(expand_under(&law, rates, lengths)));
     }
 
@@ -337,8 +353,8 @@ impl Controller<'_> {
         }
     }
 
-    /// The inputs with other parameters, as long as those of the motion, in the expressions.
-    pub fn inputs_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
+    /// What recordings and programs give.
+    fn fill_given(&self, t: f64, x: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
         match &wiring.recorded {
             Some(recorded) => recorded.inputs(t, x, u),
@@ -353,6 +369,27 @@ impl Controller<'_> {
                 }
             }
         }
+    }
+
+    /// What drives the [`ClosedLoop`] of the wiring from outside: recordings, held inputs, signals. The parameters
+    /// and the state are those that laws see.
+    pub(crate) fn fill_outside(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
+        let wiring = self.wiring;
+        let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
+        self.fill_given(t, x, declared);
+        if !wiring.sampled.is_empty() {
+            let mut values = vec![0.0; wiring.slots.len()];
+            wiring.function.values(t, x, p, &mut values);
+            let count = declared.len();
+            self.add_held(t, x, &values, count, |input, held| declared[input] += held);
+        }
+        wiring.function.fill_signals(t, signals);
+    }
+
+    /// The inputs with other parameters, as long as those of the motion, in the expressions.
+    pub fn inputs_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
+        let wiring = self.wiring;
+        self.fill_given(t, x, u);
         let mut values = self.values.take();
         values.clear();
         values.resize(wiring.slots.len(), 0.0);

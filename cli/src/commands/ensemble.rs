@@ -1,5 +1,7 @@
 //! `appell ensemble`
 
+mod on_ray;
+
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -36,6 +38,10 @@ pub(crate) struct EnsembleCommand {
     /// Cases of a chunk [default: the study's, or a 64th of the cases, at most 4096]
     #[arg(long, value_name = "N")]
     chunk: Option<u64>,
+    /// Run on the Ray cluster of this address, which sees study and folder under their paths; `auto` is the one that
+    /// this machine belongs to. Needs the Python package and Ray
+    #[arg(long, value_name = "ADDRESS", conflicts_with = "jobs")]
+    ray: Option<String>,
     /// Write the statistics as JSON, in SI; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -57,7 +63,10 @@ impl EnsembleCommand {
             shard: self.shard,
             chunk: self.chunk,
         };
-        let ended = self.fill(&ensemble, &store, running)?;
+        let ended = match &self.ray {
+            Some(address) => self.spread(&ensemble, &store, address, running)?,
+            None => self.fill(&ensemble, &store, running)?,
+        };
         let whole = Running {
             shard: None,
             ..running
@@ -125,6 +134,22 @@ impl EnsembleCommand {
             bar.finish_and_clear();
         }
         Ok(ended)
+    }
+
+    /// Runs what is missing on a cluster.
+    fn spread(
+        &self,
+        ensemble: &Ensemble,
+        store: &Folder,
+        address: &str,
+        running: Running,
+    ) -> Result<Ended, Error> {
+        let left = ensemble.missing(store, running)?.len();
+        if left > 0 {
+            on_ray::run(&self.study, &self.out, address, running, left as u64)?;
+        }
+        // A rare event has few replicates, and they are run here.
+        self.fill(ensemble, store, running)
     }
 
     /// Writes statistics, figures and the page.

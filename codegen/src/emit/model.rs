@@ -6,6 +6,7 @@ use quote::quote;
 
 use super::error::Error;
 use super::lanes;
+use super::series;
 use super::layout::{blank_tokens, docs, escaped};
 use super::syntax::{ident, known, path};
 use super::types::{Types, double};
@@ -49,6 +50,7 @@ const TYPES: &[&str] = &[
     "RatesInLanes",
     "JacobiansInLanes",
     "OutputsInLanes",
+    "TaylorSeries",
     "String",
     "Send",
     "Sync",
@@ -252,6 +254,7 @@ pub(super) fn implementation(
     runtime: &syn::Path,
     costs: &[(FunctionKind, OperationCount)],
     lanes: bool,
+    series: Option<series::Emitted>,
 ) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
     let title = escaped(&types.program.info.title);
@@ -286,6 +289,8 @@ pub(super) fn implementation(
     } else {
         (TokenStream::new(), TokenStream::new())
     };
+    let series = series.map(|series| (series.items, series.method));
+    let (series, series_method) = series.unwrap_or_default();
     let named = named(types, &name);
     let blank = blank_tokens();
     Ok(quote! {
@@ -298,6 +303,7 @@ pub(super) fn implementation(
         const _: () = {
             #helpers
             #equations
+            #series
 
             #blank
             impl model::Model for #name {
@@ -306,6 +312,7 @@ pub(super) fn implementation(
                 }
                 #(#bodies)*
                 #in_lanes
+                #series_method
             }
             #named
         };

@@ -37,6 +37,7 @@ const STATICS: &[&str] = &[
     "CONSTRAINT_ROWS",
     "REACTIONS",
     "CONTACTS",
+    "SHAPE",
 ];
 
 /// An identifier. Whatever the text is, the result is one identifier and nothing else. What Rust or

@@ -3,7 +3,7 @@
 
 use rustc_hash::FxHashMap;
 
-use super::graph::{Graph, Id, Node, count};
+use crate::operations::graph::{Graph, Id, Node, count};
 use crate::schedule::Argument;
 use crate::symbolic::Function;
 use appell_runtime::series::{Guard, OrderNumber};

@@ -5,7 +5,7 @@
 //! 1 ≤ j < k holds only what is known.
 
 use super::coefficients::{Expansion, derived, plain};
-use super::graph::{Id, Node, Solution};
+use crate::operations::graph::{Id, Node, Solution};
 use crate::schedule::Operation;
 use crate::symbolic::{Function, Relation};
 use appell_runtime::series::Guard;

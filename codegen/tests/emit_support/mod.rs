@@ -22,6 +22,7 @@ pub(crate) fn golden_options(model_impl: bool) -> Options {
         model_impl,
         spec: model_impl.then(|| SPEC.to_owned()),
         lanes: true,
+        series: true,
         ..Options::default()
     }
 }

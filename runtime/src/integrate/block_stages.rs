@@ -4,7 +4,7 @@
 //! a block as alone.
 
 use super::tableau::{Row, Tableau};
-use crate::lanes::LANES;
+use crate::lanes::{LANES, dispatch};
 
 /// One number for each of eight motions.
 pub(super) type Block = [f64; LANES];
@@ -124,17 +124,21 @@ impl BlockStages {
     }
 
     /// Mean square of Σ w k over `scale`, of all motions.
-    #[inline]
     pub(super) fn mean_squares(&self, row: Row, scale: &[Block]) -> Block {
         let mut sums = [[0.0; LANES]; SUMS];
-        for i in 0..self.n {
-            let combination = combination(row, &self.rates, self.n, i);
-            let sums = &mut sums[i % SUMS];
-            for lane in 0..LANES {
-                let part = combination[lane] / scale[i][lane];
-                sums[lane] += part * part;
-            }
-        }
+        dispatch(
+            #[inline(always)]
+            || {
+                for (i, scale) in scale.iter().enumerate() {
+                    let combination = combination(row, &self.rates, self.n, i);
+                    let sums = &mut sums[i % SUMS];
+                    for lane in 0..LANES {
+                        let part = combination[lane] / scale[lane];
+                        sums[lane] += part * part;
+                    }
+                }
+            },
+        );
         std::array::from_fn(|lane| {
             sums.iter().map(|sum| sum[lane]).sum::<f64>() / self.n.max(1) as f64
         })
@@ -164,19 +168,23 @@ fn position_not_finite(blocks: &[Block], lane: usize) -> Option<usize> {
 }
 
 /// `out` = x + h Σ w k.
-#[inline]
 fn combine(x: &[Block], h: &Block, row: Row, rates: &[Block], out: &mut [Block]) {
-    let n = x.len();
-    for i in 0..n {
-        let sum = combination(row, rates, n, i);
-        for lane in 0..LANES {
-            out[i][lane] = x[i][lane] + h[lane] * sum[lane];
-        }
-    }
+    dispatch(
+        #[inline(always)]
+        || {
+            let n = x.len();
+            for (i, (x, out)) in x.iter().zip(&mut *out).enumerate() {
+                let sum = combination(row, rates, n, i);
+                for lane in 0..LANES {
+                    out[lane] = x[lane] + h[lane] * sum[lane];
+                }
+            }
+        },
+    );
 }
 
 /// Σ w k of a component.
-#[inline]
+#[inline(always)]
 fn combination(row: Row, rates: &[Block], n: usize, i: usize) -> Block {
     let mut sum = [0.0; LANES];
     for &(stage, weight) in row {

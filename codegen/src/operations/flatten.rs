@@ -8,7 +8,7 @@ use crate::symbolic::Function;
 
 /// Adds the operations of a schedule to a graph and returns its results, one list an array.
 /// `argument` tells what stands for an argument.
-pub(super) fn flatten(
+pub(crate) fn flatten(
     schedule: &Schedule,
     graph: &mut Graph,
     argument: impl FnMut(&mut Graph, Argument) -> Id,

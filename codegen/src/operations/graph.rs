@@ -7,18 +7,18 @@ use crate::symbolic::{Function, Rational, Relation};
 
 /// A node of a [`Graph`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub(super) struct Id(u32);
+pub(crate) struct Id(u32);
 
 impl Id {
     /// Its position among the nodes.
-    pub(super) fn index(self) -> usize {
+    pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
 }
 
 /// An operation on earlier nodes.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) enum Node {
+pub(crate) enum Node {
     /// An argument.
     Argument(Argument),
     /// An exact number.
@@ -53,25 +53,25 @@ pub(super) enum Node {
 
 /// A linear system with one right-hand side.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct Solution {
+pub(crate) struct Solution {
     /// Index of the matrix; see [`Graph::matrix`].
-    pub(super) matrix: u32,
+    pub(crate) matrix: u32,
     /// Right-hand side.
-    pub(super) right: Vec<Id>,
+    pub(crate) right: Vec<Id>,
 }
 
 /// A square matrix, row by row.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
-pub(super) struct Matrix {
+pub(crate) struct Matrix {
     /// Rows.
-    pub(super) size: usize,
+    pub(crate) size: usize,
     /// Entries.
-    pub(super) entries: Vec<Id>,
+    pub(crate) entries: Vec<Id>,
 }
 
 /// Nodes in the order in which they were made: operands come first.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Graph {
+pub(crate) struct Graph {
     nodes: Vec<Node>,
     known: FxHashMap<Node, Id>,
     matrices: Vec<Matrix>,
@@ -80,37 +80,37 @@ pub(super) struct Graph {
 
 impl Graph {
     /// How many nodes there are.
-    pub(super) fn len(&self) -> usize {
+    pub(crate) fn len(&self) -> usize {
         self.nodes.len()
     }
 
     /// All nodes.
-    pub(super) fn ids(&self) -> impl Iterator<Item = Id> + use<> {
+    pub(crate) fn ids(&self) -> impl Iterator<Item = Id> + use<> {
         (0..self.nodes.len()).map(id)
     }
 
     /// What a node is.
-    pub(super) fn node(&self, Id(id): Id) -> &Node {
+    pub(crate) fn node(&self, Id(id): Id) -> &Node {
         &self.nodes[id as usize]
     }
 
     /// A node that was made already.
-    pub(super) fn find(&self, node: &Node) -> Option<Id> {
+    pub(crate) fn find(&self, node: &Node) -> Option<Id> {
         self.known.get(node).copied()
     }
 
     /// A solved system.
-    pub(super) fn solution(&self, solution: u32) -> &Solution {
+    pub(crate) fn solution(&self, solution: u32) -> &Solution {
         &self.solutions[solution as usize]
     }
 
     /// The matrix of a system.
-    pub(super) fn matrix(&self, matrix: u32) -> &Matrix {
+    pub(crate) fn matrix(&self, matrix: u32) -> &Matrix {
         &self.matrices[matrix as usize]
     }
 
     /// The operands of a node.
-    pub(super) fn operands(&self, id: Id) -> Vec<Id> {
+    pub(crate) fn operands(&self, id: Id) -> Vec<Id> {
         match self.node(id) {
             Node::Argument(_) | Node::Constant(_) => Vec::new(),
             Node::Negate(a) | Node::Function(_, a) => vec![*a],
@@ -127,7 +127,7 @@ impl Graph {
     }
 
     /// A node as it stands.
-    pub(super) fn intern(&mut self, node: Node) -> Id {
+    pub(crate) fn intern(&mut self, node: Node) -> Id {
         let nodes = &mut self.nodes;
         *self.known.entry(node).or_insert_with_key(|node| {
             nodes.push(node.clone());
@@ -136,12 +136,12 @@ impl Graph {
     }
 
     /// A matrix to be factorised.
-    pub(super) fn factorise(&mut self, size: usize, entries: Vec<Id>) -> u32 {
+    pub(crate) fn factorise(&mut self, size: usize, entries: Vec<Id>) -> u32 {
         position(&mut self.matrices, Matrix { size, entries })
     }
 
     /// The unknowns of a system.
-    pub(super) fn solve(&mut self, matrix: u32, right: Vec<Id>) -> Vec<Id> {
+    pub(crate) fn solve(&mut self, matrix: u32, right: Vec<Id>) -> Vec<Id> {
         let rows = right.len();
         let solution = position(&mut self.solutions, Solution { matrix, right });
         let row = |row| Node::Unknown {
@@ -152,17 +152,17 @@ impl Graph {
     }
 
     /// An argument.
-    pub(super) fn argument(&mut self, argument: Argument) -> Id {
+    pub(crate) fn argument(&mut self, argument: Argument) -> Id {
         self.intern(Node::Argument(argument))
     }
 
     /// A whole number.
-    pub(super) fn number(&mut self, number: i64) -> Id {
+    pub(crate) fn number(&mut self, number: i64) -> Id {
         self.intern(Node::Constant(Rational::new(number, 1)))
     }
 
     /// The value of a node that is a number.
-    pub(super) fn constant(&self, id: Id) -> Option<&Rational> {
+    pub(crate) fn constant(&self, id: Id) -> Option<&Rational> {
         match self.node(id) {
             Node::Constant(number) => Some(number),
             _ => None,
@@ -170,7 +170,7 @@ impl Graph {
     }
 
     /// `-a`
-    pub(super) fn negate(&mut self, a: Id) -> Id {
+    pub(crate) fn negate(&mut self, a: Id) -> Id {
         match self.node(a) {
             Node::Negate(a) => *a,
             Node::Binary(Operation::Subtract, left, right) => {
@@ -182,7 +182,7 @@ impl Graph {
     }
 
     /// `a + b`
-    pub(super) fn add(&mut self, a: Id, b: Id) -> Id {
+    pub(crate) fn add(&mut self, a: Id, b: Id) -> Id {
         if let Node::Negate(b) = *self.node(b) {
             return self.subtract(a, b);
         }
@@ -193,7 +193,7 @@ impl Graph {
     }
 
     /// `a - b`
-    pub(super) fn subtract(&mut self, a: Id, b: Id) -> Id {
+    pub(crate) fn subtract(&mut self, a: Id, b: Id) -> Id {
         if let Node::Negate(b) = *self.node(b) {
             return self.add(a, b);
         }
@@ -201,7 +201,7 @@ impl Graph {
     }
 
     /// `a * b`
-    pub(super) fn multiply(&mut self, a: Id, b: Id) -> Id {
+    pub(crate) fn multiply(&mut self, a: Id, b: Id) -> Id {
         for (number, other) in [(a, b), (b, a)] {
             if let Some(number) = self.constant(number) {
                 if number.is_one() {
@@ -227,13 +227,13 @@ impl Graph {
     }
 
     /// `1 / a`
-    pub(super) fn reciprocal(&mut self, a: Id) -> Id {
+    pub(crate) fn reciprocal(&mut self, a: Id) -> Id {
         let one = self.number(1);
         self.intern(Node::Binary(Operation::Divide, one, a))
     }
 
     /// A function of one argument.
-    pub(super) fn function(&mut self, function: Function, a: Id) -> Id {
+    pub(crate) fn function(&mut self, function: Function, a: Id) -> Id {
         self.intern(Node::Function(function, a))
     }
 }
@@ -252,6 +252,6 @@ fn id(index: usize) -> Id {
 }
 
 /// Schedules are far shorter.
-pub(super) fn count(index: usize) -> u32 {
+pub(crate) fn count(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }

@@ -7,7 +7,7 @@ use crate::schedule::{Argument, ResultArray, Schedule, Step, Tree, Value};
 use crate::symbolic::Function;
 
 /// The operations that named results need, each bound to a value of its own.
-pub(super) fn bind(graph: &Graph, results: Vec<(&str, Vec<Id>)>) -> Schedule {
+pub(crate) fn bind(graph: &Graph, results: Vec<(&str, Vec<Id>)>) -> Schedule {
     let mut binding = Binding {
         graph,
         live: live(graph, results.iter().flat_map(|(_, entries)| entries)),
@@ -37,7 +37,7 @@ pub(super) fn bind(graph: &Graph, results: Vec<(&str, Vec<Id>)>) -> Schedule {
 }
 
 /// Which nodes some others need.
-pub(super) fn live<'a>(graph: &Graph, needed: impl Iterator<Item = &'a Id>) -> Vec<bool> {
+pub(crate) fn live<'a>(graph: &Graph, needed: impl Iterator<Item = &'a Id>) -> Vec<bool> {
     let mut live = vec![false; graph.len()];
     let mut open: Vec<Id> = needed.copied().collect();
     while let Some(id) = open.pop() {

@@ -1,0 +1,260 @@
+//! A simulation at its start, and what an integration of it means.
+
+use super::describe::describe_state;
+use super::validity::Limits;
+use super::{Breach, LOST, Observed, Response, Simulation, SimulationError};
+use crate::condition::velocity_condition;
+use crate::inputs::ModelInputs;
+use crate::integrate::{
+    BlockMotion, BlockSolver, EmbeddedPair, Ending, Event, Failure, IntegrationError, Observer,
+    Outcome, Projection, Range, Switches, Watch,
+};
+use crate::lanes::LANES;
+use crate::model::{At, Model};
+use crate::positions::{Moving, Positions};
+
+/// A simulation whose arguments fit and whose start is known.
+pub struct Prepared<'a> {
+    pub(super) model: &'a dyn Model,
+    pub(super) inputs: &'a ModelInputs<'a>,
+    pub(super) p: &'a [f64],
+    start: Vec<f64>,
+    span: [f64; 2],
+    switching_times: Vec<f64>,
+    ranges: Vec<Range>,
+    limits: Limits<'a>,
+    /// Limits beyond which it begins, and whether one of them ends it.
+    breaches: Vec<Breach>,
+    ends_at_once: bool,
+}
+
+impl std::fmt::Debug for Prepared<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("Prepared")
+            .field("model", &self.model.info().name)
+            .field("start", &self.start)
+            .field("span", &self.span)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Prepared<'a> {
+    /// Checks a simulation and finds its start. `inputs` are those of its model and source.
+    pub fn new(
+        simulation: &'a Simulation<'_>,
+        inputs: &'a ModelInputs<'a>,
+    ) -> Result<Self, SimulationError> {
+        simulation.check()?;
+        let (model, p) = (simulation.model, simulation.parameters.as_slice());
+        let start = consistent_start(simulation, inputs)?;
+        determined_start(simulation, inputs, &start)?;
+        let limits = Limits::new(model, inputs, p, simulation.validity);
+        let [from, to] = simulation.span;
+        let (breaches, ends_at_once) = limits.at_start(from, &start);
+        Ok(Self {
+            model,
+            inputs,
+            p,
+            start,
+            span: [from, if ends_at_once { from } else { to }],
+            switching_times: inputs.switching_times(),
+            ranges: ranges(simulation),
+            limits,
+            breaches,
+            ends_at_once,
+        })
+    }
+
+    /// The state at the start, in SI.
+    pub fn start(&self) -> &[f64] {
+        &self.start
+    }
+
+    /// Its parameters, in SI.
+    pub fn parameters(&self) -> &[f64] {
+        self.p
+    }
+
+    /// Start and end in s.
+    pub fn span(&self) -> [f64; 2] {
+        self.span
+    }
+
+    /// What the integration has to look out for. The limits follow the simulation's own events.
+    pub(super) fn watch<'w>(&'w self, mut events: Vec<Event<'w>>) -> Watch<'w> {
+        for event in self.limits.events() {
+            events.push(event);
+        }
+        Watch {
+            switching_times: &self.switching_times,
+            switches: switches(self.model, self.p, &self.start),
+            ranges: &self.ranges,
+            projection: projection(self.model, self.p, self.inputs),
+            events,
+        }
+    }
+
+    /// The motion that an integration found. `own` is the number of the simulation's own events.
+    pub(super) fn observed(
+        &self,
+        state: Vec<f64>,
+        result: Result<Outcome, IntegrationError>,
+        own: usize,
+    ) -> Result<Observed, SimulationError> {
+        let (t, hits, statistics, ending) = match result {
+            Ok(outcome) => {
+                let ending = match outcome.ending {
+                    Ending::Event(event) if event >= own => Ending::Stopped,
+                    Ending::Finished if self.ends_at_once => Ending::Stopped,
+                    ending => ending,
+                };
+                (outcome.t, outcome.hits, outcome.statistics, Ok(ending))
+            }
+            Err(IntegrationError::Failure(failure)) => {
+                let Failure { t, hits, .. } = failure;
+                (t, hits, failure.statistics, Err(failure.cause))
+            }
+            Err(IntegrationError::InvalidArgument { what, value }) => {
+                return Err(SimulationError::Argument { what, value });
+            }
+        };
+        let (mut events, mut breaches) = (Vec::new(), self.breaches.clone());
+        for hit in hits {
+            match hit.event.checked_sub(own) {
+                None => events.push(hit),
+                Some(limit) => breaches.extend(self.limits.found(limit, hit)),
+            }
+        }
+        Ok(Observed {
+            t,
+            state,
+            ending,
+            events,
+            breaches,
+            statistics,
+        })
+    }
+}
+
+/// What a motion of a block is shown to.
+#[derive(Debug)]
+pub struct Viewer<'w, O> {
+    /// Events to be found.
+    pub events: Vec<Event<'w>>,
+    /// Who sees the steps.
+    pub observer: O,
+}
+
+/// Integrates up to eight simulations at once. `rates(t, x, ẋ)` are those under the inputs of each: those of
+/// motion l are at `x[i][l]`. Every motion is the one that it would be alone.
+///
+/// The options are those of the first simulation.
+///
+/// # Panics
+///
+/// If there are more than eight simulations, more or fewer viewers, or states of different lengths.
+pub fn observe_block<'w, P: EmbeddedPair, O: Observer>(
+    solver: &mut BlockSolver<P>,
+    options: &crate::integrate::Options,
+    prepared: &'w [Prepared<'w>],
+    viewers: Vec<Viewer<'w, O>>,
+    rates: impl FnMut(&[f64; LANES], &[[f64; LANES]], &mut [[f64; LANES]]),
+) -> Vec<Result<(Observed, O), SimulationError>> {
+    assert_eq!(prepared.len(), viewers.len(), "a viewer for each motion");
+    let mut own = Vec::new();
+    let motions = prepared.iter().zip(viewers).map(|(prepared, viewer)| {
+        own.push(viewer.events.len());
+        BlockMotion {
+            span: prepared.span,
+            x: prepared.start.clone(),
+            watch: prepared.watch(viewer.events),
+            observer: viewer.observer,
+        }
+    });
+    let mut motions: Vec<BlockMotion<'_, O>> = motions.collect();
+    let results = solver.integrate(rates, &mut motions, options);
+    let ended = prepared.iter().zip(motions).zip(results).zip(own);
+    ended
+        .map(|(((prepared, motion), result), own)| {
+            let observed = prepared.observed(motion.x, result, own)?;
+            Ok((observed, motion.observer))
+        })
+        .collect()
+}
+
+/// The initial state with its dependent coordinates found by Newton's method from their values as guesses.
+fn consistent_start(
+    simulation: &Simulation<'_>,
+    inputs: &ModelInputs<'_>,
+) -> Result<Vec<f64>, SimulationError> {
+    let (model, t) = (simulation.model, simulation.span[0]);
+    let mut x = simulation.initial_state.clone();
+    if let Some(mut positions) = Positions::of(model) {
+        let mut u = vec![0.0; model.info().input_len()];
+        inputs.fill(t, &x, &mut u);
+        let p = &simulation.parameters;
+        let restored = positions.restore(model, t, &mut x, &u, p, Moving::Dependent);
+        restored.map_err(|source| SimulationError::Inconsistent {
+            source,
+            message: source.describe(model.info()),
+        })?;
+    }
+    Ok(x)
+}
+
+/// An error where rounding alone determines the generalised velocities.
+fn determined_start(
+    simulation: &Simulation<'_>,
+    inputs: &ModelInputs<'_>,
+    x: &[f64],
+) -> Result<(), SimulationError> {
+    let (model, t, p) = (simulation.model, simulation.span[0], &simulation.parameters);
+    let mut u = vec![0.0; model.info().input_len()];
+    inputs.fill(t, x, &mut u);
+    let condition = velocity_condition(model, At { t, x, u: &u, p });
+    if condition < LOST {
+        return Ok(());
+    }
+    let state = describe_state(x, model.info());
+    Err(SimulationError::Undetermined { condition, state })
+}
+
+/// The states with a finite limit, if they are watched.
+fn ranges(simulation: &Simulation<'_>) -> Vec<Range> {
+    let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
+    let states = simulation.model.info().states.iter().enumerate();
+    states
+        .filter(|(_, state)| simulation.validity.ranges == Response::Stop && limited(state.range))
+        .map(|(component, state)| Range {
+            component,
+            limits: state.range,
+        })
+        .collect()
+}
+
+/// The way back to the position constraints of a model.
+pub(super) fn projection<'a>(
+    model: &'a dyn Model,
+    p: &'a [f64],
+    inputs: &'a ModelInputs<'_>,
+) -> Option<Projection<'a>> {
+    let mut positions = Positions::of(model)?;
+    let mut u = vec![0.0; model.info().input_len()];
+    Some(Projection(Box::new(move |t, x| {
+        inputs.fill(t, x, &mut u);
+        let restored = positions.restore(model, t, x, &u, p, Moving::All);
+        restored.is_ok()
+    })))
+}
+
+/// What time alone switches in a model.
+fn switches<'a>(model: &'a dyn Model, p: &'a [f64], x: &'a [f64]) -> Option<Switches<'a>> {
+    // They depend neither on the state nor on the inputs, but every function has these arguments.
+    let u = vec![0.0; model.info().input_len()];
+    let count = model.switch_len();
+    (count > 0).then(|| Switches {
+        count,
+        function: Box::new(move |t, values| model.switches(At { t, x, u: &u, p }, values)),
+    })
+}

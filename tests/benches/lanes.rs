@@ -1,188 +1,132 @@
-//! Emitted equations in blocks of eight places, and one place at a time with the same functions.
+//! Equations in blocks of eight places and one by one, and motions by every integrator, for specs of any mechanism.
 //!
-//! `cargo bench -p appell-tests --bench lanes`. Prints nanoseconds a place, the fastest of many rounds in
-//! which all rows take turns: compare rows of one run.
+//! `cargo bench -p appell-tests --bench lanes -- [SPEC…]` prints nanoseconds a place and microseconds a motion, the
+//! fastest of many rounds in which all rows take turns: compare rows of one run. Without specs, those of the shipped
+//! mechanisms below. `--json` is for programs, such as `benches/lanes/run.py`, which has the peers beside it.
 
 use std::hint::black_box;
+use std::path::PathBuf;
 use std::time::Instant;
 
-use appell_models::unicycle::Unicycle;
+use appell_codegen::compile;
+use appell_codegen::jit::{Elementary, JitModel, Target};
+use appell_codegen::program::FunctionKind;
+use appell_runtime::Simulation;
+use appell_runtime::integrate::{NoObserver, Options};
 use appell_runtime::lanes::{AtLanes, LANES, Level};
 use appell_runtime::model::{At, Model};
+use appell_runtime::simulate::Method;
 use appell_test_kit::Random;
+use serde_json::{Value, json};
 
-const STATES: usize = 10;
-const PARAMETERS: [f64; 4] = [10.0, 5.0, 0.3, 9.81];
+/// The shipped mechanisms that are measured by default.
+const SHIPPED: [&str; 3] = ["unicycle", "euc_3dof", "bicycle"];
 /// Blocks in the first cache, in the second, and far beyond all of them: a million places.
 const SIZES: [(&str, usize); 3] = [("L1", 16), ("L2", 128), ("memory", 125_000)];
 /// Blocks that a round works through at least: short enough to fall into a quiet moment of the machine.
 const BLOCKS: usize = 512;
-const ROUNDS: usize = 1000;
+const ROUNDS: usize = 400;
+/// Tolerances of the motions.
+const TOLERANCES: [f64; 3] = [1e-8, 1e-10, 1e-13];
+const MOTIONS: usize = 40;
+/// Duration of the motions in s, unless `--seconds` tells another.
+const SECONDS: f64 = 2.0;
+/// Angles and rates about the initial state, in SI, so that no two places are alike.
+const SPREAD: f64 = 0.05;
 
-type Lanes<const LEN: usize> = [[f64; LANES]; LEN];
+type Blocks = Vec<[f64; LANES]>;
 
-/// Places with room for what is computed there.
+/// Places with room for what is computed there. A block has all its numbers side by side.
 struct Places {
-    x: Vec<Lanes<STATES>>,
-    u: Vec<Lanes<1>>,
-    rates: Vec<Lanes<STATES>>,
-    a: Vec<Lanes<{ STATES * STATES }>>,
-    b: Vec<Lanes<STATES>>,
+    sizes: [usize; 3],
+    x: Blocks,
+    u: Blocks,
+    p: Blocks,
+    rates: Blocks,
+    a: Blocks,
+    b: Blocks,
 }
 
 impl Places {
-    fn new(blocks: usize, matrices: bool) -> Self {
+    fn new(model: &dyn Model, blocks: usize, matrices: bool) -> Self {
+        let info = model.info();
+        let sizes = [info.state_len(), info.input_len(), info.parameter_len()];
+        let [n, m, _] = sizes;
         let mut random = Random::of("lanes");
-        let mut number = || random.between(-1.0, 1.0);
+        let start = info.initial_state();
+        let mut near = |i: usize| start[i % n] + random.between(-SPREAD, SPREAD);
+        let x = (0..blocks * n).map(|i| std::array::from_fn(|_| near(i)));
         let room = if matrices { blocks } else { 1 };
+        let parameters = info.default_parameters();
         Self {
-            x: (0..blocks)
-                .map(|_| std::array::from_fn(|_| std::array::from_fn(|_| number())))
-                .collect(),
-            u: vec![[[5.0; LANES]]; blocks],
-            rates: vec![[[0.0; LANES]; STATES]; blocks],
-            a: vec![[[0.0; LANES]; STATES * STATES]; room],
-            b: vec![[[0.0; LANES]; STATES]; room],
+            sizes,
+            x: x.collect(),
+            u: vec![[0.5; LANES]; blocks * m],
+            p: parameters.iter().map(|&p| [p; LANES]).collect(),
+            rates: vec![[0.0; LANES]; blocks * n],
+            a: vec![[0.0; LANES]; room * n * n],
+            b: vec![[0.0; LANES]; room * n * m],
         }
+    }
+
+    /// The numbers of one place, and what is computed there.
+    fn place(&self, block: usize, lane: usize) -> [Vec<f64>; 3] {
+        let [n, m, _] = self.sizes;
+        let of = |all: &[[f64; LANES]]| all.iter().map(|number| number[lane]).collect();
+        [
+            of(&self.x[block * n..][..n]),
+            of(&self.u[block * m..][..m]),
+            of(&self.p),
+        ]
     }
 }
 
 /// What is measured, at a block.
-type Task = fn(&mut Places, usize);
+type Task = fn(&dyn Model, &mut Places, usize);
 
-const P: Lanes<4> = [
-    [PARAMETERS[0]; LANES],
-    [PARAMETERS[1]; LANES],
-    [PARAMETERS[2]; LANES],
-    [PARAMETERS[3]; LANES],
-];
+const ZERO: [f64; LANES] = [0.0; LANES];
 
-fn at(x: &Lanes<STATES>, u: &Lanes<1>, evaluate: impl FnOnce(AtLanes<'_>)) {
-    let t = &[0.0; LANES];
-    evaluate(AtLanes { t, x, u, p: &P });
+fn rates_in_lanes(model: &dyn Model, places: &mut Places, i: usize) {
+    let [n, m, _] = places.sizes;
+    let at = AtLanes {
+        t: &ZERO,
+        x: &places.x[i * n..][..n],
+        u: &places.u[i * m..][..m],
+        p: &places.p,
+    };
+    model.rates_lanes(at, &mut places.rates[i * n..][..n]);
 }
 
-fn rates_in_lanes(places: &mut Places, i: usize) {
-    let (x, u, rates) = (&places.x[i], &places.u[i], &mut places.rates[i]);
-    at(x, u, |at| Unicycle.rates_lanes(at, rates));
-}
-
-fn jacobians_in_lanes(places: &mut Places, i: usize) {
-    let (x, u, rates) = (&places.x[i], &places.u[i], &mut places.rates[i]);
-    let (a, b) = (&mut places.a[i], &mut places.b[i]);
-    at(x, u, |at| Unicycle.jacobians_lanes(at, rates, a, b));
+fn jacobians_in_lanes(model: &dyn Model, places: &mut Places, i: usize) {
+    let [n, m, _] = places.sizes;
+    let at = AtLanes {
+        t: &ZERO,
+        x: &places.x[i * n..][..n],
+        u: &places.u[i * m..][..m],
+        p: &places.p,
+    };
+    let (a, b) = (
+        &mut places.a[i * n * n..][..n * n],
+        &mut places.b[i * n * m..][..n * m],
+    );
+    model.jacobians_lanes(at, &mut places.rates[i * n..][..n], a, b);
 }
 
 /// The same bytes without a computation: what memory allows.
-fn copy(places: &mut Places, i: usize) {
-    places.rates[i] = places.x[i];
-    places.rates[i][0] = places.u[i][0];
+fn copy(_: &dyn Model, places: &mut Places, i: usize) {
+    let n = places.sizes[0];
+    places.rates[i * n..][..n].copy_from_slice(&places.x[i * n..][..n]);
 }
 
-/// Calls a function of one place for each lane.
-fn each_place(places: &mut Places, i: usize, evaluate: impl Fn(At<'_>, &mut [f64; STATES])) {
-    for lane in 0..LANES {
-        let x = places.x[i].map(|x| x[lane]);
-        let at = At {
-            t: 0.0,
-            x: &x,
-            u: &[places.u[i][0][lane]],
-            p: &PARAMETERS,
-        };
-        let mut rates = [0.0; STATES];
-        evaluate(at, &mut rates);
-        black_box(rates);
-    }
-}
-
-fn rates_own(places: &mut Places, i: usize) {
-    each_place(places, i, |at, rates| Unicycle.rates_own(at, rates));
-}
-
-fn rates_standard(places: &mut Places, i: usize) {
-    each_place(places, i, |at, rates| Unicycle.rates(at, rates));
-}
-
-/// The explicit accelerations of the steering paper as printed, with the standard library.
-fn rates_by_hand(places: &mut Places, i: usize) {
-    each_place(places, i, |at, rates| {
-        *rates = hand(at.x, at.u[0], black_box(&PARAMETERS));
-    });
-}
-
-#[inline(never)]
-fn hand(x: &[f64], u: f64, p: &[f64; 4]) -> [f64; STATES] {
-    let (w1, w2, w3, s, psi, theta, r) = (x[0], x[1], x[2], x[3], x[6], x[7], x[9]);
-    let [m, m0, radius, g] = *p;
-    let (sin, cos) = theta.sin_cos();
-    let (sin_psi, cos_psi) = psi.sin_cos();
-    let tan = sin / cos;
-    let (rr, rad2) = (r * r, radius * radius);
-    let d1 = 5.0 * m * rad2 + 4.0 * m0 * rr;
-    let d2 = 3.0 * m * rad2 + 2.0 * m0 * rad2 + 12.0 * m0 * rr;
-    let tilt = (4.0 * m0 * radius * r * w1 * w1
-        - (m * rad2 + 4.0 * m0 * rr) * tan * w3 * w3
-        - 8.0 * m0 * r * w1 * s
-        + 2.0 * radius * (3.0 * m * radius + 2.0 * m0 * r * tan) * w2 * w3
-        - 4.0 * m0 * g * r * cos
-        + 4.0 * m * g * radius * sin
-        + 4.0 * radius * u)
-        / d1;
-    let spin = 2.0
-        * (-2.0 * m0 * radius * r * w1 * w2 - (m * rad2 + m0 * rad2 + 4.0 * m0 * rr) * w1 * w3
-            + 2.0 * m0 * radius * w3 * s)
-        / d2;
-    let turn = (-2.0 * (3.0 * m + 2.0 * m0) * rad2 * w1 * w2
-        + (3.0 * m * rad2 * tan + 2.0 * m0 * (rad2 * tan + 2.0 * radius * r + 6.0 * rr * tan))
-            * w1
-            * w3
-        - 24.0 * m0 * r * w3 * s)
-        / d2;
-    let slide = ((5.0 * m * rad2 + 4.0 * m0 * (rad2 + rr)) * r * w1 * w1
-        + (5.0 * m * rad2 * r - 4.0 * m0 * radius * rr * tan + 4.0 * m0 * rr * r
-            - m * rad2 * radius * tan)
-            * w3
-            * w3
-        - 8.0 * m0 * radius * r * w1 * s
-        + radius * (m * rad2 + 4.0 * m0 * (radius * r * tan - rr)) * w2 * w3
-        - (m * rad2 + 4.0 * m0 * rr) * g * sin
-        - 4.0 * m0 * g * radius * r * cos
-        + (5.0 * m / m0 * rad2 + 4.0 * rad2 + 4.0 * rr) * u)
-        / d1;
-    let forward = w1 * radius * sin_psi * cos + w2 * radius * cos_psi;
-    let sideways = -w1 * radius * cos_psi * cos + w2 * radius * sin_psi;
-    [
-        tilt,
-        spin,
-        turn,
-        slide,
-        forward,
-        sideways,
-        w3 / cos,
-        w1,
-        w2 - w3 * tan,
-        s,
-    ]
-}
-
-fn main() {
-    println!("widest vectors of this processor: {:?}", Level::best());
-    println!("{:48} {:>8}", "unicycle, ns a place, one core", "fastest");
+/// Nanoseconds a place, in caches and from memory.
+fn places(model: &dyn Model, told: &mut Vec<Value>) {
     for (place, blocks) in SIZES {
         let in_cache = blocks < BLOCKS;
-        let mut rows: Vec<(&str, Task)> = vec![
-            ("rates in lanes", rates_in_lanes),
-            ("copy of the same numbers", copy),
-        ];
+        let mut rows: Vec<(&str, Task)> = vec![("rates", rates_in_lanes), ("copy", copy)];
         if in_cache {
-            rows.extend([
-                ("rates, A, B in lanes", jacobians_in_lanes as Task),
-                ("rates, one place, own functions", rates_own),
-                ("rates, one place, standard functions", rates_standard),
-                ("rates, one place, typed by hand", rates_by_hand),
-            ]);
+            rows.push(("rates, A, B", jacobians_in_lanes));
         }
-        let mut places = Places::new(blocks, in_cache);
+        let mut places = Places::new(model, blocks, in_cache);
         let repetitions = BLOCKS.div_ceil(blocks);
         let mut fastest = vec![f64::INFINITY; rows.len()];
         let rounds = if in_cache { ROUNDS } else { ROUNDS / 20 };
@@ -191,16 +135,144 @@ fn main() {
                 let start = Instant::now();
                 for _ in 0..repetitions {
                     for i in 0..blocks {
-                        task(&mut places, i);
+                        task(model, &mut places, i);
                     }
-                    black_box(&mut places);
+                    black_box(&mut places.rates);
                 }
                 let count = (repetitions * blocks * LANES) as f64;
                 *fastest = fastest.min(start.elapsed().as_secs_f64() * 1e9 / count);
             }
         }
-        for ((name, _), fastest) in rows.iter().zip(&fastest) {
-            println!("{:48} {fastest:8.2}", format!("{name}, {place}"));
+        for ((name, _), ns) in rows.iter().zip(&fastest) {
+            told.push(json!({ "row": format!("{name} in lanes"), "where": place, "ns": ns }));
+        }
+    }
+}
+
+/// Nanoseconds for one place, independent places one after the other.
+fn one_place(model: &dyn Model, told: &mut Vec<Value>) {
+    let places = Places::new(model, 16, false);
+    let all: Vec<[Vec<f64>; 3]> = (0..16 * LANES)
+        .map(|i| places.place(i / LANES, i % LANES))
+        .collect();
+    let mut rates = vec![0.0; places.sizes[0]];
+    let mut fastest = [f64::INFINITY; 2];
+    for _ in 0..ROUNDS {
+        for (own, fastest) in [false, true].into_iter().zip(&mut fastest) {
+            let start = Instant::now();
+            for [x, u, p] in &all {
+                let at = At { t: 0.0, x, u, p };
+                if own {
+                    model.rates_own(at, &mut rates);
+                } else {
+                    model.rates(at, &mut rates);
+                }
+                black_box(&mut rates);
+            }
+            let count = all.len() as f64;
+            *fastest = fastest.min(start.elapsed().as_secs_f64() * 1e9 / count);
+        }
+    }
+    for (row, ns) in ["standard functions", "own functions"].iter().zip(fastest) {
+        told.push(json!({ "row": format!("rates, one place, {row}"), "where": "L1", "ns": ns }));
+    }
+}
+
+/// Microseconds and errors of one motion, by method and tolerance.
+fn motions(model: &dyn Model, seconds: f64, told: &mut Vec<Value>) {
+    let end = |method: Method, tolerance: f64| {
+        let simulation = Simulation {
+            span: [0.0, seconds],
+            method,
+            options: Options::with_tolerances(tolerance, tolerance),
+            ..Simulation::new(model)
+        };
+        simulation.observe(|_, _| NoObserver)
+    };
+    // By another method than the one that is measured.
+    let exact = |method: Method| {
+        let other = if method == Method::Taylor { Method::Dop853 } else { Method::Taylor };
+        end(other, 1e-14)
+    };
+    for method in [Method::Taylor, Method::Dop853] {
+        let Ok((exact, _)) = exact(method) else { continue };
+        for tolerance in TOLERANCES {
+            let Ok((found, _)) = end(method, tolerance) else { continue };
+            let off = found.state.iter().zip(&exact.state);
+            let error = off.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
+            let mut fastest = f64::INFINITY;
+            for _ in 0..MOTIONS {
+                let start = Instant::now();
+                let moved = end(method, tolerance);
+                black_box(&moved.is_ok());
+                fastest = fastest.min(start.elapsed().as_secs_f64() * 1e6);
+            }
+            told.push(json!({
+                "row": format!("motion, {method:?}"), "seconds": seconds, "tolerance": tolerance, "us": fastest,
+                "error": error, "steps": found.statistics.steps,
+            }));
+        }
+    }
+}
+
+fn main() {
+    let mut specs: Vec<PathBuf> = Vec::new();
+    let (mut as_json, mut seconds) = (false, SECONDS);
+    let mut arguments = std::env::args().skip(1);
+    while let Some(argument) = arguments.next() {
+        match argument.as_str() {
+            "--json" => as_json = true,
+            "--seconds" => seconds = arguments.next().and_then(|s| s.parse().ok()).unwrap_or(SECONDS),
+            // Of cargo.
+            "--bench" => {}
+            path => specs.push(path.into()),
+        }
+    }
+    let shipped = SHIPPED.map(|name| {
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../generated/mechanisms");
+        PathBuf::from(root).join(format!("{name}.toml"))
+    });
+    if specs.is_empty() {
+        specs.extend(shipped);
+    }
+    let own = Target {
+        elementary: Elementary::Own,
+        ..Target::default()
+    };
+    let mut all = Vec::new();
+    for spec in specs {
+        let text = std::fs::read_to_string(&spec).expect("a spec");
+        let name = spec.to_string_lossy().into_owned();
+        let program = compile(&name, &text, &FunctionKind::STANDARD)
+            .unwrap_or_else(|report| panic!("{}", report.plain()));
+        let model = JitModel::new(&program).expect("a processor with a compiler").with_lanes_for(own);
+        let mut told = Vec::new();
+        places(&model, &mut told);
+        one_place(&model, &mut told);
+        motions(&model, seconds, &mut told);
+        if !as_json {
+            print(&program.info.name, &told);
+        }
+        all.push(json!({ "mechanism": program.info.name, "spec": name, "rows": told }));
+    }
+    if as_json {
+        println!("{}", json!({ "level": format!("{:?}", Level::best()), "mechanisms": all }));
+    }
+}
+
+fn print(name: &str, told: &[Value]) {
+    println!("{name}; widest vectors of this processor: {:?}", Level::best());
+    for row in told {
+        let what = row["row"].as_str().unwrap_or_default();
+        match row["ns"].as_f64() {
+            Some(ns) => println!("  {what:40} {:8} {ns:10.2} ns", row["where"].as_str().unwrap_or_default()),
+            None => println!(
+                "  {what:40} {:8.0e} {:10.2} us  error {:.1e}, {} steps",
+                row["tolerance"].as_f64().unwrap_or_default(),
+                row["us"].as_f64().unwrap_or_default(),
+                row["error"].as_f64().unwrap_or_default(),
+                row["steps"],
+            ),
         }
     }
 }

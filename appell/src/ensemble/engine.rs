@@ -1,6 +1,5 @@
 //! Runs the cases of a study, eight motions at once.
 
-use std::array::from_fn;
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
@@ -113,8 +112,8 @@ impl Ensemble {
             }
         }
         for (variant, mut rides) in self.variants.iter().zip(rides) {
-            for block in rides.chunks_mut(LANES) {
-                self.block(task, variant, block, solvers);
+            if !rides.is_empty() {
+                self.ride(task, variant, &mut rides, solvers);
             }
         }
         rows
@@ -165,8 +164,8 @@ impl Ensemble {
         }
     }
 
-    /// Runs up to eight motions under one spec and law.
-    fn block(
+    /// Runs motions under one spec and law.
+    fn ride(
         &self,
         task: &Task,
         variant: &Variant,
@@ -302,7 +301,9 @@ impl Ensemble {
             max_steps: max_steps.unwrap_or(options.max_steps),
             ..options
         };
-        let rates = |t: &Block, x: &[Block], out: &mut [Block]| rates.write(t, x, out);
+        let rates = |which: &[usize; LANES], t: &Block, x: &[Block], out: &mut [Block]| {
+            rates.write(which, t, x, out);
+        };
         match motion.method {
             Method::Dop853 => {
                 observe_block(&mut solvers.dop853, &options, prepared, viewers, rates)
@@ -317,10 +318,13 @@ impl Ensemble {
 /// A number of each of eight motions.
 type Block = [f64; LANES];
 
-/// The rates of the motions of a block under their inputs.
+/// The rates of motions under their inputs.
 struct Rates<'r> {
     variant: &'r Variant,
     sources: Vec<&'r Noisy<'r>>,
+    parameters: Vec<&'r [f64]>,
+    /// Whose parameters the lanes have.
+    which: [Option<usize>; LANES],
     p: Vec<Block>,
     u: Vec<Block>,
     /// State and inputs of one motion.
@@ -331,31 +335,34 @@ impl<'r> Rates<'r> {
     fn new(
         variant: &'r Variant,
         sources: Vec<&'r Noisy<'r>>,
-        prepared: &[Prepared<'_>],
+        prepared: &'r [Prepared<'_>],
     ) -> Self {
-        let info = variant.model.info();
-        // Where there is no motion, the first one's parameters keep the arithmetic ordinary.
-        let of = |l: usize| prepared.get(l).or(prepared.first());
-        let parameter = |i: usize| from_fn(|l| of(l).map_or(0.0, |p| p.parameters()[i]));
-        let inputs = variant.closed.inputs();
+        let (info, inputs) = (variant.model.info(), variant.closed.inputs());
         Self {
             variant,
             sources,
-            p: (0..info.parameter_len()).map(parameter).collect(),
+            parameters: prepared.iter().map(Prepared::parameters).collect(),
+            which: [None; LANES],
+            p: vec![[0.0; LANES]; info.parameter_len()],
             u: vec![[0.0; LANES]; inputs],
             one: [vec![0.0; info.state_len()], vec![0.0; inputs]],
         }
     }
 
-    fn write(&mut self, t: &Block, x: &[Block], rates: &mut [Block]) {
+    fn write(&mut self, which: &[usize; LANES], t: &Block, x: &[Block], rates: &mut [Block]) {
         let closed = &self.variant.closed;
-        if closed.is_driven() {
-            let [state, outside] = &mut self.one;
-            for (l, source) in self.sources.iter().enumerate() {
+        for (l, &motion) in which.iter().enumerate() {
+            if self.which[l].replace(motion) != Some(motion) {
+                for (block, p) in self.p.iter_mut().zip(self.parameters[motion]) {
+                    block[l] = *p;
+                }
+            }
+            if closed.is_driven() {
+                let [state, outside] = &mut self.one;
                 for (state, x) in state.iter_mut().zip(x) {
                     *state = x[l];
                 }
-                source.fill_outside(t[l], state, outside);
+                self.sources[motion].fill_outside(t[l], state, outside);
                 for (u, outside) in self.u.iter_mut().zip(&*outside) {
                     u[l] = *outside;
                 }

@@ -9,7 +9,7 @@ use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
 use super::pairs::EmbeddedPair;
-use super::step_size::{StepSize, first_guess, first_step, norm};
+use super::step_size::{StepSize, first_guess, first_step, norm, powers};
 use super::stops::Stride;
 use super::watch::{End, Observer, Watch, Watcher};
 use crate::lanes::LANES;
@@ -27,14 +27,15 @@ pub struct BlockMotion<'a, O> {
     pub observer: O,
 }
 
-/// An adaptive integrator for up to eight motions of one system, with its work arrays.
+/// An adaptive integrator for many motions of one system, eight at a time, with its work arrays.
 ///
-/// Every operation of a step acts on all motions, and each has a step size, events and an end of its own: it is, bit
-/// for bit, the motion that [`Solver`](super::Solver) gives, whichever others are beside it.
+/// Every operation of a step acts on eight motions, and each has a step size, events and an end of its own: it is, bit
+/// for bit, the motion that [`Solver`](super::Solver) gives, whichever others are beside it. Where one ends, the next
+/// takes its lane.
 #[derive(Debug, Clone)]
 pub struct BlockSolver<P> {
     stages: BlockStages,
-    scale: Vec<Block>,
+    clock: Clock,
     dense: DenseOutput,
     /// States and rates of one motion at both ends of a step.
     ends: [Vec<f64>; 4],
@@ -45,7 +46,7 @@ impl<P> Default for BlockSolver<P> {
     fn default() -> Self {
         Self {
             stages: BlockStages::default(),
-            scale: Vec::new(),
+            clock: Clock::default(),
             dense: DenseOutput::default(),
             ends: Default::default(),
             pair: PhantomData,
@@ -53,9 +54,45 @@ impl<P> Default for BlockSolver<P> {
     }
 }
 
+/// Times of the steps of all lanes.
+#[derive(Debug, Clone, Copy, Default)]
+struct Clock {
+    t: Block,
+    h: Block,
+    t_new: Block,
+    last: Block,
+}
+
+impl Clock {
+    /// Times of a node. Up to a switching time the rates are those before it.
+    fn at(&self, node: f64) -> Block {
+        from_fn(|l| (self.t[l] + node * self.h[l]).min(self.last[l]))
+    }
+
+    /// Times of the ends.
+    fn at_end(&self) -> Block {
+        from_fn(|l| self.t_new[l].min(self.last[l]))
+    }
+
+    /// A lane begins a step.
+    fn set(&mut self, l: usize, t: f64, stride: Stride) {
+        (self.t[l], self.h[l]) = (t, stride.h);
+        (self.t_new[l], self.last[l]) = (stride.t_new, stride.last);
+    }
+
+    /// A lane without a motion stands still where another one is.
+    fn idle(&mut self, l: usize, beside: usize) {
+        let t = self.t[beside];
+        self.set(l, t, Stride::none(t));
+    }
+}
+
 /// A motion on its way.
-struct Lane<'w, 'a, O> {
-    watcher: Watcher<'w, 'a, O>,
+struct Lane<'m, 'a, O> {
+    /// Its number.
+    motion: usize,
+    x: &'m mut [f64],
+    watcher: Watcher<'m, 'a, O>,
     step_size: StepSize,
     statistics: Statistics,
     t: f64,
@@ -67,19 +104,53 @@ struct Lane<'w, 'a, O> {
     end: Option<End>,
 }
 
-impl<O> Lane<'_, '_, O> {
-    fn restarts(&self) -> bool {
-        self.end.is_none() && self.restart
+impl<'m, 'a, O: Observer> Lane<'m, 'a, O> {
+    fn new(motion: usize, of: &'m mut BlockMotion<'a, O>, step_size: StepSize) -> Self {
+        let t = of.span[0];
+        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span);
+        let start = watcher.start(t, &of.x);
+        let mut lane = Self {
+            motion,
+            x: &mut of.x,
+            watcher,
+            step_size,
+            statistics: Statistics::default(),
+            t,
+            next_h: None,
+            restart: true,
+            stride: Stride::none(t),
+            end: start.err().map(|cause| End::failed(t, cause)),
+        };
+        lane.finish_at_end();
+        lane
     }
 
-    /// Start and end of the step.
-    fn interval(&self) -> [f64; 2] {
-        [self.t, self.stride.t_new]
+    fn finish_at_end(&mut self) {
+        if self.end.is_none() && self.t >= self.watcher.stops.end() {
+            self.end = Some(End::finished(self.t));
+        }
     }
 
     fn fail(&mut self, cause: Cause) {
         self.end = Some(End::failed(self.t, cause));
     }
+
+    fn conclude(self) -> Result<Outcome, IntegrationError> {
+        let end = self.end.unwrap_or(End::finished(self.t));
+        self.watcher.conclude(end, self.x, self.statistics)
+    }
+}
+
+/// The lanes of a block; those without a motion are empty.
+type Lanes<'m, 'a, O> = [Option<Lane<'m, 'a, O>>; LANES];
+
+/// The motions that have not ended, by their lanes.
+fn on_their_way<'l, 'm, 'a, O>(
+    lanes: &'l mut Lanes<'m, 'a, O>,
+) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O>)> {
+    let all = lanes.iter_mut().enumerate();
+    all.filter_map(|(l, lane)| Some((l, lane.as_mut()?)))
+        .filter(|(_, lane)| lane.end.is_none())
 }
 
 impl<P: EmbeddedPair> BlockSolver<P> {
@@ -90,13 +161,13 @@ impl<P: EmbeddedPair> BlockSolver<P> {
 
     /// Integrates ẋ = f(t, x) for each motion; returns how each ended.
     ///
-    /// `f(t, x, rates)` writes the rates of eight motions, component by component: `x[i][l]` is state i of motion l.
-    /// Where there are fewer motions, or some have ended, the others are evaluated at states without meaning, and
-    /// what is written there is ignored.
+    /// `f(which, t, x, rates)` writes the rates of eight motions, component by component: `x[i][l]` is state i of motion
+    /// `which[l]`. A lane that no motion is left for is evaluated beside another one, and what is written there is
+    /// ignored.
     ///
     /// # Panics
     ///
-    /// If there are more than eight motions, or their states have different lengths.
+    /// If the states of the motions have different lengths.
     pub fn integrate<F, O>(
         &mut self,
         mut f: F,
@@ -104,11 +175,10 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         options: &Options,
     ) -> Vec<Result<Outcome, IntegrationError>>
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(&[usize; LANES], &Block, &[Block], &mut [Block]),
         O: Observer,
     {
         let n = motions.first().map_or(0, |motion| motion.x.len());
-        assert!(motions.len() <= LANES, "a block has {LANES} motions");
         assert!(motions.iter().all(|motion| motion.x.len() == n));
         let refused = motions.iter().find_map(|motion| {
             let checked = options.check(motion.span);
@@ -117,65 +187,73 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if let Some(refused) = refused {
             return motions.iter().map(|_| Err(refused.clone())).collect();
         }
-        self.prepare(n, motions);
-        let mut states: Vec<&mut Vec<f64>> = Vec::with_capacity(motions.len());
-        let mut lanes: Vec<Lane<'_, '_, O>> = Vec::with_capacity(motions.len());
-        for motion in motions {
-            let span = motion.span;
-            let mut watcher = Watcher::new(&mut motion.watch, &mut motion.observer, span);
-            let start = watcher.start(span[0], &motion.x);
-            lanes.push(Lane {
-                watcher,
-                step_size: StepSize::new(P::CONTROL),
-                statistics: Statistics::default(),
-                t: span[0],
-                next_h: None,
-                restart: true,
-                stride: Stride::none(span[0]),
-                end: start.err().map(|cause| End::failed(span[0], cause)),
-            });
-            states.push(&mut motion.x);
-        }
-        while self.start(&mut f, &mut lanes, options) {
-            let errors = self.attempt(&mut f, &mut lanes, options);
-            self.decide(&mut f, &mut lanes, &mut states, &errors, options);
-        }
-        let ended = lanes.into_iter().zip(states);
-        ended
-            .map(|(lane, x)| {
-                let end = lane.end.unwrap_or(End::finished(lane.t));
-                lane.watcher.conclude(end, x, lane.statistics)
-            })
-            .collect()
-    }
-
-    fn prepare<O>(&mut self, n: usize, motions: &[BlockMotion<'_, O>]) {
         self.stages.prepare(n, P::ALL_STAGES);
-        for (i, x) in self.stages.x.iter_mut().enumerate() {
-            *x = from_fn(|l| motions.get(l).map_or(0.0, |motion| motion.x[i]));
-        }
-        self.scale.resize(n, [0.0; LANES]);
         self.dense.prepare(n, P::INTERIOR_COEFFICIENTS);
         for end in &mut self.ends {
             end.resize(n, 0.0);
         }
+        let mut results: Vec<_> = motions.iter().map(|_| None).collect();
+        let mut waiting = motions.iter_mut().enumerate();
+        let mut lanes: Lanes<'_, '_, O> = from_fn(|_| None);
+        let mut which = [0; LANES];
+        loop {
+            let mut next = || waiting.next();
+            for l in 0..LANES {
+                self.replace(l, &mut lanes, &mut which, &mut next, &mut results);
+            }
+            let Some(beside) = lanes.iter().position(Option::is_some) else {
+                break;
+            };
+            for l in (0..LANES).filter(|&l| lanes[l].is_none()) {
+                self.clock.idle(l, beside);
+                self.stages.copy_state(beside, l);
+            }
+            let mut f = |t: &Block, x: &[Block], rates: &mut [Block]| f(&which, t, x, rates);
+            self.start(&mut f, &mut lanes, options);
+            let errors = self.attempt(&mut f, &mut lanes, options);
+            self.decide(&mut f, &mut lanes, &errors, options);
+        }
+        let unseen = || Err(IntegrationError::InvalidArgument { what: "motion", value: f64::NAN });
+        results.into_iter().map(|result| result.unwrap_or_else(unseen)).collect()
     }
 
-    /// Rates where motions begin or begin anew, and the step that each tries next. False once all have ended.
-    fn start<F, O>(&mut self, f: &mut F, lanes: &mut [Lane<'_, '_, O>], options: &Options) -> bool
+    /// Concludes the motion of a lane if it has ended, and begins the next one there.
+    fn replace<'m, 'a: 'm, O: Observer>(
+        &mut self,
+        l: usize,
+        lanes: &mut Lanes<'m, 'a, O>,
+        which: &mut [usize; LANES],
+        next: &mut impl FnMut() -> Option<(usize, &'m mut BlockMotion<'a, O>)>,
+        results: &mut [Option<Result<Outcome, IntegrationError>>],
+    ) {
+        while lanes[l].as_ref().is_none_or(|lane| lane.end.is_some()) {
+            if let Some(ended) = lanes[l].take() {
+                let motion = ended.motion;
+                results[motion] = Some(ended.conclude());
+            }
+            let Some((motion, of)) = next() else {
+                return;
+            };
+            which[l] = motion;
+            self.stages.set_state(l, &of.x);
+            let lane = Lane::new(motion, of, StepSize::new(P::CONTROL));
+            self.clock.set(l, lane.t, lane.stride);
+            lanes[l] = Some(lane);
+        }
+    }
+
+    /// Rates where motions begin or begin anew, and the step that each tries next.
+    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
     where
         F: FnMut(&Block, &[Block], &mut [Block]),
         O: Observer,
     {
-        for (_, lane) in on_their_way(lanes) {
-            if lane.t >= lane.watcher.stops.end() {
-                lane.end = Some(End::finished(lane.t));
-            }
-        }
-        if lanes.iter().any(Lane::restarts) {
+        if on_their_way(lanes).any(|(_, lane)| lane.restart) {
             // Stage 1 serves as a place to write: the rates of the others are known.
-            self.stages
-                .evaluate_at_start(f, 1, &block(lanes, |lane| lane.t));
+            for (l, lane) in on_their_way(lanes) {
+                self.clock.t[l] = lane.t;
+            }
+            self.stages.evaluate_at_start(f, 1, &self.clock.t);
         }
         for (l, lane) in on_their_way(lanes) {
             if lane.restart {
@@ -191,24 +269,26 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                 lane.fail(Cause::TooManySteps { steps });
             }
         }
-        self.first_steps(f, lanes, options);
-        for (_, lane) in on_their_way(lanes) {
+        if on_their_way(lanes).any(|(_, lane)| lane.next_h.is_none()) {
+            self.first_steps(f, lanes, options);
+        }
+        for (l, lane) in on_their_way(lanes) {
             // Every motion on its way has a step by now.
             let h = lane.next_h.unwrap_or(0.0);
             lane.stride = lane.watcher.stops.stride(lane.t, h);
             lane.next_h = Some(h);
+            self.clock.set(l, lane.t, lane.stride);
         }
-        lanes.iter().any(|lane| lane.end.is_none())
     }
 
     /// First steps from the sizes of x, ẋ and ẍ, not beyond the next stops.
-    fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut [Lane<'_, '_, O>], options: &Options)
+    fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
     where
         F: FnMut(&Block, &[Block], &mut [Block]),
         O: Observer,
     {
         let begins = |(_, lane): &(usize, &mut Lane<'_, '_, O>)| lane.next_h.is_none();
-        let mut t = block(lanes, |lane| lane.t);
+        let mut t = self.clock.t;
         // Those whose step has to be guessed: guess, longest step.
         let mut guesses: [Option<[f64; 2]>; LANES] = [None; LANES];
         for (l, lane) in on_their_way(lanes).filter(begins) {
@@ -258,15 +338,15 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     fn attempt<F, O>(
         &mut self,
         f: &mut F,
-        lanes: &mut [Lane<'_, '_, O>],
+        lanes: &mut Lanes<'_, '_, O>,
         options: &Options,
     ) -> Block
     where
         F: FnMut(&Block, &[Block], &mut [Block]),
         O: Observer,
     {
-        let h = block(lanes, |lane| lane.stride.h);
-        self.stages.step(f, &P::TABLEAU, &h, times(lanes));
+        let clock = self.clock;
+        self.stages.step(f, &P::TABLEAU, &clock.h, |node| clock.at(node));
         let mut valid = [true; LANES];
         for (l, lane) in on_their_way(lanes) {
             lane.statistics.evaluations += P::TABLEAU.nodes.len();
@@ -280,26 +360,23 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if P::ERROR_USES_NEW_RATES {
             self.new_rates(f, lanes, [true; LANES]);
         }
-        let ends = self.stages.x.iter().zip(&self.stages.x_new);
-        for (scale, (x, x_new)) in self.scale.iter_mut().zip(ends) {
-            *scale = from_fn(|l| options.scale(x[l].abs().max(x_new[l].abs())));
-        }
-        let mut errors = P::errors(|row| self.stages.mean_squares(row, &self.scale), &h);
-        for (l, error) in errors.iter_mut().enumerate() {
-            if !valid[l] || self.stages.state_not_finite(l).is_some() {
-                *error = f64::NAN;
+        let finite = self.stages.scale_by(|size| options.scale(size));
+        let mut errors = P::errors(|row| self.stages.mean_squares(row), &clock.h);
+        for l in 0..LANES {
+            if !(valid[l] && finite[l]) {
+                errors[l] = f64::NAN;
             }
         }
         errors
     }
 
     /// Rates at the ends of the steps.
-    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut [Lane<'_, '_, O>], of: [bool; LANES])
+    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, of: [bool; LANES])
     where
         F: FnMut(&Block, &[Block], &mut [Block]),
         O: Observer,
     {
-        let t = block(lanes, |lane| lane.stride.t_new.min(lane.stride.last));
+        let t = self.clock.at_end();
         self.stages.evaluate_at_end(f, P::TABLEAU.new_rates(), &t);
         for (_, lane) in on_their_way(lanes).filter(|&(l, _)| of[l]) {
             lane.statistics.evaluations += 1;
@@ -310,14 +387,14 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     fn decide<F, O>(
         &mut self,
         f: &mut F,
-        lanes: &mut [Lane<'_, '_, O>],
-        states: &mut [&mut Vec<f64>],
+        lanes: &mut Lanes<'_, '_, O>,
         errors: &Block,
         options: &Options,
     ) where
         F: FnMut(&Block, &[Block], &mut [Block]),
         O: Observer,
     {
+        let powers = powers(P::CONTROL, errors);
         let mut accepted = [false; LANES];
         for (l, lane) in on_their_way(lanes) {
             accepted[l] = errors[l] <= 1.0;
@@ -326,7 +403,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                 continue;
             }
             lane.statistics.rejected += 1;
-            let shorter = lane.stride.h * lane.step_size.rejected(errors[l]);
+            let shorter = lane.stride.h * lane.step_size.rejected(errors[l], powers[l]);
             if lane.t + 0.1 * shorter <= lane.t {
                 lane.fail(self.stuck(l, shorter, errors[l]));
             }
@@ -338,46 +415,22 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if !P::ERROR_USES_NEW_RATES {
             self.new_rates(f, lanes, accepted);
         }
-        let new_rates = P::TABLEAU.new_rates();
-        let wanted: [bool; LANES] = from_fn(|l| {
-            let lane = lanes.get(l).filter(|_| accepted[l]);
-            lane.is_some_and(|lane| {
-                let ends = ends(
-                    &self.stages,
-                    &mut self.ends,
-                    l,
-                    (lane.interval(), new_rates),
-                );
-                lane.watcher.wants_interior(&ends)
-            })
-        });
-        if wanted.contains(&true) {
-            let (h, time) = (block(lanes, |lane| lane.stride.h), times(lanes));
-            for (i, &(node, row)) in P::INTERIOR_STAGES.iter().enumerate() {
-                self.stages
-                    .evaluate(f, new_rates + 1 + i, &time(node), &h, row);
-            }
-        }
-        for (l, lane) in on_their_way(lanes).filter(|&(l, _)| accepted[l]) {
-            let h = lane.stride.h;
-            let ends = ends(
-                &self.stages,
-                &mut self.ends,
-                l,
-                (lane.interval(), new_rates),
-            );
-            if wanted[l] {
+        let accept = |this: &mut Self, l: usize, lane: &mut Lane<'_, '_, O>, within: bool| {
+            let ends = ends::<P>(&this.stages, &mut this.ends, l, lane);
+            if within {
                 lane.statistics.evaluations += P::INTERIOR_STAGES.len();
-                self.dense.set_hermite(&ends);
+                this.dense.set_hermite(&ends);
                 for (c, &row) in P::INTERIOR.iter().enumerate() {
-                    let coefficient = self.dense.coefficient(HERMITE + c);
-                    self.stages.combination(l, h, row, coefficient);
+                    let coefficient = this.dense.coefficient(HERMITE + c);
+                    this.stages.combination(l, lane.stride.h, row, coefficient);
                 }
+            } else if lane.watcher.wants_interior(&ends) {
+                return false;
             }
-            let interior = wanted[l].then_some(&self.dense);
-            lane.end = lane.watcher.accept(&ends, interior, states[l]);
-            self.stages.advance(l, new_rates);
-            let suggested = h * lane.step_size.accepted(errors[l]);
+            let interior = within.then_some(&this.dense);
+            lane.end = lane.watcher.accept(&ends, interior, lane.x);
+            this.stages.advance(l, P::TABLEAU.new_rates());
+            let suggested = lane.stride.h * lane.step_size.accepted(errors[l], powers[l]);
             // A step cut short to land says nothing against the longer one.
             let suggested = match lane.next_h {
                 Some(h) if lane.stride.lands => suggested.max(h),
@@ -385,6 +438,23 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             };
             lane.next_h = Some(suggested.min(options.max_step));
             (lane.t, lane.restart) = (lane.stride.t_new, lane.stride.lands);
+            lane.finish_at_end();
+            true
+        };
+        let mut wanted = [false; LANES];
+        for (l, lane) in on_their_way(lanes).filter(|&(l, _)| accepted[l]) {
+            wanted[l] = !accept(self, l, lane, false);
+        }
+        if !wanted.contains(&true) {
+            return;
+        }
+        let (clock, new_rates) = (self.clock, P::TABLEAU.new_rates());
+        for (i, &(node, row)) in P::INTERIOR_STAGES.iter().enumerate() {
+            let (stage, t) = (new_rates + 1 + i, clock.at(node));
+            self.stages.evaluate(f, stage, &t, &clock.h, row);
+        }
+        for (l, lane) in on_their_way(lanes).filter(|&(l, _)| wanted[l]) {
+            accept(self, l, lane, true);
         }
     }
 
@@ -401,41 +471,20 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 }
 
-/// The motions that have not ended, by their place in the block.
-fn on_their_way<'l, 'w, 'a, O>(
-    lanes: &'l mut [Lane<'w, 'a, O>],
-) -> impl Iterator<Item = (usize, &'l mut Lane<'w, 'a, O>)> {
-    let all = lanes.iter_mut().enumerate();
-    all.filter(|(_, lane)| lane.end.is_none())
-}
-
-/// A number of each motion; zero where there is none.
-fn block<O>(lanes: &[Lane<'_, '_, O>], number: impl Fn(&Lane<'_, '_, O>) -> f64) -> Block {
-    from_fn(|l| lanes.get(l).map_or(0.0, &number))
-}
-
-/// Times of the nodes of a step. Up to a switching time the rates are those before it.
-fn times<O>(lanes: &[Lane<'_, '_, O>]) -> impl Fn(f64) -> Block + use<O> {
-    let t = block(lanes, |lane| lane.t);
-    let h = block(lanes, |lane| lane.stride.h);
-    let last = block(lanes, |lane| lane.stride.last);
-    move |node| from_fn(|l| (t[l] + node * h[l]).min(last[l]))
-}
-
 /// Both ends of a step of one motion.
-fn ends<'e>(
+fn ends<'e, P: EmbeddedPair>(
     stages: &BlockStages,
     numbers: &'e mut [Vec<f64>; 4],
     l: usize,
-    (t, new_rates): ([f64; 2], usize),
+    lane: &Lane<'_, '_, impl Observer>,
 ) -> Ends<'e> {
     let [x, x_new, start, end] = numbers;
     gather(&stages.x, l, x);
     gather(&stages.x_new, l, x_new);
     gather(stages.rates(0), l, start);
-    gather(stages.rates(new_rates), l, end);
+    gather(stages.rates(P::TABLEAU.new_rates()), l, end);
     Ends {
-        t,
+        t: [lane.t, lane.stride.t_new],
         x: [x, x_new],
         rates: [start, end],
     }

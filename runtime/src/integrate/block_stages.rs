@@ -3,6 +3,9 @@
 //! Every sum is formed in the order of [`super::tableau::Stages`], so that a motion has the same bits in
 //! a block as alone.
 
+// What is not inlined is not compiled for the vectors of the processor.
+#![allow(clippy::inline_always)]
+
 use super::tableau::{Row, Tableau};
 use crate::lanes::{LANES, dispatch};
 
@@ -25,6 +28,8 @@ pub(super) struct BlockStages {
     x_stage: Vec<Block>,
     /// Stage rates one after the other.
     rates: Vec<Block>,
+    /// The tolerated errors.
+    scale: Vec<Block>,
 }
 
 impl BlockStages {
@@ -35,6 +40,7 @@ impl BlockStages {
             (&mut self.x, n),
             (&mut self.x_new, n),
             (&mut self.x_stage, n),
+            (&mut self.scale, n),
             (&mut self.rates, stages * n),
         ] {
             blocks.clear();
@@ -123,25 +129,68 @@ impl BlockStages {
         }
     }
 
-    /// Mean square of Σ w k over `scale`, of all motions.
-    pub(super) fn mean_squares(&self, row: Row, scale: &[Block]) -> Block {
-        let mut sums = [[0.0; LANES]; SUMS];
+    /// A motion begins in a lane.
+    pub(super) fn set_state(&mut self, lane: usize, x: &[f64]) {
+        for (block, x) in self.x.iter_mut().zip(x) {
+            block[lane] = *x;
+        }
+    }
+
+    /// A lane takes over state and rates of another one.
+    pub(super) fn copy_state(&mut self, from: usize, to: usize) {
+        for block in self.x.iter_mut().chain(&mut self.rates[..self.n]) {
+            block[to] = block[from];
+        }
+    }
+
+    /// Sets the tolerated errors from the sizes of the states at both ends; tells which new states are finite.
+    pub(super) fn scale_by(&mut self, tolerated: impl Fn(f64) -> f64) -> [bool; LANES] {
+        // Zero unless something is infinite or not a number.
+        let mut zero = [0.0; LANES];
+        let ends = self.x.iter().zip(&self.x_new);
+        for (scale, (x, x_new)) in self.scale.iter_mut().zip(ends) {
+            for lane in 0..LANES {
+                zero[lane] += x_new[lane] * 0.0;
+                scale[lane] = tolerated(x[lane].abs().max(x_new[lane].abs()));
+            }
+        }
+        zero.map(|zero| zero == 0.0)
+    }
+
+    /// Mean square of Σ w k over the tolerated errors, of all motions.
+    pub(super) fn mean_squares(&self, row: Row) -> Block {
+        let mut squares = [0.0; LANES];
         dispatch(
             #[inline(always)]
-            || {
-                for (i, scale) in scale.iter().enumerate() {
-                    let combination = combination(row, &self.rates, self.n, i);
-                    let sums = &mut sums[i % SUMS];
-                    for lane in 0..LANES {
-                        let part = combination[lane] / scale[lane];
-                        sums[lane] += part * part;
-                    }
-                }
-            },
+            || squares = self.squares(row),
         );
-        std::array::from_fn(|lane| {
-            sums.iter().map(|sum| sum[lane]).sum::<f64>() / self.n.max(1) as f64
-        })
+        let count = self.n.max(1) as f64;
+        squares.map(|square| square / count)
+    }
+
+    #[inline(always)]
+    fn squares(&self, row: Row) -> Block {
+        let mut sums = [[0.0; LANES]; SUMS];
+        let (panels, rest) = self.scale.as_chunks::<SUMS>();
+        for (panel, scale) in panels.iter().enumerate() {
+            let combinations = combinations::<SUMS>(row, &self.rates, self.n, panel * SUMS);
+            for (sums, (combination, scale)) in sums.iter_mut().zip(combinations.iter().zip(scale)) {
+                add_squares(sums, combination, scale);
+            }
+        }
+        let first = panels.len() * SUMS;
+        for (i, (sums, scale)) in sums.iter_mut().zip(rest).enumerate() {
+            let [combination] = combinations::<1>(row, &self.rates, self.n, first + i);
+            add_squares(sums, &combination, scale);
+        }
+        // In the order of a motion alone.
+        let mut all = [0.0; LANES];
+        for sums in &sums {
+            for lane in 0..LANES {
+                all[lane] += sums[lane];
+            }
+        }
+        all
     }
 
     /// The first state of a motion whose rate in a stage is infinite or not a number.
@@ -167,31 +216,60 @@ fn position_not_finite(blocks: &[Block], lane: usize) -> Option<usize> {
     blocks.iter().position(|block| !block[lane].is_finite())
 }
 
+#[inline(always)]
+fn add_squares(sums: &mut Block, combination: &Block, scale: &Block) {
+    for lane in 0..LANES {
+        let part = combination[lane] / scale[lane];
+        sums[lane] += part * part;
+    }
+}
+
+/// Components that are summed side by side, so that no sum waits for another.
+const PANEL: usize = 4;
+
 /// `out` = x + h Σ w k.
 fn combine(x: &[Block], h: &Block, row: Row, rates: &[Block], out: &mut [Block]) {
     dispatch(
         #[inline(always)]
         || {
             let n = x.len();
-            for (i, (x, out)) in x.iter().zip(&mut *out).enumerate() {
-                let sum = combination(row, rates, n, i);
-                for lane in 0..LANES {
-                    out[lane] = x[lane] + h[lane] * sum[lane];
+            let (panels, rest) = x.as_chunks::<PANEL>();
+            let (out_panels, out_rest) = out.as_chunks_mut::<PANEL>();
+            for (panel, (x, out)) in panels.iter().zip(out_panels).enumerate() {
+                let sums = combinations::<PANEL>(row, rates, n, panel * PANEL);
+                for i in 0..PANEL {
+                    out[i] = moved(&x[i], h, &sums[i]);
                 }
+            }
+            for (i, (x, out)) in rest.iter().zip(out_rest).enumerate() {
+                let [sum] = combinations::<1>(row, rates, n, panels.len() * PANEL + i);
+                *out = moved(x, h, &sum);
             }
         },
     );
 }
 
-/// Σ w k of a component.
+/// x + h k
 #[inline(always)]
-fn combination(row: Row, rates: &[Block], n: usize, i: usize) -> Block {
-    let mut sum = [0.0; LANES];
+fn moved(x: &Block, h: &Block, k: &Block) -> Block {
+    let mut moved = [0.0; LANES];
+    for lane in 0..LANES {
+        moved[lane] = x[lane] + h[lane] * k[lane];
+    }
+    moved
+}
+
+/// Σ w k of some components.
+#[inline(always)]
+fn combinations<const N: usize>(row: Row, rates: &[Block], n: usize, first: usize) -> [Block; N] {
+    let mut sums = [[0.0; LANES]; N];
     for &(stage, weight) in row {
-        let rate = &rates[stage * n + i];
-        for lane in 0..LANES {
-            sum[lane] += weight * rate[lane];
+        let rates = &rates[stage * n + first..][..N];
+        for (sum, rate) in sums.iter_mut().zip(rates) {
+            for lane in 0..LANES {
+                sum[lane] += weight * rate[lane];
+            }
         }
     }
-    sum
+    sums
 }

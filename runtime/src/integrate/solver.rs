@@ -5,7 +5,7 @@ use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
 use super::pairs::EmbeddedPair;
-use super::step_size::{StepSize, first_guess, first_step, norm};
+use super::step_size::{StepSize, first_guess, first_step, norm, powers};
 use super::stops::{Stop, Stride};
 use super::tableau::Stages;
 use super::watch::{End, Observer, Watch, Watcher};
@@ -122,7 +122,8 @@ impl<P: EmbeddedPair> Solver<P> {
                     return end;
                 }
                 self.stages.advance(P::TABLEAU.new_rates());
-                let suggested = stride.h * step_size.accepted(error);
+                let [power] = powers(P::CONTROL, &[error]);
+                let suggested = stride.h * step_size.accepted(error, power);
                 // A step cut short to land says nothing against the longer one.
                 let suggested = if stride.lands {
                     suggested.max(h)
@@ -133,7 +134,8 @@ impl<P: EmbeddedPair> Solver<P> {
                 (t, restart) = (stride.t_new, stride.lands);
             } else {
                 statistics.rejected += 1;
-                let shorter = stride.h * step_size.rejected(error);
+                let [power] = powers(P::CONTROL, &[error]);
+                let shorter = stride.h * step_size.rejected(error, power);
                 if t + 0.1 * shorter <= t {
                     return End::failed(t, self.stuck(shorter, error));
                 }

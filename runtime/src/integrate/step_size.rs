@@ -1,5 +1,11 @@
 //! How long the next step may be.
 
+// What is not inlined is not compiled for the vectors of the processor.
+#![allow(clippy::inline_always)]
+
+use crate::elementary::powf;
+use crate::lanes::dispatch;
+
 /// Constants of the proportional-integral control (Hairer and Wanner, *Solving Ordinary
 /// Differential Equations II*, section IV.2; Hairer, Nørsett and Wanner, section II.4).
 #[derive(Debug, Clone, Copy)]
@@ -38,12 +44,20 @@ impl StepSize {
         }
     }
 
-    /// Factor on the step after it was accepted with `error` ≤ 1.
-    pub(super) fn accepted(&mut self, error: f64) -> f64 {
+    /// Factor on the step after it was accepted with `error` ≤ 1, whose power [`powers`] gives.
+    pub(super) fn accepted(&mut self, error: f64, power: f64) -> f64 {
         let c = &self.control;
-        let exponent = c.exponent - c.integral_gain * c.integral_correction;
-        let correction = self.previous_error.powf(c.integral_gain);
-        let factor = c.safety * correction / error.powf(exponent);
+        let correction = if c.integral_gain == 0.0 {
+            1.0
+        } else {
+            let mut correction = 1.0;
+            dispatch(
+                #[inline(always)]
+                || correction = powf(self.previous_error, c.integral_gain),
+            );
+            correction
+        };
+        let factor = c.safety * correction / power;
         let largest = if self.after_rejection {
             1.0
         } else {
@@ -55,15 +69,31 @@ impl StepSize {
     }
 
     /// Factor on the step after it was rejected with `error` > 1 or an error that is no number.
-    pub(super) fn rejected(&mut self, error: f64) -> f64 {
+    pub(super) fn rejected(&mut self, error: f64, power: f64) -> f64 {
         let c = &self.control;
         self.after_rejection = true;
         if !error.is_finite() {
             return FACTOR_NOT_FINITE;
         }
-        let exponent = c.exponent - c.integral_gain * c.integral_correction;
-        (c.safety / error.powf(exponent)).clamp(c.smallest_factor, 1.0)
+        (c.safety / power).clamp(c.smallest_factor, 1.0)
     }
+}
+
+/// Errors to the power that the control needs. The same bits for any number of them, on every machine.
+pub(super) fn powers<const N: usize>(control: Control, errors: &[f64; N]) -> [f64; N] {
+    let exponent = control.exponent - control.integral_gain * control.integral_correction;
+    let mut powers = [0.0; N];
+    dispatch(
+        #[inline(always)]
+        || {
+            let (errors, mut all) = (*errors, [0.0; N]);
+            for lane in 0..N {
+                all[lane] = powf(errors[lane], exponent);
+            }
+            powers = all;
+        },
+    );
+    powers
 }
 
 /// Root mean square of `values` over `scale`.

@@ -41,16 +41,16 @@ impl Level {
     /// what is inlined into the task is: mark it, and all it calls, `#[inline(always)]`.
     #[inline(always)]
     pub fn run(self, task: impl FnMut()) {
-        let mut task = task;
-        if !self.run_in_vectors(&mut task) {
+        if let Err(mut task) = self.run_in_vectors(task) {
             task();
         }
     }
 
-    /// Runs a task only if there is code for vectors and fused multiply-adds that the processor has. Whether
-    /// there is; beyond x86-64 every processor counts as one.
+    /// Runs a task only if there is code for vectors and fused multiply-adds that the processor has, and gives it back
+    /// otherwise; beyond x86-64 every processor counts as one.
+    // A task that is called by reference is not inlined.
     #[inline(always)]
-    pub(super) fn run_in_vectors(self, task: impl FnMut()) -> bool {
+    pub(super) fn run_in_vectors<F: FnMut()>(self, task: F) -> Result<(), F> {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]
         {
             use pulp::Simd;
@@ -58,22 +58,22 @@ impl Level {
                 && let Some(simd) = pulp::x86::V4::try_new()
             {
                 Simd::vectorize(simd, Task(task));
-                return true;
+                return Ok(());
             }
             if self >= Self::Avx2
                 && let Some(simd) = pulp::x86::V3::try_new()
             {
                 Simd::vectorize(simd, Task(task));
-                return true;
+                return Ok(());
             }
-            false
+            Err(task)
         }
         #[cfg(not(all(feature = "std", target_arch = "x86_64")))]
         {
             let _ = self;
             let mut task = task;
             task();
-            true
+            Ok(())
         }
     }
 }

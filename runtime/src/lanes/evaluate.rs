@@ -59,12 +59,13 @@ pub trait Equations<
     ) {
         let (x, u, p) = (array(at.x), array(at.u), array(at.p));
         let (first, second, third) = (array_mut(first), array_mut(second), array_mut(third));
-        let mut unknown = false;
-        let done = level.run_in_vectors(
+        // Unknown until it was computed.
+        let mut unknown = true;
+        let _ = level.run_in_vectors(
             #[inline(always)]
             || unknown = Self::evaluate::<Fast, N>(at.t, x, u, p, first, second, third),
         );
-        if unknown || !done {
+        if unknown {
             Self::places(at, [first, second, third]);
         }
     }
@@ -127,13 +128,14 @@ fn alone<
     p: &One<P>,
 ) -> (One<A>, One<B>, One<C>) {
     let (mut first, mut second, mut third) = ([[0.0]; A], [[0.0]; B], [[0.0]; C]);
-    let mut unknown = false;
+    // Unknown until it was computed.
+    let mut unknown = true;
     // One number needs no wider vectors.
-    let done = Level::Avx2.run_in_vectors(
+    let _ = Level::Avx2.run_in_vectors(
         #[inline(always)]
         || unknown = E::evaluate::<Fast, 1>(&t, x, u, p, &mut first, &mut second, &mut third),
     );
-    if unknown || !done {
+    if unknown {
         E::evaluate::<Lanes<1, Own>, 1>(&t, x, u, p, &mut first, &mut second, &mut third);
     }
     (first, second, third)

@@ -137,7 +137,7 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// What a motion of a block is shown to.
+/// What a motion among others is shown to.
 #[derive(Debug)]
 pub struct Viewer<'w, O> {
     /// Events to be found.
@@ -146,20 +146,18 @@ pub struct Viewer<'w, O> {
     pub observer: O,
 }
 
-/// Integrates up to eight simulations at once. `rates(t, x, ẋ)` are those under the inputs of each: those of
-/// motion l are at `x[i][l]`. Every motion is the one that it would be alone.
-///
-/// The options are those of the first simulation.
+/// Integrates many simulations of one model, eight at a time. `rates(which, t, x, ẋ)` are those under the inputs of
+/// each: state i of simulation `which[l]` is `x[i][l]`. Every motion is the one that it would be alone.
 ///
 /// # Panics
 ///
-/// If there are more than eight simulations, more or fewer viewers, or states of different lengths.
+/// If there are more or fewer viewers, or states of different lengths.
 pub fn observe_block<'w, P: EmbeddedPair, O: Observer>(
     solver: &mut BlockSolver<P>,
     options: &crate::integrate::Options,
     prepared: &'w [Prepared<'w>],
     viewers: Vec<Viewer<'w, O>>,
-    rates: impl FnMut(&[f64; LANES], &[[f64; LANES]], &mut [[f64; LANES]]),
+    rates: impl FnMut(&[usize; LANES], &[f64; LANES], &[[f64; LANES]], &mut [[f64; LANES]]),
 ) -> Vec<Result<(Observed, O), SimulationError>> {
     assert_eq!(prepared.len(), viewers.len(), "a viewer for each motion");
     let mut own = Vec::new();

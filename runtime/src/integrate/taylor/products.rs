@@ -3,7 +3,7 @@
 // What is not inlined is not compiled for the vectors of the processor.
 #![allow(clippy::inline_always)]
 
-use pulp::{Simd, WithSimd};
+use crate::lanes::dispatch;
 
 /// Products that are summed side by side.
 const BLOCK: usize = 8;
@@ -47,14 +47,17 @@ impl Products {
             // Nothing is left of the expansion before.
             sums.fill(0.0);
         } else {
-            let sum = Sum {
+            let mut sum = Sum {
                 k,
                 blocks,
                 left: self.left.numbers().as_chunks().0,
                 right: self.right.numbers().as_chunks().0,
                 sums: sums.as_chunks_mut().0,
             };
-            sum.dispatch();
+            dispatch(
+                #[inline(always)]
+                || sum.all(),
+            );
         }
         let order = k * blocks * BLOCK..;
         let factors = [&mut self.left, &mut self.right];
@@ -93,11 +96,9 @@ struct Sum<'a> {
     sums: &'a mut [[f64; BLOCK]],
 }
 
-impl WithSimd for Sum<'_> {
-    type Output = ();
-
+impl Sum<'_> {
     #[inline(always)]
-    fn with_simd<S: Simd>(mut self, _: S) {
+    fn all(&mut self) {
         let mut start = 0;
         while start < self.blocks {
             let blocks = (self.blocks - start).min(PANEL);
@@ -113,23 +114,6 @@ impl WithSimd for Sum<'_> {
             }
             start += blocks;
         }
-    }
-}
-
-impl Sum<'_> {
-    /// By the widest vectors of this processor.
-    #[inline]
-    fn dispatch(self) {
-        #[cfg(target_arch = "x86_64")]
-        {
-            if let Some(simd) = pulp::x86::V4::try_new() {
-                return Simd::vectorize(simd, self);
-            }
-            if let Some(simd) = pulp::x86::V3::try_new() {
-                return Simd::vectorize(simd, self);
-            }
-        }
-        self.with_simd(pulp::Scalar::new());
     }
 
     /// The sums of `N` blocks.

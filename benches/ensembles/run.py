@@ -1,0 +1,82 @@
+#!/usr/bin/env python3
+"""Lane changes with scattered parameters by `appell ensemble` and by heyoka, on one core each.
+
+    python3 run.py --appell PATH [--cases 20000] [--million]
+
+Prints a table; `--million` runs a million motions on all cores as well and tells time and memory.
+"""
+
+import argparse
+import json
+import os
+import re
+import resource
+import subprocess
+import sys
+import tempfile
+import time
+from pathlib import Path
+
+import numpy as np
+import pyarrow.parquet as parquet
+
+HERE = Path(__file__).resolve().parent
+LAW = HERE.parent.parent / "docs/examples/feedback/lane_change_5_m_s.toml"
+KEPT = ["x", "y", "psi", "theta", "r", "speed"]
+# Cases whose errors are looked at.
+SAMPLE = 512
+
+
+def study(folder, cases, tolerance):
+    text = (HERE / "lane_change.toml").read_text()
+    text = re.sub(r"cases = \d+", f"cases = {cases}", text)
+    text = re.sub(r"([ra]tol +)= .*", rf"\1= {tolerance}", text)
+    (folder / LAW.name).write_text(LAW.read_text())
+    path = folder / f"study_{cases}_{tolerance}.toml"
+    path.write_text(text)
+    return path
+
+
+def run(appell, folder, cases, tolerance, jobs):
+    """Rows by name, and seconds without those that a single case takes."""
+    seconds = {}
+    for count in (1, cases):
+        out = folder / f"out_{count}_{tolerance}_{jobs}"
+        start = time.perf_counter()
+        command = [appell, "ensemble", study(folder, count, tolerance), "--out", out]
+        subprocess.run(command + (["--jobs", str(jobs)] if jobs else []), check=True, stdout=subprocess.DEVNULL)
+        seconds[count] = time.perf_counter() - start
+    tables = [parquet.read_table(part) for part in sorted(out.glob("*.parquet"))]
+    rows = {name: np.concatenate([table[name].to_numpy() for table in tables]) for name in KEPT + ["case"]}
+    order = np.argsort(rows.pop("case"))
+    return {name: values[order] for name, values in rows.items()}, seconds[cases] - seconds[1]
+
+
+def main():
+    parser = argparse.ArgumentParser()
+    parser.add_argument("--appell", required=True)
+    parser.add_argument("--cases", type=int, default=20000)
+    parser.add_argument("--million", action="store_true")
+    asked = parser.parse_args()
+    print("| | tolerance | us a motion, one core | largest error |\n|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as folder:
+        folder = Path(folder)
+        exact, _ = run(asked.appell, folder, SAMPLE, "1e-13", 1)
+        for tolerance in ("1e-7", "3e-8", "1e-8", "1e-9", "1e-11"):
+            rows, seconds = run(asked.appell, folder, asked.cases, tolerance, 1)
+            error = max(abs(rows[name][:SAMPLE] - exact[name]).max() for name in KEPT)
+            print(f"| appell ensemble | {tolerance} | {seconds / asked.cases * 1e6:.1f} | {error:.1e} |", flush=True)
+        told = subprocess.run(["taskset", "-c", "0", sys.executable, HERE / "with_heyoka.py", "4000"], check=True,
+                              capture_output=True, text=True)
+        told = json.loads(told.stdout)
+        for kind, name in (("batch", f"heyoka {told['heyoka']}, batches of {told['lanes']}"), ("one", "heyoka, one motion")):
+            for row in told[kind]:
+                print(f"| {name} | {row['tolerance']:.0e} | {row['seconds'] * 1e6:.1f} | {row['error']:.1e} |")
+        if asked.million:
+            _, seconds = run(asked.appell, folder, 1000000, "3e-8", 0)
+            peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
+            print(f"\nA million motions on {os.cpu_count()} cores: {seconds:.1f} s, at most {peak:.0f} MB.")
+
+
+if __name__ == "__main__":
+    main()

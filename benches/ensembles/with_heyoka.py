@@ -79,7 +79,7 @@ def moved(integrators, parameters):
 
 def scattered(count, seed=3):
     p = np.tile(NOMINAL[:, None], (1, count))
-    p[:3] *= 1 + 0.05 * np.clip(np.random.default_rng(seed).standard_normal((3, count)), -4, 4)
+    p[:3] *= np.random.default_rng(seed).uniform(0.95, 1.05, (3, count))
     return p
 
 

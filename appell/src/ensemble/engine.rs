@@ -324,7 +324,7 @@ struct Rates<'r> {
     sources: Vec<&'r Noisy<'r>>,
     parameters: Vec<&'r [f64]>,
     /// Whose parameters the lanes have.
-    which: [Option<usize>; LANES],
+    which: Option<[usize; LANES]>,
     p: Vec<Block>,
     u: Vec<Block>,
     /// State and inputs of one motion.
@@ -342,7 +342,7 @@ impl<'r> Rates<'r> {
             variant,
             sources,
             parameters: prepared.iter().map(Prepared::parameters).collect(),
-            which: [None; LANES],
+            which: None,
             p: vec![[0.0; LANES]; info.parameter_len()],
             u: vec![[0.0; LANES]; inputs],
             one: [vec![0.0; info.state_len()], vec![0.0; inputs]],
@@ -351,14 +351,17 @@ impl<'r> Rates<'r> {
 
     fn write(&mut self, which: &[usize; LANES], t: &Block, x: &[Block], rates: &mut [Block]) {
         let closed = &self.variant.closed;
-        for (l, &motion) in which.iter().enumerate() {
-            if self.which[l].replace(motion) != Some(motion) {
+        if self.which != Some(*which) {
+            self.which = Some(*which);
+            for (l, &motion) in which.iter().enumerate() {
                 for (block, p) in self.p.iter_mut().zip(self.parameters[motion]) {
                     block[l] = *p;
                 }
             }
-            if closed.is_driven() {
-                let [state, outside] = &mut self.one;
+        }
+        if closed.is_driven() {
+            let [state, outside] = &mut self.one;
+            for (l, &motion) in which.iter().enumerate() {
                 for (state, x) in state.iter_mut().zip(x) {
                     *state = x[l];
                 }

@@ -66,12 +66,20 @@ struct Clock {
 impl Clock {
     /// Times of a node. Up to a switching time the rates are those before it.
     fn at(&self, node: f64) -> Block {
-        from_fn(|l| (self.t[l] + node * self.h[l]).min(self.last[l]))
+        let mut times = self.last;
+        for (l, time) in times.iter_mut().enumerate() {
+            *time = (self.t[l] + node * self.h[l]).min(*time);
+        }
+        times
     }
 
     /// Times of the ends.
     fn at_end(&self) -> Block {
-        from_fn(|l| self.t_new[l].min(self.last[l]))
+        let mut times = self.last;
+        for (time, t_new) in times.iter_mut().zip(self.t_new) {
+            *time = t_new.min(*time);
+        }
+        times
     }
 
     /// A lane begins a step.
@@ -360,7 +368,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if P::ERROR_USES_NEW_RATES {
             self.new_rates(f, lanes, [true; LANES]);
         }
-        let finite = self.stages.scale_by(|size| options.scale(size));
+        let finite = self.stages.scale_by(options);
         let mut errors = P::errors(|row| self.stages.mean_squares(row), &clock.h);
         for l in 0..LANES {
             if !(valid[l] && finite[l]) {

@@ -6,6 +6,7 @@
 // What is not inlined is not compiled for the vectors of the processor.
 #![allow(clippy::inline_always)]
 
+use super::options::Options;
 use super::tableau::{Row, Tableau};
 use crate::lanes::{LANES, dispatch};
 
@@ -144,17 +145,26 @@ impl BlockStages {
     }
 
     /// Sets the tolerated errors from the sizes of the states at both ends; tells which new states are finite.
-    pub(super) fn scale_by(&mut self, tolerated: impl Fn(f64) -> f64) -> [bool; LANES] {
-        // Zero unless something is infinite or not a number.
-        let mut zero = [0.0; LANES];
-        let ends = self.x.iter().zip(&self.x_new);
-        for (scale, (x, x_new)) in self.scale.iter_mut().zip(ends) {
-            for lane in 0..LANES {
-                zero[lane] += x_new[lane] * 0.0;
-                scale[lane] = tolerated(x[lane].abs().max(x_new[lane].abs()));
-            }
-        }
-        zero.map(|zero| zero == 0.0)
+    pub(super) fn scale_by(&mut self, options: &Options) -> [bool; LANES] {
+        let mut finite = [true; LANES];
+        dispatch(
+            #[inline(always)]
+            || {
+                // Zero unless something is infinite or not a number.
+                let mut zero = [0.0; LANES];
+                let ends = self.x.iter().zip(&self.x_new);
+                for (scale, (x, x_new)) in self.scale.iter_mut().zip(ends) {
+                    for lane in 0..LANES {
+                        zero[lane] += x_new[lane] * 0.0;
+                        scale[lane] = options.scale(x[lane].abs().max(x_new[lane].abs()));
+                    }
+                }
+                for (finite, zero) in finite.iter_mut().zip(zero) {
+                    *finite = zero == 0.0;
+                }
+            },
+        );
+        finite
     }
 
     /// Mean square of Σ w k over the tolerated errors, of all motions.
@@ -165,7 +175,10 @@ impl BlockStages {
             || squares = self.squares(row),
         );
         let count = self.n.max(1) as f64;
-        squares.map(|square| square / count)
+        for square in &mut squares {
+            *square /= count;
+        }
+        squares
     }
 
     #[inline(always)]

@@ -43,6 +43,9 @@ impl Options {
 
     /// The tolerated error of a state of this size; never zero, so that a state that stays zero
     /// has no error even without `atol`.
+    // Inlined into loops over lanes.
+    #[allow(clippy::inline_always)]
+    #[inline(always)]
     pub(super) fn scale(&self, size: f64) -> f64 {
         (self.atol + self.rtol * size).max(f64::MIN_POSITIVE)
     }

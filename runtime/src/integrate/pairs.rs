@@ -1,6 +1,5 @@
 //! The embedded pairs of Dormand and Prince.
 
-use std::array::from_fn;
 
 use super::dop853_coefficients as dop853;
 use super::step_size::Control;
@@ -120,8 +119,11 @@ impl EmbeddedPair for Dopri5 {
     const INTERIOR: &[Row] = &[DOPRI5_INTERIOR];
 
     fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N] {
-        let square = mean_square(DOPRI5_ERROR);
-        from_fn(|l| h[l] * square[l].sqrt())
+        let mut errors = mean_square(DOPRI5_ERROR);
+        for l in 0..N {
+            errors[l] = h[l] * errors[l].sqrt();
+        }
+        errors
     }
 }
 
@@ -178,14 +180,15 @@ impl EmbeddedPair for Dop853 {
     /// Equation (10.17): E₅² / √(E₅² + 0.01 E₃²), an estimate of order 8 that vanishes only with
     /// both differences.
     fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N] {
-        let [square_5, square_3] = [dop853::ERROR_5, dop853::ERROR_3].map(mean_square);
-        from_fn(|l| {
-            let denominator = square_5[l] + 0.01 * square_3[l];
-            if denominator == 0.0 {
+        let (mut errors, square_3) = (mean_square(dop853::ERROR_5), mean_square(dop853::ERROR_3));
+        for l in 0..N {
+            let denominator = errors[l] + 0.01 * square_3[l];
+            errors[l] = if denominator == 0.0 {
                 0.0
             } else {
-                h[l] * square_5[l] / denominator.sqrt()
-            }
-        })
+                h[l] * errors[l] / denominator.sqrt()
+            };
+        }
+        errors
     }
 }

@@ -126,7 +126,7 @@ impl Blocks for Own {
 /// Sine and cosine of angles that need more digits of π than others.
 #[cold]
 fn with_all_digits<const N: usize>(x: &[f64; N], [sin, cos]: &mut [[f64; N]; 2]) {
-    for lane in 0..N {
+    for lane in (0..N).filter(|&lane| x[lane].abs() > ORDINARY_ANGLE) {
         (sin[lane], cos[lane]) = elementary::sin_cos(x[lane]);
     }
 }

@@ -100,11 +100,7 @@ impl VectorFunction {
         weights: &[[f64; LANES]],
         results: [&mut [[f64; LANES]]; N],
     ) {
-        self.check_lengths(
-            at,
-            weights.len(),
-            results.each_ref().map(|result| result.len()),
-        );
+        self.check_lengths(at, weights.len(), &results);
         match &self.how {
             // SAFETY: the lengths were compared.
             How::Vector(machine) => unsafe { machine.call(at, weights, results) },
@@ -114,7 +110,7 @@ impl VectorFunction {
 
     /// Refuses slices of other lengths than the function was made for.
     #[inline]
-    fn check_lengths<const N: usize>(&self, at: AtLanes<'_>, weights: usize, results: [usize; N]) {
+    fn check_lengths(&self, at: AtLanes<'_>, weights: usize, results: &[&mut [[f64; LANES]]]) {
         let found = Sizes {
             states: at.x.len(),
             inputs: at.u.len(),
@@ -126,8 +122,9 @@ impl VectorFunction {
             "arguments: {found:?} given, {expected:?} expected"
         );
         let expected = &self.results[..];
+        let mut lengths = results.iter().zip(expected);
         assert!(
-            results == *expected,
+            results.len() == expected.len() && lengths.all(|(result, len)| result.len() == *len),
             "results: lengths {expected:?} expected"
         );
         let used = self.weights;

@@ -138,12 +138,18 @@ impl Machine {
         weights: &[[f64; 8]],
         results: [&mut [[f64; 8]]; N],
     ) {
-        let results = results.map(|result| result.as_mut_ptr().cast::<f64>());
+        let mut starts = [std::ptr::null_mut::<f64>(); N];
+        for (start, result) in starts.iter_mut().zip(results) {
+            *start = result.as_mut_ptr().cast();
+        }
         let lanes = self.width.lanes();
         for first in (0..8).step_by(lanes) {
             // An empty array has an address beyond which there is nothing.
             let part = |blocks: &[[f64; 8]]| blocks.as_ptr().cast::<f64>().wrapping_add(first);
-            let results = results.map(|result| result.wrapping_add(first));
+            let mut results = starts;
+            for result in &mut results {
+                *result = result.wrapping_add(first);
+            }
             // SAFETY: the check bounds every read by the lengths that the caller promises, and the
             // code writes each result from its start to its length. The references promise that
             // the memory is valid and that results overlap neither each other nor the arguments.

@@ -2,8 +2,10 @@
 
 use std::path::{Path, PathBuf};
 
+use appell::control::Request;
 use appell::ensemble::{Ensemble, Folder, Role, Rows, Running, Store, Summary, Watch};
-use appell::json;
+use appell::{Model, Motion, json};
+use appell_runtime::integrate::Options;
 
 /// A mass on a spring, ω = 2 1/s. With x and v/ω normal of one deviation at the start they are so at all times.
 const OSCILLATOR: &str = r#"
@@ -356,6 +358,62 @@ fn noise_moves_a_mass_as_far_as_it_should() {
         let variance = rows.values[0].iter().map(|v| v * v).sum::<f64>() / 1500.0;
         // Ten independent steps of 0.2 m/s.
         assert!((variance - 0.4).abs() < 0.04, "{variance}");
+    }
+}
+
+#[test]
+fn a_motion_under_a_law_is_that_of_simulate() {
+    let scratch = Scratch::new("laws");
+    let model = Model::shipped("cart_pole").unwrap();
+    let design = model.control(&Request::default().poles("-3")).unwrap();
+    let law = model.law(&design).unwrap();
+    let scheduled = "\
+inputs = ['F']
+states = ['x', 'theta', 'v', 'omega']
+over = 'theta'
+[[at]]
+value = -0.1
+gains = [1, 2, 1, 0.5]
+[[at]]
+value = 0.1
+gains = [2, 3, 1.5, 0.7]
+";
+    let laws = [
+        ("continuous", law.clone()),
+        ("sampled", format!("sampled_ms = 20\ndelay_ms = 5\n{law}")),
+        ("scheduled", scheduled.to_owned()),
+    ];
+    for (name, law) in laws {
+        std::fs::write(scratch.0.join("law.toml"), &law).unwrap();
+        let study = "[study]\nmodel = \"cart_pole\"\ncases = 11\n\
+             [motion]\nt_end_s = 0.9\nrtol = 1e-11\natol = 1e-11\nfeedback = \"law.toml\"\n\
+             [vary]\ntheta = { uniform = [0.05, 0.2] }\n\
+             [keep]\nx = { end = \"x\" }\nomega = { end = \"omega\" }\n";
+        let ensemble = scratch.ensemble(study);
+        let rows = ensemble.rows(0..11);
+        for case in 0..11 {
+            let theta = rows.values[column(&ensemble, "theta")][case];
+            let motion = Motion::new(0.9)
+                .initial("theta", &format!("{theta}rad"))
+                .feedback(&law);
+            let motion = Motion {
+                options: Options::with_tolerances(1e-11, 1e-11),
+                ..motion
+            };
+            let motion = model.simulate(&motion).unwrap().trajectory;
+            for kept in ["x", "omega"] {
+                let expected = *motion.column(kept).unwrap().last().unwrap();
+                let found = rows.values[ensemble
+                    .columns()
+                    .iter()
+                    .rposition(|c| c.name == kept)
+                    .unwrap()][case];
+                assert!(
+                    (found - expected).abs() < 1e-9,
+                    "{name}, {kept}: {found} {expected}"
+                );
+            }
+        }
     }
 }
 

@@ -34,5 +34,5 @@ pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
-pub use series::JitSeries;
+pub use series::{JitSeries, JitSeriesInLanes};
 pub use vector::{Instructions, Target, VectorFunction};

@@ -17,6 +17,7 @@ pub use interpreted::InterpretedSeries;
 use appell_runtime::model::{List, ModelInfo};
 use appell_runtime::series::{OrderNumber, Shape};
 
+use crate::operations::Seen;
 use crate::operations::bind::{bind, live};
 use crate::operations::closed_loop::{in_loop, under};
 use crate::operations::flatten::flatten;
@@ -67,10 +68,15 @@ pub fn expand(rates: &Schedule, lengths: Lengths) -> SeriesProgram {
 }
 
 /// The same under a law: the first result of its schedule is the inputs of the rates. `lengths` are those of
-/// the law's arguments, which the rates share but for the inputs.
-pub fn expand_under(law: &Schedule, rates: &Schedule, lengths: Lengths) -> SeriesProgram {
+/// the law's arguments, which the rates share but for the inputs; `seen` is what it has in the place of some.
+pub fn expand_under(
+    law: &Schedule,
+    rates: &Schedule,
+    seen: &[Seen],
+    lengths: Lengths,
+) -> SeriesProgram {
     let mut graph = Graph::default();
-    let inputs = under(law, &mut graph, &[]);
+    let inputs = under(law, &mut graph, seen);
     let rates = in_loop(rates, &mut graph, &inputs);
     series(graph, &rates, lengths)
 }

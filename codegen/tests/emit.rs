@@ -8,8 +8,8 @@ use appell_codegen::emit::{Error, Options, emit, emit_functions};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{interpret, schedule};
-use appell_runtime::Dual;
 use appell_codegen::taylor::{InterpretedSeries, Lengths, expand};
+use appell_runtime::Dual;
 use appell_runtime::model::{At, Gradient, Model};
 use appell_runtime::series::{OrderNumber, Series, Start, Started, Sweep, Swept};
 

@@ -36,4 +36,6 @@ mod symbolic_print;
 #[cfg(feature = "jit")]
 mod taylor;
 #[cfg(feature = "jit")]
+mod taylor_block;
+#[cfg(feature = "jit")]
 mod taylor_motions;

@@ -224,7 +224,7 @@ fn a_law_in_front_gives_the_coefficients_of_equations_that_contain_it() {
         inputs: 0,
         parameters: 0,
     };
-    let composed = expand_under(&law, &rates(None, Written::new()), lengths);
+    let composed = expand_under(&law, &rates(None, Written::new()), &[], lengths);
     let [composed, expected] = [composed, expand(&whole, lengths)]
         .map(|program| coefficients(&InterpretedSeries(program), &[], &[0.7], 12));
     assert_eq!(composed, expected);

@@ -87,8 +87,7 @@ impl<'a> Splitting<'a> {
         let start: Vec<Vec<f64>> = (0..n)
             .map(|_| (0..d).map(|_| draws.normal()).collect())
             .collect();
-        let mut particles: Vec<(f64, Vec<f64>)> =
-            heights(&start)?.into_iter().zip(start).collect();
+        let mut particles: Vec<(f64, Vec<f64>)> = heights(&start)?.into_iter().zip(start).collect();
         let (mut probability, mut stride) = (1.0, 0.5_f64);
         for _ in 0..MOST_LEVELS {
             particles.sort_by(|a, b| a.0.total_cmp(&b.0));
@@ -116,7 +115,9 @@ impl<'a> Splitting<'a> {
                 };
                 let proposed: Vec<Vec<f64>> = particles[..low].iter().map(&mut near).collect();
                 let reached = heights(&proposed)?;
-                for (particle, proposed) in particles.iter_mut().zip(reached.into_iter().zip(proposed)) {
+                for (particle, proposed) in
+                    particles.iter_mut().zip(reached.into_iter().zip(proposed))
+                {
                     tried += 1;
                     if proposed.0 > level {
                         taken += 1;

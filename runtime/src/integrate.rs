@@ -39,6 +39,7 @@ mod taylor;
 mod watch;
 
 pub use block::{BlockMotion, BlockSolver};
+pub use block_stages::Places;
 pub use dense_output::DenseOutput;
 pub use error::{Cause, Failure, IntegrationError};
 pub use events::{Direction, Event, EventFunction, EventHit};
@@ -49,5 +50,5 @@ pub use range::Range;
 pub use rk4::Rk4;
 pub use solver::Solver;
 pub use stops::{SwitchFunction, Switches};
-pub use taylor::{Expanded, InputPolynomials, Taylor};
+pub use taylor::{BlockTaylor, Expanded, ExpandedTogether, InputPolynomials, MotionInputs, Taylor};
 pub use watch::{NoObserver, Observer, Projection, ProjectionFunction, Step, Watch};

@@ -5,6 +5,7 @@
 //! values *kept* at order zero, and what lower orders contribute to products comes in sums over pairs of
 //! coefficients, Σ aⱼ bₖ₋ⱼ for 1 ≤ j < k, which the caller takes.
 
+use crate::lanes::{AtLanes, LANES};
 use crate::model::List;
 
 /// Equations ẋ = f(t, x, u, p) with the recurrences of their Taylor coefficients.
@@ -15,6 +16,17 @@ pub trait Series: Send + Sync {
     fn start(&self, from: Start<'_>, to: Started<'_>);
     /// Order k ≥ 1.
     fn sweep(&self, from: Sweep<'_>, to: Swept<'_>);
+}
+
+/// A [`Series`] of eight motions at once: every array has a block of eight numbers in the place of a number.
+pub trait SeriesInLanes: Send + Sync {
+    /// Lengths of what the methods read and write.
+    fn shape(&self) -> &Shape;
+    /// Order zero; writes what [`Started`] has, in its order.
+    fn start(&self, at: AtLanes<'_>, to: [&mut [[f64; LANES]]; 3]);
+    /// Order k ≥ 1. The time is k; the inputs are followed by the numbers of [`OrderNumber`], the parameters are what
+    /// order zero kept; writes what [`Swept`] has, in its order.
+    fn sweep(&self, at: AtLanes<'_>, sums: &[[f64; LANES]], to: [&mut [[f64; LANES]]; 4]);
 }
 
 /// An input as a polynomial of the time since some moment, up to the third power.

@@ -16,8 +16,8 @@ use crate::series::{Cubic, Series};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 pub use describe::describe;
-pub use prepared::{Prepared, Viewer, observe_block};
 use prepared::projection;
+pub use prepared::{Prepared, Viewer, observe_together};
 use recorder::Recorder;
 pub use validity::{Breach, Limit, Response, Validity};
 

@@ -5,7 +5,7 @@
 
 use appell_runtime::integrate::{
     BlockMotion, BlockSolver, Cause, Direction, Dop853, Dopri5, EmbeddedPair, Ending, Event,
-    IntegrationError, Options, Outcome, Range, Solver, Step, Switches, Watch,
+    IntegrationError, Options, Outcome, Places, Range, Solver, Step, Switches, Watch,
 };
 use appell_runtime::lanes::LANES;
 use std::ops::ControlFlow;
@@ -101,14 +101,15 @@ fn together<P: EmbeddedPair>(members: &[usize], options: &Options) -> Vec<Ended>
         .map(|(&lane, seen)| BlockMotion {
             span: span(lane),
             x: start(lane),
+            parameters: &[],
             watch: watch(lane),
             observer: see(seen),
         })
         .collect();
-    let f = |which: &[usize; LANES], t: &[f64; LANES], x: &[[f64; LANES]], rates: &mut [[f64; LANES]]| {
+    let f = |which: &[usize; LANES], at: Places<'_>, rates: &mut [[f64; LANES]]| {
         for (l, &motion) in which.iter().enumerate() {
-            let lane = members[motion];
-            let state: Vec<f64> = x.iter().map(|x| x[l]).collect();
+            let (lane, t) = (members[motion], at.t);
+            let state: Vec<f64> = at.x.iter().map(|x| x[l]).collect();
             let mut own = vec![0.0; rates.len()];
             pendulum(lane, t[l], &state, &mut own);
             for (rate, own) in rates.iter_mut().zip(own) {
@@ -130,7 +131,9 @@ fn agree<P: EmbeddedPair>(options: &Options) {
         vec![5],
         vec![3, 0, 6],
         // More than there are lanes: the next one begins where one ends.
-        vec![0, 1, 2, 3, 4, 5, 6, 7, 7, 3, 5, 0, 2, 5, 5, 5, 3, 1, 6, 7, 4],
+        vec![
+            0, 1, 2, 3, 4, 5, 6, 7, 7, 3, 5, 0, 2, 5, 5, 5, 3, 1, 6, 7, 4,
+        ],
     ] {
         for (found, &lane) in together::<P>(&members, options).iter().zip(&members) {
             // All numbers, and all of the statistics.

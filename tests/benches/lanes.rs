@@ -118,6 +118,24 @@ fn copy(_: &dyn Model, places: &mut Places, i: usize) {
     places.rates[i * n..][..n].copy_from_slice(&places.x[i * n..][..n]);
 }
 
+/// What is computed at the places of a block, for comparison with more digits.
+fn samples(model: &dyn Model) -> Vec<Value> {
+    let mut places = Places::new(model, 1, true);
+    jacobians_in_lanes(model, &mut places, 0);
+    let (a, b, rates) = (places.a.clone(), places.b.clone(), places.rates.clone());
+    let of = |all: &[[f64; LANES]], lane: usize| -> Vec<f64> {
+        all.iter().map(|number| number[lane]).collect()
+    };
+    let sample = |lane: usize| {
+        let [x, u, p] = places.place(0, lane);
+        json!({
+            "x": x, "u": u, "p": p,
+            "rates": of(&rates, lane), "a": of(&a, lane), "b": of(&b, lane),
+        })
+    };
+    (0..LANES).map(sample).collect()
+}
+
 /// Nanoseconds a place, in caches and from memory.
 fn places(model: &dyn Model, told: &mut Vec<Value>) {
     for (place, blocks) in SIZES {
@@ -191,13 +209,21 @@ fn motions(model: &dyn Model, seconds: f64, told: &mut Vec<Value>) {
     };
     // By another method than the one that is measured.
     let exact = |method: Method| {
-        let other = if method == Method::Taylor { Method::Dop853 } else { Method::Taylor };
+        let other = if method == Method::Taylor {
+            Method::Dop853
+        } else {
+            Method::Taylor
+        };
         end(other, 1e-14)
     };
     for method in [Method::Taylor, Method::Dop853] {
-        let Ok((exact, _)) = exact(method) else { continue };
+        let Ok((exact, _)) = exact(method) else {
+            continue;
+        };
         for tolerance in TOLERANCES {
-            let Ok((found, _)) = end(method, tolerance) else { continue };
+            let Ok((found, _)) = end(method, tolerance) else {
+                continue;
+            };
             let off = found.state.iter().zip(&exact.state);
             let error = off.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
             let mut fastest = f64::INFINITY;
@@ -222,7 +248,12 @@ fn main() {
     while let Some(argument) = arguments.next() {
         match argument.as_str() {
             "--json" => as_json = true,
-            "--seconds" => seconds = arguments.next().and_then(|s| s.parse().ok()).unwrap_or(SECONDS),
+            "--seconds" => {
+                seconds = arguments
+                    .next()
+                    .and_then(|s| s.parse().ok())
+                    .unwrap_or(SECONDS)
+            }
             // Of cargo.
             "--bench" => {}
             path => specs.push(path.into()),
@@ -245,27 +276,48 @@ fn main() {
         let name = spec.to_string_lossy().into_owned();
         let program = compile(&name, &text, &FunctionKind::STANDARD)
             .unwrap_or_else(|report| panic!("{}", report.plain()));
-        let model = JitModel::new(&program).expect("a processor with a compiler").with_lanes_for(own);
+        let model = JitModel::new(&program)
+            .expect("a processor with a compiler")
+            .with_lanes_for(own);
         let mut told = Vec::new();
         places(&model, &mut told);
         one_place(&model, &mut told);
         motions(&model, seconds, &mut told);
         if !as_json {
             print(&program.info.name, &told);
+            if let Some(series) = model.series() {
+                let shape = series.shape();
+                println!(
+                    "  series: {} products, {} kept values",
+                    shape.products, shape.kept
+                );
+            }
         }
-        all.push(json!({ "mechanism": program.info.name, "spec": name, "rows": told }));
+        all.push(json!({
+            "mechanism": program.info.name, "spec": name, "rows": told, "samples": samples(&model),
+            "start": program.info.initial_state(),
+        }));
     }
     if as_json {
-        println!("{}", json!({ "level": format!("{:?}", Level::best()), "mechanisms": all }));
+        println!(
+            "{}",
+            json!({ "level": format!("{:?}", Level::best()), "mechanisms": all })
+        );
     }
 }
 
 fn print(name: &str, told: &[Value]) {
-    println!("{name}; widest vectors of this processor: {:?}", Level::best());
+    println!(
+        "{name}; widest vectors of this processor: {:?}",
+        Level::best()
+    );
     for row in told {
         let what = row["row"].as_str().unwrap_or_default();
         match row["ns"].as_f64() {
-            Some(ns) => println!("  {what:40} {:8} {ns:10.2} ns", row["where"].as_str().unwrap_or_default()),
+            Some(ns) => println!(
+                "  {what:40} {:8} {ns:10.2} ns",
+                row["where"].as_str().unwrap_or_default()
+            ),
             None => println!(
                 "  {what:40} {:8.0e} {:10.2} us  error {:.1e}, {} steps",
                 row["tolerance"].as_f64().unwrap_or_default(),

@@ -454,8 +454,9 @@ const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
     ("audit", &["mechanics", "symbolic"]),
     ("formulations", &["mechanics", "symbolic"]),
     ("schedule", &["program", "symbolic"]),
-    ("emit", &["program", "schedule", "symbolic"]),
-    ("taylor", &["schedule", "symbolic"]),
+    ("emit", &["program", "schedule", "symbolic", "taylor"]),
+    ("operations", &["schedule", "symbolic"]),
+    ("taylor", &["operations", "schedule", "symbolic"]),
     ("jit", &["program", "schedule", "symbolic", "taylor"]),
     ("interpreted", &["program", "schedule", "taylor"]),
 ];

@@ -9,12 +9,14 @@ use appell_ensemble::study::{Kept, Method};
 use appell_runtime::Simulation;
 use appell_runtime::inputs::ModelInputs;
 use appell_runtime::integrate::{
-    BlockSolver, Cause, Direction, Dop853, Dopri5, Ending, Event, Options,
+    BlockSolver, BlockTaylor, Cause, Direction, Dop853, Dopri5, Ending, Event, ExpandedTogether,
+    Options, Places,
 };
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::ModelInfo;
+use appell_runtime::series::Cubic;
 use appell_runtime::simulate::{
-    Observed, Prepared, Response, SimulationError, Validity, Viewer, observe_block,
+    Observed, Prepared, Response, SimulationError, Validity, Viewer, observe_together,
 };
 
 use super::factors::Target;
@@ -23,6 +25,7 @@ use super::observer::{Gauge, Keeper};
 use super::spec::Quantity;
 use super::variant::Variant;
 use super::{Ensemble, Task};
+use crate::inputs::closed_loop::{ClosedLoop, Equations};
 
 /// Cases that are set up together, from which blocks of the same spec and law are made.
 const TOGETHER: u64 = 64;
@@ -53,11 +56,12 @@ impl Engine for Ensemble {
     }
 }
 
-/// Work arrays of both methods.
+/// Work arrays of all methods.
 #[derive(Default)]
 pub(super) struct Solvers {
     dop853: BlockSolver<Dop853>,
     dopri5: BlockSolver<Dopri5>,
+    taylor: BlockTaylor,
 }
 
 /// What came of a case.
@@ -165,18 +169,19 @@ impl Ensemble {
     }
 
     /// Runs motions under one spec and law.
-    fn ride(
-        &self,
-        task: &Task,
-        variant: &Variant,
-        rides: &mut [Ride<'_>],
-        solvers: &mut Solvers,
-    ) {
-        let sources: Vec<Noisy<'_>> = rides.iter().map(|ride| self.source(variant, ride)).collect();
-        let (starts, mut rows): (Vec<&Start>, Vec<&mut Row>) =
-            rides.iter_mut().map(|ride| (&ride.start, &mut *ride.row)).unzip();
+    fn ride(&self, task: &Task, variant: &Variant, rides: &mut [Ride<'_>], solvers: &mut Solvers) {
+        let sources: Vec<Noisy<'_>> = rides
+            .iter()
+            .map(|ride| self.source(variant, ride))
+            .collect();
+        let (starts, mut rows): (Vec<&Start>, Vec<&mut Row>) = rides
+            .iter_mut()
+            .map(|ride| (&ride.start, &mut *ride.row))
+            .unzip();
         let model = variant.model.equations();
-        let inputs = sources.iter().map(|source| ModelInputs::new(model.info(), source));
+        let inputs = sources
+            .iter()
+            .map(|source| ModelInputs::new(model.info(), source));
         let inputs = match inputs.collect::<Result<Vec<_>, _>>() {
             Ok(inputs) => inputs,
             Err(error) => {
@@ -210,21 +215,25 @@ impl Ensemble {
                 Err(error) => rows[place].fail(told(&error, variant)),
             }
         }
-        let mut values: Vec<Option<&mut [f64]>> =
-            rows.iter_mut().map(|row| Some(row.values.as_mut_slice())).collect();
-        let viewers = prepared.iter().zip(&which).filter_map(|(prepared, &place)| {
-            let gauge = &gauges[place];
-            let from = (prepared.span()[0], prepared.start());
-            let row = values[place].take()?;
-            Some(Viewer {
-                events: awaited[place].events(task, gauge),
-                observer: Keeper::new(gauge, &task.keep, &task.layout, row, from),
-            })
-        });
+        let mut values: Vec<Option<&mut [f64]>> = rows
+            .iter_mut()
+            .map(|row| Some(row.values.as_mut_slice()))
+            .collect();
+        let viewers = prepared
+            .iter()
+            .zip(&which)
+            .filter_map(|(prepared, &place)| {
+                let gauge = &gauges[place];
+                let from = (prepared.span()[0], prepared.start());
+                let row = values[place].take()?;
+                Some(Viewer {
+                    events: awaited[place].events(task, gauge),
+                    observer: Keeper::new(gauge, &task.keep, &task.layout, row, from),
+                })
+            });
         let viewers = viewers.collect();
         let sources: Vec<&Noisy<'_>> = which.iter().map(|&place| &sources[place]).collect();
-        let rates = Rates::new(variant, sources, &prepared);
-        let ended = self.observe(solvers, &prepared, viewers, rates);
+        let ended = self.observe(solvers, &variant.closed, &sources, &prepared, viewers);
         let mut ends = Vec::new();
         for (ended, place) in ended.into_iter().zip(which) {
             let end = ended.map(|(observed, keeper)| {
@@ -242,7 +251,10 @@ impl Ensemble {
                 }
                 (observed.t, reason)
             });
-            ends.push((place, end.unwrap_or_else(|error| (0.0, told(&error, variant)))));
+            ends.push((
+                place,
+                end.unwrap_or_else(|error| (0.0, told(&error, variant))),
+            ));
         }
         for (place, (end, reason)) in ends {
             (rows[place].end, rows[place].reason) = (end, reason);
@@ -253,7 +265,9 @@ impl Ensemble {
     fn source<'v>(&self, variant: &'v Variant, ride: &Ride<'v>) -> Noisy<'v> {
         let until = self.study.motion.t_end;
         Noisy {
-            controller: variant.wiring.controller(ride.start.parameters.clone(), until),
+            controller: variant
+                .wiring
+                .controller(ride.start.parameters.clone(), until),
             noises: &variant.noises,
             draws: ride.draws,
             drawn: self.design.drawn().count(),
@@ -290,9 +304,10 @@ impl Ensemble {
     fn observe<'w>(
         &self,
         solvers: &mut Solvers,
+        closed: &ClosedLoop,
+        sources: &[&Noisy<'_>],
         prepared: &'w [Prepared<'w>],
         viewers: Vec<Viewer<'w, Keeper<'w>>>,
-        mut rates: Rates<'_>,
     ) -> Vec<Result<(Observed, Keeper<'w>), SimulationError>> {
         let motion = &self.study.motion;
         let options = Options::with_tolerances(motion.rtol, motion.atol);
@@ -301,65 +316,65 @@ impl Ensemble {
             max_steps: max_steps.unwrap_or(options.max_steps),
             ..options
         };
-        let rates = |which: &[usize; LANES], t: &Block, x: &[Block], out: &mut [Block]| {
-            rates.write(which, t, x, out);
+        let function = match &closed.equations {
+            Equations::Rates(function) => function,
+            Equations::Series(series) => {
+                let inputs = |motion: usize, t: f64, x: &[f64], u: &mut [Cubic]| {
+                    sources[motion].fill_polynomials(t, x, u);
+                };
+                let together = ExpandedTogether {
+                    series,
+                    inputs: closed.is_driven().then_some(&inputs),
+                };
+                return observe_together(prepared, viewers, |motions| {
+                    solvers.taylor.integrate(&together, motions, &options)
+                });
+            }
         };
-        match motion.method {
-            Method::Dop853 => {
-                observe_block(&mut solvers.dop853, &options, prepared, viewers, rates)
-            }
-            Method::Dopri5 => {
-                observe_block(&mut solvers.dopri5, &options, prepared, viewers, rates)
-            }
-        }
+        let mut outside = OutsideInputs::new(closed, sources, self.states());
+        let rates = |which: &[usize; LANES], at: Places<'_>, rates: &mut [Block]| {
+            let u = outside.at(which, at);
+            let Places { t, x, p } = at;
+            function.call(AtLanes { t, x, u, p }, [rates]);
+        };
+        observe_together(prepared, viewers, |motions| match motion.method {
+            Method::Dopri5 => solvers.dopri5.integrate(rates, motions, &options),
+            Method::Dop853 | Method::Taylor => solvers.dop853.integrate(rates, motions, &options),
+        })
+    }
+
+    /// Number of states.
+    fn states(&self) -> usize {
+        self.variants[0].model.info().state_len()
     }
 }
 
 /// A number of each of eight motions.
 type Block = [f64; LANES];
 
-/// The rates of motions under their inputs.
-struct Rates<'r> {
-    variant: &'r Variant,
-    sources: Vec<&'r Noisy<'r>>,
-    parameters: Vec<&'r [f64]>,
-    /// Whose parameters the lanes have.
-    which: Option<[usize; LANES]>,
-    p: Vec<Block>,
+/// What drives the motions of a block from outside.
+struct OutsideInputs<'r> {
+    sources: &'r [&'r Noisy<'r>],
+    is_driven: bool,
     u: Vec<Block>,
     /// State and inputs of one motion.
     one: [Vec<f64>; 2],
 }
 
-impl<'r> Rates<'r> {
-    fn new(
-        variant: &'r Variant,
-        sources: Vec<&'r Noisy<'r>>,
-        prepared: &'r [Prepared<'_>],
-    ) -> Self {
-        let (info, inputs) = (variant.model.info(), variant.closed.inputs());
+impl<'r> OutsideInputs<'r> {
+    fn new(closed: &ClosedLoop, sources: &'r [&'r Noisy<'r>], states: usize) -> Self {
+        let inputs = closed.inputs();
         Self {
-            variant,
             sources,
-            parameters: prepared.iter().map(Prepared::parameters).collect(),
-            which: None,
-            p: vec![[0.0; LANES]; info.parameter_len()],
+            is_driven: closed.is_driven(),
             u: vec![[0.0; LANES]; inputs],
-            one: [vec![0.0; info.state_len()], vec![0.0; inputs]],
+            one: [vec![0.0; states], vec![0.0; inputs]],
         }
     }
 
-    fn write(&mut self, which: &[usize; LANES], t: &Block, x: &[Block], rates: &mut [Block]) {
-        let closed = &self.variant.closed;
-        if self.which != Some(*which) {
-            self.which = Some(*which);
-            for (l, &motion) in which.iter().enumerate() {
-                for (block, p) in self.p.iter_mut().zip(self.parameters[motion]) {
-                    block[l] = *p;
-                }
-            }
-        }
-        if closed.is_driven() {
+    fn at(&mut self, which: &[usize; LANES], at: Places<'_>) -> &[Block] {
+        let Places { t, x, .. } = at;
+        if self.is_driven {
             let [state, outside] = &mut self.one;
             for (l, &motion) in which.iter().enumerate() {
                 for (state, x) in state.iter_mut().zip(x) {
@@ -371,8 +386,7 @@ impl<'r> Rates<'r> {
                 }
             }
         }
-        let (u, p) = (self.u.as_slice(), self.p.as_slice());
-        closed.rates(AtLanes { t, x, u, p }, rates);
+        &self.u
     }
 }
 

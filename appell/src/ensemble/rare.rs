@@ -73,7 +73,9 @@ impl Landscape for Peak<'_> {
 
     fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64> {
         let draws: Vec<Draws<'_>> = scores.iter().map(|one| Draws::Scores(one)).collect();
-        let rows = self.ensemble.motions(self.task, &draws, &mut Solvers::default());
+        let rows = self
+            .ensemble
+            .motions(self.task, &draws, &mut Solvers::default());
         let column = self.task.layout.first[0];
         rows.iter().map(|row| row.values[column]).collect()
     }

@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use appell_ensemble::study::{Entry, Text};
+use appell_ensemble::study::{Entry, Method, Text};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::{InputId, ParameterId};
 use appell_spec::{Code, Scope, did_you_mean};
@@ -13,7 +13,7 @@ use super::noise::Noise;
 use super::reading::Reading;
 use super::spec::{Extended, Quantity};
 use crate::formula::{StateFunction, Workbench};
-use crate::inputs::closed_loop::{ClosedLoop, Onto};
+use crate::inputs::closed_loop::{ClosedLoop, Kind, Onto};
 use crate::inputs::controller::{Plan, Wiring};
 use crate::inputs::feedback;
 use crate::setup::Setup;
@@ -191,11 +191,15 @@ pub(super) fn variant(
         ]
     });
     let wiring = plan.wiring(&setup, study.motion.t_end)?;
+    let kind = match study.motion.method {
+        Method::Taylor => Kind::Series,
+        Method::Dop853 | Method::Dopri5 => Kind::Rates,
+    };
     let seen: Vec<Onto> = noises.iter().map(|noise| noise.onto).collect();
     Ok(Some(Variant {
         model: Arc::clone(model),
         limits: limits.collect(),
-        closed: wiring.closed_loop(model.rates()?, setup.info, &seen),
+        closed: wiring.closed_loop(model.rates()?, setup.info, &seen, kind)?,
         wiring,
         set: compile(derived.set)?,
         start: compile(start)?,

@@ -1,9 +1,9 @@
 //! Equations of motion with their inputs put in, for eight motions at once.
 
-use appell_codegen::jit::{Elementary, Sizes, Target, VectorFunction};
+use appell_codegen::jit::{Elementary, JitError, JitSeriesInLanes, Sizes, Target, VectorFunction};
 use appell_codegen::operations::{Seen, closed_loop};
-use appell_codegen::schedule::{Schedule, interpret};
-use appell_runtime::lanes::{AtLanes, LANES, place_by_place};
+use appell_codegen::schedule::Schedule;
+use appell_codegen::taylor::{Lengths, expand_under};
 
 /// What a disturbance of the law's view acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,18 +23,27 @@ pub(super) struct Outside {
     pub(super) is_there: bool,
 }
 
-/// The rates under expressions and laws. They call the elementary functions of the runtime, so that they have the
+/// What is made of the equations.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Kind {
+    /// Rates.
+    Rates,
+    /// Taylor series.
+    Series,
+}
+
+/// The equations under expressions and laws. They call the elementary functions of the runtime, so that they have the
 /// same bits on every machine.
 pub(crate) struct ClosedLoop {
-    how: How,
+    pub(crate) equations: Equations,
     inputs: usize,
     is_driven: bool,
 }
 
-enum How {
-    Vector(VectorFunction),
-    /// What is too long to be compiled.
-    Interpreted(Schedule),
+/// Equations for eight motions at once.
+pub(crate) enum Equations {
+    Rates(VectorFunction),
+    Series(JitSeriesInLanes),
 }
 
 impl ClosedLoop {
@@ -42,23 +51,11 @@ impl ClosedLoop {
         law: &Schedule,
         rates: &Schedule,
         sizes: Sizes,
-        outside: Outside,
-        seen: &[Onto],
-    ) -> Self {
-        let views = seen.iter().zip(outside.inputs..).map(|(onto, by)| {
-            let by = index(by);
-            match *onto {
-                Onto::Measured(state) => Seen::Disturbed {
-                    state: index(state),
-                    by,
-                },
-                Onto::Parameter(parameter) => Seen::Replaced {
-                    parameter: index(parameter),
-                    by,
-                },
-            }
-        });
-        let schedule = closed_loop(law, rates, &views.collect::<Vec<_>>());
+        (outside, seen): (Outside, &[Onto]),
+        kind: Kind,
+    ) -> Result<Self, JitError> {
+        let views = seen.iter().zip(outside.inputs..);
+        let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();
         let sizes = Sizes {
             inputs: outside.inputs + seen.len(),
             ..sizes
@@ -67,14 +64,26 @@ impl ClosedLoop {
             elementary: Elementary::Own,
             ..Target::default()
         };
-        Self {
-            how: match VectorFunction::compile_for(&schedule, sizes, target) {
-                Ok(vector) => How::Vector(vector),
-                Err(_) => How::Interpreted(schedule),
-            },
+        let equations = match kind {
+            Kind::Rates => {
+                let rates = closed_loop(law, rates, &views);
+                Equations::Rates(VectorFunction::compile_or_interpret(&rates, sizes, target)?)
+            }
+            Kind::Series => {
+                let lengths = Lengths {
+                    states: sizes.states,
+                    inputs: sizes.inputs,
+                    parameters: sizes.parameters,
+                };
+                let series = expand_under(law, rates, &views, lengths);
+                Equations::Series(JitSeriesInLanes::new(series, target)?)
+            }
+        };
+        Ok(Self {
+            equations,
             inputs: sizes.inputs,
             is_driven: outside.is_there || !seen.is_empty(),
-        }
+        })
     }
 
     /// How many inputs it has: those from outside, then the disturbances of what laws see.
@@ -86,16 +95,21 @@ impl ClosedLoop {
     pub(crate) fn is_driven(&self) -> bool {
         self.is_driven
     }
+}
 
-    /// Rates at eight places.
-    pub(crate) fn rates(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
-        match &self.how {
-            How::Vector(vector) => vector.call(at, [rates]),
-            How::Interpreted(schedule) => {
-                place_by_place(at, [rates], |t, [x, u, p], [rates]| {
-                    rates.copy_from_slice(&interpret(schedule, t, x, u, p)[0]);
-                });
-            }
+impl Onto {
+    /// The disturbance as an input of the whole.
+    fn seen(self, by: usize) -> Seen {
+        let by = index(by);
+        match self {
+            Self::Measured(state) => Seen::Disturbed {
+                state: index(state),
+                by,
+            },
+            Self::Parameter(parameter) => Seen::Replaced {
+                parameter: index(parameter),
+                by,
+            },
         }
     }
 }

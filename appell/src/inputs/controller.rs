@@ -18,7 +18,7 @@ use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
-use crate::inputs::closed_loop::{ClosedLoop, Onto, Outside};
+use crate::inputs::closed_loop::{ClosedLoop, Kind, Onto, Outside};
 use crate::inputs::feedback::{Feedback, Gains, Sampled};
 use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
 use crate::inputs::tabulated::Table;
@@ -297,13 +297,21 @@ impl Wiring {
         rates: &Schedule,
         info: &ModelInfo,
         seen: &[Onto],
-    ) -> ClosedLoop {
+        kind: Kind,
+    ) -> Result<ClosedLoop, Error> {
         let given = self.recorded.is_some() || !self.driven.is_empty();
         let outside = Outside {
             inputs: self.function.inputs(),
             is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
         };
-        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), outside, seen)
+        ClosedLoop::new(
+            &self.law(info),
+            rates,
+            Sizes::from(info),
+            (outside, seen),
+            kind,
+        )
+        .map_err(Error::computation)
     }
 
     /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
@@ -327,7 +335,7 @@ impl Controller<'_> {
             ..Lengths::from(info)
         };
         let law = self.wiring.law(info);
-        self.series = Some(JitSeries::new(expand_under(&law, rates, lengths)));
+        self.series = Some(JitSeries::new(expand_under(&law, rates, &[], lengths)));
     }
 
     /// Adds what discrete-time laws hold between samples to `count` inputs.
@@ -436,6 +444,14 @@ impl InputSource for Controller<'_> {
     }
 
     fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
+        self.polynomials_with(&self.parameters, t, x, u)
+    }
+}
+
+impl Controller<'_> {
+    /// The inputs of the closed loop from outside as polynomials of the time since `t`, with the parameters and the
+    /// state that laws see; false where they are none.
+    pub(crate) fn polynomials_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
         let wiring = self.wiring;
         let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
         wiring.function.polynomials(t, signals);
@@ -458,7 +474,7 @@ impl InputSource for Controller<'_> {
         }
         if !wiring.sampled.is_empty() {
             let mut values = vec![0.0; wiring.slots.len()];
-            wiring.function.values(t, x, &self.parameters, &mut values);
+            wiring.function.values(t, x, p, &mut values);
             let count = declared.len();
             self.add_held(t, x, &values, count, |input, held| {
                 declared[input][0] += held;

@@ -59,7 +59,8 @@ impl Body<'_> {
             if let Argument::Weight(index) | Argument::OutputWeight(index) = argument {
                 let weights = &self.types.argument_names()[4];
                 let value = s::entry(s::name(weights), &[index as usize]);
-                self.statements.push(s::binding(self.types.names.get(argument)), value);
+                self.statements
+                    .push(s::binding(self.types.names.get(argument)), value);
             }
         }
     }
@@ -101,13 +102,19 @@ impl Body<'_> {
             Layout::Vector(space) => self.vector(space, self.statements.trees(entries)),
             Layout::List(_) => s::array(self.statements.trees(entries)),
             Layout::Rows(space, columns) => {
-                let rows = entries.chunks(columns).map(|row| s::array(self.statements.trees(row)));
+                let rows = entries
+                    .chunks(columns)
+                    .map(|row| s::array(self.statements.trees(row)));
                 self.vector(space, rows.collect())
             }
             Layout::Matrix(rows, columns) => {
                 // A row may be empty: a model may have contacts and no coordinates.
                 let lines = (0..rows).map(|row| &entries[row * columns..][..columns]);
-                s::array(lines.map(|line| s::array(self.statements.trees(line))).collect())
+                s::array(
+                    lines
+                        .map(|line| s::array(self.statements.trees(line)))
+                        .collect(),
+                )
             }
             Layout::Jacobian(rows, columns) => {
                 let count = self.types.fields(columns).len();

@@ -6,8 +6,8 @@ use quote::quote;
 
 use super::error::Error;
 use super::lanes;
-use super::series;
 use super::layout::{blank_tokens, docs, escaped};
+use super::series;
 use super::syntax::{ident, known, path};
 use super::types::{Types, double};
 use crate::program::{FunctionKind, Layout, Program, Space};

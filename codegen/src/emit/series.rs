@@ -132,13 +132,18 @@ fn function(name: &'static str, schedule: &Schedule) -> TokenStream {
         .map(|array| statements.trees(&array.entries))
         .collect();
     let writes = results.iter().zip(["first", "second", "third", "fourth"]);
-    let writes = writes.filter(|(entries, _)| !entries.is_empty()).map(|(entries, to)| {
-        let to = known(to);
-        quote!(#to.copy_from_slice(&[#(#entries),*]);)
-    });
+    let writes = writes
+        .filter(|(entries, _)| !entries.is_empty())
+        .map(|(entries, to)| {
+            let to = known(to);
+            quote!(#to.copy_from_slice(&[#(#entries),*]);)
+        });
     let all: &[Stmt] = &statements.all;
     let (name, time) = (known(name), s::path(&names.time));
-    let (slices, types) = ([SLICES[1], SLICES[2], SLICES[3], SLICES[4]].map(known), quote!(&[T]));
+    let (slices, types) = (
+        [SLICES[1], SLICES[2], SLICES[3], SLICES[4]].map(known),
+        quote!(&[T]),
+    );
     quote! {
         fn #name<T: Real>(
             #time: T,
@@ -156,7 +161,9 @@ fn names(schedule: &Schedule) -> ArgumentNames {
     let used = |place: fn(Argument) -> Option<u32>, letter: &str| -> Vec<String> {
         let last = schedule.arguments.iter().filter_map(|&a| place(a)).max();
         let count = last.map_or(0, |last| last + 1);
-        (0..count).map(|index| format!("{letter}_{index}")).collect()
+        (0..count)
+            .map(|index| format!("{letter}_{index}"))
+            .collect()
     };
     ArgumentNames {
         time: SLICES[0].to_owned(),

@@ -2,8 +2,9 @@
 //!
 //! Each stands under an address and a calling convention that machine code knows.
 
-use appell_runtime::real::{Functions, Own, Standard};
+use appell_runtime::real::{Own, Standard};
 
+use super::vector::Blocks;
 use crate::symbolic::Function;
 
 /// Which elementary functions machine code calls.
@@ -58,11 +59,14 @@ impl Elementary {
     }
 }
 
+// A block of one number, so that vectors of the processor with their fused multiply-adds are used.
 macro_rules! shims {
     ($($name:ident),+) => {
         $(
-            extern "C" fn $name<F: Functions>(x: f64) -> f64 {
-                F::$name(x)
+            extern "C" fn $name<F: Blocks>(x: f64) -> f64 {
+                let mut value = [0.0];
+                <F as Blocks>::$name(&[x], &mut value);
+                value[0]
             }
         )+
     };
@@ -70,7 +74,7 @@ macro_rules! shims {
 
 shims!(sin, cos, asin, acos, atan, sinh, cosh, tanh, exp, ln);
 
-fn unary<F: Functions>(function: Function) -> Option<Unary> {
+fn unary<F: Blocks>(function: Function) -> Option<Unary> {
     Some(match function {
         Function::Sin => sin::<F>,
         Function::Cos => cos::<F>,
@@ -86,19 +90,25 @@ fn unary<F: Functions>(function: Function) -> Option<Unary> {
     })
 }
 
-extern "C" fn atan2<F: Functions>(y: f64, x: f64) -> f64 {
-    F::atan2(y, x)
+extern "C" fn atan2<F: Blocks>(y: f64, x: f64) -> f64 {
+    let mut value = [0.0];
+    <F as Blocks>::atan2(&[y], &[x], &mut value);
+    value[0]
 }
 
-extern "C" fn powf<F: Functions>(base: f64, exponent: f64) -> f64 {
-    F::powf(base, exponent)
+extern "C" fn powf<F: Blocks>(base: f64, exponent: f64) -> f64 {
+    let mut value = [0.0];
+    <F as Blocks>::powf(&[base], &[exponent], &mut value);
+    value[0]
 }
 
 /// # Safety
 ///
 /// `out` must point to two numbers that nothing else uses.
-unsafe extern "C" fn sin_cos<F: Functions>(angle: f64, out: *mut [f64; 2]) {
-    let (sin, cos) = F::sin_cos(angle);
+unsafe extern "C" fn sin_cos<F: Blocks>(angle: f64, out: *mut [f64; 2]) {
+    let mut both = [[0.0]; 2];
+    <F as Blocks>::sin_cos(&[angle], &mut both);
+    let [[sin], [cos]] = both;
     // SAFETY: the caller provides the place.
     unsafe { out.write([sin, cos]) }
 }

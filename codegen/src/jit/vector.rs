@@ -31,5 +31,6 @@ mod registers;
 mod routines;
 mod slots;
 
+pub(super) use blocks::Blocks;
 pub use function::VectorFunction;
 pub use machine::{Instructions, Target};

@@ -13,6 +13,8 @@ pub enum Method {
     Dop853,
     /// Order 5 with step-size control.
     Dopri5,
+    /// Taylor series of an order that follows from the tolerances.
+    Taylor,
 }
 
 /// The motion of a case.
@@ -84,7 +86,11 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Option<Motion>
     let t_end = read.positive(section, "t_end_s").unwrap_or(default.t_end);
     let interval = read.positive(section, "dt_s");
     let method = read.text(section, "method").and_then(|word| {
-        let words = [("dop853", Method::Dop853), ("dopri5", Method::Dopri5)];
+        let words = [
+            ("dop853", Method::Dop853),
+            ("dopri5", Method::Dopri5),
+            ("taylor", Method::Taylor),
+        ];
         read.word(&word, &words)
     });
     let feedback = match section.get("feedback") {

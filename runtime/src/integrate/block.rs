@@ -3,13 +3,13 @@
 use std::array::from_fn;
 use std::marker::PhantomData;
 
-use super::block_stages::{Block, BlockStages};
+use super::block_stages::{Block, BlockStages, Places};
 use super::dense_output::{DenseOutput, Ends, HERMITE};
 use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
 use super::pairs::EmbeddedPair;
-use super::step_size::{StepSize, first_guess, first_step, norm, powers};
+use super::step_size::{StepSize, first_guess, first_step, next_after_rejection, norm, powers};
 use super::stops::Stride;
 use super::watch::{End, Observer, Watch, Watcher};
 use crate::lanes::LANES;
@@ -21,6 +21,8 @@ pub struct BlockMotion<'a, O> {
     pub span: [f64; 2],
     /// The initial state; leaves with the last one, also after an error.
     pub x: Vec<f64>,
+    /// Its parameters.
+    pub parameters: &'a [f64],
     /// Switching times, ranges and events.
     pub watch: Watch<'a>,
     /// Who sees the accepted steps.
@@ -104,8 +106,10 @@ struct Lane<'m, 'a, O> {
     step_size: StepSize,
     statistics: Statistics,
     t: f64,
-    /// The step that is suggested.
+    /// The step that is suggested; guessed where it is not known.
     next_h: Option<f64>,
+    /// A guess may not be longer: the step before was rejected.
+    longest: f64,
     /// Whether the rates at the start of the step are still to be evaluated.
     restart: bool,
     stride: Stride,
@@ -125,6 +129,7 @@ impl<'m, 'a, O: Observer> Lane<'m, 'a, O> {
             statistics: Statistics::default(),
             t,
             next_h: None,
+            longest: f64::INFINITY,
             restart: true,
             stride: Stride::none(t),
             end: start.err().map(|cause| End::failed(t, cause)),
@@ -142,6 +147,16 @@ impl<'m, 'a, O: Observer> Lane<'m, 'a, O> {
     fn fail(&mut self, cause: Cause) {
         self.end = Some(End::failed(self.t, cause));
     }
+}
+
+impl<O: Observer> Occupant for Lane<'_, '_, O> {
+    fn motion(&self) -> usize {
+        self.motion
+    }
+
+    fn has_ended(&self) -> bool {
+        self.end.is_some()
+    }
 
     fn conclude(self) -> Result<Outcome, IntegrationError> {
         let end = self.end.unwrap_or(End::finished(self.t));
@@ -150,11 +165,66 @@ impl<'m, 'a, O: Observer> Lane<'m, 'a, O> {
 }
 
 /// The lanes of a block; those without a motion are empty.
-type Lanes<'m, 'a, O> = [Option<Lane<'m, 'a, O>>; LANES];
+pub(super) type Lanes<L> = [Option<L>; LANES];
+
+/// Who has a lane for a time.
+pub(super) trait Occupant {
+    /// Its number.
+    fn motion(&self) -> usize;
+    /// Whether it leaves.
+    fn has_ended(&self) -> bool;
+    /// What became of it.
+    fn conclude(self) -> Result<Outcome, IntegrationError>;
+}
+
+/// Concludes the motions that have ended, and begins others in their lanes as long as there are some. A lane in use;
+/// nothing once all have ended.
+pub(super) fn refill<L: Occupant>(
+    lanes: &mut Lanes<L>,
+    begin: &mut impl FnMut(usize) -> Option<L>,
+    results: &mut [Option<Result<Outcome, IntegrationError>>],
+) -> Option<usize> {
+    for (l, lane) in lanes.iter_mut().enumerate() {
+        while lane.as_ref().is_none_or(Occupant::has_ended) {
+            if let Some(ended) = lane.take() {
+                let motion = ended.motion();
+                results[motion] = Some(ended.conclude());
+            }
+            *lane = begin(l);
+            if lane.is_none() {
+                break;
+            }
+        }
+    }
+    lanes.iter().position(Option::is_some)
+}
+
+/// Lanes without a motion.
+pub(super) fn idle_lanes<L>(lanes: &Lanes<L>) -> impl Iterator<Item = usize> + use<L> {
+    let idle = lanes.each_ref().map(Option::is_none);
+    (0..LANES).filter(move |&l| idle[l])
+}
+
+/// The results of all motions.
+pub(super) fn all(
+    results: Vec<Option<Result<Outcome, IntegrationError>>>,
+) -> Vec<Result<Outcome, IntegrationError>> {
+    // None is left out: lanes are refilled until nothing waits.
+    let unseen = || {
+        Err(IntegrationError::InvalidArgument {
+            what: "motion",
+            value: f64::NAN,
+        })
+    };
+    let results = results.into_iter();
+    results
+        .map(|result| result.unwrap_or_else(unseen))
+        .collect()
+}
 
 /// The motions that have not ended, by their lanes.
 fn on_their_way<'l, 'm, 'a, O>(
-    lanes: &'l mut Lanes<'m, 'a, O>,
+    lanes: &'l mut Lanes<Lane<'m, 'a, O>>,
 ) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O>)> {
     let all = lanes.iter_mut().enumerate();
     all.filter_map(|(l, lane)| Some((l, lane.as_mut()?)))
@@ -169,13 +239,13 @@ impl<P: EmbeddedPair> BlockSolver<P> {
 
     /// Integrates ẋ = f(t, x) for each motion; returns how each ended.
     ///
-    /// `f(which, t, x, rates)` writes the rates of eight motions, component by component: `x[i][l]` is state i of motion
-    /// `which[l]`. A lane that no motion is left for is evaluated beside another one, and what is written there is
+    /// `f(which, places, rates)` writes the rates of the motions `which`, component by component as their states are
+    /// given. Where fewer than eight are left, some lanes are evaluated beside others, and what is written there is
     /// ignored.
     ///
     /// # Panics
     ///
-    /// If the states of the motions have different lengths.
+    /// If the states of the motions have different lengths, or their parameters.
     pub fn integrate<F, O>(
         &mut self,
         mut f: F,
@@ -183,11 +253,15 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         options: &Options,
     ) -> Vec<Result<Outcome, IntegrationError>>
     where
-        F: FnMut(&[usize; LANES], &Block, &[Block], &mut [Block]),
+        F: FnMut(&[usize; LANES], Places<'_>, &mut [Block]),
         O: Observer,
     {
         let n = motions.first().map_or(0, |motion| motion.x.len());
-        assert!(motions.iter().all(|motion| motion.x.len() == n));
+        let parameters = motions.first().map_or(0, |motion| motion.parameters.len());
+        let alike = |motion: &BlockMotion<'_, O>| {
+            [motion.x.len(), motion.parameters.len()] == [n, parameters]
+        };
+        assert!(motions.iter().all(alike), "motions of one system");
         let refused = motions.iter().find_map(|motion| {
             let checked = options.check(motion.span);
             checked.and_then(|()| motion.watch.check(n)).err()
@@ -202,58 +276,36 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         }
         let mut results: Vec<_> = motions.iter().map(|_| None).collect();
         let mut waiting = motions.iter_mut().enumerate();
-        let mut lanes: Lanes<'_, '_, O> = from_fn(|_| None);
+        let mut lanes: Lanes<Lane<'_, '_, O>> = from_fn(|_| None);
         let mut which = [0; LANES];
         loop {
-            let mut next = || waiting.next();
-            for l in 0..LANES {
-                self.replace(l, &mut lanes, &mut which, &mut next, &mut results);
-            }
-            let Some(beside) = lanes.iter().position(Option::is_some) else {
+            let mut begin = |l: usize| {
+                let (motion, of) = waiting.next()?;
+                which[l] = motion;
+                self.stages.begin(l, &of.x, of.parameters);
+                let lane = Lane::new(motion, of, StepSize::new(P::CONTROL));
+                self.clock.set(l, lane.t, lane.stride);
+                Some(lane)
+            };
+            let Some(beside) = refill(&mut lanes, &mut begin, &mut results) else {
                 break;
             };
-            for l in (0..LANES).filter(|&l| lanes[l].is_none()) {
+            for l in idle_lanes(&lanes) {
                 self.clock.idle(l, beside);
-                self.stages.copy_state(beside, l);
+                self.stages.copy(beside, l);
             }
-            let mut f = |t: &Block, x: &[Block], rates: &mut [Block]| f(&which, t, x, rates);
+            let mut f = |at: Places<'_>, rates: &mut [Block]| f(&which, at, rates);
             self.start(&mut f, &mut lanes, options);
             let errors = self.attempt(&mut f, &mut lanes, options);
             self.decide(&mut f, &mut lanes, &errors, options);
         }
-        let unseen = || Err(IntegrationError::InvalidArgument { what: "motion", value: f64::NAN });
-        results.into_iter().map(|result| result.unwrap_or_else(unseen)).collect()
-    }
-
-    /// Concludes the motion of a lane if it has ended, and begins the next one there.
-    fn replace<'m, 'a: 'm, O: Observer>(
-        &mut self,
-        l: usize,
-        lanes: &mut Lanes<'m, 'a, O>,
-        which: &mut [usize; LANES],
-        next: &mut impl FnMut() -> Option<(usize, &'m mut BlockMotion<'a, O>)>,
-        results: &mut [Option<Result<Outcome, IntegrationError>>],
-    ) {
-        while lanes[l].as_ref().is_none_or(|lane| lane.end.is_some()) {
-            if let Some(ended) = lanes[l].take() {
-                let motion = ended.motion;
-                results[motion] = Some(ended.conclude());
-            }
-            let Some((motion, of)) = next() else {
-                return;
-            };
-            which[l] = motion;
-            self.stages.set_state(l, &of.x);
-            let lane = Lane::new(motion, of, StepSize::new(P::CONTROL));
-            self.clock.set(l, lane.t, lane.stride);
-            lanes[l] = Some(lane);
-        }
+        all(results)
     }
 
     /// Rates where motions begin or begin anew, and the step that each tries next.
-    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
+    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<Lane<'_, '_, O>>, options: &Options)
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
         if on_their_way(lanes).any(|(_, lane)| lane.restart) {
@@ -290,9 +342,13 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// First steps from the sizes of x, ẋ and ẍ, not beyond the next stops.
-    fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
-    where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+    fn first_steps<F, O>(
+        &mut self,
+        f: &mut F,
+        lanes: &mut Lanes<Lane<'_, '_, O>>,
+        options: &Options,
+    ) where
+        F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
         let begins = |(_, lane): &(usize, &mut Lane<'_, '_, O>)| lane.next_h.is_none();
@@ -301,7 +357,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         let mut guesses: [Option<[f64; 2]>; LANES] = [None; LANES];
         for (l, lane) in on_their_way(lanes).filter(begins) {
             let stop = lane.watcher.stops.known_after(lane.t);
-            let longest = options.max_step.min(stop.t - lane.t);
+            let longest = options.max_step.min(stop.t - lane.t).min(lane.longest);
             if let Some(h) = options.first_step {
                 lane.next_h = Some(h.min(longest));
                 continue;
@@ -346,15 +402,16 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     fn attempt<F, O>(
         &mut self,
         f: &mut F,
-        lanes: &mut Lanes<'_, '_, O>,
+        lanes: &mut Lanes<Lane<'_, '_, O>>,
         options: &Options,
     ) -> Block
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
         let clock = self.clock;
-        self.stages.step(f, &P::TABLEAU, &clock.h, |node| clock.at(node));
+        self.stages
+            .step(f, &P::TABLEAU, &clock.h, |node| clock.at(node));
         let mut valid = [true; LANES];
         for (l, lane) in on_their_way(lanes) {
             lane.statistics.evaluations += P::TABLEAU.nodes.len();
@@ -379,9 +436,9 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// Rates at the ends of the steps.
-    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, of: [bool; LANES])
+    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<Lane<'_, '_, O>>, of: [bool; LANES])
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
         let t = self.clock.at_end();
@@ -395,11 +452,11 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     fn decide<F, O>(
         &mut self,
         f: &mut F,
-        lanes: &mut Lanes<'_, '_, O>,
+        lanes: &mut Lanes<Lane<'_, '_, O>>,
         errors: &Block,
         options: &Options,
     ) where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
         let powers = powers(P::CONTROL, errors);
@@ -415,7 +472,8 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             if lane.t + 0.1 * shorter <= lane.t {
                 lane.fail(self.stuck(l, shorter, errors[l]));
             }
-            (lane.next_h, lane.restart) = (Some(shorter), false);
+            (lane.next_h, lane.longest) = next_after_rejection(lane.restart, shorter);
+            lane.restart = false;
         }
         if !accepted.contains(&true) {
             return;
@@ -437,7 +495,6 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             }
             let interior = within.then_some(&this.dense);
             lane.end = lane.watcher.accept(&ends, interior, lane.x);
-            this.stages.advance(l, P::TABLEAU.new_rates());
             let suggested = lane.stride.h * lane.step_size.accepted(errors[l], powers[l]);
             // A step cut short to land says nothing against the longer one.
             let suggested = match lane.next_h {
@@ -453,17 +510,17 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| accepted[l]) {
             wanted[l] = !accept(self, l, lane, false);
         }
-        if !wanted.contains(&true) {
-            return;
-        }
         let (clock, new_rates) = (self.clock, P::TABLEAU.new_rates());
-        for (i, &(node, row)) in P::INTERIOR_STAGES.iter().enumerate() {
-            let (stage, t) = (new_rates + 1 + i, clock.at(node));
-            self.stages.evaluate(f, stage, &t, &clock.h, row);
+        if wanted.contains(&true) {
+            for (i, &(node, row)) in P::INTERIOR_STAGES.iter().enumerate() {
+                let (stage, t) = (new_rates + 1 + i, clock.at(node));
+                self.stages.evaluate(f, stage, &t, &clock.h, row);
+            }
         }
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| wanted[l]) {
             accept(self, l, lane, true);
         }
+        self.stages.advance(&accepted, new_rates);
     }
 
     /// Why no step of a motion is accepted.
@@ -498,13 +555,13 @@ fn ends<'e, P: EmbeddedPair>(
     }
 }
 
-fn gather(blocks: &[Block], l: usize, to: &mut [f64]) {
+pub(super) fn gather(blocks: &[Block], l: usize, to: &mut [f64]) {
     for (to, block) in to.iter_mut().zip(blocks) {
         *to = block[l];
     }
 }
 
-fn scatter(from: &[f64], l: usize, blocks: &mut [Block]) {
+pub(super) fn scatter(from: &[f64], l: usize, blocks: &mut [Block]) {
     for (from, block) in from.iter().zip(blocks) {
         block[l] = *from;
     }

@@ -13,6 +13,17 @@ use crate::lanes::{LANES, dispatch};
 /// One number for each of eight motions.
 pub(super) type Block = [f64; LANES];
 
+/// Where eight motions are, one in each lane: state i of the motion in lane l is `x[i][l]`.
+#[derive(Debug, Clone, Copy)]
+pub struct Places<'a> {
+    /// Times in s.
+    pub t: &'a [f64; LANES],
+    /// States.
+    pub x: &'a [[f64; LANES]],
+    /// Parameters.
+    pub p: &'a [[f64; LANES]],
+}
+
 /// Accumulators of a mean square, as of a motion alone.
 const SUMS: usize = 4;
 
@@ -21,6 +32,8 @@ const SUMS: usize = 4;
 pub(super) struct BlockStages {
     /// Number of states.
     n: usize,
+    /// Parameters.
+    p: Vec<Block>,
     /// States at the start of the step.
     pub(super) x: Vec<Block>,
     /// States at the end of the step.
@@ -47,6 +60,7 @@ impl BlockStages {
             blocks.clear();
             blocks.resize(count, [0.0; LANES]);
         }
+        self.p.clear();
     }
 
     /// Rates of a stage.
@@ -57,17 +71,25 @@ impl BlockStages {
     /// Rates of a stage at the states at the start of the step.
     pub(super) fn evaluate_at_start<F>(&mut self, f: &mut F, stage: usize, t: &Block)
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
     {
-        f(t, &self.x, &mut self.rates[stage * self.n..][..self.n]);
+        let (x, p) = (&self.x, &self.p);
+        f(
+            Places { t, x, p },
+            &mut self.rates[stage * self.n..][..self.n],
+        );
     }
 
     /// Rates of a stage at the states at the end of the step.
     pub(super) fn evaluate_at_end<F>(&mut self, f: &mut F, stage: usize, t: &Block)
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
     {
-        f(t, &self.x_new, &mut self.rates[stage * self.n..][..self.n]);
+        let (x, p) = (&self.x_new, &self.p);
+        f(
+            Places { t, x, p },
+            &mut self.rates[stage * self.n..][..self.n],
+        );
     }
 
     /// Takes over the rates of one motion in a stage as those of another stage.
@@ -81,12 +103,12 @@ impl BlockStages {
     #[inline]
     pub(super) fn evaluate<F>(&mut self, f: &mut F, stage: usize, t: &Block, h: &Block, row: Row)
     where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
     {
         combine(&self.x, h, row, &self.rates, &mut self.x_stage);
+        let (x, p) = (&self.x_stage, &self.p);
         f(
-            t,
-            &self.x_stage,
+            Places { t, x, p },
             &mut self.rates[stage * self.n..][..self.n],
         );
     }
@@ -100,7 +122,7 @@ impl BlockStages {
         h: &Block,
         time: impl Fn(f64) -> Block,
     ) where
-        F: FnMut(&Block, &[Block], &mut [Block]),
+        F: FnMut(Places<'_>, &mut [Block]),
     {
         for (i, (&node, &row)) in tableau.nodes.iter().zip(tableau.rows).enumerate() {
             self.evaluate(f, i + 1, &time(node), h, row);
@@ -111,35 +133,47 @@ impl BlockStages {
     /// The new state x + h k₀ of one motion.
     pub(super) fn euler_step(&mut self, lane: usize, h: f64) {
         for i in 0..self.n {
-            self.x_new[i][lane] = self.x[i][lane] + h * self.rates[i][lane];
+            self.x_new[i][lane] = h.mul_add(self.rates[i][lane], self.x[i][lane]);
         }
     }
 
-    /// The new state of one motion and its rates become the start of its next step.
-    pub(super) fn advance(&mut self, lane: usize, new_rates: usize) {
-        for i in 0..self.n {
-            self.x[i][lane] = self.x_new[i][lane];
+    /// The new states of some motions and their rates become the start of their next steps.
+    pub(super) fn advance(&mut self, which: &[bool; LANES], new_rates: usize) {
+        let (rates, new_rates) = self.rates.split_at_mut(new_rates * self.n);
+        for (old, new) in [(&mut self.x[..], &self.x_new[..]), (rates, new_rates)] {
+            for (old, new) in old.iter_mut().zip(new).take(self.n) {
+                for lane in 0..LANES {
+                    old[lane] = if which[lane] { new[lane] } else { old[lane] };
+                }
+            }
         }
-        self.copy_rates(lane, new_rates, 0);
     }
 
     /// h Σ w k of one motion.
     pub(super) fn combination(&self, lane: usize, h: f64, row: Row, out: &mut [f64]) {
-        for (i, out) in out.iter_mut().enumerate() {
-            *out = h * self.sum(lane, i, row);
-        }
+        dispatch(
+            #[inline(always)]
+            || {
+                for (i, out) in out.iter_mut().enumerate() {
+                    *out = h * self.sum(lane, i, row);
+                }
+            },
+        );
     }
 
     /// A motion begins in a lane.
-    pub(super) fn set_state(&mut self, lane: usize, x: &[f64]) {
-        for (block, x) in self.x.iter_mut().zip(x) {
-            block[lane] = *x;
+    pub(super) fn begin(&mut self, lane: usize, x: &[f64], p: &[f64]) {
+        self.p.resize(p.len(), [0.0; LANES]);
+        let blocks = self.x.iter_mut().chain(&mut self.p);
+        for (block, number) in blocks.zip(x.iter().chain(p)) {
+            block[lane] = *number;
         }
     }
 
-    /// A lane takes over state and rates of another one.
-    pub(super) fn copy_state(&mut self, from: usize, to: usize) {
-        for block in self.x.iter_mut().chain(&mut self.rates[..self.n]) {
+    /// A lane takes over parameters, state and rates of another one.
+    pub(super) fn copy(&mut self, from: usize, to: usize) {
+        let blocks = self.x.iter_mut().chain(&mut self.rates[..self.n]);
+        for block in blocks.chain(&mut self.p) {
             block[to] = block[from];
         }
     }
@@ -187,7 +221,8 @@ impl BlockStages {
         let (panels, rest) = self.scale.as_chunks::<SUMS>();
         for (panel, scale) in panels.iter().enumerate() {
             let combinations = combinations::<SUMS>(row, &self.rates, self.n, panel * SUMS);
-            for (sums, (combination, scale)) in sums.iter_mut().zip(combinations.iter().zip(scale)) {
+            for (sums, (combination, scale)) in sums.iter_mut().zip(combinations.iter().zip(scale))
+            {
                 add_squares(sums, combination, scale);
             }
         }
@@ -216,10 +251,11 @@ impl BlockStages {
         position_not_finite(&self.x_new, lane)
     }
 
+    #[inline(always)]
     fn sum(&self, lane: usize, i: usize, row: Row) -> f64 {
         let mut sum = 0.0;
         for &(stage, weight) in row {
-            sum += weight * self.rates[stage * self.n + i][lane];
+            sum = weight.mul_add(self.rates[stage * self.n + i][lane], sum);
         }
         sum
     }
@@ -233,7 +269,7 @@ fn position_not_finite(blocks: &[Block], lane: usize) -> Option<usize> {
 fn add_squares(sums: &mut Block, combination: &Block, scale: &Block) {
     for lane in 0..LANES {
         let part = combination[lane] / scale[lane];
-        sums[lane] += part * part;
+        sums[lane] = part.mul_add(part, sums[lane]);
     }
 }
 
@@ -267,7 +303,7 @@ fn combine(x: &[Block], h: &Block, row: Row, rates: &[Block], out: &mut [Block])
 fn moved(x: &Block, h: &Block, k: &Block) -> Block {
     let mut moved = [0.0; LANES];
     for lane in 0..LANES {
-        moved[lane] = x[lane] + h[lane] * k[lane];
+        moved[lane] = h[lane].mul_add(k[lane], x[lane]);
     }
     moved
 }
@@ -280,7 +316,7 @@ fn combinations<const N: usize>(row: Row, rates: &[Block], n: usize, first: usiz
         let rates = &rates[stage * n + first..][..N];
         for (sum, rate) in sums.iter_mut().zip(rates) {
             for lane in 0..LANES {
-                sum[lane] += weight * rate[lane];
+                sum[lane] = weight.mul_add(rate[lane], sum[lane]);
             }
         }
     }

@@ -1,6 +1,5 @@
 //! The embedded pairs of Dormand and Prince.
 
-
 use super::dop853_coefficients as dop853;
 use super::step_size::Control;
 use super::tableau::{Row, Tableau};

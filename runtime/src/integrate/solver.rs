@@ -5,7 +5,7 @@ use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
 use super::pairs::EmbeddedPair;
-use super::step_size::{StepSize, first_guess, first_step, norm, powers};
+use super::step_size::{StepSize, first_guess, first_step, next_after_rejection, norm, powers};
 use super::stops::{Stop, Stride};
 use super::tableau::Stages;
 use super::watch::{End, Observer, Watch, Watcher};
@@ -99,6 +99,7 @@ impl<P: EmbeddedPair> Solver<P> {
     {
         let mut step_size = StepSize::new(P::CONTROL);
         let (mut t, mut next_h, mut restart) = (t_start, None, true);
+        let mut longest = f64::INFINITY;
         while t < watcher.stops.end() {
             if restart {
                 self.stages.evaluate_at_start(f, 0, t);
@@ -111,7 +112,7 @@ impl<P: EmbeddedPair> Solver<P> {
                 return End::failed(t, Cause::TooManySteps { steps });
             }
             let known = watcher.stops.known_after(t);
-            let h = next_h.unwrap_or_else(|| self.first_step(f, t, known, options));
+            let h = next_h.unwrap_or_else(|| self.first_step(f, (t, longest), known, options));
             let stride = watcher.stops.stride(t, h);
             // Up to a switching time the rates are those before it.
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
@@ -139,7 +140,8 @@ impl<P: EmbeddedPair> Solver<P> {
                 if t + 0.1 * shorter <= t {
                     return End::failed(t, self.stuck(shorter, error));
                 }
-                (next_h, restart) = (Some(shorter), false);
+                (next_h, longest) = next_after_rejection(restart, shorter);
+                restart = false;
             }
         }
         End::finished(t)
@@ -213,12 +215,18 @@ impl<P: EmbeddedPair> Solver<P> {
         watcher.accept(&ends, Some(&self.dense), x)
     }
 
-    /// A first step from the sizes of x, ẋ and ẍ, not beyond the next stop.
-    fn first_step<F>(&mut self, f: &mut F, t: f64, stop: Stop, options: &Options) -> f64
+    /// A first step from the sizes of x, ẋ and ẍ, not beyond the next stop nor `longest`.
+    fn first_step<F>(
+        &mut self,
+        f: &mut F,
+        (t, longest): (f64, f64),
+        stop: Stop,
+        options: &Options,
+    ) -> f64
     where
         F: FnMut(f64, &[f64], &mut [f64]),
     {
-        let longest = options.max_step.min(stop.t - t);
+        let longest = options.max_step.min(stop.t - t).min(longest);
         if let Some(h) = options.first_step {
             return h.min(longest);
         }

@@ -50,12 +50,7 @@ impl StepSize {
         let correction = if c.integral_gain == 0.0 {
             1.0
         } else {
-            let mut correction = 1.0;
-            dispatch(
-                #[inline(always)]
-                || correction = powf(self.previous_error, c.integral_gain),
-            );
-            correction
+            power_of_all(&[self.previous_error], c.integral_gain)[0]
         };
         let factor = c.safety * correction / power;
         let largest = if self.after_rejection {
@@ -79,21 +74,36 @@ impl StepSize {
     }
 }
 
-/// Errors to the power that the control needs. The same bits for any number of them, on every machine.
+/// Errors to the power that the control needs.
 pub(super) fn powers<const N: usize>(control: Control, errors: &[f64; N]) -> [f64; N] {
     let exponent = control.exponent - control.integral_gain * control.integral_correction;
+    power_of_all(errors, exponent)
+}
+
+/// Powers of some numbers, the same bits for any number of them, on every machine.
+pub(super) fn power_of_all<const N: usize>(numbers: &[f64; N], exponent: f64) -> [f64; N] {
     let mut powers = [0.0; N];
     dispatch(
         #[inline(always)]
         || {
-            let (errors, mut all) = (*errors, [0.0; N]);
+            let (numbers, mut all) = (*numbers, [0.0; N]);
             for lane in 0..N {
-                all[lane] = powf(errors[lane], exponent);
+                all[lane] = powf(numbers[lane], exponent);
             }
             powers = all;
         },
     );
     powers
+}
+
+/// The step after a rejected one, and the longest that it may be. Where the first step from a stop was too long, what
+/// was known of steps before it does not hold any more: the next one is guessed.
+pub(super) fn next_after_rejection(from_stop: bool, shorter: f64) -> (Option<f64>, f64) {
+    if from_stop {
+        (None, shorter)
+    } else {
+        (Some(shorter), f64::INFINITY)
+    }
 }
 
 /// Root mean square of `values` over `scale`.

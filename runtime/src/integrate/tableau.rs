@@ -1,6 +1,12 @@
 //! Explicit Runge–Kutta steps as data, and the arrays they work on.
+//!
+//! Sums are of fused multiply-adds, by the vectors of the processor; without these they are slow and the same.
+
+// What is not inlined is not compiled for the vectors of the processor.
+#![allow(clippy::inline_always)]
 
 use super::dense_output::Ends;
+use crate::lanes::dispatch;
 
 /// Pairs of a stage and its weight; stages that are not listed have the weight zero.
 pub(super) type Row = &'static [(usize, f64)];
@@ -151,26 +157,37 @@ impl Stages {
 
     /// `out` = h Σ w k, one number per state.
     pub(super) fn combination(&self, h: f64, row: Row, out: &mut [f64]) {
-        for (block, out) in out.chunks_mut(BLOCK).enumerate() {
-            let sum = block_combination(row, &self.rates, self.stride, block * BLOCK);
-            for (out, sum) in out.iter_mut().zip(sum) {
-                *out = h * sum;
-            }
-        }
+        dispatch(
+            #[inline(always)]
+            || {
+                for (block, out) in out.chunks_mut(BLOCK).enumerate() {
+                    let sum = block_combination(row, &self.rates, self.stride, block * BLOCK);
+                    for (out, sum) in out.iter_mut().zip(sum) {
+                        *out = h * sum;
+                    }
+                }
+            },
+        );
     }
 
     /// Mean square of Σ w k over `scale`.
     #[inline]
     pub(super) fn mean_square(&self, row: Row, scale: &[f64]) -> f64 {
-        let mut sums = [0.0; BLOCK];
-        for start in (0..self.stride).step_by(BLOCK) {
-            let combination = block_combination(row, &self.rates, self.stride, start);
-            for lane in 0..BLOCK {
-                if let Some(scale) = scale.get(start + lane) {
-                    sums[lane] += (combination[lane] / scale) * (combination[lane] / scale);
+        let mut sums = [0.0_f64; BLOCK];
+        dispatch(
+            #[inline(always)]
+            || {
+                for start in (0..self.stride).step_by(BLOCK) {
+                    let combination = block_combination(row, &self.rates, self.stride, start);
+                    for lane in 0..BLOCK {
+                        if let Some(scale) = scale.get(start + lane) {
+                            let part = combination[lane] / scale;
+                            sums[lane] = part.mul_add(part, sums[lane]);
+                        }
+                    }
                 }
-            }
-        }
+            },
+        );
         sums.iter().sum::<f64>() / self.n.max(1) as f64
     }
 
@@ -199,25 +216,29 @@ fn position_not_finite(values: &[f64]) -> Option<usize> {
 }
 
 /// `out` = x + h Σ w k, whole vectors.
-#[inline]
 fn combine(x: &[f64], h: f64, row: Row, rates: &[f64], stride: usize, out: &mut [f64]) {
-    for start in (0..stride).step_by(BLOCK) {
-        let sum = block_combination(row, rates, stride, start);
-        let (x, out) = (&x[start..][..BLOCK], &mut out[start..][..BLOCK]);
-        for lane in 0..BLOCK {
-            out[lane] = x[lane] + h * sum[lane];
-        }
-    }
+    dispatch(
+        #[inline(always)]
+        || {
+            for start in (0..stride).step_by(BLOCK) {
+                let sum = block_combination(row, rates, stride, start);
+                let (x, out) = (&x[start..][..BLOCK], &mut out[start..][..BLOCK]);
+                for lane in 0..BLOCK {
+                    out[lane] = h.mul_add(sum[lane], x[lane]);
+                }
+            }
+        },
+    );
 }
 
 /// Σ w k for the block of components that begins at `start`.
-#[inline]
+#[inline(always)]
 fn block_combination(row: Row, rates: &[f64], stride: usize, start: usize) -> [f64; BLOCK] {
     let mut sum = [0.0; BLOCK];
     for &(stage, weight) in row {
         let rates = &rates[stage * stride + start..][..BLOCK];
         for lane in 0..BLOCK {
-            sum[lane] += weight * rates[lane];
+            sum[lane] = weight.mul_add(rates[lane], sum[lane]);
         }
     }
     sum

@@ -4,6 +4,8 @@
 //! the last two terms allow (Jorba and Zou, *Experimental Mathematics* 14, 2005). The polynomial is the solution
 //! between the ends: events, ranges and outputs cost no evaluation.
 
+mod block;
+mod block_expansion;
 mod expansion;
 mod guards;
 mod products;
@@ -12,9 +14,11 @@ use super::dense_output::{DenseOutput, Ends};
 use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
+use super::step_size::power_of_all;
 use super::stops::Stride;
 use super::watch::{End, Observer, Watch, Watcher};
 use crate::series::{Cubic, Series};
+pub use block::{BlockTaylor, ExpandedTogether, MotionInputs};
 use expansion::Expansion;
 use guards::{Change, first_change};
 
@@ -277,7 +281,7 @@ impl Taylor {
             if new != old || end >= stride.t_new || beyond > FARTHEST * stride.h {
                 return end;
             }
-            beyond = f64::max(2.0 * beyond, first.next_up() - first);
+            beyond = next_beyond(beyond, first);
         }
     }
 
@@ -320,7 +324,8 @@ impl Taylor {
                 }
                 size = f64::max(size, term / options.scale(self.x[component].abs()));
             }
-            longest = longest.min((LAST_TERM / size).powf(1.0 / k as f64));
+            let [length] = power_of_all(&[LAST_TERM / size], 1.0 / k as f64);
+            longest = longest.min(length);
         }
         Ok(longest)
     }
@@ -363,6 +368,11 @@ fn order(options: &Options) -> usize {
     // A small number, limited on both sides.
     let orders = (LEAST_ORDER..MOST_ORDER).take_while(|&order| (order as f64) < wanted);
     orders.last().map_or(LEAST_ORDER, |order| order + 1)
+}
+
+/// How far beyond the first time of another answer the next try is.
+fn next_beyond(beyond: f64, first: f64) -> f64 {
+    f64::max(2.0 * beyond, first.next_up() - first)
 }
 
 fn not_finite(values: &[f64]) -> Option<usize> {

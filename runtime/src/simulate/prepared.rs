@@ -6,10 +6,9 @@ use super::{Breach, LOST, Observed, Response, Simulation, SimulationError};
 use crate::condition::velocity_condition;
 use crate::inputs::ModelInputs;
 use crate::integrate::{
-    BlockMotion, BlockSolver, EmbeddedPair, Ending, Event, Failure, IntegrationError, Observer,
-    Outcome, Projection, Range, Switches, Watch,
+    BlockMotion, Ending, Event, Failure, IntegrationError, Observer, Outcome, Projection, Range,
+    Switches, Watch,
 };
-use crate::lanes::LANES;
 use crate::model::{At, Model};
 use crate::positions::{Moving, Positions};
 
@@ -146,18 +145,16 @@ pub struct Viewer<'w, O> {
     pub observer: O,
 }
 
-/// Integrates many simulations of one model, eight at a time. `rates(which, t, x, ẋ)` are those under the inputs of
-/// each: state i of simulation `which[l]` is `x[i][l]`. Every motion is the one that it would be alone.
+/// Integrates many simulations of one model together, as [`BlockSolver`](crate::integrate::BlockSolver) or
+/// [`BlockTaylor`](crate::integrate::BlockTaylor) do: `integrate` has their motions, in their order.
 ///
 /// # Panics
 ///
-/// If there are more or fewer viewers, or states of different lengths.
-pub fn observe_block<'w, P: EmbeddedPair, O: Observer>(
-    solver: &mut BlockSolver<P>,
-    options: &crate::integrate::Options,
+/// If there are more or fewer viewers.
+pub fn observe_together<'w, O: Observer>(
     prepared: &'w [Prepared<'w>],
     viewers: Vec<Viewer<'w, O>>,
-    rates: impl FnMut(&[usize; LANES], &[f64; LANES], &[[f64; LANES]], &mut [[f64; LANES]]),
+    integrate: impl FnOnce(&mut [BlockMotion<'w, O>]) -> Vec<Result<Outcome, IntegrationError>>,
 ) -> Vec<Result<(Observed, O), SimulationError>> {
     assert_eq!(prepared.len(), viewers.len(), "a viewer for each motion");
     let mut own = Vec::new();
@@ -166,12 +163,13 @@ pub fn observe_block<'w, P: EmbeddedPair, O: Observer>(
         BlockMotion {
             span: prepared.span,
             x: prepared.start.clone(),
+            parameters: prepared.p,
             watch: prepared.watch(viewer.events),
             observer: viewer.observer,
         }
     });
     let mut motions: Vec<BlockMotion<'_, O>> = motions.collect();
-    let results = solver.integrate(rates, &mut motions, options);
+    let results = integrate(&mut motions);
     let ended = prepared.iter().zip(motions).zip(results).zip(own);
     ended
         .map(|(((prepared, motion), result), own)| {

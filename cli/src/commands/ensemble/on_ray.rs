@@ -32,7 +32,11 @@ pub(super) fn run(
     let mut child = Command::new(&python)
         .args(["-m", "appell._on_ray"])
         .args([study, out])
-        .args([address, &shard.unwrap_or_default(), &chunk.unwrap_or_default()])
+        .args([
+            address,
+            &shard.unwrap_or_default(),
+            &chunk.unwrap_or_default(),
+        ])
         .stdout(Stdio::piped())
         .spawn()
         .map_err(|error| told(&format!("`{python}` does not start: {error}")))?;

@@ -10,7 +10,7 @@ use appell_runtime::real::{Functions, Own, Standard};
 ///
 /// Arguments and results are references: a block that passes through memory in smaller pieces costs
 /// as much as the function.
-pub(super) trait Blocks: Functions {
+pub(in crate::jit) trait Blocks: Functions {
     fn sin_cos<const N: usize>(x: &[f64; N], to: &mut [[f64; N]; 2]);
     fn sin<const N: usize>(x: &[f64; N], to: &mut [f64; N]);
     fn cos<const N: usize>(x: &[f64; N], to: &mut [f64; N]);

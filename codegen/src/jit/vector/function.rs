@@ -7,7 +7,7 @@ use super::super::check::{Checked, check, lengths};
 use super::super::native::NativeFunction;
 use super::super::{JitError, Sizes};
 use super::machine::{Machine, Target};
-use crate::schedule::Schedule;
+use crate::schedule::{Schedule, interpret_weighted};
 
 /// One schedule in machine code for blocks of eight places. The code lives as long as this value;
 /// several threads may call it at the same time.
@@ -28,6 +28,7 @@ pub struct VectorFunction {
 enum How {
     Vector(Machine),
     PlaceByPlace(NativeFunction),
+    Interpreted(Schedule),
 }
 
 impl VectorFunction {
@@ -50,6 +51,29 @@ impl VectorFunction {
         let native = NativeFunction::compile_with(schedule, sizes, target.elementary)?;
         let checked = check(schedule, sizes)?;
         Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
+    }
+
+    /// [`Self::compile_for`], but interpreted where it cannot be compiled, with the functions of the standard library.
+    ///
+    /// # Errors
+    ///
+    /// If the schedule reads what it does not define.
+    pub fn compile_or_interpret(
+        schedule: &Schedule,
+        sizes: Sizes,
+        target: Target,
+    ) -> Result<Self, JitError> {
+        Self::compile_for(schedule, sizes, target).or_else(|error| match error {
+            JitError::TooManyOperations { .. }
+            | JitError::TooManyRows { .. }
+            | JitError::TooDeep { .. } => Ok(Self {
+                how: How::Interpreted(schedule.clone()),
+                sizes,
+                weights: 0,
+                results: lengths(schedule),
+            }),
+            other => Err(other),
+        })
     }
 
     /// [`Self::compile_for`], but nothing where places would be evaluated one by one.
@@ -104,7 +128,19 @@ impl VectorFunction {
         match &self.how {
             // SAFETY: the lengths were compared.
             How::Vector(machine) => unsafe { machine.call(at, weights, results) },
-            How::PlaceByPlace(native) => place_by_place(native, at, weights, results),
+            How::PlaceByPlace(native) => {
+                place_by_place(at, weights, results, |at, weights, results| {
+                    native.call_weighted(at, weights, results);
+                });
+            }
+            How::Interpreted(schedule) => {
+                place_by_place(at, weights, results, |at, weights, results| {
+                    let found = interpret_weighted(schedule, at, weights);
+                    for (result, found) in results.into_iter().zip(found) {
+                        result.copy_from_slice(&found);
+                    }
+                });
+            }
         }
     }
 
@@ -133,15 +169,15 @@ impl VectorFunction {
 }
 
 fn place_by_place<const N: usize>(
-    native: &NativeFunction,
     at: AtLanes<'_>,
     weights: &[[f64; LANES]],
     results: [&mut [[f64; LANES]]; N],
+    call: impl Fn(At<'_>, &[f64], [&mut [f64]; N]),
 ) {
     let mut places = 0..;
     lanes::place_by_place(at, results, |t, [x, u, p], results| {
         let place = places.next().unwrap_or(0);
         let weights: Vec<f64> = weights.iter().map(|block| block[place]).collect();
-        native.call_weighted(At { t, x, u, p }, &weights, results);
+        call(At { t, x, u, p }, &weights, results);
     });
 }

@@ -119,15 +119,15 @@ impl Sum<'_> {
     /// The sums of `N` blocks.
     #[inline(always)]
     fn panel<const N: usize>(&mut self, start: usize) {
-        let mut sums = [[0.0; BLOCK]; N];
+        let mut sums = [[0.0_f64; BLOCK]; N];
         let (left, right) = (&self.left[start..], &self.right[start..]);
         for j in 1..self.k {
             let left = &left[j * self.blocks..][..N];
             let right = &right[(self.k - j) * self.blocks..][..N];
             for block in 0..N {
                 for lane in 0..BLOCK {
-                    let product: f64 = left[block][lane] * right[block][lane];
-                    sums[block][lane] += product;
+                    sums[block][lane] =
+                        left[block][lane].mul_add(right[block][lane], sums[block][lane]);
                 }
             }
         }

@@ -318,7 +318,7 @@ fn series(series: &dyn Series, numbers: &mut Numbers) -> Vec<Vec<u64>> {
 fn emitted_series_and_their_schedules_agree_bit_for_bit() {
     for (program, emitted) in [
         (emit_support::unicycle(), &unicycle::Unicycle as &dyn Model),
-        (mixture(), &mixture_model::Mixture),
+        (emit_support::with_adjoints(), &with_adjoints::Pendulum),
         (emit_support::block(), &block::Block),
     ] {
         let rates = schedule(&program, program.function(FunctionKind::Rates).unwrap());

@@ -282,15 +282,14 @@ pub(super) fn implementation(
         provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
         gradient_method(types, FunctionKind::OutputAdjoint)?,
     ];
-    let (equations, in_lanes) = if lanes {
-        let used = quote!(use #runtime::lanes::{AtLanes, Equations, LANES};);
-        let equations = lanes::equations(types, runtime);
-        (quote!(#used #equations), lanes::methods(types, costs))
-    } else {
-        (TokenStream::new(), TokenStream::new())
-    };
-    let series = series.map(|series| (series.items, series.method));
-    let (series, series_method) = series.unwrap_or_default();
+    let [mut uses, mut equations, mut in_lanes] = [(); 3].map(|()| TokenStream::new());
+    if lanes {
+        uses = quote!(use #runtime::lanes::{AtLanes, Equations, LANES};);
+        equations = lanes::equations(types, runtime);
+        in_lanes = lanes::methods(types, costs);
+    }
+    let series = series.map(|series| (series.uses, series.items, series.method));
+    let (uses_of_series, series, series_method) = series.unwrap_or_default();
     let named = named(types, &name);
     let blank = blank_tokens();
     Ok(quote! {
@@ -301,6 +300,8 @@ pub(super) fn implementation(
 
         #blank
         const _: () = {
+            #uses
+            #uses_of_series
             #helpers
             #equations
             #series

@@ -1,8 +1,8 @@
 //! The recurrences of a motion's Taylor coefficients as Rust.
 
-use proc_macro2::{Literal, TokenStream};
+use proc_macro2::{Literal, TokenStream, TokenTree};
 use quote::quote;
-use syn::{Expr, Stmt};
+use syn::Stmt;
 
 use super::layout::blank_tokens;
 use super::statements::Statements;
@@ -12,11 +12,9 @@ use crate::schedule::names::ArgumentNames;
 use crate::schedule::{Argument, Schedule, Tuning, schedule_tuned};
 use crate::taylor::{Lengths, SeriesProgram, expand};
 
-/// Names of the slices of arguments: time, states, inputs, parameters or what order zero kept, sums.
-const SLICES: [&str; 5] = ["t", "x", "u", "p", "sums"];
-
 /// What is emitted for the series.
 pub(super) struct Emitted {
+    pub(super) uses: TokenStream,
     /// The type that implements `Series`, its functions and its shape.
     pub(super) items: TokenStream,
     /// The method of `Model`.
@@ -38,10 +36,10 @@ pub(super) fn emitted(program: &Program, runtime: &syn::Path, tuning: Tuning) ->
         let mut steps = schedule.steps.iter();
         steps.any(|step| matches!(step, crate::schedule::Step::Factor { .. }))
     });
-    let (start, sweep) = (
-        function("series_start", &start),
-        function("series_sweep", &sweep),
-    );
+    let [start, sweep] = [
+        body(["x", "u", "p", ""], "t", &start),
+        body(["x", "u", "kept", "sums"], "k", &sweep),
+    ];
     let [states, inputs, parameters, kept, products] = [
         shape.states,
         shape.inputs,
@@ -55,14 +53,8 @@ pub(super) fn emitted(program: &Program, runtime: &syn::Path, tuning: Tuning) ->
         quote!(series::Guard::#guard)
     });
     let blank = blank_tokens();
+    let uses = quote!(use #runtime::series;);
     let items = quote! {
-        use #runtime::series;
-
-        #blank
-        #start
-        #blank
-        #sweep
-
         #blank
         /// The equations with the recurrences of their Taylor coefficients.
         struct TaylorSeries;
@@ -85,16 +77,12 @@ pub(super) fn emitted(program: &Program, runtime: &syn::Path, tuning: Tuning) ->
 
             #blank
             fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
-                series_start(from.t, [from.x, from.u, from.p, &[]], [to.next, to.kept, to.guards, &mut []]);
+                #start
             }
 
             #blank
             fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
-                series_sweep(
-                    from.k,
-                    [from.x, from.u, from.kept, from.sums],
-                    [to.next, to.left, to.right, to.guards],
-                );
+                #sweep
             }
         }
     };
@@ -105,96 +93,94 @@ pub(super) fn emitted(program: &Program, runtime: &syn::Path, tuning: Tuning) ->
         }
     };
     Some(Emitted {
+        uses,
         items,
         method,
         solves,
     })
 }
 
-/// A schedule as a function of slices.
-fn function(name: &'static str, schedule: &Schedule) -> TokenStream {
-    let names = names(schedule);
+/// A schedule as the body of a method; `slices` are the fields of what it reads, beside the time.
+fn body(slices: [&'static str; 4], time: &'static str, schedule: &Schedule) -> TokenStream {
+    let names = names(slices, time, schedule);
     let mut statements = Statements::new(&names, schedule);
     for &argument in &schedule.arguments {
-        let (slice, index) = match argument {
-            Argument::Time => continue,
-            Argument::State(index) => (SLICES[1], index),
-            Argument::Input(index) => (SLICES[2], index),
-            Argument::Parameter(index) => (SLICES[3], index),
-            Argument::Weight(index) | Argument::OutputWeight(index) => (SLICES[4], index),
+        let value = match place(argument) {
+            Some((slice, index)) => {
+                let field = known(slices[slice]);
+                s::entry(syn::parse_quote!(from.#field), &[index as usize])
+            }
+            None => {
+                let field = known(time);
+                syn::parse_quote!(from.#field)
+            }
         };
-        let value = s::entry(s::name(slice), &[index as usize]);
         statements.push(s::binding(names.get(argument)), value);
     }
     statements.constants();
     statements.steps();
-    let results: Vec<Vec<Expr>> = (schedule.results.iter())
-        .map(|array| statements.trees(&array.entries))
-        .collect();
-    let writes = results.iter().zip(["first", "second", "third", "fourth"]);
-    let writes = writes
-        .filter(|(entries, _)| !entries.is_empty())
-        .map(|(entries, to)| {
-            let to = known(to);
-            quote!(#to.copy_from_slice(&[#(#entries),*]);)
-        });
+    let results = schedule
+        .results
+        .iter()
+        .filter(|array| !array.entries.is_empty());
+    let writes = results.map(|array| {
+        let (to, entries) = (s::ident(&array.name), statements.trees(&array.entries));
+        quote!(to.#to.copy_from_slice(&[#(#entries),*]);)
+    });
+    let writes: TokenStream = writes.collect();
     let all: &[Stmt] = &statements.all;
-    let (name, time) = (known(name), s::path(&names.time));
-    let (slices, types) = (
-        [SLICES[1], SLICES[2], SLICES[3], SLICES[4]].map(known),
-        quote!(&[T]),
-    );
-    quote! {
-        fn #name<T: Real>(
-            #time: T,
-            [#(#slices),*]: [#types; 4],
-            [first, second, third, fourth]: [&mut [T]; 4],
-        ) {
-            #(#all)*
-            #(#writes)*
-        }
+    let all = quote!(#(#all)* #writes);
+    // Numbers and choices are those of a scalar type.
+    let scalar = all.clone().into_iter().any(|token| uses_scalar(&token));
+    let scalar = scalar.then(|| {
+        quote!(
+            type T = f64;
+        )
+    });
+    quote!(#scalar #all)
+}
+
+fn uses_scalar(token: &TokenTree) -> bool {
+    match token {
+        TokenTree::Ident(name) => name == "T",
+        TokenTree::Group(group) => group.stream().into_iter().any(|token| uses_scalar(&token)),
+        _ => false,
+    }
+}
+
+/// The slice and the place in it that hold an argument; none of the time.
+fn place(argument: Argument) -> Option<(usize, u32)> {
+    match argument {
+        Argument::Time => None,
+        Argument::State(index) => Some((0, index)),
+        Argument::Input(index) => Some((1, index)),
+        Argument::Parameter(index) => Some((2, index)),
+        Argument::Weight(index) | Argument::OutputWeight(index) => Some((3, index)),
     }
 }
 
 /// Names of all arguments that a schedule uses.
-fn names(schedule: &Schedule) -> ArgumentNames {
-    let used = |place: fn(Argument) -> Option<u32>, letter: &str| -> Vec<String> {
-        let last = schedule.arguments.iter().filter_map(|&a| place(a)).max();
+fn names(slices: [&str; 4], time: &str, schedule: &Schedule) -> ArgumentNames {
+    let [states, inputs, parameters, weights] = [0, 1, 2, 3].map(|slice| {
+        let used = schedule
+            .arguments
+            .iter()
+            .filter_map(|&argument| place(argument));
+        let last = used
+            .filter(|(of, _)| *of == slice)
+            .map(|(_, index)| index)
+            .max();
         let count = last.map_or(0, |last| last + 1);
         (0..count)
-            .map(|index| format!("{letter}_{index}"))
+            .map(|index| format!("{}_{index}", slices[slice]))
             .collect()
-    };
+    });
     ArgumentNames {
-        time: SLICES[0].to_owned(),
-        states: used(
-            |a| match a {
-                Argument::State(index) => Some(index),
-                _ => None,
-            },
-            SLICES[1],
-        ),
-        inputs: used(
-            |a| match a {
-                Argument::Input(index) => Some(index),
-                _ => None,
-            },
-            SLICES[2],
-        ),
-        parameters: used(
-            |a| match a {
-                Argument::Parameter(index) => Some(index),
-                _ => None,
-            },
-            SLICES[3],
-        ),
-        weights: used(
-            |a| match a {
-                Argument::Weight(index) => Some(index),
-                _ => None,
-            },
-            "sum",
-        ),
+        time: time.to_owned(),
+        states,
+        inputs,
+        parameters,
+        weights,
         output_weights: Vec::new(),
     }
 }

@@ -981,6 +981,8 @@ pub fn output_adjoint<T: Real>(
 pub struct Block;
 
 const _: () = {
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
+    use ::appell_runtime::series;
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -1003,7 +1005,6 @@ const _: () = {
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
     }
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
 
     ::appell_runtime::in_lanes! {
         RatesInLanes = rates(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v, s },
@@ -1020,6 +1021,111 @@ const _: () = {
         OutputsInLanes = outputs(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v,
         s }, Inputs[1] { F }) => [6] (whole[n, across, rubbing, pulling, pushing, a]) [0]
         () [0] ()
+    }
+
+    /// The equations with the recurrences of their Taylor coefficients.
+    struct TaylorSeries;
+
+    static SHAPE: series::Shape = series::Shape {
+        states: 2,
+        inputs: 1,
+        parameters: 6,
+        kept: 10,
+        products: 3,
+        guards: model::List::Borrowed(&[]),
+    };
+
+    impl series::Series for TaylorSeries {
+        fn shape(&self) -> &series::Shape {
+            &SHAPE
+        }
+
+        fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
+            type T = f64;
+            let x_0 = from.x[0];
+            let x_1 = from.x[1];
+            let u_0 = from.u[0];
+            let p_0 = from.p[0];
+            let p_1 = from.p[1];
+            let p_2 = from.p[2];
+            let p_3 = from.p[3];
+            let p_4 = from.p[4];
+            let p_5 = from.p[5];
+            let one = T::constant(1.0);
+            let two = T::constant(2.0);
+            let (v_0, v_1) = p_1.sin_cos();
+            let v_2 = one / p_0;
+            let v_3 = p_0 * p_4;
+            let v_4 = v_0 * u_0;
+            let v_5 = v_1 * v_3;
+            let v_6 = v_4 + v_5;
+            let v_7 = v_1 * u_0;
+            let v_8 = p_2 * v_6;
+            let v_9 = x_0 / p_3;
+            let v_10 = v_9.tanh();
+            let v_11 = v_8 * v_10;
+            let v_12 = v_7 - v_11;
+            let v_13 = p_5 * x_1;
+            let v_14 = v_12 - v_13;
+            let v_15 = v_0 * v_3;
+            let v_16 = v_14 - v_15;
+            let v_17 = v_2 * v_16;
+            let v_18 = one / p_3;
+            let v_19 = v_10 * v_10;
+            let v_20 = one - v_19;
+            let v_21 = v_10 * two;
+            to.next.copy_from_slice(&[v_17, x_0]);
+            to.kept
+                .copy_from_slice(
+                    &[v_0, v_1, p_2, v_18, v_20, v_8, v_10, p_5, v_2, v_21],
+                );
+        }
+
+        fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
+            let k = from.k;
+            let x_0 = from.x[0];
+            let x_1 = from.x[1];
+            let u_0 = from.u[0];
+            let u_2 = from.u[2];
+            let u_3 = from.u[3];
+            let kept_0 = from.kept[0];
+            let kept_1 = from.kept[1];
+            let kept_2 = from.kept[2];
+            let kept_3 = from.kept[3];
+            let kept_4 = from.kept[4];
+            let kept_5 = from.kept[5];
+            let kept_6 = from.kept[6];
+            let kept_7 = from.kept[7];
+            let kept_8 = from.kept[8];
+            let kept_9 = from.kept[9];
+            let sums_0 = from.sums[0];
+            let sums_1 = from.sums[1];
+            let sums_2 = from.sums[2];
+            let v_0 = u_0 * kept_0;
+            let v_1 = u_0 * kept_1;
+            let v_2 = v_0 * kept_2;
+            let v_3 = x_0 * kept_3;
+            let v_4 = v_3 * kept_4;
+            let v_5 = sums_0 * u_2;
+            let v_6 = v_4 + v_5;
+            let v_7 = v_6 * kept_5;
+            let v_8 = v_2 * kept_6;
+            let v_9 = v_7 + v_8;
+            let v_10 = v_9 + sums_1;
+            let v_11 = v_1 - v_10;
+            let v_12 = x_1 * kept_7;
+            let v_13 = v_11 - v_12;
+            let v_14 = v_13 * kept_8;
+            let v_15 = v_3 * k;
+            let v_16 = v_6 * kept_9;
+            let v_17 = v_16 + sums_2;
+            let v_18 = -v_17;
+            let v_19 = v_14 * u_3;
+            let v_20 = x_0 * u_3;
+            to.next.copy_from_slice(&[v_19, v_20]);
+            to.left.copy_from_slice(&[v_15, v_2, v_6]);
+            to.right.copy_from_slice(&[v_18, v_6, v_6]);
+        }
     }
 
     impl model::Model for Block {
@@ -1198,6 +1304,10 @@ const _: () = {
 
         fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
             OutputsInLanes::place(at, [outputs, &mut [], &mut []]);
+        }
+
+        fn series(&self) -> Option<&dyn series::Series> {
+            Some(&TaylorSeries)
         }
     }
 

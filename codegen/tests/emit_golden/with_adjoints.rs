@@ -820,6 +820,8 @@ pub fn output_adjoint<T: Real>(
 pub struct Pendulum;
 
 const _: () = {
+    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
+    use ::appell_runtime::series;
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -842,7 +844,6 @@ const _: () = {
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
     }
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
 
     ::appell_runtime::in_lanes! {
         RatesInLanes = rates(Parameters[4] { m, l, I, g }, State[2] { omega, theta },
@@ -858,6 +859,78 @@ const _: () = {
     ::appell_runtime::in_lanes! {
         OutputsInLanes = outputs(Parameters[4] { m, l, I, g }, State[2] { omega, theta },
         Inputs[1] { tau }) => [3] (whole[x_G, z_G, energy]) [0] () [0] ()
+    }
+
+    /// The equations with the recurrences of their Taylor coefficients.
+    struct TaylorSeries;
+
+    static SHAPE: series::Shape = series::Shape {
+        states: 2,
+        inputs: 1,
+        parameters: 4,
+        kept: 4,
+        products: 2,
+        guards: model::List::Borrowed(&[]),
+    };
+
+    impl series::Series for TaylorSeries {
+        fn shape(&self) -> &series::Shape {
+            &SHAPE
+        }
+
+        fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
+            type T = f64;
+            let x_0 = from.x[0];
+            let x_1 = from.x[1];
+            let u_0 = from.u[0];
+            let p_0 = from.p[0];
+            let p_1 = from.p[1];
+            let p_2 = from.p[2];
+            let p_3 = from.p[3];
+            let one = T::constant(1.0);
+            let v_0 = p_0 * p_1;
+            let v_1 = p_1 * v_0;
+            let v_2 = v_1 + p_2;
+            let v_3 = one / v_2;
+            let v_4 = p_3 * v_0;
+            let (v_5, v_6) = x_1.sin_cos();
+            let v_7 = v_4 * v_5;
+            let v_8 = u_0 - v_7;
+            let v_9 = v_3 * v_8;
+            to.next.copy_from_slice(&[v_9, x_0]);
+            to.kept.copy_from_slice(&[v_6, v_4, v_3, v_5]);
+        }
+
+        fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
+            let k = from.k;
+            let x_0 = from.x[0];
+            let x_1 = from.x[1];
+            let u_0 = from.u[0];
+            let u_2 = from.u[2];
+            let u_3 = from.u[3];
+            let kept_0 = from.kept[0];
+            let kept_1 = from.kept[1];
+            let kept_2 = from.kept[2];
+            let kept_3 = from.kept[3];
+            let sums_0 = from.sums[0];
+            let sums_1 = from.sums[1];
+            let v_0 = x_1 * kept_0;
+            let v_1 = sums_0 * u_2;
+            let v_2 = v_0 + v_1;
+            let v_3 = v_2 * kept_1;
+            let v_4 = u_0 - v_3;
+            let v_5 = v_4 * kept_2;
+            let v_6 = x_1 * k;
+            let v_7 = x_1 * kept_3;
+            let v_8 = u_2 * sums_1;
+            let v_9 = v_7 + v_8;
+            let v_10 = -v_9;
+            let v_11 = v_5 * u_3;
+            let v_12 = x_0 * u_3;
+            to.next.copy_from_slice(&[v_11, v_12]);
+            to.left.copy_from_slice(&[v_6, v_6]);
+            to.right.copy_from_slice(&[v_10, v_2]);
+        }
     }
 
     impl model::Model for Pendulum {
@@ -1023,6 +1096,10 @@ const _: () = {
 
         fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
             OutputsInLanes::place(at, [outputs, &mut [], &mut []]);
+        }
+
+        fn series(&self) -> Option<&dyn series::Series> {
+            Some(&TaylorSeries)
         }
     }
 

@@ -520,7 +520,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| wanted[l]) {
             accept(self, l, lane, true);
         }
-        self.stages.advance(&accepted, new_rates);
+        self.stages.advance(accepted, new_rates);
     }
 
     /// Why no step of a motion is accepted.

@@ -138,7 +138,7 @@ impl BlockStages {
     }
 
     /// The new states of some motions and their rates become the start of their next steps.
-    pub(super) fn advance(&mut self, which: &[bool; LANES], new_rates: usize) {
+    pub(super) fn advance(&mut self, which: [bool; LANES], new_rates: usize) {
         let (rates, new_rates) = self.rates.split_at_mut(new_rates * self.n);
         for (old, new) in [(&mut self.x[..], &self.x_new[..]), (rates, new_rates)] {
             for (old, new) in old.iter_mut().zip(new).take(self.n) {

@@ -48,7 +48,11 @@ impl Level {
 
     /// Runs a task only if there is code for vectors and fused multiply-adds that the processor has, and gives it back
     /// otherwise; beyond x86-64 every processor counts as one.
-    // A task that is called by reference is not inlined.
+    // A task that is called by reference is not inlined. Beyond x86-64 none comes back.
+    #[cfg_attr(
+        not(all(feature = "std", target_arch = "x86_64")),
+        allow(clippy::unnecessary_wraps)
+    )]
     #[inline(always)]
     pub(super) fn run_in_vectors<F: FnMut()>(self, task: F) -> Result<(), F> {
         #[cfg(all(feature = "std", target_arch = "x86_64"))]

@@ -227,14 +227,14 @@ impl BlockTaylor {
             (t[l], restarts[l]) = (lane.t, lane.restart);
         }
         if restarts.contains(&true) {
-            self.expansion.new_states_where(&restarts);
+            self.expansion.new_states_where(restarts);
             for (l, lane) in on_their_way(lanes).filter(|&(l, _)| restarts[l]) {
                 self.fill_inputs(equations, l, lane.motion, lane.t);
                 lane.statistics.evaluations += 1;
                 lane.restart = false;
             }
             self.expansion.evaluate(equations.series, &t);
-            self.expansion.take_over(&restarts);
+            self.expansion.take_over(restarts);
         }
         for (l, lane) in on_their_way(lanes).filter(|(_, lane)| lane.h.is_none()) {
             if let Some(component) = self.expansion.rate_not_finite(l) {
@@ -402,14 +402,14 @@ impl BlockTaylor {
                 self.accept(l, lane, end);
             }
         }
-        self.expansion.take_over(&accepted);
+        self.expansion.take_over(accepted);
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| crossing[l]) {
             let Some(change) = lane.change else { continue };
             let end = self.cross(equations, l, lane, change);
             self.accept(l, lane, end);
             let mut alone = [false; LANES];
             alone[l] = true;
-            self.expansion.take_over(&alone);
+            self.expansion.take_over(alone);
         }
     }
 

@@ -121,7 +121,7 @@ impl BlockExpansion {
     }
 
     /// The states at the start of some motions are where order zero is wanted next.
-    pub(super) fn new_states_where(&mut self, which: &[bool; LANES]) {
+    pub(super) fn new_states_where(&mut self, which: [bool; LANES]) {
         select(&mut self.x_new, &self.x, which);
     }
 
@@ -158,7 +158,7 @@ impl BlockExpansion {
     }
 
     /// What order zero gave last becomes the start of the next step of some motions.
-    pub(super) fn take_over(&mut self, which: &[bool; LANES]) {
+    pub(super) fn take_over(&mut self, which: [bool; LANES]) {
         select(&mut self.x, &self.x_new, which);
         select(&mut self.rates, &self.rates_new, which);
         select(&mut self.kept, &self.kept_new, which);
@@ -257,7 +257,7 @@ impl BlockExpansion {
 }
 
 /// Numbers of some lanes.
-fn select(to: &mut [Block], from: &[Block], which: &[bool; LANES]) {
+fn select(to: &mut [Block], from: &[Block], which: [bool; LANES]) {
     dispatch(
         #[inline(always)]
         || {

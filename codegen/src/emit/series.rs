@@ -5,10 +5,9 @@ use quote::quote;
 use syn::Stmt;
 
 use super::layout::blank_tokens;
-use super::statements::Statements;
+use super::statements::{ARRAY, Places, Statements};
 use super::syntax::{self as s, known};
 use crate::program::{FunctionKind, Program};
-use crate::schedule::names::ArgumentNames;
 use crate::schedule::{Argument, Schedule, Tuning, schedule_tuned};
 use crate::taylor::{Lengths, SeriesProgram, expand};
 
@@ -102,21 +101,24 @@ pub(super) fn emitted(program: &Program, runtime: &syn::Path, tuning: Tuning) ->
 
 /// A schedule as the body of a method; `slices` are the fields of what it reads, beside the time.
 fn body(slices: [&'static str; 4], time: &'static str, schedule: &Schedule) -> TokenStream {
-    let names = names(slices, time, schedule);
-    let mut statements = Statements::new(&names, schedule);
-    for &argument in &schedule.arguments {
-        let value = match place(argument) {
-            Some((slice, index)) => {
-                let field = known(slices[slice]);
-                s::entry(syn::parse_quote!(from.#field), &[index as usize])
-            }
-            None => {
+    let argument = |argument: Argument| {
+        let (slice, index) = match argument {
+            Argument::Time => {
                 let field = known(time);
-                syn::parse_quote!(from.#field)
+                return syn::parse_quote!(from.#field);
             }
+            Argument::State(index) => (0, index),
+            Argument::Input(index) => (1, index),
+            Argument::Parameter(index) => (2, index),
+            Argument::Weight(index) | Argument::OutputWeight(index) => (3, index),
         };
-        statements.push(s::binding(names.get(argument)), value);
-    }
+        let field = known(slices[slice]);
+        s::entry(syn::parse_quote!(from.#field), &[index as usize])
+    };
+    let places = Places::Array {
+        argument: &argument,
+    };
+    let mut statements = Statements::new(places, schedule);
     statements.constants();
     statements.steps();
     let results = schedule
@@ -129,7 +131,12 @@ fn body(slices: [&'static str; 4], time: &'static str, schedule: &Schedule) -> T
     });
     let writes: TokenStream = writes.collect();
     let all: &[Stmt] = &statements.all;
-    let all = quote!(#(#all)* #writes);
+    let (array, count) = (
+        known(ARRAY),
+        Literal::usize_unsuffixed(schedule.names.len()),
+    );
+    let values = (!schedule.names.is_empty()).then(|| quote!(let mut #array = [0.0; #count];));
+    let all = quote!(#values #(#all)* #writes);
     // Numbers and choices are those of a scalar type.
     let scalar = all.clone().into_iter().any(|token| uses_scalar(&token));
     let scalar = scalar.then(|| {
@@ -145,42 +152,5 @@ fn uses_scalar(token: &TokenTree) -> bool {
         TokenTree::Ident(name) => name == "T",
         TokenTree::Group(group) => group.stream().into_iter().any(|token| uses_scalar(&token)),
         _ => false,
-    }
-}
-
-/// The slice and the place in it that hold an argument; none of the time.
-fn place(argument: Argument) -> Option<(usize, u32)> {
-    match argument {
-        Argument::Time => None,
-        Argument::State(index) => Some((0, index)),
-        Argument::Input(index) => Some((1, index)),
-        Argument::Parameter(index) => Some((2, index)),
-        Argument::Weight(index) | Argument::OutputWeight(index) => Some((3, index)),
-    }
-}
-
-/// Names of all arguments that a schedule uses.
-fn names(slices: [&str; 4], time: &str, schedule: &Schedule) -> ArgumentNames {
-    let [states, inputs, parameters, weights] = [0, 1, 2, 3].map(|slice| {
-        let used = schedule
-            .arguments
-            .iter()
-            .filter_map(|&argument| place(argument));
-        let last = used
-            .filter(|(of, _)| *of == slice)
-            .map(|(_, index)| index)
-            .max();
-        let count = last.map_or(0, |last| last + 1);
-        (0..count)
-            .map(|index| format!("{}_{index}", slices[slice]))
-            .collect()
-    });
-    ArgumentNames {
-        time: time.to_owned(),
-        states,
-        inputs,
-        parameters,
-        weights,
-        output_weights: Vec::new(),
     }
 }

@@ -118,6 +118,26 @@ pub(super) fn method(receiver: Expr, method: &'static str, arguments: Vec<Expr>)
     })
 }
 
+/// `place = value;`
+pub(super) fn assigned(place: Expr, value: Expr) -> Stmt {
+    let assign = Expr::Assign(syn::ExprAssign {
+        attrs: Vec::new(),
+        left: Box::new(place),
+        eq_token: token::Eq::default(),
+        right: Box::new(value),
+    });
+    Stmt::Expr(assign, Some(token::Semi::default()))
+}
+
+/// `(a, b)`
+pub(super) fn tuple(elements: Vec<Expr>) -> Expr {
+    Expr::Tuple(syn::ExprTuple {
+        attrs: Vec::new(),
+        paren_token: token::Paren::default(),
+        elems: elements.into_iter().collect(),
+    })
+}
+
 /// `left operator right`; the printer adds the parentheses.
 pub(super) fn binary(left: Expr, op: BinOp, right: Expr) -> Expr {
     Expr::Binary(syn::ExprBinary {

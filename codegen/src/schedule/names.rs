@@ -140,7 +140,7 @@ impl ArgumentNames {
 }
 
 /// `two`, `half`, `minus_three_quarters`, `c_17_over_35`.
-fn number_in_words(value: &Rational) -> String {
+pub(crate) fn number_in_words(value: &Rational) -> String {
     const WHOLE: [&str; 20] = [
         "zero",
         "one",

@@ -1042,89 +1042,74 @@ const _: () = {
 
         fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
             type T = f64;
-            let x_0 = from.x[0];
-            let x_1 = from.x[1];
-            let u_0 = from.u[0];
-            let p_0 = from.p[0];
-            let p_1 = from.p[1];
-            let p_2 = from.p[2];
-            let p_3 = from.p[3];
-            let p_4 = from.p[4];
-            let p_5 = from.p[5];
+            let mut v = [0.0; 22];
             let one = T::constant(1.0);
             let two = T::constant(2.0);
-            let (v_0, v_1) = p_1.sin_cos();
-            let v_2 = one / p_0;
-            let v_3 = p_0 * p_4;
-            let v_4 = v_0 * u_0;
-            let v_5 = v_1 * v_3;
-            let v_6 = v_4 + v_5;
-            let v_7 = v_1 * u_0;
-            let v_8 = p_2 * v_6;
-            let v_9 = x_0 / p_3;
-            let v_10 = v_9.tanh();
-            let v_11 = v_8 * v_10;
-            let v_12 = v_7 - v_11;
-            let v_13 = p_5 * x_1;
-            let v_14 = v_12 - v_13;
-            let v_15 = v_0 * v_3;
-            let v_16 = v_14 - v_15;
-            let v_17 = v_2 * v_16;
-            let v_18 = one / p_3;
-            let v_19 = v_10 * v_10;
-            let v_20 = one - v_19;
-            let v_21 = v_10 * two;
-            to.next.copy_from_slice(&[v_17, x_0]);
+            (v[0], v[1]) = from.p[1].sin_cos();
+            v[2] = one / from.p[0];
+            v[3] = from.p[0] * from.p[4];
+            v[4] = v[0] * from.u[0];
+            v[5] = v[1] * v[3];
+            v[6] = v[4] + v[5];
+            v[7] = v[1] * from.u[0];
+            v[8] = from.p[2] * v[6];
+            v[9] = from.x[0] / from.p[3];
+            v[10] = v[9].tanh();
+            v[11] = v[8] * v[10];
+            v[12] = v[7] - v[11];
+            v[13] = from.p[5] * from.x[1];
+            v[14] = v[12] - v[13];
+            v[15] = v[0] * v[3];
+            v[16] = v[14] - v[15];
+            v[17] = v[2] * v[16];
+            v[18] = one / from.p[3];
+            v[19] = v[10] * v[10];
+            v[20] = one - v[19];
+            v[21] = v[10] * two;
+            to.next.copy_from_slice(&[v[17], from.x[0]]);
             to.kept
                 .copy_from_slice(
-                    &[v_0, v_1, p_2, v_18, v_20, v_8, v_10, p_5, v_2, v_21],
+                    &[
+                        v[0],
+                        v[1],
+                        from.p[2],
+                        v[18],
+                        v[20],
+                        v[8],
+                        v[10],
+                        from.p[5],
+                        v[2],
+                        v[21],
+                    ],
                 );
         }
 
         fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
-            let k = from.k;
-            let x_0 = from.x[0];
-            let x_1 = from.x[1];
-            let u_0 = from.u[0];
-            let u_2 = from.u[2];
-            let u_3 = from.u[3];
-            let kept_0 = from.kept[0];
-            let kept_1 = from.kept[1];
-            let kept_2 = from.kept[2];
-            let kept_3 = from.kept[3];
-            let kept_4 = from.kept[4];
-            let kept_5 = from.kept[5];
-            let kept_6 = from.kept[6];
-            let kept_7 = from.kept[7];
-            let kept_8 = from.kept[8];
-            let kept_9 = from.kept[9];
-            let sums_0 = from.sums[0];
-            let sums_1 = from.sums[1];
-            let sums_2 = from.sums[2];
-            let v_0 = u_0 * kept_0;
-            let v_1 = u_0 * kept_1;
-            let v_2 = v_0 * kept_2;
-            let v_3 = x_0 * kept_3;
-            let v_4 = v_3 * kept_4;
-            let v_5 = sums_0 * u_2;
-            let v_6 = v_4 + v_5;
-            let v_7 = v_6 * kept_5;
-            let v_8 = v_2 * kept_6;
-            let v_9 = v_7 + v_8;
-            let v_10 = v_9 + sums_1;
-            let v_11 = v_1 - v_10;
-            let v_12 = x_1 * kept_7;
-            let v_13 = v_11 - v_12;
-            let v_14 = v_13 * kept_8;
-            let v_15 = v_3 * k;
-            let v_16 = v_6 * kept_9;
-            let v_17 = v_16 + sums_2;
-            let v_18 = -v_17;
-            let v_19 = v_14 * u_3;
-            let v_20 = x_0 * u_3;
-            to.next.copy_from_slice(&[v_19, v_20]);
-            to.left.copy_from_slice(&[v_15, v_2, v_6]);
-            to.right.copy_from_slice(&[v_18, v_6, v_6]);
+            let mut v = [0.0; 21];
+            v[0] = from.u[0] * from.kept[0];
+            v[1] = from.u[0] * from.kept[1];
+            v[2] = v[0] * from.kept[2];
+            v[3] = from.x[0] * from.kept[3];
+            v[4] = v[3] * from.kept[4];
+            v[5] = from.sums[0] * from.u[2];
+            v[6] = v[4] + v[5];
+            v[7] = v[6] * from.kept[5];
+            v[8] = v[2] * from.kept[6];
+            v[9] = v[7] + v[8];
+            v[10] = v[9] + from.sums[1];
+            v[11] = v[1] - v[10];
+            v[12] = from.x[1] * from.kept[7];
+            v[13] = v[11] - v[12];
+            v[14] = v[13] * from.kept[8];
+            v[15] = v[3] * from.k;
+            v[16] = v[6] * from.kept[9];
+            v[17] = v[16] + from.sums[2];
+            v[18] = -v[17];
+            v[19] = v[14] * from.u[3];
+            v[20] = from.x[0] * from.u[3];
+            to.next.copy_from_slice(&[v[19], v[20]]);
+            to.left.copy_from_slice(&[v[15], v[2], v[6]]);
+            to.right.copy_from_slice(&[v[18], v[6], v[6]]);
         }
     }
 

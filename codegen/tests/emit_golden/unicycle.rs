@@ -1300,638 +1300,533 @@ const _: () = {
 
         fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
             type T = f64;
-            let x_0 = from.x[0];
-            let x_1 = from.x[1];
-            let x_2 = from.x[2];
-            let x_3 = from.x[3];
-            let x_4 = from.x[4];
-            let x_5 = from.x[5];
-            let x_6 = from.x[6];
-            let u_0 = from.u[0];
-            let p_0 = from.p[0];
-            let p_1 = from.p[1];
-            let p_2 = from.p[2];
-            let p_3 = from.p[3];
+            let mut v = [0.0; 104];
             let quarter = T::constant(0.25);
             let half = T::constant(0.5);
             let one = T::constant(1.0);
             let five_quarters = T::constant(1.25);
             let three_halves = T::constant(1.5);
             let two = T::constant(2.0);
-            let (v_0, v_1) = x_4.sin_cos();
-            let (v_2, v_3) = x_6.sin_cos();
-            let v_4 = p_0 * p_2;
-            let v_5 = p_2 * v_4;
-            let v_6 = three_halves * v_4;
-            let v_7 = p_1 * p_2;
-            let v_8 = v_6 + v_7;
-            let v_9 = p_2 * v_8;
-            let v_10 = one / p_1;
-            let v_11 = one / v_1;
-            let v_12 = v_11 * x_2;
-            let v_13 = v_0 * v_11;
-            let v_14 = v_13 * x_2;
-            let v_15 = x_1 - v_14;
-            let v_16 = p_2 * x_1;
-            let v_17 = p_2 * v_1;
-            let v_18 = v_17 * x_0;
-            let v_19 = v_3 * v_16;
-            let v_20 = v_2 * v_18;
-            let v_21 = v_19 + v_20;
-            let v_22 = v_2 * v_16;
-            let v_23 = v_3 * v_18;
-            let v_24 = v_22 - v_23;
-            let v_25 = p_1 * x_5;
-            let v_26 = v_25 * x_5;
-            let v_27 = five_quarters * v_5;
-            let v_28 = v_27 + v_26;
-            let v_29 = one / v_28;
-            let v_30 = v_25 * x_2;
-            let v_31 = v_30 * x_2;
-            let v_32 = v_25 * x_0;
-            let v_33 = p_3 * v_0;
-            let v_34 = p_2 * x_2;
-            let v_35 = v_34 * x_1;
-            let v_36 = v_32 * x_0;
-            let v_37 = v_31 + v_36;
-            let v_38 = v_37 + u_0;
-            let v_39 = v_33 + v_35;
-            let v_40 = p_1 * v_39;
-            let v_41 = v_38 - v_40;
-            let v_42 = v_13 * x_5;
-            let v_43 = two * x_3;
-            let v_44 = v_13 * v_25;
-            let v_45 = v_7 + v_44;
-            let v_46 = quarter * v_13;
-            let v_47 = v_6 + v_45;
-            let v_48 = v_35 * v_47;
-            let v_49 = v_4 + v_7;
-            let v_50 = v_33 * v_49;
-            let v_51 = v_48 + v_50;
-            let v_52 = p_3 * v_1;
-            let v_53 = v_52 * v_25;
-            let v_54 = v_51 - v_53;
-            let v_55 = v_31 * v_42;
-            let v_56 = v_54 - v_55;
-            let v_57 = v_32 * v_43;
-            let v_58 = v_56 - v_57;
-            let v_59 = p_0 * v_34;
-            let v_60 = v_59 * v_46;
-            let v_61 = v_30 + v_60;
-            let v_62 = v_34 * v_61;
-            let v_63 = v_58 - v_62;
-            let v_64 = p_2 * v_41;
-            let v_65 = v_63 + v_64;
-            let v_66 = v_29 * v_65;
-            let v_67 = v_34 * x_0;
-            let v_68 = v_4 * v_67;
-            let v_69 = v_25 * v_67;
-            let v_70 = v_46 * v_68;
-            let v_71 = v_69 + v_70;
-            let v_72 = half * v_5;
-            let v_73 = v_72 * x_0;
-            let v_74 = v_73 * x_1;
-            let v_75 = v_71 - v_74;
-            let v_76 = v_42 * x_0;
-            let v_77 = v_43 - v_76;
-            let v_78 = v_30 * v_77;
-            let v_79 = v_75 - v_78;
-            let v_80 = p_2 * v_25;
-            let v_81 = p_1 * v_34;
-            let v_82 = v_81 * v_43;
-            let v_83 = v_82 - v_68;
-            let v_84 = v_45 * v_67;
-            let v_85 = v_83 - v_84;
-            let v_86 = quarter * v_5;
-            let v_87 = v_86 + v_26;
-            let v_88 = v_9 * v_87;
-            let v_89 = v_80 * v_80;
-            let v_90 = v_88 - v_89;
-            let v_91 = one / v_90;
-            let v_92 = v_79 * v_80;
-            let v_93 = v_85 * v_87;
-            let v_94 = v_92 + v_93;
-            let v_95 = v_91 * v_94;
-            let v_96 = v_80 * v_85;
-            let v_97 = v_9 * v_79;
-            let v_98 = v_96 + v_97;
-            let v_99 = v_91 * v_98;
-            let v_100 = v_10 * v_41;
-            let v_101 = p_2 * v_66;
-            let v_102 = v_100 + v_101;
-            let v_103 = two * v_80;
+            (v[0], v[1]) = from.x[4].sin_cos();
+            (v[2], v[3]) = from.x[6].sin_cos();
+            v[4] = from.p[0] * from.p[2];
+            v[5] = from.p[2] * v[4];
+            v[6] = three_halves * v[4];
+            v[7] = from.p[1] * from.p[2];
+            v[8] = v[6] + v[7];
+            v[9] = from.p[2] * v[8];
+            v[10] = one / from.p[1];
+            v[11] = one / v[1];
+            v[12] = v[11] * from.x[2];
+            v[13] = v[0] * v[11];
+            v[14] = v[13] * from.x[2];
+            v[15] = from.x[1] - v[14];
+            v[16] = from.p[2] * from.x[1];
+            v[17] = from.p[2] * v[1];
+            v[18] = v[17] * from.x[0];
+            v[19] = v[3] * v[16];
+            v[20] = v[2] * v[18];
+            v[21] = v[19] + v[20];
+            v[22] = v[2] * v[16];
+            v[23] = v[3] * v[18];
+            v[24] = v[22] - v[23];
+            v[25] = from.p[1] * from.x[5];
+            v[26] = v[25] * from.x[5];
+            v[27] = five_quarters * v[5];
+            v[28] = v[27] + v[26];
+            v[29] = one / v[28];
+            v[30] = v[25] * from.x[2];
+            v[31] = v[30] * from.x[2];
+            v[32] = v[25] * from.x[0];
+            v[33] = from.p[3] * v[0];
+            v[34] = from.p[2] * from.x[2];
+            v[35] = v[34] * from.x[1];
+            v[36] = v[32] * from.x[0];
+            v[37] = v[31] + v[36];
+            v[38] = v[37] + from.u[0];
+            v[39] = v[33] + v[35];
+            v[40] = from.p[1] * v[39];
+            v[41] = v[38] - v[40];
+            v[42] = v[13] * from.x[5];
+            v[43] = two * from.x[3];
+            v[44] = v[13] * v[25];
+            v[45] = v[7] + v[44];
+            v[46] = quarter * v[13];
+            v[47] = v[6] + v[45];
+            v[48] = v[35] * v[47];
+            v[49] = v[4] + v[7];
+            v[50] = v[33] * v[49];
+            v[51] = v[48] + v[50];
+            v[52] = from.p[3] * v[1];
+            v[53] = v[52] * v[25];
+            v[54] = v[51] - v[53];
+            v[55] = v[31] * v[42];
+            v[56] = v[54] - v[55];
+            v[57] = v[32] * v[43];
+            v[58] = v[56] - v[57];
+            v[59] = from.p[0] * v[34];
+            v[60] = v[59] * v[46];
+            v[61] = v[30] + v[60];
+            v[62] = v[34] * v[61];
+            v[63] = v[58] - v[62];
+            v[64] = from.p[2] * v[41];
+            v[65] = v[63] + v[64];
+            v[66] = v[29] * v[65];
+            v[67] = v[34] * from.x[0];
+            v[68] = v[4] * v[67];
+            v[69] = v[25] * v[67];
+            v[70] = v[46] * v[68];
+            v[71] = v[69] + v[70];
+            v[72] = half * v[5];
+            v[73] = v[72] * from.x[0];
+            v[74] = v[73] * from.x[1];
+            v[75] = v[71] - v[74];
+            v[76] = v[42] * from.x[0];
+            v[77] = v[43] - v[76];
+            v[78] = v[30] * v[77];
+            v[79] = v[75] - v[78];
+            v[80] = from.p[2] * v[25];
+            v[81] = from.p[1] * v[34];
+            v[82] = v[81] * v[43];
+            v[83] = v[82] - v[68];
+            v[84] = v[45] * v[67];
+            v[85] = v[83] - v[84];
+            v[86] = quarter * v[5];
+            v[87] = v[86] + v[26];
+            v[88] = v[9] * v[87];
+            v[89] = v[80] * v[80];
+            v[90] = v[88] - v[89];
+            v[91] = one / v[90];
+            v[92] = v[79] * v[80];
+            v[93] = v[85] * v[87];
+            v[94] = v[92] + v[93];
+            v[95] = v[91] * v[94];
+            v[96] = v[80] * v[85];
+            v[97] = v[9] * v[79];
+            v[98] = v[96] + v[97];
+            v[99] = v[91] * v[98];
+            v[100] = v[10] * v[41];
+            v[101] = from.p[2] * v[66];
+            v[102] = v[100] + v[101];
+            v[103] = two * v[80];
             to.next
                 .copy_from_slice(
-                    &[v_66, v_95, v_99, v_102, x_0, x_3, v_12, v_15, v_21, v_24],
+                    &[
+                        v[66],
+                        v[95],
+                        v[99],
+                        v[102],
+                        from.x[0],
+                        from.x[3],
+                        v[12],
+                        v[15],
+                        v[21],
+                        v[24],
+                    ],
                 );
             to.kept
                 .copy_from_slice(
                     &[
-                        v_1,
-                        v_0,
-                        v_3,
-                        v_2,
-                        v_11,
-                        x_2,
-                        v_13,
-                        p_2,
-                        v_17,
-                        x_0,
-                        v_16,
-                        v_18,
-                        p_1,
-                        v_25,
-                        x_5,
-                        v_29,
-                        v_30,
-                        p_3,
-                        v_34,
-                        x_1,
-                        v_32,
-                        v_35,
-                        v_47,
-                        v_49,
-                        v_52,
-                        v_31,
-                        v_42,
-                        v_43,
-                        p_0,
-                        v_59,
-                        v_46,
-                        v_61,
-                        v_65,
-                        v_4,
-                        v_67,
-                        v_68,
-                        v_72,
-                        v_73,
-                        v_77,
-                        v_81,
-                        v_45,
-                        v_9,
-                        v_103,
-                        v_91,
-                        v_79,
-                        v_80,
-                        v_85,
-                        v_87,
-                        v_94,
-                        v_98,
-                        v_10,
+                        v[1],
+                        v[0],
+                        v[3],
+                        v[2],
+                        v[11],
+                        from.x[2],
+                        v[13],
+                        from.p[2],
+                        v[17],
+                        from.x[0],
+                        v[16],
+                        v[18],
+                        from.p[1],
+                        v[25],
+                        from.x[5],
+                        v[29],
+                        v[30],
+                        from.p[3],
+                        v[34],
+                        from.x[1],
+                        v[32],
+                        v[35],
+                        v[47],
+                        v[49],
+                        v[52],
+                        v[31],
+                        v[42],
+                        v[43],
+                        from.p[0],
+                        v[59],
+                        v[46],
+                        v[61],
+                        v[65],
+                        v[4],
+                        v[67],
+                        v[68],
+                        v[72],
+                        v[73],
+                        v[77],
+                        v[81],
+                        v[45],
+                        v[9],
+                        v[103],
+                        v[91],
+                        v[79],
+                        v[80],
+                        v[85],
+                        v[87],
+                        v[94],
+                        v[98],
+                        v[10],
                     ],
                 );
         }
 
         fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
             type T = f64;
-            let k = from.k;
-            let x_0 = from.x[0];
-            let x_1 = from.x[1];
-            let x_2 = from.x[2];
-            let x_3 = from.x[3];
-            let x_4 = from.x[4];
-            let x_5 = from.x[5];
-            let x_6 = from.x[6];
-            let u_0 = from.u[0];
-            let u_2 = from.u[2];
-            let u_3 = from.u[3];
-            let kept_0 = from.kept[0];
-            let kept_1 = from.kept[1];
-            let kept_2 = from.kept[2];
-            let kept_3 = from.kept[3];
-            let kept_4 = from.kept[4];
-            let kept_5 = from.kept[5];
-            let kept_6 = from.kept[6];
-            let kept_7 = from.kept[7];
-            let kept_8 = from.kept[8];
-            let kept_9 = from.kept[9];
-            let kept_10 = from.kept[10];
-            let kept_11 = from.kept[11];
-            let kept_12 = from.kept[12];
-            let kept_13 = from.kept[13];
-            let kept_14 = from.kept[14];
-            let kept_15 = from.kept[15];
-            let kept_16 = from.kept[16];
-            let kept_17 = from.kept[17];
-            let kept_18 = from.kept[18];
-            let kept_19 = from.kept[19];
-            let kept_20 = from.kept[20];
-            let kept_21 = from.kept[21];
-            let kept_22 = from.kept[22];
-            let kept_23 = from.kept[23];
-            let kept_24 = from.kept[24];
-            let kept_25 = from.kept[25];
-            let kept_26 = from.kept[26];
-            let kept_27 = from.kept[27];
-            let kept_28 = from.kept[28];
-            let kept_29 = from.kept[29];
-            let kept_30 = from.kept[30];
-            let kept_31 = from.kept[31];
-            let kept_32 = from.kept[32];
-            let kept_33 = from.kept[33];
-            let kept_34 = from.kept[34];
-            let kept_35 = from.kept[35];
-            let kept_36 = from.kept[36];
-            let kept_37 = from.kept[37];
-            let kept_38 = from.kept[38];
-            let kept_39 = from.kept[39];
-            let kept_40 = from.kept[40];
-            let kept_41 = from.kept[41];
-            let kept_42 = from.kept[42];
-            let kept_43 = from.kept[43];
-            let kept_44 = from.kept[44];
-            let kept_45 = from.kept[45];
-            let kept_46 = from.kept[46];
-            let kept_47 = from.kept[47];
-            let kept_48 = from.kept[48];
-            let kept_49 = from.kept[49];
-            let kept_50 = from.kept[50];
-            let sums_0 = from.sums[0];
-            let sums_1 = from.sums[1];
-            let sums_2 = from.sums[2];
-            let sums_3 = from.sums[3];
-            let sums_4 = from.sums[4];
-            let sums_5 = from.sums[5];
-            let sums_6 = from.sums[6];
-            let sums_7 = from.sums[7];
-            let sums_8 = from.sums[8];
-            let sums_9 = from.sums[9];
-            let sums_10 = from.sums[10];
-            let sums_11 = from.sums[11];
-            let sums_12 = from.sums[12];
-            let sums_13 = from.sums[13];
-            let sums_14 = from.sums[14];
-            let sums_15 = from.sums[15];
-            let sums_16 = from.sums[16];
-            let sums_17 = from.sums[17];
-            let sums_18 = from.sums[18];
-            let sums_19 = from.sums[19];
-            let sums_20 = from.sums[20];
-            let sums_21 = from.sums[21];
-            let sums_22 = from.sums[22];
-            let sums_23 = from.sums[23];
-            let sums_24 = from.sums[24];
-            let sums_25 = from.sums[25];
-            let sums_26 = from.sums[26];
-            let sums_27 = from.sums[27];
-            let sums_28 = from.sums[28];
-            let sums_29 = from.sums[29];
-            let sums_30 = from.sums[30];
-            let sums_31 = from.sums[31];
-            let sums_32 = from.sums[32];
-            let sums_33 = from.sums[33];
-            let sums_34 = from.sums[34];
-            let sums_35 = from.sums[35];
-            let sums_36 = from.sums[36];
-            let sums_37 = from.sums[37];
-            let sums_38 = from.sums[38];
-            let sums_39 = from.sums[39];
-            let sums_40 = from.sums[40];
-            let sums_41 = from.sums[41];
-            let sums_42 = from.sums[42];
-            let sums_43 = from.sums[43];
+            let mut v = [0.0; 229];
             let quarter = T::constant(0.25);
             let two = T::constant(2.0);
-            let v_0 = x_4 * kept_0;
-            let v_1 = sums_0 * u_2;
-            let v_2 = v_0 + v_1;
-            let v_3 = x_4 * kept_1;
-            let v_4 = u_2 * sums_1;
-            let v_5 = v_3 + v_4;
-            let v_6 = -v_5;
-            let v_7 = x_6 * kept_2;
-            let v_8 = u_2 * sums_2;
-            let v_9 = v_7 + v_8;
-            let v_10 = x_6 * kept_3;
-            let v_11 = u_2 * sums_3;
-            let v_12 = v_10 + v_11;
-            let v_13 = -v_12;
-            let v_14 = v_5 * kept_4;
-            let v_15 = v_14 - sums_4;
-            let v_16 = kept_4 * v_15;
-            let v_17 = kept_4 * x_2;
-            let v_18 = v_16 * kept_5;
-            let v_19 = v_17 + v_18;
-            let v_20 = v_19 + sums_5;
-            let v_21 = kept_1 * v_16;
-            let v_22 = v_2 * kept_4;
-            let v_23 = v_21 + v_22;
-            let v_24 = v_23 + sums_6;
-            let v_25 = x_2 * kept_6;
-            let v_26 = kept_5 * v_24;
-            let v_27 = v_25 + v_26;
-            let v_28 = v_27 + sums_7;
-            let v_29 = x_1 - v_28;
-            let v_30 = x_1 * kept_7;
-            let v_31 = v_5 * kept_7;
-            let v_32 = -v_31;
-            let v_33 = x_0 * kept_8;
-            let v_34 = v_31 * kept_9;
-            let v_35 = v_33 - v_34;
-            let v_36 = v_35 + sums_8;
-            let v_37 = kept_2 * v_30;
-            let v_38 = v_12 * kept_10;
-            let v_39 = v_37 - v_38;
-            let v_40 = v_39 + sums_9;
-            let v_41 = kept_3 * v_36;
-            let v_42 = v_9 * kept_11;
-            let v_43 = v_41 + v_42;
-            let v_44 = v_43 + sums_10;
-            let v_45 = v_40 + v_44;
-            let v_46 = kept_3 * v_30;
-            let v_47 = v_9 * kept_10;
-            let v_48 = v_46 + v_47;
-            let v_49 = v_48 + sums_11;
-            let v_50 = kept_2 * v_36;
-            let v_51 = v_12 * kept_11;
-            let v_52 = v_50 - v_51;
-            let v_53 = v_52 + sums_12;
-            let v_54 = v_49 - v_53;
-            let v_55 = x_5 * kept_12;
-            let v_56 = x_5 * kept_13;
-            let v_57 = v_55 * kept_14;
-            let v_58 = v_56 + v_57;
-            let v_59 = v_58 + sums_13;
-            let v_60 = v_59 * kept_15;
-            let v_61 = v_60 + sums_14;
-            let v_62 = kept_15 * v_61;
-            let v_63 = -v_62;
-            let v_64 = x_2 * kept_13;
-            let v_65 = kept_5 * v_55;
-            let v_66 = v_64 + v_65;
-            let v_67 = v_66 + sums_15;
-            let v_68 = x_2 * kept_16;
-            let v_69 = kept_5 * v_67;
-            let v_70 = v_68 + v_69;
-            let v_71 = v_70 + sums_16;
-            let v_72 = x_0 * kept_13;
-            let v_73 = kept_9 * v_55;
-            let v_74 = v_72 + v_73;
-            let v_75 = v_74 + sums_17;
-            let v_76 = v_2 * kept_17;
-            let v_77 = x_2 * kept_7;
-            let v_78 = x_1 * kept_18;
-            let v_79 = v_77 * kept_19;
-            let v_80 = v_78 + v_79;
-            let v_81 = v_80 + sums_18;
-            let v_82 = x_0 * kept_20;
-            let v_83 = kept_9 * v_75;
-            let v_84 = v_82 + v_83;
-            let v_85 = v_84 + sums_19;
-            let v_86 = v_71 + v_85;
-            let v_87 = v_86 + u_0;
-            let v_88 = v_76 + v_81;
-            let v_89 = kept_12 * v_88;
-            let v_90 = v_87 - v_89;
-            let v_91 = kept_6 * x_5;
-            let v_92 = v_24 * kept_14;
-            let v_93 = v_91 + v_92;
-            let v_94 = v_93 + sums_20;
-            let v_95 = x_3 * two;
-            let v_96 = kept_6 * v_55;
-            let v_97 = v_24 * kept_13;
-            let v_98 = v_96 + v_97;
-            let v_99 = v_98 + sums_21;
-            let v_100 = v_24 * quarter;
-            let v_101 = v_99 * kept_21;
-            let v_102 = v_81 * kept_22;
-            let v_103 = v_101 + v_102;
-            let v_104 = v_103 + sums_22;
-            let v_105 = v_76 * kept_23;
-            let v_106 = v_104 + v_105;
-            let v_107 = v_5 * kept_17;
-            let v_108 = -v_107;
-            let v_109 = v_55 * kept_24;
-            let v_110 = kept_13 * v_107;
-            let v_111 = v_109 - v_110;
-            let v_112 = v_111 + sums_23;
-            let v_113 = v_106 - v_112;
-            let v_114 = v_94 * kept_25;
-            let v_115 = v_71 * kept_26;
-            let v_116 = v_114 + v_115;
-            let v_117 = v_116 + sums_24;
-            let v_118 = v_113 - v_117;
-            let v_119 = kept_20 * v_95;
-            let v_120 = v_75 * kept_27;
-            let v_121 = v_119 + v_120;
-            let v_122 = v_121 + sums_25;
-            let v_123 = v_118 - v_122;
-            let v_124 = v_77 * kept_28;
-            let v_125 = v_100 * kept_29;
-            let v_126 = v_124 * kept_30;
-            let v_127 = v_125 + v_126;
-            let v_128 = v_127 + sums_26;
-            let v_129 = v_67 + v_128;
-            let v_130 = kept_18 * v_129;
-            let v_131 = v_77 * kept_31;
-            let v_132 = v_130 + v_131;
-            let v_133 = v_132 + sums_27;
-            let v_134 = v_123 - v_133;
-            let v_135 = kept_7 * v_90;
-            let v_136 = v_134 + v_135;
-            let v_137 = kept_15 * v_136;
-            let v_138 = v_62 * kept_32;
-            let v_139 = v_137 - v_138;
-            let v_140 = v_139 + sums_28;
-            let v_141 = x_0 * kept_18;
-            let v_142 = kept_9 * v_77;
-            let v_143 = v_141 + v_142;
-            let v_144 = v_143 + sums_29;
-            let v_145 = v_144 * kept_33;
-            let v_146 = kept_13 * v_144;
-            let v_147 = v_55 * kept_34;
-            let v_148 = v_146 + v_147;
-            let v_149 = v_148 + sums_30;
-            let v_150 = kept_30 * v_145;
-            let v_151 = v_100 * kept_35;
-            let v_152 = v_150 + v_151;
-            let v_153 = v_152 + sums_31;
-            let v_154 = v_149 + v_153;
-            let v_155 = x_0 * kept_36;
-            let v_156 = x_1 * kept_37;
-            let v_157 = kept_19 * v_155;
-            let v_158 = v_156 + v_157;
-            let v_159 = v_158 + sums_32;
-            let v_160 = v_154 - v_159;
-            let v_161 = x_0 * kept_26;
-            let v_162 = kept_9 * v_94;
-            let v_163 = v_161 + v_162;
-            let v_164 = v_163 + sums_33;
-            let v_165 = v_95 - v_164;
-            let v_166 = kept_16 * v_165;
-            let v_167 = v_67 * kept_38;
-            let v_168 = v_166 + v_167;
-            let v_169 = v_168 + sums_34;
-            let v_170 = v_160 - v_169;
-            let v_171 = kept_7 * v_55;
-            let v_172 = kept_12 * v_77;
-            let v_173 = v_95 * kept_39;
-            let v_174 = kept_27 * v_172;
-            let v_175 = v_173 + v_174;
-            let v_176 = v_175 + sums_35;
-            let v_177 = v_176 - v_145;
-            let v_178 = v_144 * kept_40;
-            let v_179 = v_99 * kept_34;
-            let v_180 = v_178 + v_179;
-            let v_181 = v_180 + sums_36;
-            let v_182 = v_177 - v_181;
-            let v_183 = v_59 * kept_41;
-            let v_184 = v_171 * kept_42;
-            let v_185 = v_184 + sums_37;
-            let v_186 = v_183 - v_185;
-            let v_187 = v_186 * kept_43;
-            let v_188 = v_187 + sums_38;
-            let v_189 = kept_43 * v_188;
-            let v_190 = -v_189;
-            let v_191 = v_171 * kept_44;
-            let v_192 = v_170 * kept_45;
-            let v_193 = v_191 + v_192;
-            let v_194 = v_193 + sums_39;
-            let v_195 = v_59 * kept_46;
-            let v_196 = v_182 * kept_47;
-            let v_197 = v_195 + v_196;
-            let v_198 = v_197 + sums_40;
-            let v_199 = v_194 + v_198;
-            let v_200 = kept_43 * v_199;
-            let v_201 = v_189 * kept_48;
-            let v_202 = v_200 - v_201;
-            let v_203 = v_202 + sums_41;
-            let v_204 = v_182 * kept_45;
-            let v_205 = v_171 * kept_46;
-            let v_206 = v_204 + v_205;
-            let v_207 = v_206 + sums_42;
-            let v_208 = v_170 * kept_41;
-            let v_209 = v_207 + v_208;
-            let v_210 = kept_43 * v_209;
-            let v_211 = v_189 * kept_49;
-            let v_212 = v_210 - v_211;
-            let v_213 = v_212 + sums_43;
-            let v_214 = v_90 * kept_50;
-            let v_215 = kept_7 * v_140;
-            let v_216 = v_214 + v_215;
-            let v_217 = x_4 * k;
-            let v_218 = x_6 * k;
-            let v_219 = v_140 * u_3;
-            let v_220 = v_203 * u_3;
-            let v_221 = v_213 * u_3;
-            let v_222 = v_216 * u_3;
-            let v_223 = x_0 * u_3;
-            let v_224 = x_3 * u_3;
-            let v_225 = v_20 * u_3;
-            let v_226 = v_29 * u_3;
-            let v_227 = v_45 * u_3;
-            let v_228 = v_54 * u_3;
+            v[0] = from.x[4] * from.kept[0];
+            v[1] = from.sums[0] * from.u[2];
+            v[2] = v[0] + v[1];
+            v[3] = from.x[4] * from.kept[1];
+            v[4] = from.u[2] * from.sums[1];
+            v[5] = v[3] + v[4];
+            v[6] = -v[5];
+            v[7] = from.x[6] * from.kept[2];
+            v[8] = from.u[2] * from.sums[2];
+            v[9] = v[7] + v[8];
+            v[10] = from.x[6] * from.kept[3];
+            v[11] = from.u[2] * from.sums[3];
+            v[12] = v[10] + v[11];
+            v[13] = -v[12];
+            v[14] = v[5] * from.kept[4];
+            v[15] = v[14] - from.sums[4];
+            v[16] = from.kept[4] * v[15];
+            v[17] = from.kept[4] * from.x[2];
+            v[18] = v[16] * from.kept[5];
+            v[19] = v[17] + v[18];
+            v[20] = v[19] + from.sums[5];
+            v[21] = from.kept[1] * v[16];
+            v[22] = v[2] * from.kept[4];
+            v[23] = v[21] + v[22];
+            v[24] = v[23] + from.sums[6];
+            v[25] = from.x[2] * from.kept[6];
+            v[26] = from.kept[5] * v[24];
+            v[27] = v[25] + v[26];
+            v[28] = v[27] + from.sums[7];
+            v[29] = from.x[1] - v[28];
+            v[30] = from.x[1] * from.kept[7];
+            v[31] = v[5] * from.kept[7];
+            v[32] = -v[31];
+            v[33] = from.x[0] * from.kept[8];
+            v[34] = v[31] * from.kept[9];
+            v[35] = v[33] - v[34];
+            v[36] = v[35] + from.sums[8];
+            v[37] = from.kept[2] * v[30];
+            v[38] = v[12] * from.kept[10];
+            v[39] = v[37] - v[38];
+            v[40] = v[39] + from.sums[9];
+            v[41] = from.kept[3] * v[36];
+            v[42] = v[9] * from.kept[11];
+            v[43] = v[41] + v[42];
+            v[44] = v[43] + from.sums[10];
+            v[45] = v[40] + v[44];
+            v[46] = from.kept[3] * v[30];
+            v[47] = v[9] * from.kept[10];
+            v[48] = v[46] + v[47];
+            v[49] = v[48] + from.sums[11];
+            v[50] = from.kept[2] * v[36];
+            v[51] = v[12] * from.kept[11];
+            v[52] = v[50] - v[51];
+            v[53] = v[52] + from.sums[12];
+            v[54] = v[49] - v[53];
+            v[55] = from.x[5] * from.kept[12];
+            v[56] = from.x[5] * from.kept[13];
+            v[57] = v[55] * from.kept[14];
+            v[58] = v[56] + v[57];
+            v[59] = v[58] + from.sums[13];
+            v[60] = v[59] * from.kept[15];
+            v[61] = v[60] + from.sums[14];
+            v[62] = from.kept[15] * v[61];
+            v[63] = -v[62];
+            v[64] = from.x[2] * from.kept[13];
+            v[65] = from.kept[5] * v[55];
+            v[66] = v[64] + v[65];
+            v[67] = v[66] + from.sums[15];
+            v[68] = from.x[2] * from.kept[16];
+            v[69] = from.kept[5] * v[67];
+            v[70] = v[68] + v[69];
+            v[71] = v[70] + from.sums[16];
+            v[72] = from.x[0] * from.kept[13];
+            v[73] = from.kept[9] * v[55];
+            v[74] = v[72] + v[73];
+            v[75] = v[74] + from.sums[17];
+            v[76] = v[2] * from.kept[17];
+            v[77] = from.x[2] * from.kept[7];
+            v[78] = from.x[1] * from.kept[18];
+            v[79] = v[77] * from.kept[19];
+            v[80] = v[78] + v[79];
+            v[81] = v[80] + from.sums[18];
+            v[82] = from.x[0] * from.kept[20];
+            v[83] = from.kept[9] * v[75];
+            v[84] = v[82] + v[83];
+            v[85] = v[84] + from.sums[19];
+            v[86] = v[71] + v[85];
+            v[87] = v[86] + from.u[0];
+            v[88] = v[76] + v[81];
+            v[89] = from.kept[12] * v[88];
+            v[90] = v[87] - v[89];
+            v[91] = from.kept[6] * from.x[5];
+            v[92] = v[24] * from.kept[14];
+            v[93] = v[91] + v[92];
+            v[94] = v[93] + from.sums[20];
+            v[95] = from.x[3] * two;
+            v[96] = from.kept[6] * v[55];
+            v[97] = v[24] * from.kept[13];
+            v[98] = v[96] + v[97];
+            v[99] = v[98] + from.sums[21];
+            v[100] = v[24] * quarter;
+            v[101] = v[99] * from.kept[21];
+            v[102] = v[81] * from.kept[22];
+            v[103] = v[101] + v[102];
+            v[104] = v[103] + from.sums[22];
+            v[105] = v[76] * from.kept[23];
+            v[106] = v[104] + v[105];
+            v[107] = v[5] * from.kept[17];
+            v[108] = -v[107];
+            v[109] = v[55] * from.kept[24];
+            v[110] = from.kept[13] * v[107];
+            v[111] = v[109] - v[110];
+            v[112] = v[111] + from.sums[23];
+            v[113] = v[106] - v[112];
+            v[114] = v[94] * from.kept[25];
+            v[115] = v[71] * from.kept[26];
+            v[116] = v[114] + v[115];
+            v[117] = v[116] + from.sums[24];
+            v[118] = v[113] - v[117];
+            v[119] = from.kept[20] * v[95];
+            v[120] = v[75] * from.kept[27];
+            v[121] = v[119] + v[120];
+            v[122] = v[121] + from.sums[25];
+            v[123] = v[118] - v[122];
+            v[124] = v[77] * from.kept[28];
+            v[125] = v[100] * from.kept[29];
+            v[126] = v[124] * from.kept[30];
+            v[127] = v[125] + v[126];
+            v[128] = v[127] + from.sums[26];
+            v[129] = v[67] + v[128];
+            v[130] = from.kept[18] * v[129];
+            v[131] = v[77] * from.kept[31];
+            v[132] = v[130] + v[131];
+            v[133] = v[132] + from.sums[27];
+            v[134] = v[123] - v[133];
+            v[135] = from.kept[7] * v[90];
+            v[136] = v[134] + v[135];
+            v[137] = from.kept[15] * v[136];
+            v[138] = v[62] * from.kept[32];
+            v[139] = v[137] - v[138];
+            v[140] = v[139] + from.sums[28];
+            v[141] = from.x[0] * from.kept[18];
+            v[142] = from.kept[9] * v[77];
+            v[143] = v[141] + v[142];
+            v[144] = v[143] + from.sums[29];
+            v[145] = v[144] * from.kept[33];
+            v[146] = from.kept[13] * v[144];
+            v[147] = v[55] * from.kept[34];
+            v[148] = v[146] + v[147];
+            v[149] = v[148] + from.sums[30];
+            v[150] = from.kept[30] * v[145];
+            v[151] = v[100] * from.kept[35];
+            v[152] = v[150] + v[151];
+            v[153] = v[152] + from.sums[31];
+            v[154] = v[149] + v[153];
+            v[155] = from.x[0] * from.kept[36];
+            v[156] = from.x[1] * from.kept[37];
+            v[157] = from.kept[19] * v[155];
+            v[158] = v[156] + v[157];
+            v[159] = v[158] + from.sums[32];
+            v[160] = v[154] - v[159];
+            v[161] = from.x[0] * from.kept[26];
+            v[162] = from.kept[9] * v[94];
+            v[163] = v[161] + v[162];
+            v[164] = v[163] + from.sums[33];
+            v[165] = v[95] - v[164];
+            v[166] = from.kept[16] * v[165];
+            v[167] = v[67] * from.kept[38];
+            v[168] = v[166] + v[167];
+            v[169] = v[168] + from.sums[34];
+            v[170] = v[160] - v[169];
+            v[171] = from.kept[7] * v[55];
+            v[172] = from.kept[12] * v[77];
+            v[173] = v[95] * from.kept[39];
+            v[174] = from.kept[27] * v[172];
+            v[175] = v[173] + v[174];
+            v[176] = v[175] + from.sums[35];
+            v[177] = v[176] - v[145];
+            v[178] = v[144] * from.kept[40];
+            v[179] = v[99] * from.kept[34];
+            v[180] = v[178] + v[179];
+            v[181] = v[180] + from.sums[36];
+            v[182] = v[177] - v[181];
+            v[183] = v[59] * from.kept[41];
+            v[184] = v[171] * from.kept[42];
+            v[185] = v[184] + from.sums[37];
+            v[186] = v[183] - v[185];
+            v[187] = v[186] * from.kept[43];
+            v[188] = v[187] + from.sums[38];
+            v[189] = from.kept[43] * v[188];
+            v[190] = -v[189];
+            v[191] = v[171] * from.kept[44];
+            v[192] = v[170] * from.kept[45];
+            v[193] = v[191] + v[192];
+            v[194] = v[193] + from.sums[39];
+            v[195] = v[59] * from.kept[46];
+            v[196] = v[182] * from.kept[47];
+            v[197] = v[195] + v[196];
+            v[198] = v[197] + from.sums[40];
+            v[199] = v[194] + v[198];
+            v[200] = from.kept[43] * v[199];
+            v[201] = v[189] * from.kept[48];
+            v[202] = v[200] - v[201];
+            v[203] = v[202] + from.sums[41];
+            v[204] = v[182] * from.kept[45];
+            v[205] = v[171] * from.kept[46];
+            v[206] = v[204] + v[205];
+            v[207] = v[206] + from.sums[42];
+            v[208] = v[170] * from.kept[41];
+            v[209] = v[207] + v[208];
+            v[210] = from.kept[43] * v[209];
+            v[211] = v[189] * from.kept[49];
+            v[212] = v[210] - v[211];
+            v[213] = v[212] + from.sums[43];
+            v[214] = v[90] * from.kept[50];
+            v[215] = from.kept[7] * v[140];
+            v[216] = v[214] + v[215];
+            v[217] = from.x[4] * from.k;
+            v[218] = from.x[6] * from.k;
+            v[219] = v[140] * from.u[3];
+            v[220] = v[203] * from.u[3];
+            v[221] = v[213] * from.u[3];
+            v[222] = v[216] * from.u[3];
+            v[223] = from.x[0] * from.u[3];
+            v[224] = from.x[3] * from.u[3];
+            v[225] = v[20] * from.u[3];
+            v[226] = v[29] * from.u[3];
+            v[227] = v[45] * from.u[3];
+            v[228] = v[54] * from.u[3];
             to.next
                 .copy_from_slice(
                     &[
-                        v_219,
-                        v_220,
-                        v_221,
-                        v_222,
-                        v_223,
-                        v_224,
-                        v_225,
-                        v_226,
-                        v_227,
-                        v_228,
+                        v[219],
+                        v[220],
+                        v[221],
+                        v[222],
+                        v[223],
+                        v[224],
+                        v[225],
+                        v[226],
+                        v[227],
+                        v[228],
                     ],
                 );
             to.left
                 .copy_from_slice(
                     &[
-                        v_217,
-                        v_217,
-                        v_218,
-                        v_218,
-                        v_6,
-                        v_16,
-                        v_2,
-                        x_2,
-                        v_32,
-                        v_13,
-                        v_9,
-                        v_9,
-                        v_13,
-                        x_5,
-                        v_59,
-                        x_2,
-                        x_2,
-                        x_0,
-                        x_1,
-                        x_0,
-                        v_24,
-                        v_24,
-                        v_81,
-                        v_55,
-                        v_71,
-                        v_75,
-                        v_100,
-                        v_77,
-                        v_63,
-                        x_0,
-                        v_55,
-                        v_100,
-                        x_1,
-                        x_0,
-                        v_67,
-                        v_95,
-                        v_99,
-                        v_171,
-                        v_186,
-                        v_170,
-                        v_182,
-                        v_190,
-                        v_171,
-                        v_190,
+                        v[217],
+                        v[217],
+                        v[218],
+                        v[218],
+                        v[6],
+                        v[16],
+                        v[2],
+                        from.x[2],
+                        v[32],
+                        v[13],
+                        v[9],
+                        v[9],
+                        v[13],
+                        from.x[5],
+                        v[59],
+                        from.x[2],
+                        from.x[2],
+                        from.x[0],
+                        from.x[1],
+                        from.x[0],
+                        v[24],
+                        v[24],
+                        v[81],
+                        v[55],
+                        v[71],
+                        v[75],
+                        v[100],
+                        v[77],
+                        v[63],
+                        from.x[0],
+                        v[55],
+                        v[100],
+                        from.x[1],
+                        from.x[0],
+                        v[67],
+                        v[95],
+                        v[99],
+                        v[171],
+                        v[186],
+                        v[170],
+                        v[182],
+                        v[190],
+                        v[171],
+                        v[190],
                     ],
                 );
             to.right
                 .copy_from_slice(
                     &[
-                        v_6,
-                        v_2,
-                        v_13,
-                        v_9,
-                        v_16,
-                        x_2,
-                        v_16,
-                        v_24,
-                        x_0,
-                        v_30,
-                        v_36,
-                        v_30,
-                        v_36,
-                        v_55,
-                        v_63,
-                        v_55,
-                        v_67,
-                        v_55,
-                        v_77,
-                        v_75,
-                        x_5,
-                        v_55,
-                        v_99,
-                        v_108,
-                        v_94,
-                        v_95,
-                        v_124,
-                        v_129,
-                        v_136,
-                        v_77,
-                        v_144,
-                        v_145,
-                        v_155,
-                        v_94,
-                        v_165,
-                        v_172,
-                        v_144,
-                        v_171,
-                        v_190,
-                        v_171,
-                        v_59,
-                        v_199,
-                        v_182,
-                        v_209,
+                        v[6],
+                        v[2],
+                        v[13],
+                        v[9],
+                        v[16],
+                        from.x[2],
+                        v[16],
+                        v[24],
+                        from.x[0],
+                        v[30],
+                        v[36],
+                        v[30],
+                        v[36],
+                        v[55],
+                        v[63],
+                        v[55],
+                        v[67],
+                        v[55],
+                        v[77],
+                        v[75],
+                        from.x[5],
+                        v[55],
+                        v[99],
+                        v[108],
+                        v[94],
+                        v[95],
+                        v[124],
+                        v[129],
+                        v[136],
+                        v[77],
+                        v[144],
+                        v[145],
+                        v[155],
+                        v[94],
+                        v[165],
+                        v[172],
+                        v[144],
+                        v[171],
+                        v[190],
+                        v[171],
+                        v[59],
+                        v[199],
+                        v[182],
+                        v[209],
                     ],
                 );
         }

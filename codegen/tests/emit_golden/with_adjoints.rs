@@ -880,56 +880,39 @@ const _: () = {
 
         fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
             type T = f64;
-            let x_0 = from.x[0];
-            let x_1 = from.x[1];
-            let u_0 = from.u[0];
-            let p_0 = from.p[0];
-            let p_1 = from.p[1];
-            let p_2 = from.p[2];
-            let p_3 = from.p[3];
+            let mut v = [0.0; 10];
             let one = T::constant(1.0);
-            let v_0 = p_0 * p_1;
-            let v_1 = p_1 * v_0;
-            let v_2 = v_1 + p_2;
-            let v_3 = one / v_2;
-            let v_4 = p_3 * v_0;
-            let (v_5, v_6) = x_1.sin_cos();
-            let v_7 = v_4 * v_5;
-            let v_8 = u_0 - v_7;
-            let v_9 = v_3 * v_8;
-            to.next.copy_from_slice(&[v_9, x_0]);
-            to.kept.copy_from_slice(&[v_6, v_4, v_3, v_5]);
+            v[0] = from.p[0] * from.p[1];
+            v[1] = from.p[1] * v[0];
+            v[2] = v[1] + from.p[2];
+            v[3] = one / v[2];
+            v[4] = from.p[3] * v[0];
+            (v[5], v[6]) = from.x[1].sin_cos();
+            v[7] = v[4] * v[5];
+            v[8] = from.u[0] - v[7];
+            v[9] = v[3] * v[8];
+            to.next.copy_from_slice(&[v[9], from.x[0]]);
+            to.kept.copy_from_slice(&[v[6], v[4], v[3], v[5]]);
         }
 
         fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
-            let k = from.k;
-            let x_0 = from.x[0];
-            let x_1 = from.x[1];
-            let u_0 = from.u[0];
-            let u_2 = from.u[2];
-            let u_3 = from.u[3];
-            let kept_0 = from.kept[0];
-            let kept_1 = from.kept[1];
-            let kept_2 = from.kept[2];
-            let kept_3 = from.kept[3];
-            let sums_0 = from.sums[0];
-            let sums_1 = from.sums[1];
-            let v_0 = x_1 * kept_0;
-            let v_1 = sums_0 * u_2;
-            let v_2 = v_0 + v_1;
-            let v_3 = v_2 * kept_1;
-            let v_4 = u_0 - v_3;
-            let v_5 = v_4 * kept_2;
-            let v_6 = x_1 * k;
-            let v_7 = x_1 * kept_3;
-            let v_8 = u_2 * sums_1;
-            let v_9 = v_7 + v_8;
-            let v_10 = -v_9;
-            let v_11 = v_5 * u_3;
-            let v_12 = x_0 * u_3;
-            to.next.copy_from_slice(&[v_11, v_12]);
-            to.left.copy_from_slice(&[v_6, v_6]);
-            to.right.copy_from_slice(&[v_10, v_2]);
+            let mut v = [0.0; 13];
+            v[0] = from.x[1] * from.kept[0];
+            v[1] = from.sums[0] * from.u[2];
+            v[2] = v[0] + v[1];
+            v[3] = v[2] * from.kept[1];
+            v[4] = from.u[0] - v[3];
+            v[5] = v[4] * from.kept[2];
+            v[6] = from.x[1] * from.k;
+            v[7] = from.x[1] * from.kept[3];
+            v[8] = from.u[2] * from.sums[1];
+            v[9] = v[7] + v[8];
+            v[10] = -v[9];
+            v[11] = v[5] * from.u[3];
+            v[12] = from.x[0] * from.u[3];
+            to.next.copy_from_slice(&[v[11], v[12]]);
+            to.left.copy_from_slice(&[v[6], v[6]]);
+            to.right.copy_from_slice(&[v[10], v[2]]);
         }
     }
 

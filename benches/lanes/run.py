@@ -27,7 +27,7 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 SPECS = {name: ROOT / f"generated/mechanisms/{name}.toml" for name in ("unicycle", "euc_3dof", "bicycle")}
 SPECS["arm_6"] = HERE / "arm_6.toml"
-SECONDS = 2.0
+SECONDS = 1.0
 ROUNDS = 200
 
 
@@ -255,7 +255,7 @@ def tables(appell):
              f"gcc {subprocess.check_output(['gcc', '-dumpfullversion'], text=True).strip()}. Fastest of many rounds.", "",
              "| ns a place, second cache | rates | gcc | heyoka | error | rates, A, B | gcc | heyoka | error |",
              "|---|---|---|---|---|---|---|---|---|"]
-    motions = ["| one motion of 2 s | tolerance | µs | error | heyoka: tolerance | µs | error |", "|---|---|---|---|---|---|---|"]
+    motions = ["| one motion of 1 s | tolerance | µs | error | heyoka: tolerance | µs | error |", "|---|---|---|---|---|---|---|"]
     places = ["| ns a place | rates, first cache | from memory | copy, from memory | one place, own functions | standard |",
               "|---|---|---|---|---|---|"]
     with tempfile.TemporaryDirectory() as folder:

@@ -21,6 +21,7 @@
 //! ```
 
 mod block;
+mod block_lanes;
 mod block_stages;
 mod dense_output;
 mod dop853_coefficients;
@@ -38,7 +39,8 @@ mod tableau;
 mod taylor;
 mod watch;
 
-pub use block::{BlockMotion, BlockSolver};
+pub use block::BlockSolver;
+pub use block_lanes::BlockMotion;
 pub use block_stages::Places;
 pub use dense_output::DenseOutput;
 pub use error::{Cause, Failure, IntegrationError};

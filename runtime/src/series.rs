@@ -6,7 +6,7 @@
 //! coefficients, Σ aⱼ bₖ₋ⱼ for 1 ≤ j < k, which the caller takes.
 
 use crate::lanes::{AtLanes, LANES};
-use crate::model::List;
+use std::borrow::Cow;
 
 /// Equations ẋ = f(t, x, u, p) with the recurrences of their Taylor coefficients.
 pub trait Series: Send + Sync {
@@ -51,7 +51,7 @@ pub struct Shape {
     /// Pairs of series whose products are summed.
     pub products: usize,
     /// What the signs of the guards decide.
-    pub guards: List<Guard>,
+    pub guards: Cow<'static, [Guard]>,
 }
 
 /// How a value g decides what the equations are. Where its answer changes, a series ends.

@@ -19,10 +19,8 @@ pub use describe::describe;
 use prepared::projection;
 pub use prepared::{Prepared, Viewer, observe_together};
 use recorder::Recorder;
+pub use recorder::Sampling;
 pub use validity::{Breach, Limit, Response, Validity};
-
-/// Beyond this condition number no digit of a velocity is left.
-const LOST: f64 = 1e15;
 
 /// How the equations are integrated.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -39,16 +37,6 @@ pub enum Method {
     /// Taylor series of an order that follows from the tolerances, with step-size control. For models and inputs
     /// that have series.
     Taylor,
-}
-
-/// At which times the motion is recorded.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Sampling {
-    /// At the start and after each step.
-    Steps,
-    /// From the start on at multiples of an interval in s, between steps by dense output. Where
-    /// the motion ends early, by an event or a failure, its last state follows.
-    Every(f64),
 }
 
 /// A simulation to be run. The fields are public: set what differs from [`Simulation::new`].

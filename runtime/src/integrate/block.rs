@@ -3,31 +3,21 @@
 use std::array::from_fn;
 use std::marker::PhantomData;
 
+use super::block_lanes::{
+    self, BlockMotion, all, gather, idle_lanes, on_their_way, refill, scatter,
+};
 use super::block_stages::{Block, BlockStages, Places};
 use super::dense_output::{DenseOutput, Ends, HERMITE};
 use super::error::{Cause, IntegrationError};
 use super::options::Options;
-use super::outcome::{Outcome, Statistics};
+use super::outcome::Outcome;
 use super::pairs::EmbeddedPair;
-use super::step_size::{StepSize, first_guess, first_step, next_after_rejection, norm, powers};
+use super::step_size::{
+    Control, StepSize, first_guess, first_step, next_after_rejection, norm, powers,
+};
 use super::stops::Stride;
-use super::watch::{End, Observer, Watch, Watcher};
+use super::watch::Observer;
 use crate::lanes::LANES;
-
-/// A motion of a block.
-#[derive(Debug)]
-pub struct BlockMotion<'a, O> {
-    /// Start and end in s.
-    pub span: [f64; 2],
-    /// The initial state; leaves with the last one, also after an error.
-    pub x: Vec<f64>,
-    /// Its parameters.
-    pub parameters: &'a [f64],
-    /// Switching times, ranges and events.
-    pub watch: Watch<'a>,
-    /// Who sees the accepted steps.
-    pub observer: O,
-}
 
 /// An adaptive integrator for many motions of one system, eight at a time, with its work arrays.
 ///
@@ -97,139 +87,30 @@ impl Clock {
     }
 }
 
-/// A motion on its way.
-struct Lane<'m, 'a, O> {
-    /// Its number.
-    motion: usize,
-    x: &'m mut [f64],
-    watcher: Watcher<'m, 'a, O>,
-    step_size: StepSize,
-    statistics: Statistics,
-    t: f64,
+/// What a motion remembers of its steps.
+struct Steps {
+    size: StepSize,
     /// The step that is suggested; guessed where it is not known.
     next_h: Option<f64>,
     /// A guess may not be longer: the step before was rejected.
     longest: f64,
-    /// Whether the rates at the start of the step are still to be evaluated.
-    restart: bool,
-    stride: Stride,
-    end: Option<End>,
+    /// Whether the step that is tried is a guess.
+    is_guess: bool,
 }
 
-impl<'m, 'a, O: Observer> Lane<'m, 'a, O> {
-    fn new(motion: usize, of: &'m mut BlockMotion<'a, O>, step_size: StepSize) -> Self {
-        let t = of.span[0];
-        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span);
-        let start = watcher.start(t, &of.x);
-        let mut lane = Self {
-            motion,
-            x: &mut of.x,
-            watcher,
-            step_size,
-            statistics: Statistics::default(),
-            t,
+impl Steps {
+    fn new(control: Control) -> Self {
+        Self {
+            size: StepSize::new(control),
             next_h: None,
             longest: f64::INFINITY,
-            restart: true,
-            stride: Stride::none(t),
-            end: start.err().map(|cause| End::failed(t, cause)),
-        };
-        lane.finish_at_end();
-        lane
-    }
-
-    fn finish_at_end(&mut self) {
-        if self.end.is_none() && self.t >= self.watcher.stops.end() {
-            self.end = Some(End::finished(self.t));
+            is_guess: false,
         }
     }
-
-    fn fail(&mut self, cause: Cause) {
-        self.end = Some(End::failed(self.t, cause));
-    }
 }
 
-impl<O: Observer> Occupant for Lane<'_, '_, O> {
-    fn motion(&self) -> usize {
-        self.motion
-    }
-
-    fn has_ended(&self) -> bool {
-        self.end.is_some()
-    }
-
-    fn conclude(self) -> Result<Outcome, IntegrationError> {
-        let end = self.end.unwrap_or(End::finished(self.t));
-        self.watcher.conclude(end, self.x, self.statistics)
-    }
-}
-
-/// The lanes of a block; those without a motion are empty.
-pub(super) type Lanes<L> = [Option<L>; LANES];
-
-/// Who has a lane for a time.
-pub(super) trait Occupant {
-    /// Its number.
-    fn motion(&self) -> usize;
-    /// Whether it leaves.
-    fn has_ended(&self) -> bool;
-    /// What became of it.
-    fn conclude(self) -> Result<Outcome, IntegrationError>;
-}
-
-/// Concludes the motions that have ended, and begins others in their lanes as long as there are some. A lane in use;
-/// nothing once all have ended.
-pub(super) fn refill<L: Occupant>(
-    lanes: &mut Lanes<L>,
-    begin: &mut impl FnMut(usize) -> Option<L>,
-    results: &mut [Option<Result<Outcome, IntegrationError>>],
-) -> Option<usize> {
-    for (l, lane) in lanes.iter_mut().enumerate() {
-        while lane.as_ref().is_none_or(Occupant::has_ended) {
-            if let Some(ended) = lane.take() {
-                let motion = ended.motion();
-                results[motion] = Some(ended.conclude());
-            }
-            *lane = begin(l);
-            if lane.is_none() {
-                break;
-            }
-        }
-    }
-    lanes.iter().position(Option::is_some)
-}
-
-/// Lanes without a motion.
-pub(super) fn idle_lanes<L>(lanes: &Lanes<L>) -> impl Iterator<Item = usize> + use<L> {
-    let idle = lanes.each_ref().map(Option::is_none);
-    (0..LANES).filter(move |&l| idle[l])
-}
-
-/// The results of all motions.
-pub(super) fn all(
-    results: Vec<Option<Result<Outcome, IntegrationError>>>,
-) -> Vec<Result<Outcome, IntegrationError>> {
-    // None is left out: lanes are refilled until nothing waits.
-    let unseen = || {
-        Err(IntegrationError::InvalidArgument {
-            what: "motion",
-            value: f64::NAN,
-        })
-    };
-    let results = results.into_iter();
-    results
-        .map(|result| result.unwrap_or_else(unseen))
-        .collect()
-}
-
-/// The motions that have not ended, by their lanes.
-fn on_their_way<'l, 'm, 'a, O>(
-    lanes: &'l mut Lanes<Lane<'m, 'a, O>>,
-) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O>)> {
-    let all = lanes.iter_mut().enumerate();
-    all.filter_map(|(l, lane)| Some((l, lane.as_mut()?)))
-        .filter(|(_, lane)| lane.end.is_none())
-}
+type Lane<'m, 'a, O> = block_lanes::Lane<'m, 'a, O, Steps>;
+type Lanes<'m, 'a, O> = block_lanes::Lanes<'m, 'a, O, Steps>;
 
 impl<P: EmbeddedPair> BlockSolver<P> {
     /// A solver for systems of any size.
@@ -276,14 +157,14 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         }
         let mut results: Vec<_> = motions.iter().map(|_| None).collect();
         let mut waiting = motions.iter_mut().enumerate();
-        let mut lanes: Lanes<Lane<'_, '_, O>> = from_fn(|_| None);
+        let mut lanes: Lanes<'_, '_, O> = from_fn(|_| None);
         let mut which = [0; LANES];
         loop {
             let mut begin = |l: usize| {
                 let (motion, of) = waiting.next()?;
                 which[l] = motion;
                 self.stages.begin(l, &of.x, of.parameters);
-                let lane = Lane::new(motion, of, StepSize::new(P::CONTROL));
+                let lane = Lane::new(motion, of, Steps::new(P::CONTROL));
                 self.clock.set(l, lane.t, lane.stride);
                 Some(lane)
             };
@@ -303,7 +184,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// Rates where motions begin or begin anew, and the step that each tries next.
-    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<Lane<'_, '_, O>>, options: &Options)
+    fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
     where
         F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
@@ -329,37 +210,36 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                 lane.fail(Cause::TooManySteps { steps });
             }
         }
-        if on_their_way(lanes).any(|(_, lane)| lane.next_h.is_none()) {
+        if on_their_way(lanes).any(|(_, lane)| lane.steps.next_h.is_none()) {
             self.first_steps(f, lanes, options);
         }
         for (l, lane) in on_their_way(lanes) {
             // Every motion on its way has a step by now.
-            let h = lane.next_h.unwrap_or(0.0);
+            let h = lane.steps.next_h.unwrap_or(0.0);
             lane.stride = lane.watcher.stops.stride(lane.t, h);
-            lane.next_h = Some(h);
+            lane.steps.next_h = Some(h);
             self.clock.set(l, lane.t, lane.stride);
         }
     }
 
     /// First steps from the sizes of x, ẋ and ẍ, not beyond the next stops.
-    fn first_steps<F, O>(
-        &mut self,
-        f: &mut F,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
-        options: &Options,
-    ) where
+    fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
+    where
         F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
-        let begins = |(_, lane): &(usize, &mut Lane<'_, '_, O>)| lane.next_h.is_none();
+        let begins = |(_, lane): &(usize, &mut Lane<'_, '_, O>)| lane.steps.next_h.is_none();
         let mut t = self.clock.t;
         // Those whose step has to be guessed: guess, longest step.
         let mut guesses: [Option<[f64; 2]>; LANES] = [None; LANES];
         for (l, lane) in on_their_way(lanes).filter(begins) {
             let stop = lane.watcher.stops.known_after(lane.t);
-            let longest = options.max_step.min(stop.t - lane.t).min(lane.longest);
+            let longest = options
+                .max_step
+                .min(stop.t - lane.t)
+                .min(lane.steps.longest);
             if let Some(h) = options.first_step {
-                lane.next_h = Some(h.min(longest));
+                lane.steps.next_h = Some(h.min(longest));
                 continue;
             }
             let [x_norm, rates_norm] = self.sizes(l, options);
@@ -383,7 +263,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             let change = start.iter().zip(end).map(|(start, end)| end[l] - start[l]);
             let second_norm = norm(change, scale) / guess;
             let h = first_step(guess, rates_norm, second_norm, P::ORDER).min(longest);
-            lane.next_h = Some(h);
+            (lane.steps.next_h, lane.steps.is_guess) = (Some(h), true);
         }
     }
 
@@ -399,12 +279,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// All stages of a step; the errors over the tolerances, NaN where a new state is not finite.
-    fn attempt<F, O>(
-        &mut self,
-        f: &mut F,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
-        options: &Options,
-    ) -> Block
+    fn attempt<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options) -> Block
     where
         F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
@@ -436,7 +311,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     }
 
     /// Rates at the ends of the steps.
-    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<Lane<'_, '_, O>>, of: [bool; LANES])
+    fn new_rates<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, of: [bool; LANES])
     where
         F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
@@ -452,7 +327,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     fn decide<F, O>(
         &mut self,
         f: &mut F,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
+        lanes: &mut Lanes<'_, '_, O>,
         errors: &Block,
         options: &Options,
     ) where
@@ -468,11 +343,12 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                 continue;
             }
             lane.statistics.rejected += 1;
-            let shorter = lane.stride.h * lane.step_size.rejected(errors[l], powers[l]);
+            let shorter = lane.stride.h * lane.steps.size.rejected(errors[l], powers[l]);
             if lane.t + 0.1 * shorter <= lane.t {
                 lane.fail(self.stuck(l, shorter, errors[l]));
             }
-            (lane.next_h, lane.longest) = next_after_rejection(lane.restart, shorter);
+            (lane.steps.next_h, lane.steps.longest) =
+                next_after_rejection(lane.restart && !lane.steps.is_guess, shorter);
             lane.restart = false;
         }
         if !accepted.contains(&true) {
@@ -495,13 +371,14 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             }
             let interior = within.then_some(&this.dense);
             lane.end = lane.watcher.accept(&ends, interior, lane.x);
-            let suggested = lane.stride.h * lane.step_size.accepted(errors[l], powers[l]);
+            let suggested = lane.stride.h * lane.steps.size.accepted(errors[l], powers[l]);
             // A step cut short to land says nothing against the longer one.
-            let suggested = match lane.next_h {
+            let suggested = match lane.steps.next_h {
                 Some(h) if lane.stride.lands => suggested.max(h),
                 _ => suggested,
             };
-            lane.next_h = Some(suggested.min(options.max_step));
+            lane.steps.next_h = Some(suggested.min(options.max_step));
+            lane.steps.is_guess = false;
             (lane.t, lane.restart) = (lane.stride.t_new, lane.stride.lands);
             lane.finish_at_end();
             true
@@ -552,17 +429,5 @@ fn ends<'e, P: EmbeddedPair>(
         t: [lane.t, lane.stride.t_new],
         x: [x, x_new],
         rates: [start, end],
-    }
-}
-
-pub(super) fn gather(blocks: &[Block], l: usize, to: &mut [f64]) {
-    for (to, block) in to.iter_mut().zip(blocks) {
-        *to = block[l];
-    }
-}
-
-pub(super) fn scatter(from: &[f64], l: usize, blocks: &mut [Block]) {
-    for (from, block) in from.iter().zip(blocks) {
-        block[l] = *from;
     }
 }

@@ -99,7 +99,7 @@ impl<P: EmbeddedPair> Solver<P> {
     {
         let mut step_size = StepSize::new(P::CONTROL);
         let (mut t, mut next_h, mut restart) = (t_start, None, true);
-        let mut longest = f64::INFINITY;
+        let (mut longest, mut is_guess) = (f64::INFINITY, false);
         while t < watcher.stops.end() {
             if restart {
                 self.stages.evaluate_at_start(f, 0, t);
@@ -112,6 +112,7 @@ impl<P: EmbeddedPair> Solver<P> {
                 return End::failed(t, Cause::TooManySteps { steps });
             }
             let known = watcher.stops.known_after(t);
+            is_guess |= next_h.is_none() && options.first_step.is_none();
             let h = next_h.unwrap_or_else(|| self.first_step(f, (t, longest), known, options));
             let stride = watcher.stops.stride(t, h);
             // Up to a switching time the rates are those before it.
@@ -132,6 +133,7 @@ impl<P: EmbeddedPair> Solver<P> {
                     suggested
                 };
                 next_h = Some(suggested.min(options.max_step));
+                is_guess = false;
                 (t, restart) = (stride.t_new, stride.lands);
             } else {
                 statistics.rejected += 1;
@@ -140,7 +142,7 @@ impl<P: EmbeddedPair> Solver<P> {
                 if t + 0.1 * shorter <= t {
                     return End::failed(t, self.stuck(shorter, error));
                 }
-                (next_h, longest) = next_after_rejection(restart, shorter);
+                (next_h, longest) = next_after_rejection(restart && !is_guess, shorter);
                 restart = false;
             }
         }

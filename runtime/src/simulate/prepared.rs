@@ -2,7 +2,7 @@
 
 use super::describe::describe_state;
 use super::validity::Limits;
-use super::{Breach, LOST, Observed, Response, Simulation, SimulationError};
+use super::{Breach, Observed, Response, Simulation, SimulationError};
 use crate::condition::velocity_condition;
 use crate::inputs::ModelInputs;
 use crate::integrate::{
@@ -11,6 +11,9 @@ use crate::integrate::{
 };
 use crate::model::{At, Model};
 use crate::positions::{Moving, Positions};
+
+/// Beyond this condition number no digit of a velocity is left.
+const LOST: f64 = 1e15;
 
 /// A simulation whose arguments fit and whose start is known.
 pub struct Prepared<'a> {

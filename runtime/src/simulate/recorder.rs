@@ -1,8 +1,17 @@
 //! Observes an integration and keeps the samples of the motion.
 
-use super::Sampling;
 use crate::integrate::{Observer, Step};
 use std::ops::ControlFlow;
+
+/// At which times the motion is recorded.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Sampling {
+    /// At the start and after each step.
+    Steps,
+    /// From the start on at multiples of an interval in s, between steps by dense output. Where
+    /// the motion ends early, by an event or a failure, its last state follows.
+    Every(f64),
+}
 
 /// Collects times and states.
 pub(super) struct Recorder<'a> {

@@ -8,15 +8,16 @@ use super::guards::{Change, first_change};
 use super::{
     FARTHEST, LAST_TERM, MOST_SLIVERS, ROUNDING, SHORTER, SLIVER, next_beyond, not_finite, order,
 };
-use crate::integrate::block::{BlockMotion, Lanes, Occupant, gather, idle_lanes, refill, scatter};
+use crate::integrate::block_lanes::{
+    self, BlockMotion, all, gather, idle_lanes, on_their_way, refill, scatter,
+};
 use crate::integrate::block_stages::Block;
 use crate::integrate::dense_output::{DenseOutput, Ends};
 use crate::integrate::error::{Cause, IntegrationError};
 use crate::integrate::options::Options;
-use crate::integrate::outcome::{Outcome, Statistics};
+use crate::integrate::outcome::Outcome;
 use crate::integrate::step_size::power_of_all;
-use crate::integrate::stops::Stride;
-use crate::integrate::watch::{End, Observer, Watcher};
+use crate::integrate::watch::Observer;
 use crate::lanes::{LANES, dispatch};
 use crate::series::{Cubic, SeriesInLanes};
 
@@ -55,85 +56,32 @@ impl std::fmt::Debug for ExpandedTogether<'_> {
     }
 }
 
-/// A motion on its way.
-struct Lane<'m, 'a, O> {
-    /// Its number.
-    motion: usize,
-    x: &'m mut [f64],
-    watcher: Watcher<'m, 'a, O>,
-    statistics: Statistics,
-    t: f64,
+/// What a motion remembers of its steps.
+struct Steps {
     /// The step to be tried; as long as the expansion allows where it is not known.
     h: Option<f64>,
     first_step: Option<f64>,
-    /// Whether the rates at the start of the step are still to be evaluated.
-    restart: bool,
-    stride: Stride,
     change: Option<Change>,
     /// Where the step ends, and the latest time at which rates are evaluated.
     until: [f64; 2],
     /// Steps in a row that were too short to count.
     slivers: usize,
-    end: Option<End>,
 }
 
-impl<O: Observer> Occupant for Lane<'_, '_, O> {
-    fn motion(&self) -> usize {
-        self.motion
-    }
-
-    fn has_ended(&self) -> bool {
-        self.end.is_some()
-    }
-
-    fn conclude(self) -> Result<Outcome, IntegrationError> {
-        let end = self.end.unwrap_or(End::finished(self.t));
-        self.watcher.conclude(end, self.x, self.statistics)
-    }
-}
-
-impl<'m, 'a, O: Observer> Lane<'m, 'a, O> {
-    fn new(motion: usize, of: &'m mut BlockMotion<'a, O>, options: &Options) -> Self {
-        let t = of.span[0];
-        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span);
-        let start = watcher.start(t, &of.x);
-        let mut lane = Self {
-            motion,
-            x: &mut of.x,
-            watcher,
-            statistics: Statistics::default(),
-            t,
+impl Steps {
+    fn new(first_step: Option<f64>) -> Self {
+        Self {
             h: None,
-            first_step: options.first_step,
-            restart: true,
-            stride: Stride::none(t),
+            first_step,
             change: None,
-            until: [t; 2],
+            until: [0.0; 2],
             slivers: 0,
-            end: start.err().map(|cause| End::failed(t, cause)),
-        };
-        lane.finish_at_end();
-        lane
-    }
-
-    fn finish_at_end(&mut self) {
-        if self.end.is_none() && self.t >= self.watcher.stops.end() {
-            self.end = Some(End::finished(self.t));
         }
     }
-
-    fn fail(&mut self, cause: Cause) {
-        self.end = Some(End::failed(self.t, cause));
-    }
 }
 
-fn on_their_way<'l, 'm, 'a, O: Observer>(
-    lanes: &'l mut Lanes<Lane<'m, 'a, O>>,
-) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O>)> {
-    let all = lanes.iter_mut().enumerate();
-    all.filter_map(|(l, lane)| Some((l, lane.as_mut()?)))
-        .filter(|(_, lane)| lane.end.is_none())
-}
+type Lane<'m, 'a, O> = block_lanes::Lane<'m, 'a, O, Steps>;
+type Lanes<'m, 'a, O> = block_lanes::Lanes<'m, 'a, O, Steps>;
 
 impl BlockTaylor {
     /// An integrator for equations of any size.
@@ -177,12 +125,12 @@ impl BlockTaylor {
         self.prepare(equations, order(options));
         let mut results: Vec<_> = motions.iter().map(|_| None).collect();
         let mut waiting = motions.iter_mut().enumerate();
-        let mut lanes: Lanes<Lane<'_, '_, O>> = std::array::from_fn(|_| None);
+        let mut lanes: Lanes<'_, '_, O> = std::array::from_fn(|_| None);
         loop {
             let mut begin = |l: usize| {
                 let (motion, of) = waiting.next()?;
                 self.expansion.begin(l, &of.x, of.parameters);
-                Some(Lane::new(motion, of, options))
+                Some(Lane::new(motion, of, Steps::new(options.first_step)))
             };
             let Some(beside) = refill(&mut lanes, &mut begin, &mut results) else {
                 break;
@@ -196,7 +144,7 @@ impl BlockTaylor {
             let valid = self.attempt(equations, &mut lanes, options);
             self.decide(equations, &mut lanes, valid);
         }
-        crate::integrate::block::all(results)
+        all(results)
     }
 
     fn prepare(&mut self, equations: &ExpandedTogether<'_>, order: usize) {
@@ -218,7 +166,7 @@ impl BlockTaylor {
     fn start<O: Observer>(
         &mut self,
         equations: &ExpandedTogether<'_>,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
+        lanes: &mut Lanes<'_, '_, O>,
         options: &Options,
     ) {
         let mut restarts = [false; LANES];
@@ -236,7 +184,7 @@ impl BlockTaylor {
             self.expansion.evaluate(equations.series, &t);
             self.expansion.take_over(restarts);
         }
-        for (l, lane) in on_their_way(lanes).filter(|(_, lane)| lane.h.is_none()) {
+        for (l, lane) in on_their_way(lanes).filter(|(_, lane)| lane.steps.h.is_none()) {
             if let Some(component) = self.expansion.rate_not_finite(l) {
                 lane.fail(Cause::NonFinite { component });
                 continue;
@@ -262,13 +210,13 @@ impl BlockTaylor {
     fn choose<O: Observer>(
         &mut self,
         equations: &ExpandedTogether<'_>,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
+        lanes: &mut Lanes<'_, '_, O>,
         options: &Options,
     ) {
         let longest = self.longest(options);
         let guards = &equations.series.shape().guards;
         for (l, lane) in on_their_way(lanes) {
-            let h = match lane.h {
+            let h = match lane.steps.h {
                 Some(h) => h,
                 None if longest[l].is_nan() => {
                     let component = self.expansion.term_not_finite(l);
@@ -277,17 +225,20 @@ impl BlockTaylor {
                 }
                 None => {
                     let longest = longest[l].min(options.max_step);
-                    lane.first_step.take().map_or(longest, |h| h.min(longest))
+                    lane.steps
+                        .first_step
+                        .take()
+                        .map_or(longest, |h| h.min(longest))
                 }
             };
-            if lane.t + 0.1 * h <= lane.t || lane.slivers > MOST_SLIVERS {
+            if lane.t + 0.1 * h <= lane.t || lane.steps.slivers > MOST_SLIVERS {
                 lane.fail(Cause::StepTooSmall { h });
                 continue;
             }
             lane.stride = lane.watcher.stops.stride(lane.t, h);
             gather(&self.expansion.guards, l, &mut self.guards);
-            lane.change = first_change(guards, &self.guards, lane.stride.h);
-            lane.until = match lane.change {
+            lane.steps.change = first_change(guards, &self.guards, lane.stride.h);
+            lane.steps.until = match lane.steps.change {
                 Some(change) => [lane.t + change.before; 2],
                 None => [lane.stride.t_new, lane.stride.last],
             };
@@ -333,12 +284,12 @@ impl BlockTaylor {
     fn attempt<O: Observer>(
         &mut self,
         equations: &ExpandedTogether<'_>,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
+        lanes: &mut Lanes<'_, '_, O>,
         options: &Options,
     ) -> [bool; LANES] {
         let (mut since, mut last) = ([0.0; LANES], [0.0; LANES]);
         for (l, lane) in on_their_way(lanes) {
-            (since[l], last[l]) = (lane.until[0] - lane.t, lane.until[1]);
+            (since[l], last[l]) = (lane.steps.until[0] - lane.t, lane.steps.until[1]);
         }
         self.expansion.polynomials(&since, &mut self.slopes);
         let mut valid = self.expansion.finite();
@@ -346,12 +297,12 @@ impl BlockTaylor {
             if lane.watcher.projects() {
                 let x = &mut self.ends[0];
                 gather(&self.expansion.x_new, l, x);
-                valid[l] = lane.watcher.project(lane.until[0], x) && not_finite(x).is_none();
+                valid[l] = lane.watcher.project(lane.steps.until[0], x) && not_finite(x).is_none();
                 scatter(x, l, &mut self.expansion.x_new);
             }
             if valid[l] {
                 lane.statistics.evaluations += 1;
-                self.fill_inputs(equations, l, lane.motion, lane.until[1]);
+                self.fill_inputs(equations, l, lane.motion, lane.steps.until[1]);
             }
         }
         self.expansion.evaluate(equations.series, &last);
@@ -383,28 +334,30 @@ impl BlockTaylor {
     fn decide<O: Observer>(
         &mut self,
         equations: &ExpandedTogether<'_>,
-        lanes: &mut Lanes<Lane<'_, '_, O>>,
+        lanes: &mut Lanes<'_, '_, O>,
         valid: [bool; LANES],
     ) {
         let (mut accepted, mut crossing) = ([false; LANES], [false; LANES]);
         for (l, lane) in on_their_way(lanes) {
             if !valid[l] {
                 lane.statistics.rejected += 1;
-                lane.h = Some(SHORTER * (lane.until[0] - lane.t));
+                lane.steps.h = Some(SHORTER * (lane.steps.until[0] - lane.t));
                 continue;
             }
-            lane.h = None;
+            lane.steps.h = None;
             lane.statistics.steps += 1;
-            crossing[l] = lane.change.is_some();
+            crossing[l] = lane.steps.change.is_some();
             accepted[l] = !crossing[l];
             if accepted[l] {
-                let end = lane.until[0];
+                let end = lane.steps.until[0];
                 self.accept(l, lane, end);
             }
         }
         self.expansion.take_over(accepted);
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| crossing[l]) {
-            let Some(change) = lane.change else { continue };
+            let Some(change) = lane.steps.change else {
+                continue;
+            };
             let end = self.cross(equations, l, lane, change);
             self.accept(l, lane, end);
             let mut alone = [false; LANES];
@@ -415,9 +368,9 @@ impl BlockTaylor {
 
     /// The step of a motion is done.
     fn accept<O: Observer>(&mut self, l: usize, lane: &mut Lane<'_, '_, O>, end: f64) {
-        lane.restart = lane.change.is_none() && lane.stride.lands;
+        lane.restart = lane.steps.change.is_none() && lane.stride.lands;
         let is_sliver = end - lane.t <= SLIVER * lane.t.abs().max(1.0);
-        lane.slivers = if is_sliver { lane.slivers + 1 } else { 0 };
+        lane.steps.slivers = if is_sliver { lane.steps.slivers + 1 } else { 0 };
         let [x, x_new, rates, rates_new] = &mut self.ends;
         gather(&self.expansion.x, l, x);
         gather(&self.expansion.x_new, l, x_new);

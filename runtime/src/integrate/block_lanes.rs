@@ -1,0 +1,147 @@
+//! The lanes of a block, and the motions that have them one after the other.
+
+use super::block_stages::Block;
+use super::error::{Cause, IntegrationError};
+use super::outcome::{Outcome, Statistics};
+use super::stops::Stride;
+use super::watch::{End, Observer, Watch, Watcher};
+use crate::lanes::LANES;
+
+/// A motion of a block.
+#[derive(Debug)]
+pub struct BlockMotion<'a, O> {
+    /// Start and end in s.
+    pub span: [f64; 2],
+    /// The initial state; leaves with the last one, also after an error.
+    pub x: Vec<f64>,
+    /// Its parameters.
+    pub parameters: &'a [f64],
+    /// Switching times, ranges and events.
+    pub watch: Watch<'a>,
+    /// Who sees the accepted steps.
+    pub observer: O,
+}
+
+/// A motion on its way; `S` is what the method remembers of its steps.
+pub(super) struct Lane<'m, 'a, O, S> {
+    /// Its number.
+    pub(super) motion: usize,
+    pub(super) x: &'m mut [f64],
+    pub(super) watcher: Watcher<'m, 'a, O>,
+    pub(super) statistics: Statistics,
+    pub(super) t: f64,
+    /// Whether the rates at the start of the step are still to be evaluated.
+    pub(super) restart: bool,
+    pub(super) stride: Stride,
+    pub(super) steps: S,
+    pub(super) end: Option<End>,
+}
+
+impl<'m, 'a, O: Observer, S> Lane<'m, 'a, O, S> {
+    pub(super) fn new(motion: usize, of: &'m mut BlockMotion<'a, O>, steps: S) -> Self {
+        let t = of.span[0];
+        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span);
+        let start = watcher.start(t, &of.x);
+        let mut lane = Self {
+            motion,
+            x: &mut of.x,
+            watcher,
+            statistics: Statistics::default(),
+            t,
+            restart: true,
+            stride: Stride::none(t),
+            steps,
+            end: start.err().map(|cause| End::failed(t, cause)),
+        };
+        lane.finish_at_end();
+        lane
+    }
+
+    pub(super) fn finish_at_end(&mut self) {
+        if self.end.is_none() && self.t >= self.watcher.stops.end() {
+            self.end = Some(End::finished(self.t));
+        }
+    }
+
+    pub(super) fn fail(&mut self, cause: Cause) {
+        self.end = Some(End::failed(self.t, cause));
+    }
+
+    fn conclude(self) -> Result<Outcome, IntegrationError> {
+        let end = self.end.unwrap_or(End::finished(self.t));
+        self.watcher.conclude(end, self.x, self.statistics)
+    }
+}
+
+/// The lanes of a block; those without a motion are empty.
+pub(super) type Lanes<'m, 'a, O, S> = [Option<Lane<'m, 'a, O, S>>; LANES];
+
+/// What became of motions, as far as they have ended.
+pub(super) type Results = [Option<Result<Outcome, IntegrationError>>];
+
+/// Concludes the motions that have ended, and begins others in their lanes as long as there are some. A lane in use;
+/// nothing once all have ended.
+pub(super) fn refill<'m, 'a, O: Observer, S>(
+    lanes: &mut Lanes<'m, 'a, O, S>,
+    begin: &mut impl FnMut(usize) -> Option<Lane<'m, 'a, O, S>>,
+    results: &mut Results,
+) -> Option<usize> {
+    for (l, lane) in lanes.iter_mut().enumerate() {
+        while lane.as_ref().is_none_or(|lane| lane.end.is_some()) {
+            if let Some(ended) = lane.take() {
+                let motion = ended.motion;
+                results[motion] = Some(ended.conclude());
+            }
+            *lane = begin(l);
+            if lane.is_none() {
+                break;
+            }
+        }
+    }
+    lanes.iter().position(Option::is_some)
+}
+
+/// Lanes without a motion.
+pub(super) fn idle_lanes<O, S>(lanes: &Lanes<'_, '_, O, S>) -> Vec<usize> {
+    (0..LANES).filter(|&l| lanes[l].is_none()).collect()
+}
+
+/// The motions that have not ended, by their lanes.
+pub(super) fn on_their_way<'l, 'm, 'a, O, S>(
+    lanes: &'l mut Lanes<'m, 'a, O, S>,
+) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O, S>)> {
+    let all = lanes.iter_mut().enumerate();
+    all.filter_map(|(l, lane)| Some((l, lane.as_mut()?)))
+        .filter(|(_, lane)| lane.end.is_none())
+}
+
+/// The results of all motions.
+pub(super) fn all(
+    results: Vec<Option<Result<Outcome, IntegrationError>>>,
+) -> Vec<Result<Outcome, IntegrationError>> {
+    // None is left out: lanes are refilled until nothing waits.
+    let unseen = || {
+        Err(IntegrationError::InvalidArgument {
+            what: "motion",
+            value: f64::NAN,
+        })
+    };
+    let results = results.into_iter();
+    results
+        .map(|result| result.unwrap_or_else(unseen))
+        .collect()
+}
+
+/// The numbers of a lane.
+pub(super) fn gather(blocks: &[Block], l: usize, to: &mut [f64]) {
+    for (to, block) in to.iter_mut().zip(blocks) {
+        *to = block[l];
+    }
+}
+
+/// Writes the numbers of a lane.
+pub(super) fn scatter(from: &[f64], l: usize, blocks: &mut [Block]) {
+    for (from, block) in from.iter().zip(blocks) {
+        block[l] = *from;
+    }
+}

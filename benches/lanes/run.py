@@ -11,6 +11,7 @@ fifty digits (places) and against tighter tolerances (motions). `--out` replaces
 import argparse
 import importlib.util
 import json
+import multiprocessing
 import os
 import re
 import subprocess
@@ -147,6 +148,19 @@ def with_heyoka(module, parameters, start):
     return told
 
 
+def limited(function, *arguments, seconds=45):
+    """What a function gives, or nothing where it takes longer."""
+    results = multiprocessing.get_context("fork").Queue()
+    process = multiprocessing.get_context("fork").Process(target=lambda: results.put(function(*arguments)))
+    process.start()
+    try:
+        return results.get(timeout=seconds)
+    except Exception:
+        return None
+    finally:
+        process.terminate()
+
+
 GCC = r"""
 #include <math.h>
 #include <stdio.h>
@@ -205,7 +219,7 @@ def with_gcc(folder, name, module, parameters, start):
         arguments = []
         for declared in found.group(2).split(","):
             declared = " ".join(declared.split())
-            if declared.startswith("real t"):
+            if declared == "real t":
                 arguments.append("(real){}")
             elif "Parameters" in declared:
                 arguments.append("&p")
@@ -252,7 +266,8 @@ def number(value):
 def tables(appell):
     told = own(SPECS.values())
     lines = [f"{processor()}, {told['level']}, one core; heyoka {heyoka.__version__}, "
-             f"gcc {subprocess.check_output(['gcc', '-dumpfullversion'], text=True).strip()}. Fastest of many rounds.", "",
+             f"gcc {subprocess.check_output(['gcc', '-dumpfullversion'], text=True).strip()}. Fastest of many rounds; "
+             "empty where a peer takes no such system, or more than 45 s to prepare it.", "",
              "| ns a place, second cache | rates | gcc | heyoka | error | rates, A, B | gcc | heyoka | error |",
              "|---|---|---|---|---|---|---|---|---|"]
     motions = ["| one motion of 1 s | tolerance | µs | error | heyoka: tolerance | µs | error |", "|---|---|---|---|---|---|---|"]
@@ -264,13 +279,14 @@ def tables(appell):
             module = emitted(appell, spec, folder)
             sample = mechanism["samples"][0]
             start = mechanism["start"]
-            errors = accuracy(module, mechanism["samples"])
-            peers = with_heyoka(module, sample["p"], start)
+            errors = limited(accuracy, module, mechanism["samples"][:4]) or [None, None]
+            peers = limited(with_heyoka, module, sample["p"], start) or {"motions": []}
             gcc = with_gcc(folder, spec.stem, module, sample["p"], start) or {}
             rows = {(row["row"], row.get("where")): row.get("ns") for row in mechanism["rows"] if "ns" in row}
             cells = []
             for kind, error in zip(("rates", "rates, A, B"), errors):
-                cells += [number(rows[f"{kind} in lanes", "L2"]), number(gcc.get(kind)), number(peers[kind]), f"{error:.0e}"]
+                cells += [number(rows[f"{kind} in lanes", "L2"]), number(gcc.get(kind)), number(peers.get(kind)),
+                          "" if error is None else f"{error:.0e}"]
             lines.append(f"| {spec.stem} | " + " | ".join(cells) + " |")
             places.append(f"| {spec.stem} | " + " | ".join(number(rows[key]) for key in (
                 ("rates in lanes", "L1"), ("rates in lanes", "memory"), ("copy in lanes", "memory"),

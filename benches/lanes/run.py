@@ -229,6 +229,10 @@ def with_gcc(folder, name, module, parameters, start):
                 arguments.append("&u")
             elif kind == "rates" or re.search(r"\*to_rates$", declared):
                 arguments.append("&rates[i]")
+            elif array := re.match(r"real \w+((?:\[\d+\])+)$", declared):
+                name_of = f"out{len(outputs)}"
+                outputs.append(f"static real {name_of}[PLACES]{array.group(1)};")
+                arguments.append(f"{name_of}[i]")
             else:
                 held = declared.split(" *")[0].replace("(", "").strip()
                 name_of = f"out{len(outputs)}"

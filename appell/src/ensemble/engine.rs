@@ -58,7 +58,7 @@ impl Engine for Ensemble {
 
 /// Work arrays of all methods.
 #[derive(Default)]
-pub(super) struct Solvers {
+struct Solvers {
     dop853: BlockSolver<Dop853>,
     dopri5: BlockSolver<Dopri5>,
     taylor: BlockTaylor,
@@ -93,13 +93,13 @@ struct Ride<'r> {
 }
 
 impl Ensemble {
+    /// Runs motions with work arrays of their own.
+    pub(super) fn rows_of(&self, task: &Task, draws: &[Draws<'_>]) -> Vec<Row> {
+        self.motions(task, draws, &mut Solvers::default())
+    }
+
     /// Runs motions; returns a row for each.
-    pub(super) fn motions(
-        &self,
-        task: &Task,
-        draws: &[Draws<'_>],
-        solvers: &mut Solvers,
-    ) -> Vec<Row> {
+    fn motions(&self, task: &Task, draws: &[Draws<'_>], solvers: &mut Solvers) -> Vec<Row> {
         let empty = || Row {
             values: vec![f64::NAN; task.layout.columns.len()],
             end: 0.0,

@@ -10,7 +10,6 @@ use appell_ensemble::study::{Keep, Kept, Rare};
 use appell_runtime::model::ModelInfo;
 use appell_spec::Code;
 
-use super::engine::Solvers;
 use super::noise::Draws;
 use super::reading::Reading;
 use super::spec::Quantity;
@@ -73,9 +72,7 @@ impl Landscape for Peak<'_> {
 
     fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64> {
         let draws: Vec<Draws<'_>> = scores.iter().map(|one| Draws::Scores(one)).collect();
-        let rows = self
-            .ensemble
-            .motions(self.task, &draws, &mut Solvers::default());
+        let rows = self.ensemble.rows_of(self.task, &draws);
         let column = self.task.layout.first[0];
         rows.iter().map(|row| row.values[column]).collect()
     }

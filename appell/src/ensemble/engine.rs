@@ -323,7 +323,7 @@ impl Ensemble {
                     sources[motion].fill_polynomials(t, x, u);
                 };
                 let together = ExpandedTogether {
-                    series,
+                    series: series.as_ref(),
                     inputs: closed.is_driven().then_some(&inputs),
                 };
                 return observe_together(prepared, viewers, |motions| {

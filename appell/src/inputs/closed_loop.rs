@@ -43,7 +43,7 @@ pub(crate) struct ClosedLoop {
 /// Equations for eight motions at once.
 pub(crate) enum Equations {
     Rates(VectorFunction),
-    Series(JitSeriesInLanes),
+    Series(Box<JitSeriesInLanes>),
 }
 
 impl ClosedLoop {
@@ -76,7 +76,7 @@ impl ClosedLoop {
                     parameters: sizes.parameters,
                 };
                 let series = expand_under(law, rates, &views, lengths);
-                Equations::Series(JitSeriesInLanes::new(series, target)?)
+                Equations::Series(Box::new(JitSeriesInLanes::new(series, target)?))
             }
         };
         Ok(Self {

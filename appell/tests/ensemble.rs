@@ -394,7 +394,7 @@ gains = [2, 3, 1.5, 0.7]
         for case in 0..11 {
             let theta = rows.values[column(&ensemble, "theta")][case];
             let motion = Motion::new(0.9)
-                .initial("theta", &format!("{theta}rad"))
+                .initial("theta", format!("{theta}rad"))
                 .feedback(&law);
             let motion = Motion {
                 options: Options::with_tolerances(1e-11, 1e-11),

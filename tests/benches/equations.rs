@@ -5,12 +5,8 @@
 
 use std::hint::black_box;
 
-use appell_codegen::jit::{Elementary, JitModel, Target};
 use appell_models::unicycle::{self, Inputs, Parameters, Rates, State};
-use appell_runtime::lanes::{AtLanes, LANES};
-use appell_runtime::model::Model;
 use appell_test_kit::Random;
-use appell_tests::shipped;
 use criterion::{Criterion, criterion_group, criterion_main};
 
 /// States that are worked through in turn, so that no call is predicted from the last.

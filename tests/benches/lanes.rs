@@ -260,7 +260,7 @@ fn main() {
                 seconds = arguments
                     .next()
                     .and_then(|s| s.parse().ok())
-                    .unwrap_or(SECONDS)
+                    .unwrap_or(SECONDS);
             }
             // Of cargo.
             "--bench" => {}

@@ -164,6 +164,16 @@ impl JitModel {
         let part = self.part(kind);
         part.call_lanes(&self.program, self.sizes, self.target, at, results);
     }
+
+    fn evaluate_own<const N: usize>(
+        &self,
+        kind: FunctionKind,
+        at: At<'_>,
+        results: [&mut [f64]; N],
+    ) {
+        let part = self.part(kind);
+        part.call_own(&self.program, self.sizes, self.target, at, results);
+    }
 }
 
 /// Every method panics where a slice has another length than the trait asks for.
@@ -242,19 +252,15 @@ impl Model for JitModel {
     }
 
     fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
-        in_all_lanes(at, [rates], |at, [rates]| self.rates_lanes(at, rates));
+        self.evaluate_own(FunctionKind::Rates, at, [rates]);
     }
 
     fn jacobians_own(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
-        in_all_lanes(at, [rates, a, b], |at, [rates, a, b]| {
-            self.jacobians_lanes(at, rates, a, b);
-        });
+        self.evaluate_own(FunctionKind::Jacobians, at, [rates, a, b]);
     }
 
     fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
-        in_all_lanes(at, [outputs], |at, [outputs]| {
-            self.outputs_lanes(at, outputs);
-        });
+        self.evaluate_own(FunctionKind::Outputs, at, [outputs]);
     }
 
     fn has_adjoint(&self) -> bool {
@@ -324,30 +330,6 @@ impl Model for JitModel {
 
     fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
         self.evaluate(FunctionKind::Systems, at, [matrices]);
-    }
-}
-
-/// A function of eight places at one.
-fn in_all_lanes<const N: usize>(
-    at: At<'_>,
-    results: [&mut [f64]; N],
-    evaluate: impl FnOnce(AtLanes<'_>, [&mut [[f64; LANES]]; N]),
-) {
-    let block = |&number: &f64| [number; LANES];
-    let [x, u, p] =
-        [at.x, at.u, at.p].map(|numbers| -> Vec<_> { numbers.iter().map(block).collect() });
-    let (t, x, u, p) = (&block(&at.t), &x, &u, &p);
-    let mut blocks = results
-        .each_ref()
-        .map(|result| vec![[0.0; LANES]; result.len()]);
-    evaluate(
-        AtLanes { t, x, u, p },
-        blocks.each_mut().map(Vec::as_mut_slice),
-    );
-    for (result, blocks) in results.into_iter().zip(blocks) {
-        for (number, block) in result.iter_mut().zip(blocks) {
-            *number = block[0];
-        }
     }
 }
 

@@ -22,6 +22,8 @@ pub(super) struct OnDemand {
     ready: OnceLock<Ready>,
     /// For eight places at once; `None` where that cannot be made.
     lanes: OnceLock<Option<VectorFunction>>,
+    /// With the elementary functions of lanes; `None` where that cannot be made.
+    own: OnceLock<Option<NativeFunction>>,
 }
 
 /// A function that can be evaluated.
@@ -72,6 +74,7 @@ impl OnDemand {
             schedule: OnceLock::new(),
             ready: OnceLock::new(),
             lanes: OnceLock::new(),
+            own: OnceLock::new(),
         })
     }
 
@@ -113,8 +116,27 @@ impl OnDemand {
         match self.lanes(program, sizes, target) {
             Some(vector) => vector.call(at, out),
             None => place_by_place(at, out, |t, [x, u, p], out| {
-                self.call(program, sizes, At { t, x, u, p }, &[], out);
+                self.call_own(program, sizes, target, At { t, x, u, p }, out);
             }),
+        }
+    }
+
+    /// Evaluates the function at one place with the bits that [`Self::call_lanes`] has there.
+    #[inline]
+    pub(super) fn call_own<const N: usize>(
+        &self,
+        program: &Program,
+        sizes: Sizes,
+        target: Target,
+        at: At<'_>,
+        out: [&mut [f64]; N],
+    ) {
+        if let Some(native) = self.own(program, sizes, target) {
+            native.call(at, out);
+        } else if let Some(vector) = self.lanes(program, sizes, target) {
+            in_all_lanes(at, out, |at, out| vector.call(at, out));
+        } else {
+            self.call(program, sizes, at, &[], out);
         }
     }
 
@@ -137,6 +159,18 @@ impl OnDemand {
         // What cannot be compiled tells its reason where it is interpreted.
         let lanes = self.lanes.get_or_init(|| make().ok().flatten());
         lanes.as_ref()
+    }
+
+    #[inline]
+    fn own(&self, program: &Program, sizes: Sizes, target: Target) -> Option<&NativeFunction> {
+        if target.elementary == Elementary::Standard {
+            return None;
+        }
+        let make = || {
+            let schedule = self.schedule(program);
+            NativeFunction::compile_with(schedule, sizes, Elementary::Own).ok()
+        };
+        self.own.get_or_init(make).as_ref()
     }
 
     /// Why the function is interpreted, if it is.
@@ -225,4 +259,28 @@ fn find(program: &Program, kind: FunctionKind) -> Option<&Function> {
         .functions
         .iter()
         .find(|function| function.kind == kind)
+}
+
+/// A function of eight places at one.
+fn in_all_lanes<const N: usize>(
+    at: At<'_>,
+    results: [&mut [f64]; N],
+    evaluate: impl FnOnce(AtLanes<'_>, [&mut [[f64; LANES]]; N]),
+) {
+    let block = |&number: &f64| [number; LANES];
+    let [x, u, p] =
+        [at.x, at.u, at.p].map(|numbers| -> Vec<_> { numbers.iter().map(block).collect() });
+    let (t, x, u, p) = (&block(&at.t), &x, &u, &p);
+    let mut blocks = results
+        .each_ref()
+        .map(|result| vec![[0.0; LANES]; result.len()]);
+    evaluate(
+        AtLanes { t, x, u, p },
+        blocks.each_mut().map(Vec::as_mut_slice),
+    );
+    for (result, blocks) in results.into_iter().zip(blocks) {
+        for (number, block) in result.iter_mut().zip(blocks) {
+            *number = block[0];
+        }
+    }
 }

@@ -63,6 +63,11 @@ impl Stride {
             lands: false,
         }
     }
+
+    /// The time from its start `t` to the last time before a stop: what changes at the stop does so after the step.
+    pub(super) fn up_to_stop(&self, t: f64) -> f64 {
+        if self.lands { self.last - t } else { self.h }
+    }
 }
 
 /// Parts of a step between which changes are sought.

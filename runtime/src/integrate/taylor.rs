@@ -237,7 +237,7 @@ impl Taylor {
                 return Err(Cause::StepTooSmall { h });
             }
             let stride = watcher.stops.stride(t, h);
-            let change = first_change(guards, &self.expansion.guards, stride.h);
+            let change = first_change(guards, &self.expansion.guards, stride.up_to_stop(t));
             let (end, last) = match change {
                 Some(change) => (t + change.before, t + change.before),
                 None => (stride.t_new, stride.last),

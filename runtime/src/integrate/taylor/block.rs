@@ -214,6 +214,7 @@ impl BlockTaylor {
         options: &Options,
     ) {
         let longest = self.longest(options);
+        let mut within = [0.0; LANES];
         let guards = &equations.series.shape().guards;
         for (l, lane) in on_their_way(lanes) {
             let h = match lane.steps.h {
@@ -236,8 +237,15 @@ impl BlockTaylor {
                 continue;
             }
             lane.stride = lane.watcher.stops.stride(lane.t, h);
-            gather(&self.expansion.guards, l, &mut self.guards);
-            lane.steps.change = first_change(guards, &self.guards, lane.stride.h);
+            within[l] = lane.stride.up_to_stop(lane.t);
+        }
+        let may_change = self.expansion.may_change(&within);
+        for (l, lane) in on_their_way(lanes) {
+            lane.steps.change = None;
+            if may_change[l] {
+                gather(&self.expansion.guards, l, &mut self.guards);
+                lane.steps.change = first_change(guards, &self.guards, within[l]);
+            }
             lane.steps.until = match lane.steps.change {
                 Some(change) => [lane.t + change.before; 2],
                 None => [lane.stride.t_new, lane.stride.last],

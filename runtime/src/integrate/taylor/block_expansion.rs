@@ -3,6 +3,7 @@
 // What is not inlined is not compiled for the vectors of the processor.
 #![allow(clippy::inline_always)]
 
+use super::products::Products;
 use crate::integrate::block_stages::Block;
 use crate::lanes::{AtLanes, LANES, dispatch};
 use crate::series::{Cubic, OrderNumber, SeriesInLanes, Shape};
@@ -25,10 +26,7 @@ pub(super) struct BlockExpansion {
     /// Inputs at each order, then the numbers of the order.
     orders: Vec<Block>,
     coefficients: Vec<Block>,
-    /// Factors of the products by order.
-    left: Vec<Block>,
-    right: Vec<Block>,
-    sums: Vec<Block>,
+    products: Products,
     pub(super) guards_new: Vec<Block>,
     /// Coefficients of the guards by order.
     pub(super) guards: Vec<Block>,
@@ -57,9 +55,6 @@ impl BlockExpansion {
             (&mut self.inputs_new, POWERS * shape.inputs),
             (&mut self.orders, width * (order + 1)),
             (&mut self.coefficients, shape.states * (order + 1)),
-            (&mut self.left, shape.products * (order + 1)),
-            (&mut self.right, shape.products * (order + 1)),
-            (&mut self.sums, shape.products),
             (&mut self.guards_new, guards),
             (&mut self.guards, guards * (order + 1)),
             (&mut self.beyond, shape.states),
@@ -72,6 +67,7 @@ impl BlockExpansion {
                 *number = [of_order; LANES];
             }
         }
+        self.products.prepare(shape.products * LANES, order);
         self.order = order;
     }
 
@@ -182,9 +178,9 @@ impl BlockExpansion {
         } else {
             self.order
         };
-        let products = self.sums.len();
         for k in 1..=last {
-            summed(k, &self.left, &self.right, &mut self.sums);
+            let (sums, factors) = self.products.summed(k);
+            let [left, right] = factors.map(in_blocks);
             let (known, rest) = self.coefficients.split_at_mut((k + 1) * n);
             let next = if k < self.order {
                 &mut rest[..n]
@@ -197,10 +193,8 @@ impl BlockExpansion {
                 u: &self.orders[k * width..][..width],
                 p: &self.kept,
             };
-            let factors = k * products..(k + 1) * products;
-            let (left, right) = (&mut self.left[factors.clone()], &mut self.right[factors]);
             let of_guards = &mut self.guards[k * guards..][..guards];
-            series.sweep(at, &self.sums, [next, left, right, of_guards]);
+            series.sweep(at, sums.as_chunks().0, [next, left, right, of_guards]);
         }
     }
 
@@ -216,16 +210,46 @@ impl BlockExpansion {
                 for order in (1..=self.order).rev() {
                     let terms = &self.coefficients[order * n..][..n];
                     let lower = &self.coefficients[(order - 1) * n..][..n];
-                    let all = self.x_new.iter_mut().zip(slopes.iter_mut());
-                    for ((x, slope), (term, lower)) in all.zip(terms.iter().zip(lower)) {
+                    for (slope, term) in slopes.iter_mut().zip(terms) {
                         for l in 0..LANES {
                             slope[l] = order as f64 * term[l] + since[l] * slope[l];
+                        }
+                    }
+                    for (x, lower) in self.x_new.iter_mut().zip(lower) {
+                        for l in 0..LANES {
                             x[l] = lower[l] + since[l] * x[l];
                         }
                     }
                 }
             },
         );
+    }
+
+    /// In which lanes a guard may change its sign within a time: where its first term does not outweigh the others, or is
+    /// no number.
+    pub(super) fn may_change(&self, within: &Block) -> [bool; LANES] {
+        let guards = self.guards_new.len();
+        let mut keeps = [true; LANES];
+        dispatch(
+            #[inline(always)]
+            || {
+                let mut outweighs = [true; LANES];
+                for guard in 0..guards {
+                    let mut most = [0.0; LANES];
+                    for order in (1..=self.order).rev() {
+                        let term = self.guards[order * guards + guard];
+                        for l in 0..LANES {
+                            most[l] = within[l] * (term[l].abs() + most[l]);
+                        }
+                    }
+                    for l in 0..LANES {
+                        outweighs[l] &= self.guards[guard][l].abs() > most[l];
+                    }
+                }
+                keeps = outweighs;
+            },
+        );
+        keeps.map(|keeps| !keeps)
     }
 
     /// Which new states are finite.
@@ -256,57 +280,23 @@ impl BlockExpansion {
     }
 }
 
+fn in_blocks(numbers: &mut [f64]) -> &mut [Block] {
+    numbers.as_chunks_mut().0
+}
+
 /// Numbers of some lanes.
 fn select(to: &mut [Block], from: &[Block], which: [bool; LANES]) {
+    // By their bits: a choice of addresses goes number by number.
+    let taken = which.map(|is_taken| if is_taken { u64::MAX } else { 0 });
     dispatch(
         #[inline(always)]
         || {
             for (to, from) in to.iter_mut().zip(from) {
                 for l in 0..LANES {
-                    to[l] = if which[l] { from[l] } else { to[l] };
+                    let bits = (from[l].to_bits() & taken[l]) | (to[l].to_bits() & !taken[l]);
+                    to[l] = f64::from_bits(bits);
                 }
             }
         },
     );
-}
-
-/// Products that are summed side by side.
-const PANEL: usize = 4;
-
-/// Σ aⱼ bₖ₋ⱼ over 1 ≤ j < k for all products, in the order of a motion alone.
-fn summed(k: usize, left: &[Block], right: &[Block], sums: &mut [Block]) {
-    let count = sums.len();
-    dispatch(
-        #[inline(always)]
-        || {
-            let (panels, rest) = sums.as_chunks_mut::<PANEL>();
-            let first = panels.len() * PANEL;
-            for (panel, sums) in panels.iter_mut().enumerate() {
-                *sums = panel_sums(k, left, right, (count, panel * PANEL));
-            }
-            for (place, sum) in rest.iter_mut().enumerate() {
-                [*sum] = panel_sums(k, left, right, (count, first + place));
-            }
-        },
-    );
-}
-
-#[inline(always)]
-fn panel_sums<const N: usize>(
-    k: usize,
-    left: &[Block],
-    right: &[Block],
-    (count, first): (usize, usize),
-) -> [Block; N] {
-    let mut sums = [[0.0; LANES]; N];
-    for j in 1..k {
-        let left = &left[j * count + first..][..N];
-        let right = &right[(k - j) * count + first..][..N];
-        for ((sum, left), right) in sums.iter_mut().zip(left).zip(right) {
-            for l in 0..LANES {
-                sum[l] = left[l].mul_add(right[l], sum[l]);
-            }
-        }
-    }
-    sums
 }

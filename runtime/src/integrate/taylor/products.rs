@@ -1,4 +1,4 @@
-//! Sums over products of coefficients, for all products at once.
+//! Sums over products of coefficients, for all products at once, of one motion or of the motions of a block.
 
 // What is not inlined is not compiled for the vectors of the processor.
 #![allow(clippy::inline_always)]
@@ -9,8 +9,8 @@ use crate::lanes::dispatch;
 const BLOCK: usize = 8;
 /// So many numbers are a line of the cache, which vectors should not cross.
 const LINE: usize = 8;
-/// Blocks whose sums are carried along together.
-const PANEL: usize = 8;
+/// Blocks whose sums are carried along together: as many as the registers of AVX2 hold beside the factors.
+const PANEL: usize = 6;
 
 /// The factors of all products by order, and the sums over them. Operations and their order are the same for
 /// vectors of any width.
@@ -108,8 +108,6 @@ impl Sum<'_> {
                 3 => self.panel::<3>(start),
                 4 => self.panel::<4>(start),
                 5 => self.panel::<5>(start),
-                6 => self.panel::<6>(start),
-                7 => self.panel::<7>(start),
                 _ => self.panel::<PANEL>(start),
             }
             start += blocks;

@@ -23,27 +23,31 @@ import pyarrow.parquet as parquet
 HERE = Path(__file__).resolve().parent
 LAW = HERE.parent.parent / "docs/examples/feedback/lane_change_5_m_s.toml"
 KEPT = ["x", "y", "psi", "theta", "r", "speed"]
+ROWS = [("dop853", tolerance) for tolerance in ("1e-6", "1e-7", "3e-8", "1e-8", "1e-9", "1e-11")]
+ROWS += [("taylor", tolerance) for tolerance in ("1e-7", "1e-8", "3e-9", "1e-9", "1e-11", "1e-12")]
+# What leaves errors below 4e-9.
+MILLION = ("taylor", "3e-9")
 # Cases whose errors are looked at.
 SAMPLE = 512
 
 
-def study(folder, cases, tolerance):
-    text = (HERE / "lane_change.toml").read_text()
+def study(folder, cases, method, tolerance):
+    text = (HERE / "lane_change.toml").read_text().replace("[motion]\n", f'[motion]\nmethod = "{method}"\n')
     text = re.sub(r"cases = \d+", f"cases = {cases}", text)
     text = re.sub(r"([ra]tol +)= .*", rf"\1= {tolerance}", text)
     (folder / LAW.name).write_text(LAW.read_text())
-    path = folder / f"study_{cases}_{tolerance}.toml"
+    path = folder / f"study_{cases}_{method}_{tolerance}.toml"
     path.write_text(text)
     return path
 
 
-def run(appell, folder, cases, tolerance, jobs):
+def run(appell, folder, cases, method, tolerance, jobs):
     """Rows by name, and seconds without those that a single case takes."""
     seconds = {}
     for count in (1, cases):
-        out = folder / f"out_{count}_{tolerance}_{jobs}"
+        out = folder / f"out_{count}_{method}_{tolerance}_{jobs}"
         start = time.perf_counter()
-        command = [appell, "ensemble", study(folder, count, tolerance), "--out", out]
+        command = [appell, "ensemble", study(folder, count, method, tolerance), "--out", out]
         subprocess.run(command + (["--jobs", str(jobs)] if jobs else []), check=True, stdout=subprocess.DEVNULL)
         seconds[count] = time.perf_counter() - start
     tables = [parquet.read_table(part) for part in sorted(out.glob("*.parquet"))]
@@ -61,11 +65,11 @@ def main():
     print("| | tolerance | us a motion, one core | largest error |\n|---|---|---|---|")
     with tempfile.TemporaryDirectory() as folder:
         folder = Path(folder)
-        exact, _ = run(asked.appell, folder, SAMPLE, "1e-13", 1)
-        for tolerance in ("1e-6", "3e-7", "1e-7", "3e-8", "1e-8", "1e-9", "1e-10", "1e-11"):
-            rows, seconds = run(asked.appell, folder, asked.cases, tolerance, 1)
+        exact, _ = run(asked.appell, folder, SAMPLE, "dop853", "1e-13", 1)
+        for method, tolerance in ROWS:
+            rows, seconds = run(asked.appell, folder, asked.cases, method, tolerance, 1)
             error = max(abs(rows[name][:SAMPLE] - exact[name]).max() for name in KEPT)
-            print(f"| appell ensemble | {tolerance} | {seconds / asked.cases * 1e6:.1f} | {error:.1e} |", flush=True)
+            print(f"| appell ensemble, {method} | {tolerance} | {seconds / asked.cases * 1e6:.1f} | {error:.1e} |", flush=True)
         told = subprocess.run(["taskset", "-c", "0", sys.executable, HERE / "with_heyoka.py", "4000"], check=True,
                               capture_output=True, text=True)
         told = json.loads(told.stdout)
@@ -73,7 +77,7 @@ def main():
             for row in told[kind]:
                 print(f"| {name} | {row['tolerance']:.0e} | {row['seconds'] * 1e6:.1f} | {row['error']:.1e} |")
         if asked.million:
-            _, seconds = run(asked.appell, folder, 1000000, "3e-8", 0)
+            _, seconds = run(asked.appell, folder, 1000000, *MILLION, 0)
             peak = resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss / 1024
             print(f"\nA million motions on {os.cpu_count()} cores: {seconds:.1f} s, at most {peak:.0f} MB.")
 

@@ -148,7 +148,7 @@ def with_heyoka(module, parameters, start):
     return told
 
 
-def limited(function, *arguments, seconds=45):
+def limited(function, *arguments, seconds=120):
     """What a function gives, or nothing where it takes longer."""
     results = multiprocessing.get_context("fork").Queue()
     process = multiprocessing.get_context("fork").Process(target=lambda: results.put(function(*arguments)))
@@ -229,9 +229,10 @@ def with_gcc(folder, name, module, parameters, start):
                 arguments.append("&u")
             elif kind == "rates" or re.search(r"\*to_rates$", declared):
                 arguments.append("&rates[i]")
-            elif array := re.match(r"real \w+((?:\[\d+\])+)$", declared):
+            elif array := re.match(r"real \w+\[\]((?:\[\d+\])+)$", declared):
+                # A and B: a row for each state.
                 name_of = f"out{len(outputs)}"
-                outputs.append(f"static real {name_of}[PLACES]{array.group(1)};")
+                outputs.append(f"static real {name_of}[PLACES][{len(start)}]{array.group(1)};")
                 arguments.append(f"{name_of}[i]")
             else:
                 held = declared.split(" *")[0].replace("(", "").strip()
@@ -271,7 +272,7 @@ def tables(appell):
     told = own(SPECS.values())
     lines = [f"{processor()}, {told['level']}, one core; heyoka {heyoka.__version__}, "
              f"gcc {subprocess.check_output(['gcc', '-dumpfullversion'], text=True).strip()}. Fastest of many rounds; "
-             "empty where a peer takes no such system, or more than 45 s to prepare it.", "",
+             "empty where a peer takes no such system, or more than two minutes to prepare it.", "",
              "| ns a place, second cache | rates | gcc | heyoka | error | rates, A, B | gcc | heyoka | error |",
              "|---|---|---|---|---|---|---|---|---|"]
     motions = ["| one motion of 1 s | tolerance | µs | error | heyoka: tolerance | µs | error |", "|---|---|---|---|---|---|---|"]

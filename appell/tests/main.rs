@@ -5,5 +5,6 @@
 mod control;
 mod ensemble;
 mod errors;
+mod orientations;
 mod robots;
 mod taylor;

@@ -70,6 +70,30 @@ def with_outputs(spec, points):
     return f"{spec}\n[outputs]\n" + "\n".join(rows) + "\n" if rows else spec
 
 
+class Joint:
+    """A joint of the vectors by the names of the spec: its coordinates, speeds and inputs."""
+
+    def __init__(self, joint, spec):
+        self.q = slice(joint["idx_q"], joint["idx_q"] + joint["nq"])
+        self.v = slice(joint["idx_v"], joint["idx_v"] + joint["nv"])
+        name = legal(joint["name"] or "")
+        if joint["nq"] == 7:
+            # A free joint may be called otherwise, or not at all.
+            frame, begin = re.search(r'^(\w+) += \{ parent = "ground", quaternion = \["(\w+)_qw"', spec, re.M).groups()
+            self.coordinates = [f"{begin}_{end}" for end in ("x", "y", "z", "qw", "qx", "qy", "qz")]
+            self.speeds = [f"v_{begin}_{axis}" for axis in "xyz"] + [f"w_{begin}_{axis}" for axis in "xyz"]
+            self.inputs = [f"{kind}_tested_{axis}" for kind in ("force", "torque") for axis in "xyz"]
+            self.added = "".join(f'[inputs.{name}]\nunit = "{"N" if name[0] == "f" else "N*m"}"\n' for name in self.inputs)
+            wrench = [self.inputs[:3], self.inputs[3:]]
+            self.added += f'[loads.force_tested]\nkind = "force"\non = "{frame}"\nin = "ground"\nvector = {json.dumps(wrench[0])}\n'
+            self.added += f'[loads.torque_tested]\nkind = "torque"\non = "{frame}"\nin = "{frame}"\nvector = {json.dumps(wrench[1])}\n'
+        elif joint["nq"] == 4:
+            raise RuntimeError("torques at ball joints are not tested")
+        else:
+            self.coordinates, self.speeds, self.added = [name], [f"v_{name}"], ""
+            self.inputs = [f"tau_{name}" if f"tau_{name} " in spec else f"force_{name}"]
+
+
 def largest(values):
     return max((abs(value) for value in values), default=0.0)
 
@@ -89,31 +113,34 @@ def compare(vectors, block, robot, appell, folder):
     """Imports a robot and evaluates it at the states of a block."""
     without = ALWAYS + ([] if block == "mimic" else ["couplings"]) + ([] if block == "as_written" else RIGID)
     imported = folder / "imported.toml"
-    _, seconds = run([appell, "import", robot, "-o", imported, "--without", ",".join(without)])
-    joints = [legal(joint["name"]) for joint in vectors["joints"]]
+    floating = ["--floating"] if vectors["base"] == "floating" and robot.suffix == ".urdf" else []
+    _, seconds = run([appell, "import", robot, "-o", imported, "--without", ",".join(without), *floating])
     states = vectors["states"]
     leaves = {leaf: legal(leaf) for leaf in states[0]["rigid"]["leaf_positions"]}
     spec = imported.read_text()
     points = [point for point in [*leaves.values(), legal(vectors["last_link"])] if re.search(rf"^{point} +=.*from", spec, re.M)]
+    joints = [Joint(joint, spec) for joint in vectors["joints"]]
     tested = folder / "tested.toml"
-    tested.write_text(with_outputs(spec, sorted(set(points))))
-    order = [joint for joint in re.findall(r'^v_\w+ += \{ value = "dot\((\w+)\)"', spec, re.M)]
+    tested.write_text(with_outputs(spec, sorted(set(points))) + "".join(joint.added for joint in joints))
+    section = spec[spec.index("[pseudo_velocities]"):].split("\n[", 2)[0]
+    order = re.findall(r"^(\w+) += \{", section, re.M)
+    names = [name for joint in joints for name in joint.speeds]
     # In the block `mimic`, joints that follow others have no speed of their own.
-    free = [joint for joint in joints if joint in order] if block == "mimic" else joints
+    free = [name for name in names if name in order] if block == "mimic" else names
     if sorted(order) != sorted(free):
-        raise RuntimeError(f"joints are {order}, not {joints}")
+        raise RuntimeError(f"speeds are {order}, not {names}")
     cases = []
     for state in states:
-        q, v = dict(zip(joints, state["q"])), dict(zip(joints, state["v"]))
-        values = {**q, **{f"v_{joint}": v[joint] for joint in free}}
-        inputs = {}
-        for joint, tau in zip(joints, state["tau"]):
-            inputs[f"tau_{joint}" if f"tau_{joint} " in spec else f"force_{joint}"] = tau
+        values, inputs = {}, {}
+        for joint in joints:
+            values.update(zip(joint.coordinates, state["q"][joint.q]))
+            values.update((name, v) for name, v in zip(joint.speeds, state["v"][joint.v]) if name in free)
+            inputs.update(zip(joint.inputs, state["tau"][joint.v]))
         cases += [{"state": values}, {"state": values, "inputs": inputs}]
     (folder / "cases.json").write_text(json.dumps({"cases": cases}))
     answer, evaluation = run([appell, "evaluate", tested, "--cases", folder / "cases.json"])
     answers = json.loads(answer)["cases"]
-    place = [order.index(joint) for joint in free]
+    place = [order.index(name) for name in free]
     differences = Differences()
     # Some programs count the links that stand still, so that energies compare up to a constant.
     heights = [[at_rest["potential_energy"] for at_rest in answers[::2]], [state[block].get("potential_energy") for state in states]]
@@ -131,7 +158,7 @@ def compare(vectors, block, robot, appell, folder):
         differences.add("bias", bias, here["bias"])
         if "kinetic_energy" in here:
             differences.add("T", [at_rest["kinetic_energy"]], [here["kinetic_energy"]])
-        differences.add("qdd", [driven["rates"][f"v_{joint}"] for joint in free], here["qdd"])
+        differences.add("qdd", [driven["rates"][name] for name in free], here["qdd"])
         positions = {**rigid["leaf_positions"], vectors["last_link"]: rigid["last_link_position"]}
         for name, position in positions.items():
             if legal(name) in points:
@@ -150,7 +177,7 @@ def main():
         vectors = json.loads(path.read_text())
         if "states" not in vectors:
             continue
-        if (options.names and path.stem not in options.names) or (not options.names and vectors["base"] != "fixed"):
+        if options.names and path.stem not in options.names:
             continue
         robot = robot_file(vectors, path.parent, options.env)
         for block in ["rigid", "as_written", *(["mimic"] if "mimic" in vectors["states"][0] else [])]:

@@ -20,10 +20,10 @@ mod work;
 use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
 
+use crate::mechanics::Derivation;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Finding;
 use crate::mechanics::symbols::Symbols;
-use crate::mechanics::{Derivation, seed};
 use crate::symbolic::Graph;
 use bench::Bench;
 
@@ -63,7 +63,7 @@ pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
     }
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
+    let mut algebra = Algebra::new(graph, mechanism, &symbols);
     contact::findings(&mut algebra, mechanism, &symbols)
 }
 

@@ -69,7 +69,7 @@ pub fn compare_while(
     let symbols = &derivation.symbols;
     // A graph of its own: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
-    let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
+    let mut algebra = Algebra::new(graph, mechanism, symbols);
     let claims = claims(&mut algebra, mechanism, derivation, is_time)?;
     Ok(decide(&mut algebra, mechanism, derivation, claims, is_time))
 }

@@ -34,6 +34,7 @@ pub mod motions;
 mod outputs;
 pub mod positions;
 pub mod prescribed;
+mod quaternion;
 pub mod ranges;
 pub mod rank;
 mod reacting_loads;
@@ -125,7 +126,7 @@ pub struct Unbound {
 /// Derives the equations of motion of a mechanism. What can be told without the stage that fails is
 /// told with its findings.
 pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
-    let mut findings = divisors::findings(mechanism, seed(mechanism));
+    let mut findings = divisors::findings(mechanism);
     match equations(mechanism) {
         Ok(derivation) if findings.is_empty() => Ok(derivation),
         Ok(_) => Err(findings),
@@ -164,7 +165,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
 fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedLoad>)> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
+    let mut algebra = Algebra::new(graph, mechanism, &symbols);
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
     let constraints = constraints::constraints(&mut algebra, mechanism, &symbols, &mut intervals)?;

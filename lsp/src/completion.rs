@@ -29,6 +29,7 @@ pub(crate) fn completion(document: &Document, position: Position) -> Vec<Complet
             written_units(document, &content).chain(units()).collect()
         }
         Form::Reference(target) => named(document, target, Some(&string.path)),
+        Form::Quaternion => named(document, Target::Coordinate, None),
         Form::TwoPoints => named(document, Target::Point, None),
         Form::Expression | Form::Components | Form::Matrix => {
             let before = document.text.part(&(string.span.start + 1..at));

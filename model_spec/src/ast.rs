@@ -82,6 +82,8 @@ pub enum ValueAst {
     Matrix(Box<[[ExprAst; 3]; 3]>),
     /// Two names.
     Pair([Spanned<String>; 2]),
+    /// Four names.
+    Four(Box<[Spanned<String>; 4]>),
     /// A list of tables.
     Tables(Vec<ItemAst>),
     /// A table.

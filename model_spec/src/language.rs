@@ -152,6 +152,8 @@ pub enum Form {
     Matrix,
     /// Names of two points.
     TwoPoints,
+    /// Names of four coordinates.
+    Quaternion,
     /// One of these words.
     Word(&'static [Word]),
     /// `true` or `false`.

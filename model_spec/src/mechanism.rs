@@ -168,6 +168,9 @@ pub struct Frame {
     pub parent: Option<FrameId>,
     /// Rotations, first the one next to the parent.
     pub turns: Vec<Turn>,
+    /// Instead of them the coordinates of a unit quaternion, its scalar part first. It turns the components of
+    /// a vector in this frame into those in the parent.
+    pub quaternion: Option<[CoordinateId; 4]>,
     /// Line of the definition, from 1; 0 for the ground.
     pub line: usize,
     /// Place of the definition in the spec text; empty for what the language supplies.

@@ -144,6 +144,11 @@ impl Finder<'_> {
                     self.see(Namespace::Point, &point.value, &point.span, false);
                 }
             }
+            ValueAst::Four(coordinates) => {
+                for name in coordinates.iter() {
+                    self.see(Namespace::Quantity, &name.value, &name.span, false);
+                }
+            }
             ValueAst::Expression(expression) => self.expression(expression),
             ValueAst::Components(components) => self.expressions(components.iter()),
             ValueAst::Matrix(rows) => self.expressions(rows.iter().flatten()),

@@ -15,6 +15,7 @@ mod mistaken;
 mod named;
 mod names;
 mod nominal;
+mod orientations;
 mod place;
 mod placement;
 mod quantities;
@@ -44,11 +45,13 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     resolver.announce("outputs");
     resolver.announce_definitions();
     resolver.derivative_names(&signals);
-    let pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     let frames = resolver.frames();
     let points = resolver.points();
+    // They may be velocities of points and frames.
+    let pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     let bodies = resolver.bodies();
-    let constraints = resolver.constraints(&bodies);
+    let mut constraints = resolver.constraints(&bodies);
+    constraints.extend(resolver.norms(&frames, &constraints));
     let loads = resolver.loads(&bodies);
     let outputs = resolver.outputs();
     let definitions = resolver.definitions(&coordinates);
@@ -72,6 +75,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
         definitions,
     };
     resolver.initial(&mut mechanism);
+    orientations::normalise(&mut mechanism);
     resolver.physical(&mechanism);
     resolver.doubtful_angles(&mechanism);
     resolver.mistaken(&mechanism);

@@ -109,6 +109,7 @@ fn form(form: &Form) -> Value {
         Form::Components => list(expression(), 3),
         Form::Matrix => list(list(expression(), 3), 3),
         Form::TwoPoints => list(json!({ "type": "string", "pattern": name::pattern() }), 2),
+        Form::Quaternion => list(json!({ "type": "string", "pattern": name::pattern() }), 4),
         Form::Word(words) => {
             json!({ "enum": words.iter().map(|word| word.text).collect::<Vec<_>>() })
         }

@@ -33,6 +33,7 @@ fn form_words(form: &Form) -> String {
         Form::Expression => "expression".to_owned(),
         Form::Components => "three expressions".to_owned(),
         Form::Matrix => "three rows of three expressions".to_owned(),
+        Form::Quaternion => "names of four coordinates".to_owned(),
         Form::TwoPoints => "names of two points".to_owned(),
         Form::Word(words) => words
             .iter()

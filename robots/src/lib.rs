@@ -84,6 +84,20 @@ pub enum Failure {
     },
 }
 
+/// Frees the links that nothing else moves or holds.
+fn float(robot: &mut model::Robot) {
+    for link in &mut robot.links {
+        if link.parent.is_none() && link.joint.is_none() {
+            let name = link.name.clone();
+            link.joint = Some(model::Joint::without_axis(
+                name,
+                model::Motion::Free,
+                [0.0; 3],
+            ));
+        }
+    }
+}
+
 /// Turns the text of a URDF or an MJCF file into that of a spec.
 ///
 /// ```
@@ -113,13 +127,16 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Fai
             return Err(fail(vec![error.help(help)]));
         }
     };
+    if options.floating {
+        float(&mut robot);
+    }
     for one in &options.without {
         one.apply(&mut robot);
     }
     let nearly_right = snap::snap(&mut robot, options.snap);
     let tree = tree::merged(&robot.links, &findings);
     if tree.bodies.is_empty() && !findings.has_errors() {
-        let help = "joints are revolute, continuous or prismatic (URDF), hinge or slide (MJCF)";
+        let help = "joints are revolute, continuous, prismatic or floating (URDF), hinge, slide, ball or free (MJCF)";
         findings.error(
             Code::MissingSection,
             xml::tag(root),

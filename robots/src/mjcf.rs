@@ -310,7 +310,6 @@ impl<'x> Reader<'x, '_> {
                 "rename one of them",
             );
         }
-        self.no_free_joint(element, level);
         let joints = self.joints(element, &name, class);
         let inertia = self.inertia(element, &name, class, !joints.is_empty());
         let carried = element.attribute_node("gravcomp");

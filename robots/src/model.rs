@@ -40,6 +40,17 @@ pub(crate) enum Motion {
     Turning,
     /// It slides along its axis.
     Sliding,
+    /// It turns about every axis.
+    Ball,
+    /// It moves anywhere.
+    Free,
+}
+
+impl Motion {
+    /// Whether the joint has one coordinate, along or about an axis.
+    pub(crate) fn has_axis(self) -> bool {
+        matches!(self, Self::Turning | Self::Sliding)
+    }
 }
 
 /// A joint.
@@ -63,6 +74,25 @@ pub(crate) struct Joint {
     pub(crate) stiffness: f64,
     /// The coordinate at which the spring is relaxed.
     pub(crate) relaxed: f64,
+}
+
+impl Joint {
+    /// A joint without an axis, and without anything that resists it.
+    pub(crate) fn without_axis(name: String, motion: Motion, anchor: Vector) -> Self {
+        Self {
+            name,
+            motion,
+            axis: [1.0, 0.0, 0.0],
+            anchor,
+            zero: 0.0,
+            range: None,
+            damping: 0.0,
+            armature: 0.0,
+            friction: 0.0,
+            stiffness: 0.0,
+            relaxed: 0.0,
+        }
+    }
 }
 
 /// A coordinate that follows from another one, or has one value.

@@ -12,4 +12,6 @@ pub struct Options {
     pub without: Vec<Without>,
     /// Makes angles right that differ from a right angle by less than [`SNAP`](crate::SNAP).
     pub snap: bool,
+    /// Lets the root of a URDF float; elsewhere the file says what does.
+    pub floating: bool,
 }

@@ -149,6 +149,35 @@ impl Rotation {
         Some(Self(rows).cleaned())
     }
 
+    /// Its unit quaternion w, x, y, z, from the largest of the four (Shepperd, *Journal of Guidance and Control* 1,
+    /// 1978).
+    pub(crate) fn to_quaternion(self) -> [f64; 4] {
+        let r = self.0;
+        let trace = r[0][0] + r[1][1] + r[2][2];
+        let squares = [trace, r[0][0], r[1][1], r[2][2]];
+        let mut largest = 0;
+        for k in 1..4 {
+            if squares[k] > squares[largest] {
+                largest = k;
+            }
+        }
+        let skew = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
+        let q = match largest {
+            0 => [1.0 + trace, skew[0], skew[1], skew[2]],
+            _ => {
+                let i = largest - 1;
+                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+                let mut q = [skew[i], 0.0, 0.0, 0.0];
+                q[1 + i] = 1.0 + r[i][i] - r[j][j] - r[k][k];
+                q[1 + j] = r[i][j] + r[j][i];
+                q[1 + k] = r[i][k] + r[k][i];
+                q
+            }
+        };
+        let length = q.iter().map(|one| one * one).sum::<f64>().sqrt();
+        q.map(|one| whole(one / length))
+    }
+
     /// Roll, pitch and yaw about the fixed axes x, y, z.
     pub(crate) fn roll_pitch_yaw([roll, pitch, yaw]: Vector) -> Self {
         Self::about(2, yaw)

@@ -7,7 +7,7 @@ mod remarks;
 use appell_spec::limits::MAX_SENTENCE;
 
 use crate::letters::{Numbers, Parameter};
-use crate::model::{LeftOut, Link, Robot};
+use crate::model::{LeftOut, Link, Motion, Robot};
 use crate::names::{Names, short};
 use crate::options::Options;
 use crate::table::{Item, Section, quoted};
@@ -17,8 +17,10 @@ use crate::tree::{Body, Tree};
 struct Called {
     /// By link.
     links: Vec<String>,
-    /// The coordinate, by body.
+    /// The coordinate, by body; what its coordinates begin with where a body has several.
     coordinates: Vec<String>,
+    /// Where a body has several: those of its place, if it moves, and of its quaternion.
+    several: Vec<Vec<String>>,
     /// The frame, by body.
     frames: Vec<String>,
     /// The point that the body is placed by.
@@ -105,13 +107,26 @@ impl<'a> Writer<'a> {
             .bodies
             .iter()
             .map(|body| quantities.new_one(&short(&body.joint.name)));
-        let coordinates = joints.collect();
+        let coordinates: Vec<String> = joints.collect();
+        let several = tree.bodies.iter().zip(&coordinates).map(|(body, q)| {
+            let endings: &[&str] = match body.joint.motion {
+                Motion::Free => &["x", "y", "z", "qw", "qx", "qy", "qz"],
+                Motion::Ball => &["qw", "qx", "qy", "qz"],
+                Motion::Turning | Motion::Sliding => &[],
+            };
+            let all = endings
+                .iter()
+                .map(|ending| quantities.new_one(&format!("{q}_{ending}")));
+            all.collect()
+        });
+        let several = several.collect();
         Self {
             links: &robot.links,
             tree,
             called: Called {
                 links,
                 coordinates,
+                several,
                 frames: Vec::new(),
                 points: Vec::new(),
             },

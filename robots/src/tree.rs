@@ -46,6 +46,8 @@ pub(crate) struct Body {
     pub(crate) parts: Vec<Part>,
     /// Whether the frame has the axes of the link in the file.
     pub(crate) keeps_axes: bool,
+    /// Where it is in the frame of its parent in the file.
+    pub(crate) start: Pose,
 }
 
 /// The body of a link, and where the link is in it.
@@ -76,7 +78,17 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
                 body: on.body,
                 pose,
             },
-            Some(joint) => tree.moved_by(joint, index, on.body, pose),
+            Some(joint) => {
+                if joint.motion == Motion::Free && on.body.is_some() {
+                    findings.error(
+                        Code::NotAllowedHere,
+                        link.place.clone(),
+                        format!("`{}` floats, but stands on a link that moves", link.name),
+                        "only what stands on the ground can float",
+                    );
+                }
+                tree.moved_by(joint, index, on.body, pose)
+            }
         };
         seats.push(seat);
         let inertia = link.inertia.placed(seat.pose);
@@ -101,13 +113,26 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
 impl Tree {
     /// A new body, moved by a joint at a pose in the frame of its parent.
     fn moved_by(&mut self, joint: &Joint, link: usize, parent: Option<usize>, pose: Pose) -> Seat {
-        let (axis, own) = Axis::nearest(joint.axis);
+        let (axis, own) = match joint.motion.has_axis() {
+            true => Axis::nearest(joint.axis),
+            false => (
+                Axis {
+                    index: 0,
+                    backwards: false,
+                },
+                Rotation::IDENTITY,
+            ),
+        };
         let rotation = pose.rotation.then(own);
         let (last, anchor) = match joint.motion {
             Motion::Turning => (Some(axis.index), joint.anchor),
-            Motion::Sliding => (None, [0.0; 3]),
+            Motion::Ball => (None, joint.anchor),
+            Motion::Sliding | Motion::Free => (None, [0.0; 3]),
         };
-        let mut turns = rotation.turns(last);
+        let mut turns = match joint.motion {
+            Motion::Free => Vec::new(),
+            _ => rotation.turns(last),
+        };
         let mut offset = -joint.zero;
         if let (Some(last), Some(turn)) = (last, turns.last())
             && turn.axis == last
@@ -130,6 +155,7 @@ impl Tree {
             inertia: Inertia::NONE,
             parts: Vec::new(),
             keeps_axes: own == Rotation::IDENTITY,
+            start: pose,
         });
         Seat {
             body: Some(self.bodies.len() - 1),

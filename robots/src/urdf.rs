@@ -279,7 +279,11 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
         "fixed" => return None,
         "revolute" | "continuous" => Motion::Turning,
         "prismatic" => Motion::Sliding,
-        "floating" | "planar" | "spherical" | "ball" => {
+        "floating" => return Some(Joint::without_axis(name.to_owned(), Motion::Free, [0.0; 3])),
+        "spherical" | "ball" => {
+            return Some(Joint::without_axis(name.to_owned(), Motion::Ball, [0.0; 3]));
+        }
+        "planar" => {
             findings.error(
                 Code::NotAllowedHere,
                 kind.range_value(),
@@ -287,12 +291,12 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
                     "joint `{name}` is {}, which `import` does not do yet",
                     kind.value()
                 ),
-                "joints are revolute, continuous, prismatic or fixed so far",
+                "joints are revolute, continuous, prismatic, spherical, floating or fixed so far",
             );
             return None;
         }
         other => {
-            let kinds = ["revolute", "continuous", "prismatic", "fixed"];
+            let kinds = ["revolute", "continuous", "prismatic", "floating", "fixed"];
             findings.error(
                 Code::UnknownWord,
                 kind.range_value(),
@@ -378,7 +382,7 @@ fn mimic<'x>(
     };
     let moves = |name: &str| {
         let kind = joints.get(name).and_then(|joint| joint.attribute("type"));
-        kind.is_some_and(|kind| kind != "fixed")
+        kind.is_some_and(|kind| matches!(kind, "revolute" | "continuous" | "prismatic"))
     };
     if !joints.contains_key(other.value()) {
         let moving = joints.keys().copied().filter(|name| moves(name));

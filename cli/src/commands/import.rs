@@ -42,6 +42,9 @@ pub(crate) struct Import {
     /// Take angles within 1e-4 rad of a right angle for right angles
     #[arg(long)]
     snap: bool,
+    /// Let the root of a URDF float; an MJCF says itself what does
+    #[arg(long)]
+    floating: bool,
 }
 
 fn what(word: &str) -> Result<Without, String> {
@@ -74,6 +77,7 @@ impl Import {
             letters: Letters::read(&self.parameters),
             without: self.without.clone(),
             snap: self.snap,
+            floating: self.floating,
         };
         let robot = robot::read(&self.robot, &options)?;
         if self.out.is_none()

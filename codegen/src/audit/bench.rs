@@ -10,7 +10,7 @@ use crate::mechanics::initial::InitialState;
 use crate::mechanics::kinematics::{Effort, Kinematics};
 use crate::mechanics::motions::motions;
 use crate::mechanics::symbols::Symbols;
-use crate::mechanics::{Derivation, declared_ranges, seed};
+use crate::mechanics::{Derivation, declared_ranges};
 use crate::symbolic::print::{Setter, Spelled, text};
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
@@ -47,7 +47,7 @@ impl<'a> Bench<'a> {
     pub(super) fn new(mechanism: &'a Mechanism, derivation: &'a Derivation) -> Option<Self> {
         let symbols = &derivation.symbols;
         let graph = derivation.algebra.graph.clone();
-        let mut algebra = Algebra::new(graph, symbols, seed(mechanism));
+        let mut algebra = Algebra::new(graph, mechanism, symbols);
         let unconstrained = unconstrained(&mut algebra, mechanism, symbols)?;
         let outputs = outputs(&mut algebra, mechanism, derivation)?;
         Some(Self {

@@ -86,6 +86,11 @@ impl<'a> Inertial<'a> {
                 let turn = elementary(&mut algebra.graph, turn.axis, angle);
                 rotation = algebra.graph.mat_mat(&rotation, &turn);
             }
+            if let Some(quaternion) = frame.quaternion {
+                let e = quaternion.map(|id| symbols.coordinates[id.index()]);
+                let own = products(&mut algebra.graph, e);
+                rotation = algebra.graph.mat_mat(&rotation, &own);
+            }
             let turning = inertial.angular_velocity(algebra, &rotation);
             inertial.rotations.push(rotation);
             inertial.turning.push(turning);
@@ -303,6 +308,26 @@ impl<'a> Inertial<'a> {
         }
         Ok(rows)
     }
+}
+
+/// The columns e i ē, e j ē, e k ē: what a unit quaternion makes of the axes.
+fn products(graph: &mut Graph, e: [Expr; 4]) -> Mat3 {
+    let conjugate = [e[0], graph.neg(e[1]), graph.neg(e[2]), graph.neg(e[3])];
+    let columns = vector::IDENTITY.map(|[x, y, z]| {
+        let turned = product(graph, e, [Graph::ZERO, x, y, z]);
+        let [_, x, y, z] = product(graph, turned, conjugate);
+        [x, y, z]
+    });
+    [0, 1, 2].map(|row| columns.map(|column| column[row]))
+}
+
+/// Hamilton's product.
+fn product(graph: &mut Graph, [a, u @ ..]: [Expr; 4], [b, v @ ..]: [Expr; 4]) -> [Expr; 4] {
+    let (both, inner) = (graph.mul(a, b), graph.dot(u, v));
+    let (av, bu, across) = (graph.scale3(a, v), graph.scale3(b, u), graph.cross(u, v));
+    let sum = graph.add3(av, bu);
+    let [x, y, z] = graph.add3(sum, across);
+    [graph.sub(both, inner), x, y, z]
 }
 
 /// The rotation matrix of a turn about an axis.

@@ -19,6 +19,14 @@ const ROUNDING: f64 = 1e-9;
 /// Relative change of every argument that shows how much rounding is amplified.
 const DISTURBANCE: f64 = 4.0 * f64::EPSILON;
 
+/// Scales the components of a quaternion.
+fn normalise(point: &mut [f64], quaternion: &[SymbolId]) {
+    let square: f64 = quaternion.iter().map(|e| point[e.0 as usize].powi(2)).sum();
+    for e in quaternion {
+        point[e.0 as usize] /= square.sqrt();
+    }
+}
+
 /// Random points, each with a neighbour at the distance of rounding.
 pub(super) struct Points {
     all: Vec<[Vec<f64>; 2]>,
@@ -58,6 +66,10 @@ impl Points {
 
         let places: Vec<Expr> = domains.iter().map(|&(symbol, _)| symbol).collect();
         let places: Vec<SymbolId> = ids(graph, &places);
+        let quaternions = mechanism.frames.iter().filter_map(|frame| frame.quaternion);
+        let quaternions: Vec<Vec<SymbolId>> = quaternions
+            .map(|e| ids(graph, &e.map(|q| symbols.coordinates[q.index()])))
+            .collect();
         let mut all = Vec::with_capacity(MOST);
         for _ in 0..MOST {
             let mut point = vec![f64::NAN; graph.symbol_count()];
@@ -67,6 +79,10 @@ impl Points {
                 let change = random.between([-DISTURBANCE, DISTURBANCE]);
                 point[place.0 as usize] = value;
                 neighbour[place.0 as usize] = value * (1.0 + change);
+            }
+            for quaternion in &quaternions {
+                normalise(&mut point, quaternion);
+                normalise(&mut neighbour, quaternion);
             }
             all.push([point, neighbour]);
         }

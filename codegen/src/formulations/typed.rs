@@ -4,8 +4,8 @@ use appell_spec::mechanism::Mechanism;
 
 use super::Judge;
 use super::comparison::{Agreement, Pair};
+use crate::mechanics::Derivation;
 use crate::mechanics::algebra::Algebra;
-use crate::mechanics::{Derivation, seed};
 use crate::symbolic::Expr;
 
 /// How typed equations compare with the derived ones.
@@ -29,7 +29,7 @@ pub fn compare_typed(
     typed: &[(usize, Expr)],
 ) -> Typed {
     let graph = derivation.algebra.graph.clone();
-    let mut algebra = Algebra::new(graph, &derivation.symbols, seed(mechanism));
+    let mut algebra = Algebra::new(graph, mechanism, &derivation.symbols);
     let mut judge = Judge::new(mechanism, derivation);
     let accelerations = &derivation.motion.accelerations;
     let derived = [accelerations.as_slice(), &derivation.coordinate_rates].concat();

@@ -7,6 +7,7 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
 use super::finding::{Finding, Item, Outcome};
+use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
 
 /// Expressions that a derivation may hold.
@@ -44,13 +45,21 @@ pub struct Algebra {
     derivatives: Vec<(SymbolId, Derivatives)>,
     /// What is known of unknowns that no formula gives; taken out while it serves.
     pub(super) relations: Vec<Relation>,
+    /// Unit quaternions, the scalar part first.
+    pub(super) quaternions: Vec<[Expr; 4]>,
 }
 
 impl Algebra {
-    /// Tools for the expressions in `graph`.
-    pub fn new(graph: Graph, symbols: &Symbols, seed: u64) -> Self {
+    /// Tools for the expressions in `graph`, whose symbols are those of a mechanism.
+    pub fn new(graph: Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
         let coordinates = ids(&graph, &symbols.coordinates);
-        let mut test = IdentityTest::new(seed);
+        let quaternions = quaternions(mechanism);
+        let quaternions = quaternions.map(|places| places.map(|place| symbols.coordinates[place]));
+        let quaternions: Vec<[Expr; 4]> = quaternions.collect();
+        let of_symbols = quaternions
+            .iter()
+            .filter_map(|e| ids(&graph, e).try_into().ok());
+        let mut test = IdentityTest::new(seed(mechanism)).with_quaternions(of_symbols.collect());
         if let Some(pi) = graph.as_symbol(symbols.pi) {
             test = test.with_pi(pi);
         }
@@ -61,6 +70,7 @@ impl Algebra {
             coordinates,
             derivatives: Vec::new(),
             relations: Vec::new(),
+            quaternions,
         }
     }
 
@@ -119,8 +129,27 @@ impl Algebra {
         if let Some(expanded) = self.graph.expand(best, MOST_TERMS) {
             best = self.graph.shorter(best, expanded);
         }
+        best = self.with_unit_norms(best);
         let factored = self.graph.take_out_common_factors(best);
         self.graph.shorter(best, factored)
+    }
+
+    /// The same value where quaternions have norm 1, if that is shorter: w² = 1 − x² − y² − z².
+    fn with_unit_norms(&mut self, mut expr: Expr) -> Expr {
+        for quaternion in self.quaternions.clone() {
+            let symbols = ids(&self.graph, &quaternion);
+            if !self.graph.mentions(expr, &symbols) {
+                continue;
+            }
+            let [scalar, vector @ ..] = quaternion;
+            let squares = vector.map(|component| self.graph.square(component));
+            let sum = self.graph.sum(&squares);
+            let rest = self.graph.sub(Graph::ONE, sum);
+            if let Some(reduced) = self.graph.with_square(expr, scalar, rest, MOST_TERMS) {
+                expr = self.graph.shorter(expr, reduced);
+            }
+        }
+        expr
     }
 
     /// The same value in another form, where fewer divisors remain and no more operations: what an
@@ -202,6 +231,7 @@ impl Algebra {
     pub fn written_out(&mut self, expr: Expr, parts: &[(Expr, Expr)]) -> Option<Expr> {
         let plain = Substitution::of_parts(&self.graph, parts).apply(&mut self.graph, expr)?;
         let expanded = self.graph.expand(plain, MOST_TERMS)?;
+        let expanded = self.with_unit_norms(expanded);
         Some(self.graph.nest(expanded))
     }
 

@@ -334,6 +334,8 @@ fn moving(mechanism: &Mechanism, root: PointId) -> Vec<CoordinateId> {
                 .turns
                 .iter()
                 .for_each(|turn| turn.angle.visit(&mut see));
+            let quaternion = turned.quaternion.into_iter().flatten();
+            quaternion.for_each(|q| see(Quantity::Coordinate(q)));
             frame = turned.parent;
         }
     }

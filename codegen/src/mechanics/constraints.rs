@@ -11,6 +11,7 @@ use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
 use super::kinematics::{Effort, Kinematics, root_of};
+use super::quaternion::is_norm;
 use super::redundancy::leave_out;
 use super::row::{Reaction, Row};
 use super::symbols::Symbols;
@@ -98,7 +99,8 @@ pub fn constraints(
     warnings.extend(auxiliary.findings(mechanism, &rows, &names));
     let (mut reactions, mut reported) = (Vec::new(), Vec::new());
     for (index, (place, name)) in places.into_iter().zip(names).enumerate() {
-        let told = auxiliary.tells(index);
+        let is_norm = matches!(place, Place::Constraint(id) if is_norm(mechanism, id));
+        let told = auxiliary.tells(index) && !is_norm;
         reported.push(told.then_some(reactions.len()));
         reactions.extend(told.then(|| place.reaction(mechanism, name)));
     }

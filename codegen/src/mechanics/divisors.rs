@@ -13,10 +13,10 @@ use super::symbols::Symbols;
 use crate::symbolic::{Graph, Node};
 
 /// One finding per item that divides by zero.
-pub fn findings(mechanism: &Mechanism, seed: u64) -> Vec<Finding> {
+pub fn findings(mechanism: &Mechanism) -> Vec<Finding> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, &symbols, seed);
+    let mut algebra = Algebra::new(graph, mechanism, &symbols);
     let mut items: Vec<Item> = Vec::new();
     for (item, expr) in expressions(mechanism) {
         if items.last() != Some(&item) && divides_by_zero(&mut algebra, &symbols, expr) {

@@ -8,10 +8,13 @@ use super::constraints::Constraints;
 use super::cramer::{self, Block};
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::kinematics::{Effort, Kinematics};
+use super::motions::motions;
+use super::quaternion::{is_norm, quaternions, rates as rates_of};
 use super::rank::{LinearRow, Standing, standings};
 use super::row::Row;
 use super::symbols::{Symbols, ids};
-use crate::symbolic::{Expr, Graph, Intervals, Substitution, SymbolId};
+use crate::symbolic::{Expr, Graph, Intervals, Substitution, SymbolId, vector};
 
 /// The generalised velocities in terms of the pseudo-velocities.
 #[derive(Debug, Clone)]
@@ -95,8 +98,11 @@ pub fn eliminate(
     }
 
     let mut equations = Vec::new();
-    for (index, speed) in mechanism.pseudo_velocities.iter().enumerate() {
-        equations.push(definition(algebra, symbols, index, &speed.definition)?);
+    for (index, value) in definitions(algebra, mechanism, symbols)?
+        .into_iter()
+        .enumerate()
+    {
+        equations.push(definition(algebra, symbols, index, value));
     }
     for (index, row) in constraints.rows.iter().enumerate() {
         if !row.is_active() {
@@ -116,18 +122,38 @@ pub fn eliminate(
         });
     }
     check_count(mechanism, constraints, equations.len())?;
+    let quaternions: Vec<[usize; 4]> = quaternions(mechanism).collect();
+    equations.retain(|equation| {
+        equation
+            .row
+            .is_none_or(|row| !is_norm(mechanism, constraints.rows[row].constraint))
+    });
+    for equation in &mut equations {
+        turn_unknowns(algebra, symbols, &quaternions, &mut equation.coefficients);
+    }
 
     let given = equations
         .iter()
         .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
     let given: Vec<LinearRow> = given.collect();
-    let solved = solve(algebra, equations, symbols, intervals);
-    let Some((violating, violated)) = solved else {
+    // In the place of the rates of a vector part its angular velocity is unknown; its scalar part has no unknown.
+    let open = (0..mechanism.coordinates.len())
+        .filter(|column| !quaternions.iter().any(|[scalar, ..]| scalar == column));
+    let solved = solve(algebra, equations, open.collect(), symbols, intervals);
+    let Some((mut violating, violated)) = solved else {
         let (speeds, rows) = given.split_at(mechanism.pseudo_velocities.len());
         let names = constraints.rows.iter().filter(|row| row.is_active());
         let names: Vec<&str> = names.map(|row| row.name.as_str()).collect();
         return Err(untold_velocities(algebra, mechanism, &names, rows, speeds));
     };
+    for places in &quaternions {
+        let [_, x, y, z] = *places;
+        let omega = [violating[x], violating[y], violating[z]];
+        let e = places.map(|place| symbols.coordinates[place]);
+        for (place, rate) in places.iter().zip(rates_of(&mut algebra.graph, e, omega)) {
+            violating[*place] = rate;
+        }
+    }
     let mut no_violation = Substitution::by_zero(&algebra.graph, &violation_rates);
     let mut allowed = |exprs: &[Expr]| -> Outcome<Vec<Expr>> {
         let allowed = no_violation.apply_all(&mut algebra.graph, exprs);
@@ -242,20 +268,67 @@ impl OpenSystem {
     }
 }
 
-/// The definition of a pseudo-velocity as an equation for q̇.
-fn definition(
+/// What the spec defines the pseudo-velocities by, with symbols for q̇.
+pub fn definitions(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Outcome<Vec<Expr>> {
+    let rates = &symbols.rates;
+    let lowering = Lowering { symbols, rates };
+    let speeds = mechanism.pseudo_velocities.entries();
+    let lowered = speeds.map(|(id, speed)| {
+        let value = lowering.lower(&mut algebra.graph, &speed.definition);
+        value.map_err(|_| vec![division_by_zero(Item::PseudoVelocity(id))])
+    });
+    let values = lowered.collect::<Outcome<Vec<Expr>>>()?;
+    if !symbols.motions.iter().any(|&(_, named)| {
+        values.iter().any(|&value| {
+            algebra
+                .graph
+                .mentions(value, &ids(&algebra.graph, &[named]))
+        })
+    }) {
+        return Ok(values);
+    }
+    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain)?;
+    let Some(mut told) = motions(algebra, mechanism, symbols, &kinematics) else {
+        return Ok(values);
+    };
+    told.apply_all(&mut algebra.graph, &values)
+        .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+}
+
+/// Coefficients of the rates of quaternions as those of angular velocities, which stand where the rates of the vector
+/// parts were.
+fn turn_unknowns(
     algebra: &mut Algebra,
     symbols: &Symbols,
-    index: usize,
-    definition: &appell_spec::expr::Expr,
-) -> Outcome<Equation> {
-    let lowering = Lowering {
-        symbols,
-        rates: &symbols.rates,
-    };
-    let value = lowering
-        .lower(&mut algebra.graph, definition)
-        .map_err(|_| vec![division_by_zero(Item::PseudoVelocity(SpeedId::new(index)))])?;
+    quaternions: &[[usize; 4]],
+    coefficients: &mut [Expr],
+) {
+    for places in quaternions {
+        let of_rates = places.map(|place| coefficients[place]);
+        if of_rates == [Graph::ZERO; 4] {
+            continue;
+        }
+        let e = places.map(|place| symbols.coordinates[place]);
+        coefficients[places[0]] = Graph::ZERO;
+        for axis in 0..3 {
+            let unit = rates_of(&mut algebra.graph, e, vector::IDENTITY[axis]);
+            let parts: Vec<Expr> = of_rates
+                .iter()
+                .zip(unit)
+                .map(|(&a, b)| algebra.graph.mul(a, b))
+                .collect();
+            let sum = algebra.graph.sum(&parts);
+            coefficients[places[axis + 1]] = algebra.shortest(sum);
+        }
+    }
+}
+
+/// The definition of a pseudo-velocity as an equation for q̇.
+fn definition(algebra: &mut Algebra, symbols: &Symbols, index: usize, value: Expr) -> Equation {
     let mut coefficients = Vec::with_capacity(symbols.rates.len());
     let mut parts = vec![symbols.speeds[index], algebra.graph.neg(value)];
     for &rate in &symbols.rates {
@@ -266,11 +339,11 @@ fn definition(
     // ω minus what the definition holds besides the generalised velocities.
     let right = algebra.graph.sum(&parts);
     let right = algebra.shortest(right);
-    Ok(Equation {
+    Equation {
         row: None,
         coefficients,
         right,
-    })
+    }
 }
 
 fn check_count(mechanism: &Mechanism, constraints: &Constraints, equations: usize) -> Outcome<()> {
@@ -342,11 +415,11 @@ struct Solved {
 fn solve(
     algebra: &mut Algebra,
     mut equations: Vec<Equation>,
+    mut open: Vec<usize>,
     symbols: &Symbols,
     intervals: &mut Intervals,
 ) -> Option<(Vec<Expr>, OpenSystem)> {
-    let count = equations.len();
-    let mut open: Vec<usize> = (0..count).collect();
+    let count = symbols.rates.len();
     let mut solved: Vec<Solved> = Vec::new();
     while let Some((row, column)) = safest_pivot(algebra, &equations, &open, intervals) {
         let Equation {

@@ -5,6 +5,7 @@ use appell_spec::mechanism::{FrameId, List, Mechanism};
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
+use super::quaternion::Attitude;
 use super::right_angles::sin_cos;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
@@ -33,6 +34,8 @@ struct Turn {
 struct Frame {
     parent: Option<FrameId>,
     turns: Vec<Turn>,
+    /// In the place of the turns.
+    attitude: Option<Attitude>,
     /// Angular velocity from the ground, in this frame.
     w: Vec3,
 }
@@ -74,10 +77,19 @@ impl Frames {
                 w[axis] = algebra.graph.add(w[axis], elementary.rate);
                 turns.push(elementary);
             }
+            let attitude = frame.quaternion.map(|quaternion| {
+                let [e, e_dot] = [&lowering.symbols.coordinates[..], lowering.rates]
+                    .map(|all| quaternion.map(|id| all[id.index()]));
+                let attitude = Attitude::new(algebra, e, e_dot);
+                w = attitude.into_child(&mut algebra.graph, w);
+                w = algebra.graph.add3(w, attitude.w);
+                attitude
+            });
             let w = algebra.shortest3(w);
             frames.push(Frame {
                 parent: frame.parent,
                 turns,
+                attitude,
                 w,
             });
         }
@@ -96,7 +108,11 @@ impl Frames {
     pub(super) fn rates(&mut self) -> impl Iterator<Item = &mut Expr> {
         self.frames.iter_mut().flat_map(|frame| {
             let turns = frame.turns.iter_mut().map(|turn| &mut turn.rate);
-            frame.w.iter_mut().chain(turns)
+            let attitudes = frame
+                .attitude
+                .iter_mut()
+                .flat_map(|attitude| &mut attitude.w);
+            frame.w.iter_mut().chain(turns).chain(attitudes)
         })
     }
 
@@ -112,6 +128,10 @@ impl Frames {
             for turn in self.frames[frame].turns.iter().rev() {
                 v[turn.axis] = graph.add(v[turn.axis], turn.rate);
                 v = turn.into_parent(graph, v);
+            }
+            if let Some(attitude) = &self.frames[frame].attitude {
+                v = graph.add3(v, attitude.w);
+                v = attitude.into_parent(graph, v);
             }
         }
         graph.add3(v, self.frames[to].w)
@@ -131,10 +151,16 @@ impl Frames {
             for turn in self.frames[frame].turns.iter().rev() {
                 v = turn.into_parent(graph, v);
             }
+            if let Some(attitude) = &self.frames[frame].attitude {
+                v = attitude.into_parent(graph, v);
+            }
         }
         for &frame in down[..down.len() - shared].iter().rev() {
             for turn in &self.frames[frame].turns {
                 v = turn.into_child(graph, v);
+            }
+            if let Some(attitude) = &self.frames[frame].attitude {
+                v = attitude.into_child(graph, v);
             }
         }
         v

@@ -135,7 +135,16 @@ fn translation(
     let named_velocity = named3(algebra, &format!("v_{name}"), velocity.v);
     let turning = algebra.graph.cross(w_frame, named_velocity);
     let bias = algebra.graph.add3(componentwise, turning);
-    let bias = algebra.shortest3(bias);
+    let mut bias = algebra.shortest3(bias);
+    if !algebra.quaternions.is_empty() {
+        // Norms of quaternions cancel where velocities are not hidden behind names.
+        let turning = algebra.graph.cross(w_frame, velocity.v);
+        let plain = algebra.graph.add3(componentwise, turning);
+        let plain = algebra.shortest3(plain);
+        if algebra.graph.operations(&plain) <= algebra.graph.operations(&bias) {
+            bias = plain;
+        }
+    }
     Translation {
         point: name.clone(),
         velocity,

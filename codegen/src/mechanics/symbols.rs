@@ -108,6 +108,9 @@ impl Named {
                 expr.visit(&mut see);
             }
         }
+        for speed in &mechanism.pseudo_velocities {
+            speed.definition.visit(&mut see);
+        }
         for output in &mechanism.outputs {
             output.value.visit(&mut see);
         }

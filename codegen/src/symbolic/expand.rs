@@ -113,6 +113,35 @@ impl Graph {
         Some(product)
     }
 
+    /// An expression multiplied out, with `value` in the place of the square of a symbol. `None` where a sum would
+    /// have more than `limit` terms.
+    pub fn with_square(
+        &mut self,
+        expr: Expr,
+        symbol: Expr,
+        value: Expr,
+        limit: usize,
+    ) -> Option<Expr> {
+        let expanded = self.expand(expr, limit)?;
+        let mut parts = Vec::new();
+        for term in self.terms(expanded) {
+            let factors = match self.node(term.expr) {
+                Node::Product(factors) => factors.to_vec(),
+                _ => Vec::new(),
+            };
+            let mut product = term.expr;
+            if let Some(factor) = factors.iter().find(|f| f.base == symbol && f.exponent > 1) {
+                let squares = factor.exponent / 2;
+                let taken = self.pow(symbol, -2 * squares);
+                let put = self.pow(value, squares);
+                product = self.product(&[product, taken, put]);
+            }
+            parts.push((term.coefficient, product));
+        }
+        let replaced = self.linear_combination(&parts);
+        self.expand(replaced, limit)
+    }
+
     /// The terms of an expression as a sum.
     pub(super) fn terms(&self, expr: Expr) -> Vec<Term> {
         match self.node(expr) {

@@ -22,6 +22,8 @@
 //!   skipped. Of a radicand that is never found to be a non-square, such as `a²`, the sign of the root
 //!   cannot be told apart from that of `a`: nothing is claimed about such expressions. Roots of numbers
 //!   are constants of the field, if only primes up to 31 occur in them.
+//! - **Unit quaternions.** If the test is told which symbols are the components of one, they are drawn from the
+//!   unit sphere, by its stereographic projection.
 //! - **Choice.** `otherwise + w (then - otherwise)`, where `w` is a random function of the difference
 //!   of the compared expressions. Linear in the branches; that `w² = w` is not known.
 //! - **Everything else** is a random function of the values of its arguments, odd where the function is
@@ -61,6 +63,7 @@ const MOST_POINTS_WITH_ROOTS: usize = 128;
 pub struct IdentityTest {
     seed: u64,
     pi: Option<SymbolId>,
+    quaternions: Vec<[SymbolId; 4]>,
     points: Vec<Point>,
     cones: Cones,
     /// For [`IdentityTest::independent_of`]: the first points with one symbol drawn again.
@@ -75,6 +78,7 @@ impl IdentityTest {
         Self {
             seed,
             pi: None,
+            quaternions: Vec::new(),
             points: Vec::new(),
             cones: Cones::default(),
             redrawn: FxHashMap::default(),
@@ -87,6 +91,17 @@ impl IdentityTest {
     pub fn with_pi(self, pi: SymbolId) -> Self {
         Self {
             pi: Some(pi),
+            quaternions: self.quaternions,
+            ..Self::new(self.seed)
+        }
+    }
+
+    /// The same test with symbols that are known to be the components of unit quaternions, scalar parts first.
+    #[must_use]
+    pub fn with_quaternions(self, quaternions: Vec<[SymbolId; 4]>) -> Self {
+        Self {
+            pi: self.pi,
+            quaternions,
             ..Self::new(self.seed)
         }
     }
@@ -96,6 +111,7 @@ impl IdentityTest {
     pub fn reseeded(&self, seed: u64) -> Self {
         Self {
             pi: self.pi,
+            quaternions: self.quaternions.clone(),
             ..Self::new(seed)
         }
     }
@@ -223,7 +239,7 @@ impl IdentityTest {
     /// `k` square roots at most halves the defined points and doubles the degree. So a trial errs with
     /// probability at most `4^k (D + m A) / s`, and two trials with its square.
     pub fn error_bound(&self, g: &Graph, e: Expr) -> f64 {
-        bound::per_trial(g, e)
+        bound::per_trial(g, e, &self.quaternions)
             .powi(i32::try_from(TRIALS).unwrap_or(1))
             .min(1.0)
     }
@@ -232,7 +248,8 @@ impl IdentityTest {
     fn value(&mut self, g: &Graph, index: usize, e: Expr) -> Option<Element> {
         while self.points.len() <= index {
             let key = keyed(self.seed, self.points.len() as u64, [0, 0]).get();
-            self.points.push(Point::new(key, self.pi));
+            self.points
+                .push(Point::new(key, self.pi, self.quaternions.clone()));
         }
         self.points[index].evaluate(g, e, None)
     }

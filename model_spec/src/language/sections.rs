@@ -239,6 +239,12 @@ pub static SECTIONS: &[Section] = &[
                     Need::Way(1),
                     "Several rotations, starting from the parent.",
                 ),
+                key(
+                    "quaternion",
+                    Form::Quaternion,
+                    Need::Way(2),
+                    "Orientation without a singularity: scalar part and vector part of a unit quaternion.",
+                ),
                 ABOUT,
             ],
             None,

@@ -47,18 +47,19 @@ impl Reader<'_> {
                 Some(ValueAst::Matrix(Box::new([a, b, c])))
             }
             Form::TwoPoints => {
-                let [a, b] = self.elements::<2>(value, "the names of two points")?;
-                let names = [a, b].map(|v| {
-                    let name = self.string(v, "the name of a point")?;
-                    Some(Spanned {
-                        value: name.to_owned(),
-                        span: v.span(),
-                    })
-                });
-                let [Some(a), Some(b)] = names else {
+                let names = self.elements::<2>(value, "the names of two points")?;
+                let [Some(a), Some(b)] = names.map(|v| self.named(v, "the name of a point")) else {
                     return None;
                 };
                 Some(ValueAst::Pair([a, b]))
+            }
+            Form::Quaternion => {
+                let names = self.elements::<4>(value, "the names of four coordinates")?;
+                let names = names.map(|v| self.named(v, "the name of a coordinate"));
+                let [Some(a), Some(b), Some(c), Some(d)] = names else {
+                    return None;
+                };
+                Some(ValueAst::Four(Box::new([a, b, c, d])))
             }
             Form::Word(words) => self.word(key, words, value).map(ValueAst::Word),
             Form::Flag => self.flag(value).map(ValueAst::Flag),
@@ -101,6 +102,14 @@ impl Reader<'_> {
             self.wrong_type(value, "`true` or `false`");
         }
         flag
+    }
+
+    fn named(&mut self, value: &TomlValue<'_>, wanted: &str) -> Option<Spanned<String>> {
+        let name = self.string(value, wanted)?;
+        Some(Spanned {
+            value: name.to_owned(),
+            span: value.span(),
+        })
     }
 
     fn string<'v>(&mut self, value: &'v TomlValue<'_>, wanted: &str) -> Option<&'v str> {

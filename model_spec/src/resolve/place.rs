@@ -104,7 +104,10 @@ impl Place {
     /// A named expression.
     pub(super) const DEFINITION: Self = Self::new("a definition", u8::MAX, Smooth::Any);
     /// Definition of a pseudo-velocity.
-    pub(super) const SPEED: Self = Self::linear("a pseudo-velocity");
+    pub(super) const SPEED: Self = Self {
+        allows: COORDINATES | RATES | TIME | MOTIONS,
+        ..Self::linear("a pseudo-velocity")
+    };
     /// Velocity along which a force acts.
     pub(super) const ALONG: Self = Self {
         allows: COORDINATES | RATES | SPEEDS | TIME | MOTIONS,

@@ -24,13 +24,16 @@ impl<'a> Resolver<'a> {
             about: "inertial frame".to_owned(),
             parent: None,
             turns: Vec::new(),
+            quaternion: None,
             line: 0,
             span: 0..0,
         }];
         for item in ordered {
             let parent = self.reference(item, "parent");
+            let quaternion = self.quaternion(item);
             let turns = match item.entry("turns").map(|e| &e.value) {
                 Some(ValueAst::Tables(turns)) => turns.iter().map(|t| self.turn(t)).collect(),
+                _ if item.entry("quaternion").is_some() => Vec::new(),
                 _ => vec![self.turn(item)],
             };
             frames.push(Frame {
@@ -38,6 +41,7 @@ impl<'a> Resolver<'a> {
                 about: Self::about(item),
                 parent: Some(parent),
                 turns,
+                quaternion,
                 line: self.line(&item.name.span),
                 span: item.name.span.clone(),
             });

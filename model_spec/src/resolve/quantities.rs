@@ -4,7 +4,7 @@ use num_rational::BigRational;
 
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Expr, Quantity, Span};
+use crate::expr::{Expr, Motion, Quantity, Span};
 use crate::ids::{CoordinateId, InputId, ParameterId, SignalId};
 use crate::language::Sense;
 use crate::mechanism::{
@@ -416,6 +416,7 @@ fn natural_unit(dimension: Dimension, value: &Expr, coordinates: &[Coordinate]) 
                 .get(id.index())
                 .is_some_and(|c| c.label.unit.is_angle());
         }
+        of_angles |= matches!(quantity, Quantity::Motion(Motion::AngularVelocity(..)));
     });
     let mut unit = Unit::si(dimension);
     if of_angles && Dimension::NONE.rate() == Ok(dimension) {

@@ -31,6 +31,8 @@ pub(super) struct Resolver<'a> {
     pub(super) loads: BTreeMap<&'a str, usize>,
     /// The forces of constraints and loads, by index; `None` until they are known.
     pub(super) reacting: Vec<Option<Acting>>,
+    /// Coordinates that are components of quaternions.
+    pub(super) in_quaternions: Vec<crate::ids::CoordinateId>,
     pub(super) acting: Vec<Option<Acting>>,
     /// Largest polynomial degree since it was last set to zero.
     pub(super) largest_size: u32,
@@ -60,6 +62,7 @@ impl<'a> Resolver<'a> {
             constraints: BTreeMap::new(),
             loads: BTreeMap::new(),
             reacting: Vec::new(),
+            in_quaternions: Vec::new(),
             acting: Vec::new(),
             largest_size: 0,
             told: BTreeMap::new(),

@@ -22,7 +22,6 @@ use appell_codegen::mechanics::finding::{Item, Outcome, division_by_zero};
 use appell_codegen::mechanics::frames::FrameVector;
 use appell_codegen::mechanics::kinematics::{Effort, Kinematics};
 use appell_codegen::mechanics::loads::{Acts, applied_loads};
-use appell_codegen::mechanics::seed;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::symbolic::vector::Vec3;
 use appell_codegen::symbolic::{Evaluation, Expr, Graph, SymbolId};
@@ -100,7 +99,7 @@ pub fn film(
 ) -> Outcome<Film> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, &symbols, seed(mechanism));
+    let mut algebra = Algebra::new(graph, mechanism, &symbols);
     let kinematics = Kinematics::new(
         &mut algebra,
         mechanism,

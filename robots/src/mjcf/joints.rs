@@ -1,30 +1,15 @@
-//! Hinges and slides.
+//! Hinges, slides, balls, and bodies that are free.
 
 use appell_spec::{Code, did_you_mean};
 use roxmltree::Attribute;
 
 use crate::model::{Joint, Motion};
 use crate::rotation::{Vector, unit};
-use crate::xml::{Element, children, exactly, tag};
+use crate::xml::{Element, child, children, exactly, tag};
 
-use super::{Level, Reader};
+use super::Reader;
 
 impl<'x> Reader<'x, '_> {
-    /// A base that floats is not for this stage.
-    pub(super) fn no_free_joint(&self, body: Element<'x>, level: Level<'x>) {
-        for element in children(body, "freejoint") {
-            self.findings.error(
-                Code::NotAllowedHere,
-                tag(element),
-                "a free joint: floating bases are not imported yet",
-                match level.parent {
-                    None => "remove the joint to have the base fixed to the ground",
-                    Some(_) => "free joints stand in bodies of the world alone",
-                },
-            );
-        }
-    }
-
     /// The joints of a body, in the order in which they move it.
     pub(super) fn joints(
         &self,
@@ -32,6 +17,10 @@ impl<'x> Reader<'x, '_> {
         name: &str,
         class: Option<&'x str>,
     ) -> Vec<Joint> {
+        if let Some(free) = child(body, "freejoint") {
+            let name = free.attribute("name").unwrap_or(name).to_owned();
+            return vec![Joint::without_axis(name, Motion::Free, [0.0; 3])];
+        }
         let elements: Vec<Element<'x>> = children(body, "joint").collect();
         let count = elements.len();
         let joints = elements.into_iter().enumerate();
@@ -63,10 +52,14 @@ impl<'x> Reader<'x, '_> {
             exactly::<3>(self.findings, &given, what)
         };
         let kind = attribute("type");
-        let motion = self.motion(element, &name, kind)?;
+        let motion = self.motion(element, kind)?;
+        if !motion.has_axis() {
+            let anchor = vector("pos", "a position, x y z,").unwrap_or_default();
+            return Some(Joint::without_axis(name, motion, anchor));
+        }
         let angle = |value: f64| match motion {
             Motion::Turning => self.compiler.angles.radians(value),
-            Motion::Sliding => value,
+            _ => value,
         };
         if let Some(given) = attribute("springdamper")
             && given
@@ -119,12 +112,7 @@ impl<'x> Reader<'x, '_> {
         })
     }
 
-    fn motion(
-        &self,
-        element: Element<'x>,
-        name: &str,
-        kind: Option<Attribute<'_, '_>>,
-    ) -> Option<Motion> {
+    fn motion(&self, element: Element<'x>, kind: Option<Attribute<'_, '_>>) -> Option<Motion> {
         let Some(kind) = kind else {
             return Some(Motion::Turning);
         };
@@ -135,21 +123,8 @@ impl<'x> Reader<'x, '_> {
         match kind.value() {
             "hinge" => Some(Motion::Turning),
             "slide" => Some(Motion::Sliding),
-            other @ ("free" | "ball") => {
-                let (what, help) = match other {
-                    "free" => (
-                        "free: floating bases are",
-                        "remove the joint to have the base fixed to the ground",
-                    ),
-                    _ => (
-                        "a ball joint: these are",
-                        "three hinges at one place turn likewise, away from their pole",
-                    ),
-                };
-                let message = format!("joint `{name}` is {what} not imported yet");
-                self.findings.error(Code::NotAllowedHere, at, message, help);
-                None
-            }
+            "ball" => Some(Motion::Ball),
+            "free" => Some(Motion::Free),
             other => {
                 let kinds = ["hinge", "slide", "ball", "free"];
                 self.findings.error(

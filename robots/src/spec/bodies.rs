@@ -9,6 +9,23 @@ use super::{Writer, plus};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// A frame that is turned from its parent, by axes and angles.
+fn turned(parent: &str, turns: &[(String, String)]) -> Item {
+    let turn = |(axis, by): &(String, String)| {
+        Item::default()
+            .text("about_axis", axis)
+            .expression("by", by)
+    };
+    let item = Item::default().text("parent", parent);
+    match turns {
+        [(axis, by)] => item.text("about_axis", axis).expression("by", by),
+        several => {
+            let tables: Vec<String> = several.iter().map(|one| turn(one).table()).collect();
+            item.raw("turns", &format!("[{}]", tables.join(", ")))
+        }
+    }
+}
+
 impl Writer<'_> {
     /// A number that belongs to a link or a joint, as an expression.
     fn number(&mut self, number: Number<'_>) -> String {
@@ -84,14 +101,63 @@ impl Writer<'_> {
     /// The frame of a body. One that does not turn against its parent has that of the parent.
     pub(super) fn frame(&mut self, index: usize) {
         let body = self.at(index);
-        let link = self.links[body.link].name.clone();
         let called = self.called.links[body.link].clone();
         let parent = self.frame_of(body.parent);
+        if !body.joint.motion.has_axis() {
+            self.quaternion_frame(index, &called, &parent);
+            return;
+        }
         let turning = body.joint.motion == Motion::Turning;
         if body.turns.is_empty() && !turning {
             self.called.frames.push(parent);
             return;
         }
+        let mut turns = self.constant_turns(index, &parent);
+        if turning {
+            let sign = if body.axis.backwards { "-" } else { "" };
+            let by = plus(
+                &self.called.coordinates[index],
+                &quantity(body.offset, "rad"),
+            );
+            turns.push((format!("{sign}{}", AXES[body.axis.index]), by));
+        }
+        let item = turned(&parent, &turns);
+        let item = if body.keeps_axes {
+            item
+        } else {
+            let along = format!(
+                "{} points along the axis of the joint, other than in the file",
+                AXES[body.axis.index]
+            );
+            item.text("about", &along)
+        };
+        self.frames.add(&called, &item);
+        self.called.frames.push(called);
+    }
+
+    /// The frame of a body that turns about every axis, on one that stands still beside it if it is turned there.
+    fn quaternion_frame(&mut self, index: usize, called: &str, parent: &str) {
+        let turns = self.constant_turns(index, parent);
+        let mut parent = parent.to_owned();
+        if !turns.is_empty() {
+            let mount = self.places.new_one(&format!("mount_{called}"));
+            self.frames.add(&mount, &turned(&parent, &turns));
+            parent = mount;
+        }
+        let quaternion = self.called.several[index].iter().rev().take(4).rev();
+        let quaternion: Vec<String> = quaternion.map(|name| crate::table::quoted(name)).collect();
+        let item = Item::default()
+            .text("parent", &parent)
+            .raw("quaternion", &format!("[{}]", quaternion.join(", ")));
+        self.frames.add(called, &item);
+        self.called.frames.push(called.to_owned());
+    }
+
+    /// Turns of a body's frame that do not change, each an axis and an angle.
+    fn constant_turns(&mut self, index: usize, parent: &str) -> Vec<(String, String)> {
+        let body = self.at(index);
+        let link = self.links[body.link].name.clone();
+        let called = self.called.links[body.link].clone();
         let mut turns: Vec<(String, String)> = Vec::new();
         for (count, turn) in body.turns.iter().enumerate() {
             let (value, axis) =
@@ -116,38 +182,7 @@ impl Writer<'_> {
             };
             turns.push((axis, by));
         }
-        if turning {
-            let sign = if body.axis.backwards { "-" } else { "" };
-            let by = plus(
-                &self.called.coordinates[index],
-                &quantity(body.offset, "rad"),
-            );
-            turns.push((format!("{sign}{}", AXES[body.axis.index]), by));
-        }
-        let turn = |(axis, by): &(String, String)| {
-            Item::default()
-                .text("about_axis", axis)
-                .expression("by", by)
-        };
-        let item = Item::default().text("parent", &parent);
-        let item = match turns.as_slice() {
-            [(axis, by)] => item.text("about_axis", axis).expression("by", by),
-            several => {
-                let tables: Vec<String> = several.iter().map(|one| turn(one).table()).collect();
-                item.raw("turns", &format!("[{}]", tables.join(", ")))
-            }
-        };
-        let item = if body.keeps_axes {
-            item
-        } else {
-            let along = format!(
-                "{} points along the axis of the joint, other than in the file",
-                AXES[body.axis.index]
-            );
-            item.text("about", &along)
-        };
-        self.frames.add(&called, &item);
-        self.called.frames.push(called);
+        turns
     }
 
     /// The point of a body: the origin of its link, or a point of the axis.
@@ -155,6 +190,15 @@ impl Writer<'_> {
         let body = self.at(index);
         let link = self.links[body.link].name.clone();
         let called = self.called.links[body.link].clone();
+        if body.joint.motion == Motion::Free {
+            let item = Item::default()
+                .text("from", "O")
+                .text("in", "ground")
+                .expressions("at", &self.called.several[index][..3]);
+            self.points.add(&called, &item);
+            self.called.points.push(called);
+            return;
+        }
         let origin = body.joint.motion == Motion::Sliding || is_zero(body.joint.anchor);
         let name = if origin {
             called.clone()

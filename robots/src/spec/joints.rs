@@ -30,7 +30,8 @@ impl Units {
                 stiffness: "N*m",
                 inertia: "kg*m^2",
             },
-            Motion::Sliding => Self {
+            // What has several coordinates has no unit of its own.
+            Motion::Sliding | Motion::Ball | Motion::Free => Self {
                 coordinate: "m",
                 rate: "m/s",
                 force: "N",
@@ -66,6 +67,10 @@ impl Writer<'_> {
     /// The coordinate of a joint, its speed, its input, and what resists it.
     pub(super) fn joint(&mut self, index: usize) {
         let joint = &self.tree.bodies[index].joint;
+        if !joint.motion.has_axis() {
+            self.several_coordinates(index);
+            return;
+        }
         let q = self.called.coordinates[index].clone();
         let units = Units::of(joint.motion);
         let rate = format!("dot({q})");
@@ -166,6 +171,59 @@ impl Writer<'_> {
         }
     }
 
+    /// The coordinates of a body that turns about every axis, and moves anywhere or does not.
+    fn several_coordinates(&mut self, index: usize) {
+        let body = &self.tree.bodies[index];
+        let named = sentence(&format!("joint {}", body.joint.name));
+        let is_free = body.joint.motion == Motion::Free;
+        let place = body.start.position.map(|value| (value, "m"));
+        // A ball joint begins as its file has it.
+        let attitude = if is_free {
+            body.start.rotation.to_quaternion()
+        } else {
+            [1.0, 0.0, 0.0, 0.0]
+        };
+        let attitude = attitude.map(|value| (value, "1"));
+        let values = place[if is_free { 0 } else { 3 }..].iter().chain(&attitude);
+        for (name, &(value, unit)) in self.called.several[index].iter().zip(values) {
+            let item = Item::default().text("unit", unit).text("about", &named);
+            let item = if value == 0.0 {
+                item
+            } else {
+                item.raw("initial", &plain(value))
+            };
+            self.coordinates.add(name, &item);
+        }
+    }
+
+    /// Their speeds: those of the place in the ground, and the angular velocity from what carries the joint, in the
+    /// frame of the body.
+    fn several_speeds(&mut self, index: usize) {
+        let body = &self.tree.bodies[index];
+        let q = self.called.coordinates[index].clone();
+        if body.joint.motion == Motion::Free {
+            for (axis, name) in ["x", "y", "z"]
+                .iter()
+                .zip(self.called.several[index].clone())
+            {
+                let speed = self.quantities.new_one(&format!("v_{q}_{axis}"));
+                let item = Item::default().text("value", &format!("dot({name})"));
+                self.speeds.add(&speed, &item.text("unit", "m/s"));
+            }
+        }
+        let own = self.called.frames[index].clone();
+        for axis in ["x", "y", "z"] {
+            let of = |frame: &str| format!("angular_velocity({frame}, {axis}, {own})");
+            let value = match body.parent.map(|parent| &self.called.frames[parent]) {
+                Some(parent) => format!("{} - {}", of(&own), of(parent)),
+                None => of(&own),
+            };
+            let speed = self.quantities.new_one(&format!("w_{q}_{axis}"));
+            let item = Item::default().text("value", &value);
+            self.speeds.add(&speed, &item.text("unit", "rad/s"));
+        }
+    }
+
     fn coordinate(&mut self, joint: &Joint, q: &str, units: &Units) {
         let item = Item::default().text("unit", units.coordinate);
         let item = if joint.name == q {
@@ -201,7 +259,7 @@ impl Writer<'_> {
         let (by, inertia) = match joint.motion {
             Motion::Turning => (q.to_owned(), inertia),
             // A turn of a radian a metre.
-            Motion::Sliding => (format!("{q}/(1 [m])"), format!("{inertia}*(1 [m])^2")),
+            _ => (format!("{q}/(1 [m])"), format!("{inertia}*(1 [m])^2")),
         };
         let item = Item::default()
             .text("parent", "ground")
@@ -233,7 +291,7 @@ impl Writer<'_> {
             self.tree
                 .bodies
                 .iter()
-                .position(|body| body.joint.name == name)
+                .position(|body| body.joint.motion.has_axis() && body.joint.name == name)
         };
         let mut follows = vec![false; self.tree.bodies.len()];
         for coupling in couplings {
@@ -296,7 +354,9 @@ impl Writer<'_> {
             );
         }
         for (index, body) in self.tree.bodies.iter().enumerate() {
-            if !follows[index] {
+            if !body.joint.motion.has_axis() {
+                self.several_speeds(index);
+            } else if !follows[index] {
                 let q = &self.called.coordinates[index];
                 let name = self.quantities.new_one(&format!("v_{q}"));
                 let item = Item::default().text("value", &format!("dot({q})"));

@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::super::field::PRIME;
-use super::super::{Expr, Function, Graph, Node, Rational};
+use super::super::{Expr, Function, Graph, Node, Rational, SymbolId};
 
 /// Degrees of numerator and denominator.
 #[derive(Debug, Clone, Copy)]
@@ -20,6 +20,12 @@ impl Degree {
     const DRAWN: Self = Self {
         over: 1.0,
         under: 0.0,
+    };
+
+    /// A component of a unit quaternion, by stereographic projection.
+    const ON_SPHERE: Self = Self {
+        over: 2.0,
+        under: 2.0,
     };
 
     fn total(self) -> f64 {
@@ -56,7 +62,7 @@ impl Degree {
 
 /// Bound on the probability that one trial takes `root` for zero; see
 /// [`IdentityTest::error_bound`](super::IdentityTest::error_bound).
-pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
+pub(super) fn per_trial(g: &Graph, root: Expr, quaternions: &[[SymbolId; 4]]) -> f64 {
     let order = g.in_order(&[root]);
     let unit = finest_part(g, &order);
     let mut degrees: FxHashMap<Expr, Degree> = FxHashMap::default();
@@ -66,6 +72,9 @@ pub(super) fn per_trial(g: &Graph, root: Expr) -> f64 {
         let of = |e: Expr| degrees[&e];
         let degree = match g.node(expr) {
             Node::Number(_) => Degree::CONSTANT,
+            Node::Symbol(symbol) if quaternions.iter().flatten().any(|s| s == symbol) => {
+                Degree::ON_SPHERE
+            }
             Node::Symbol(_) => Degree::DRAWN,
             Node::Named(id) => of(g.definition(*id).value),
             Node::Sum(terms) => Degree::sum(terms.iter().map(|t| of(t.expr))),

@@ -54,6 +54,8 @@ pub(super) struct Point {
     key: u64,
     /// The symbol that stands for π.
     pi: Option<SymbolId>,
+    /// Symbols that are components of unit quaternions.
+    quaternions: Vec<[SymbolId; 4]>,
     cells: Vec<Cell>,
     rotations: FxHashMap<Expr, Option<Rotation>>,
     solutions: FxHashMap<u32, Option<Box<[Element]>>>,
@@ -79,10 +81,11 @@ pub(super) fn symbol_bit(symbol: SymbolId) -> u64 {
 }
 
 impl Point {
-    pub(super) fn new(key: u64, pi: Option<SymbolId>) -> Self {
+    pub(super) fn new(key: u64, pi: Option<SymbolId>, quaternions: Vec<[SymbolId; 4]>) -> Self {
         Self {
             key,
             pi,
+            quaternions,
             cells: Vec::new(),
             rotations: FxHashMap::default(),
             solutions: FxHashMap::default(),
@@ -94,7 +97,7 @@ impl Point {
 
     /// Another point with the same pseudo-random functions.
     pub(super) fn sibling(&self) -> Self {
-        Self::new(self.key, self.pi)
+        Self::new(self.key, self.pi, self.quaternions.clone())
     }
 
     /// The value of an expression; `None` where it has none at this point.
@@ -146,6 +149,28 @@ impl Point {
         }
     }
 
+    fn drawn(&self, tag: u64, symbol: SymbolId) -> Element {
+        keyed(self.key, tag, [u64::from(symbol.0), 0])
+    }
+
+    /// A component of a unit quaternion: (1 − s, 2 u) / (1 + s) with s = u · u for a vector u that is drawn.
+    fn on_sphere(&self, quaternion: &[SymbolId; 4], symbol: SymbolId) -> Option<Element> {
+        let [scalar, vector @ ..] = *quaternion;
+        let mut square = Element::ZERO;
+        for component in vector {
+            let u = self.drawn(tag::SYMBOL, component);
+            square = square + u * u;
+        }
+        let scale = (Element::ONE + square).inverse()?;
+        let numerator = if symbol == scalar {
+            Element::ONE - square
+        } else {
+            let u = self.drawn(tag::SYMBOL, symbol);
+            u + u
+        };
+        Some(numerator * scale)
+    }
+
     /// The value of a node whose parts are known.
     fn step(&mut self, g: &Graph, expr: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
         match g.node(expr) {
@@ -155,7 +180,10 @@ impl Point {
                     Some(redraw) if redraw.symbol == *symbol => tag::REDRAWN,
                     _ => tag::SYMBOL,
                 };
-                Some(keyed(self.key, tag, [u64::from(symbol.0), 0]))
+                match self.quaternions.iter().find(|e| e.contains(symbol)) {
+                    Some(quaternion) if tag == tag::SYMBOL => self.on_sphere(quaternion, *symbol),
+                    _ => Some(self.drawn(tag, *symbol)),
+                }
             }
             Node::Named(id) => self.part(g.definition(*id).value, redraw),
             Node::Sum(terms) => {

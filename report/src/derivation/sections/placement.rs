@@ -82,6 +82,16 @@ fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
             label.push(math(w.set(angle)));
             label.push(words(&format!(" about {}", axis(turn))));
         }
+        for (k, id) in mechanism.frames[frame]
+            .quaternion
+            .iter()
+            .flatten()
+            .enumerate()
+        {
+            label.push(words(if k > 0 { ", " } else { "quaternion " }));
+            let coordinate = w.derivation.symbols.coordinates[id.index()];
+            label.push(math(w.set(coordinate)));
+        }
         links.push((label, mechanism.frames[frame].name.clone()));
     }
     Block::Chain(Chain {

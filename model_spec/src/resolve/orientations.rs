@@ -1,0 +1,114 @@
+//! Orientations by unit quaternions: the four coordinates of a frame, and the constraint that keeps their norm.
+
+use num_rational::BigRational;
+
+use crate::ast::{ItemAst, ValueAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::expr::{BinaryOp, Expr, ExprKind, Quantity, Span};
+use crate::ids::CoordinateId;
+use crate::mechanism::{Constraint, ConstraintKind, Frame, Mechanism};
+use crate::units::Dimension;
+
+use super::resolver::Resolver;
+
+impl Resolver<'_> {
+    /// The coordinates of a frame's quaternion, its scalar part first; none where a frame is turned by angles.
+    pub(super) fn quaternion(&mut self, item: &ItemAst) -> Option<[CoordinateId; 4]> {
+        let Some(ValueAst::Four(names)) = item.entry("quaternion").map(|entry| &entry.value) else {
+            return None;
+        };
+        let mut taken = [CoordinateId::new(0); 4];
+        for (place, name) in names.iter().enumerate() {
+            let id = self.find(&name.value, &name.span)?;
+            if self.in_quaternions.contains(&id) {
+                self.tell(
+                    Diagnostic::error(
+                        Code::ConflictingKeys,
+                        format!("`{}` is a component of a quaternion twice", name.value),
+                    )
+                    .at(name.span.clone(), "here again")
+                    .help("each quaternion has four coordinates of its own"),
+                );
+                return None;
+            }
+            let dimension = self.names.get(name.value.as_str())?.dimension;
+            if dimension.is_some_and(|dimension| dimension != Dimension::NONE) {
+                self.tell(
+                    Diagnostic::error(Code::UnitMismatch, format!("`{}` is no number", name.value))
+                        .at(name.span.clone(), "component of a quaternion")
+                        .help("declare the coordinate with `unit = \"1\"`"),
+                );
+                return None;
+            }
+            self.in_quaternions.push(id);
+            self.used.add(Quantity::Coordinate(id));
+            taken[place] = id;
+        }
+        Some(taken)
+    }
+
+    /// The constraints w² + x² + y² + z² = 1 of all quaternions.
+    pub(super) fn norms(&self, frames: &[Frame], taken: &[Constraint]) -> Vec<Constraint> {
+        let quaternions = frames
+            .iter()
+            .filter_map(|frame| Some((frame, frame.quaternion?)));
+        let norms = quaternions.map(|(frame, [w, x, y, z])| {
+            let mut name = format!("norm_{}", frame.name);
+            while taken.iter().any(|constraint| constraint.name == name) {
+                name.push('_');
+            }
+            Constraint {
+                name,
+                about: format!("the quaternion of {} has norm 1", frame.name),
+                kind: ConstraintKind::Position {
+                    zero: norm(&[w, x, y, z], &frame.span),
+                    dimension: Dimension::NONE,
+                    dependent: Some(w),
+                    one_sided: false,
+                },
+                line: frame.line,
+                span: frame.span.clone(),
+            }
+        });
+        norms.collect()
+    }
+}
+
+/// Σ q² − 1.
+fn norm(coordinates: &[CoordinateId], span: &Span) -> Expr {
+    let expr = |kind| Expr {
+        kind,
+        span: span.clone(),
+    };
+    let one = expr(ExprKind::Number(BigRational::from_integer(1.into())));
+    let negative = expr(ExprKind::Negate(Box::new(one)));
+    coordinates.iter().fold(negative, |sum, &id| {
+        let q = Box::new(expr(ExprKind::Quantity(Quantity::Coordinate(id))));
+        let square = expr(ExprKind::Binary(BinaryOp::Multiply, q.clone(), q));
+        expr(ExprKind::Binary(
+            BinaryOp::Add,
+            Box::new(sum),
+            Box::new(square),
+        ))
+    })
+}
+
+/// Initial quaternions at norm 1; those without initial values are as their parents.
+pub(super) fn normalise(mechanism: &mut Mechanism) {
+    for frame in &mechanism.frames {
+        let Some(quaternion) = frame.quaternion else {
+            continue;
+        };
+        let square: f64 = quaternion
+            .iter()
+            .map(|&id| mechanism.coordinates[id].initial.powi(2))
+            .sum();
+        if square == 0.0 {
+            mechanism.coordinates[quaternion[0]].initial = 1.0;
+        } else {
+            for id in quaternion {
+                mechanism.coordinates[id].initial /= square.sqrt();
+            }
+        }
+    }
+}

@@ -208,7 +208,8 @@ impl<'a> Resolver<'a> {
         let mut items = self.ast.items(target.section()).iter();
         if items.any(|item| item.name.value == name) {
             let message = format!("the {word} `{}` cannot be named here", shown(name));
-            let help = "it depends on what is defined here: write the coordinates that it depends on";
+            let help =
+                "it depends on what is defined here: write the coordinates that it depends on";
             return Diagnostic::error(Code::UnknownReference, message)
                 .at(span.clone(), "")
                 .help(help);

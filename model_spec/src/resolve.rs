@@ -51,7 +51,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     let pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     let bodies = resolver.bodies();
     let mut constraints = resolver.constraints(&bodies);
-    constraints.extend(resolver.norms(&frames, &constraints));
+    constraints.extend(orientations::norms(&frames, &constraints));
     let loads = resolver.loads(&bodies);
     let outputs = resolver.outputs();
     let definitions = resolver.definitions(&coordinates);

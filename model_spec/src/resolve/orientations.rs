@@ -46,32 +46,32 @@ impl Resolver<'_> {
         }
         Some(taken)
     }
+}
 
-    /// The constraints w² + x² + y² + z² = 1 of all quaternions.
-    pub(super) fn norms(&self, frames: &[Frame], taken: &[Constraint]) -> Vec<Constraint> {
-        let quaternions = frames
-            .iter()
-            .filter_map(|frame| Some((frame, frame.quaternion?)));
-        let norms = quaternions.map(|(frame, [w, x, y, z])| {
-            let mut name = format!("norm_{}", frame.name);
-            while taken.iter().any(|constraint| constraint.name == name) {
-                name.push('_');
-            }
-            Constraint {
-                name,
-                about: format!("the quaternion of {} has norm 1", frame.name),
-                kind: ConstraintKind::Position {
-                    zero: norm(&[w, x, y, z], &frame.span),
-                    dimension: Dimension::NONE,
-                    dependent: Some(w),
-                    one_sided: false,
-                },
-                line: frame.line,
-                span: frame.span.clone(),
-            }
-        });
-        norms.collect()
-    }
+/// The constraints w² + x² + y² + z² = 1 of all quaternions.
+pub(super) fn norms(frames: &[Frame], taken: &[Constraint]) -> Vec<Constraint> {
+    let quaternions = frames
+        .iter()
+        .filter_map(|frame| Some((frame, frame.quaternion?)));
+    let norms = quaternions.map(|(frame, [w, x, y, z])| {
+        let mut name = format!("norm_{}", frame.name);
+        while taken.iter().any(|constraint| constraint.name == name) {
+            name.push('_');
+        }
+        Constraint {
+            name,
+            about: format!("the quaternion of {} has norm 1", frame.name),
+            kind: ConstraintKind::Position {
+                zero: norm(&[w, x, y, z], &frame.span),
+                dimension: Dimension::NONE,
+                dependent: Some(w),
+                one_sided: false,
+            },
+            line: frame.line,
+            span: frame.span.clone(),
+        }
+    });
+    norms.collect()
 }
 
 /// Σ q² − 1.

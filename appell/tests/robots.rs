@@ -246,6 +246,7 @@ fn imported(file: &str, text: &str, letters: &str, without: &[Without]) -> Strin
         letters: Letters::read(letters),
         without: without.to_vec(),
         snap: false,
+        floating: false,
     };
     robot::import(file, text, &options).expect("a robot").spec
 }

@@ -162,18 +162,14 @@ impl Rotation {
             }
         }
         let skew = [r[2][1] - r[1][2], r[0][2] - r[2][0], r[1][0] - r[0][1]];
-        let q = match largest {
-            0 => [1.0 + trace, skew[0], skew[1], skew[2]],
-            _ => {
-                let i = largest - 1;
-                let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-                let mut q = [skew[i], 0.0, 0.0, 0.0];
-                q[1 + i] = 1.0 + r[i][i] - r[j][j] - r[k][k];
-                q[1 + j] = r[i][j] + r[j][i];
-                q[1 + k] = r[i][k] + r[k][i];
-                q
-            }
-        };
+        let mut q = [1.0 + trace, skew[0], skew[1], skew[2]];
+        if let Some(i) = largest.checked_sub(1) {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            q[0] = skew[i];
+            q[1 + i] = 1.0 + r[i][i] - r[j][j] - r[k][k];
+            q[1 + j] = r[i][j] + r[j][i];
+            q[1 + k] = r[i][k] + r[k][i];
+        }
         let length = q.iter().map(|one| one * one).sum::<f64>().sqrt();
         q.map(|one| whole(one / length))
     }

@@ -113,15 +113,14 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
 impl Tree {
     /// A new body, moved by a joint at a pose in the frame of its parent.
     fn moved_by(&mut self, joint: &Joint, link: usize, parent: Option<usize>, pose: Pose) -> Seat {
-        let (axis, own) = match joint.motion.has_axis() {
-            true => Axis::nearest(joint.axis),
-            false => (
-                Axis {
-                    index: 0,
-                    backwards: false,
-                },
-                Rotation::IDENTITY,
-            ),
+        let (axis, own) = if joint.motion.has_axis() {
+            Axis::nearest(joint.axis)
+        } else {
+            let any = Axis {
+                index: 0,
+                backwards: false,
+            };
+            (any, Rotation::IDENTITY)
         };
         let rotation = pose.rotation.then(own);
         let (last, anchor) = match joint.motion {

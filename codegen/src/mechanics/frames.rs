@@ -81,7 +81,7 @@ impl Frames {
                 let [e, e_dot] = [&lowering.symbols.coordinates[..], lowering.rates]
                     .map(|all| quaternion.map(|id| all[id.index()]));
                 let attitude = Attitude::new(algebra, e, e_dot);
-                w = attitude.into_child(&mut algebra.graph, w);
+                w = attitude.in_child(&mut algebra.graph, w);
                 w = algebra.graph.add3(w, attitude.w);
                 attitude
             });
@@ -131,7 +131,7 @@ impl Frames {
             }
             if let Some(attitude) = &self.frames[frame].attitude {
                 v = graph.add3(v, attitude.w);
-                v = attitude.into_parent(graph, v);
+                v = attitude.in_parent(graph, v);
             }
         }
         graph.add3(v, self.frames[to].w)
@@ -152,7 +152,7 @@ impl Frames {
                 v = turn.into_parent(graph, v);
             }
             if let Some(attitude) = &self.frames[frame].attitude {
-                v = attitude.into_parent(graph, v);
+                v = attitude.in_parent(graph, v);
             }
         }
         for &frame in down[..down.len() - shared].iter().rev() {
@@ -160,7 +160,7 @@ impl Frames {
                 v = turn.into_child(graph, v);
             }
             if let Some(attitude) = &self.frames[frame].attitude {
-                v = attitude.into_child(graph, v);
+                v = attitude.in_child(graph, v);
             }
         }
         v

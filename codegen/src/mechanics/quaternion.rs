@@ -38,11 +38,11 @@ impl Attitude {
         }
     }
 
-    pub(super) fn into_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    pub(super) fn in_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         self.matrix.map(|row| graph.dot(row, v))
     }
 
-    pub(super) fn into_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    pub(super) fn in_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         let column = |k: usize| self.matrix.map(|row| row[k]);
         [0, 1, 2].map(|k| graph.dot(column(k), v))
     }

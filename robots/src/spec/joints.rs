@@ -75,32 +75,7 @@ impl Writer<'_> {
         let units = Units::of(joint.motion);
         let rate = format!("dot({q})");
         self.coordinate(joint, &q, &units);
-        let input = self.quantities.new_one(&format!(
-            "{}_{q}",
-            if joint.motion == Motion::Turning {
-                "tau"
-            } else {
-                "force"
-            }
-        ));
-        let what = if joint.motion == Motion::Turning {
-            "torque"
-        } else {
-            "force"
-        };
-        let item = Item::default().text("unit", units.force);
-        self.inputs.add(
-            &input,
-            &item.text(
-                "about",
-                &sentence(&format!("{what} at joint {}", joint.name)),
-            ),
-        );
-        let item = Item::default()
-            .text("kind", "generalized")
-            .text("coordinate", &q);
-        self.loads
-            .add(&format!("drive_{q}"), &item.text("force", &input));
+        self.drive(joint, &q, &units);
         if joint.damping != 0.0 {
             let damping = self.of_joint(
                 joint,
@@ -169,6 +144,36 @@ impl Writer<'_> {
         if joint.armature != 0.0 {
             self.armature(joint, &q, &units);
         }
+    }
+
+    /// What drives a joint: an input along its coordinate.
+    fn drive(&mut self, joint: &Joint, q: &str, units: &Units) {
+        let input = self.quantities.new_one(&format!(
+            "{}_{q}",
+            if joint.motion == Motion::Turning {
+                "tau"
+            } else {
+                "force"
+            }
+        ));
+        let what = if joint.motion == Motion::Turning {
+            "torque"
+        } else {
+            "force"
+        };
+        let item = Item::default().text("unit", units.force);
+        self.inputs.add(
+            &input,
+            &item.text(
+                "about",
+                &sentence(&format!("{what} at joint {}", joint.name)),
+            ),
+        );
+        let item = Item::default()
+            .text("kind", "generalized")
+            .text("coordinate", q);
+        self.loads
+            .add(&format!("drive_{q}"), &item.text("force", &input));
     }
 
     /// The coordinates of a body that turns about every axis, and moves anywhere or does not.

@@ -22,8 +22,8 @@ C = {{ value = 0.045, unit = "kg*m^2" }}
 body = {{ parent = "ground", {frame} }}
 [points]
 P = {{ from = "O", in = "ground", at = {base} }}
-G = {{ from = "P", in = "body", at = [0.3, "l", 0.1] }}
-Q = {{ from = "P", in = "body", at = [0, 1, 2] }}
+G = {{ from = "P", in = "body", at = ["0.3 [m]", "l", "0.1 [m]"] }}
+Q = {{ from = "P", in = "body", at = [0, "1 [m]", "2 [m]"] }}
 [bodies]
 body = {{ frame = "body", centre = "G", mass = "m", inertia = {{ in = "body", diagonal = ["A", "B", "C"] }} }}
 [pseudo_velocities]
@@ -131,7 +131,7 @@ fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 #[test]
 fn a_tumbling_body_keeps_energy_momentum_and_norm_for_a_thousand_revolutions() {
     let text = spec(QUATERNION, BY_QUATERNION, ON_A_JOINT, "", "")
-        .replace("[0.3, \"l\", 0.1]", "[0, 0, 0]");
+        .replace("[\"0.3 [m]\", \"l\", \"0.1 [m]\"]", "[0, 0, 0]");
     let names = [
         "e0",
         "e1",

@@ -136,7 +136,7 @@ pub fn eliminate(
         .iter()
         .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
     let given: Vec<LinearRow> = given.collect();
-    // In the place of the rates of a vector part its angular velocity is unknown; its scalar part has no unknown.
+    // Four rates are three unknowns: the angular velocity stands where the rates of the vector part were.
     let open = (0..mechanism.coordinates.len())
         .filter(|column| !quaternions.iter().any(|[scalar, ..]| scalar == column));
     let solved = solve(algebra, equations, open.collect(), symbols, intervals);

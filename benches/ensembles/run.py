@@ -26,7 +26,7 @@ KEPT = ["x", "y", "psi", "theta", "r", "speed"]
 ROWS = [("dop853", tolerance) for tolerance in ("1e-6", "1e-7", "3e-8", "1e-8", "1e-9", "1e-11")]
 ROWS += [("taylor", tolerance) for tolerance in ("1e-7", "1e-8", "3e-9", "1e-9", "1e-11", "1e-12")]
 # What leaves errors below 4e-9.
-MILLION = ("taylor", "3e-9")
+MILLION = ("taylor", "1e-9")
 # Cases whose errors are looked at.
 SAMPLE = 512
 

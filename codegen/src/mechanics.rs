@@ -38,11 +38,13 @@ mod quaternion;
 pub mod ranges;
 pub mod rank;
 mod reacting_loads;
+pub mod recursion;
 pub mod reactions;
 pub mod redundancy;
 pub mod relations;
 pub mod responses;
 mod right_angles;
+mod rotation;
 pub mod row;
 pub mod switches;
 pub mod symbols;
@@ -63,8 +65,9 @@ use gibbs_appell::{BodyMotion, GibbsForm};
 use initial::InitialState;
 use kinematics::{Effort, Kinematics, RollingContact};
 use loads::AppliedLoad;
-use motion::Motion;
+use motion::{Motion, Way};
 use positions::Positions;
+use recursion::Recursion;
 use row::Row;
 use symbols::Symbols;
 
@@ -110,6 +113,8 @@ pub struct Derivation {
     pub coordinate_rates: Vec<Expr>,
     /// q̇ if no contact crept, named.
     pub rolling_rates: Vec<Expr>,
+    /// The tree of links, where the equations were made by recursion.
+    pub recursion: Option<Recursion>,
     /// Warnings and notes.
     pub warnings: Vec<Finding>,
 }
@@ -151,7 +156,8 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
         let algebra = &mut derivation.algebra;
         let (gibbs, forces) = (creeping.gibbs, creeping.forces);
-        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], true)?;
+        derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], Way::Shortest)?;
+        derivation.recursion = None;
         let rates = &creeping.coordinate_rates;
         derivation.coordinate_rates = named_rates(&mut algebra.graph, mechanism, rates);
         (derivation.gibbs, derivation.forces) = (gibbs, forces);
@@ -184,29 +190,46 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
     let rolling = rolling_contacts(mechanism, &constraints, &elimination);
     algebra.relations = relations::relations(&mut algebra, &elimination.open);
-    let mut kinematics = Kinematics::new(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        rates,
-        &[],
-        Effort::Shortest(&rolling),
-    )?;
-    let bodies = gibbs_appell::body_motions(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &kinematics,
-        rates,
-        &directions,
-    )?;
+    let mut kinematics;
+    let (bodies, unbound_gibbs, recursion);
+    if elimination.open.unknowns.is_empty()
+        && let Some(found) = Recursion::new(&mut algebra, mechanism, &symbols, rates)?
+    {
+        kinematics = found.0;
+        let tree = found.1;
+        bodies = tree.bodies(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
+        unbound_gibbs = tree.gibbs_form(&mut algebra, mechanism);
+        recursion = Some(tree);
+    } else {
+        kinematics = Kinematics::new(
+            &mut algebra,
+            mechanism,
+            &symbols,
+            rates,
+            &[],
+            Effort::Shortest(&rolling),
+        )?;
+        bodies = gibbs_appell::body_motions(
+            &mut algebra,
+            mechanism,
+            &symbols,
+            &kinematics,
+            rates,
+            &directions,
+        )?;
+        algebra.relations.clear();
+        algebra.check_size()?;
+        unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
+        recursion = None;
+    }
     algebra.relations.clear();
-    algebra.check_size()?;
-    let unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let all_loads = loads.clone();
     loads::settle(&mut loads, &mut algebra.graph, mechanism, &[])?;
-    let forces = loads::generalized_forces(&mut algebra, &loads, &directions);
+    let (forces, other_forces) = match &recursion {
+        Some(tree) => tree.forces(&mut algebra, mechanism, &loads, &directions),
+        None => (loads::generalized_forces(&mut algebra, &loads, &directions), Vec::new()),
+    };
     let unbound = Unbound { forces, bodies };
     let (dependent, velocities) = DependentSpeeds::new(
         &mut algebra,
@@ -225,10 +248,14 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
-    gibbs.write_out_what_cancels(&mut algebra, &parts);
-    let explicit = dependent.values.is_empty();
-    let motion = motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, explicit)?;
+    let motion = if let Some(tree) = &recursion {
+        tree.solve(&mut algebra, mechanism, &gibbs, &other_forces)?
+    } else {
+        let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
+        gibbs.write_out_what_cancels(&mut algebra, &parts);
+        let way = dependent.way();
+        motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, way)?
+    };
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
     let repeated = positions.warnings.clone();
     let mut warnings = [constraints.warnings.clone(), repeated, not_judged].concat();
@@ -259,6 +286,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         motion,
         coordinate_rates: rolling_rates.clone(),
         rolling_rates,
+        recursion,
         warnings,
     };
     Ok((derivation, all_loads))

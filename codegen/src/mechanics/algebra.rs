@@ -7,6 +7,7 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
 use super::finding::{Finding, Item, Outcome};
+use super::gibbs_appell::named3;
 use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
 
@@ -16,6 +17,9 @@ const MOST_EXPRESSIONS: usize = 1_000_000;
 const MOST_TERMS: usize = 200;
 /// Fractions whose numerators would have more terms than this are not joined.
 const MOST_JOINED_TERMS: usize = 12;
+
+/// Longer expressions stand as a recursion made them.
+const MOST_OPERATIONS_OF_SHORT: usize = 80;
 
 /// A system `C s = r` that determines unknowns, by the cofactors and the determinant of C.
 #[derive(Debug, Clone)]
@@ -47,6 +51,8 @@ pub struct Algebra {
     pub(super) relations: Vec<Relation>,
     /// Unit quaternions, the scalar part first.
     pub(super) quaternions: Vec<[Expr; 4]>,
+    /// Whether long expressions stand as a recursion made them.
+    pub(super) recursive: bool,
 }
 
 impl Algebra {
@@ -71,6 +77,7 @@ impl Algebra {
             derivatives: Vec::new(),
             relations: Vec::new(),
             quaternions,
+            recursive: false,
         }
     }
 
@@ -119,7 +126,7 @@ impl Algebra {
     /// own frame, written with the yaw angle, is the same at every yaw. Then the products are
     /// multiplied out where that pays.
     pub fn shortest(&mut self, expr: Expr) -> Expr {
-        if self.graph.is_free(expr) {
+        if self.graph.is_free(expr) || self.recursive && self.is_long(expr) {
             return expr;
         }
         if self.test.is_zero(&self.graph, expr) {
@@ -170,6 +177,17 @@ impl Algebra {
         };
         let forms = [joined, nested].into_iter().flatten().filter(pays);
         forms.min_by_key(cost).unwrap_or(expr)
+    }
+
+    /// A vector that others are made from: its components under names, which keep them from being multiplied
+    /// out.
+    pub(super) fn shared3(&mut self, name: &str, v: Vec3) -> Vec3 {
+        let v = v.map(|component| self.shortest(component));
+        named3(self, name, v)
+    }
+
+    fn is_long(&self, expr: Expr) -> bool {
+        self.graph.operations(&[expr]) > MOST_OPERATIONS_OF_SHORT
     }
 
     /// [`Algebra::shortest`] of each component, by way of the relations between unknowns.

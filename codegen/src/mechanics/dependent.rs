@@ -16,6 +16,7 @@ use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{BodyMotion, GibbsForm};
 use super::kinematics::Kinematics;
 use super::letters;
+use super::motion::Way;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;
@@ -181,6 +182,15 @@ impl DependentSpeeds {
         let unknowns = self.system.unknowns.iter().copied();
         let parts: Vec<(Expr, Expr)> = unknowns.zip(self.values.iter().copied()).collect();
         Substitution::of_parts(graph, &parts).keeping_names()
+    }
+
+    /// How the equations without them are solved.
+    pub fn way(&self) -> Way<'static> {
+        if self.values.is_empty() {
+            Way::Shortest
+        } else {
+            Way::Factorized
+        }
     }
 
     /// `D ω̇ + c - C ṡ` for rates of all speeds.

@@ -5,7 +5,7 @@ use appell_spec::mechanism::{Mechanism, SpeedId};
 use super::algebra::Algebra;
 use super::finding::Outcome;
 use super::letters;
-use super::motion::simplest_pivot;
+use super::motion::{Way, simplest_pivot};
 use crate::symbolic::{Expr, Graph};
 
 /// A factorised block.
@@ -26,6 +26,7 @@ impl FactorizedBlock {
         mechanism: &Mechanism,
         mass_matrix: &[Vec<Expr>],
         speeds: &[usize],
+        way: Way<'_>,
     ) -> Outcome<Self> {
         let [mass, lower, diagonal] =
             [letters::mass, letters::lower, letters::diagonal].map(|letter| letter(mechanism));
@@ -53,7 +54,12 @@ impl FactorizedBlock {
         // Columns of L in the order of elimination, indexed by speed.
         let mut columns: Vec<Vec<Expr>> = Vec::new();
         while !open.is_empty() {
-            let k = simplest_pivot(algebra, mechanism, &schur, &mut open)?;
+            let k = match way {
+                Way::InOrder(order) => next_of(order, &mut open),
+                Way::Shortest | Way::Factorized => {
+                    simplest_pivot(algebra, mechanism, &schur, &mut open)?
+                }
+            };
             let pivot = algebra
                 .graph
                 .name(&format!("{diagonal}_{}", name(k)), schur[k][k]);
@@ -131,4 +137,11 @@ impl FactorizedBlock {
             x[self.speeds[i]] = graph.sum(&terms);
         }
     }
+}
+
+/// Takes the one that comes first in an order.
+fn next_of(order: &[usize], open: &mut Vec<usize>) -> usize {
+    let rank = |speed: usize| order.iter().position(|&other| other == speed);
+    let first = (0..open.len()).min_by_key(|&place| rank(open[place]));
+    open.remove(first.unwrap_or(0))
 }

@@ -5,8 +5,10 @@ use appell_spec::mechanism::{FrameId, List, Mechanism};
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
+use super::kinematics::Effort;
 use super::quaternion::Attitude;
 use super::right_angles::sin_cos;
+use super::rotation::{Rotation, Turn};
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph};
@@ -20,22 +22,11 @@ pub struct FrameVector {
     pub v: Vec3,
 }
 
-/// One rotation about a coordinate axis.
-#[derive(Debug, Clone, Copy)]
-struct Turn {
-    axis: usize,
-    /// Rate of the angle.
-    rate: Expr,
-    sin: Expr,
-    cos: Expr,
-}
-
 #[derive(Debug, Clone)]
 struct Frame {
     parent: Option<FrameId>,
-    turns: Vec<Turn>,
-    /// In the place of the turns.
-    attitude: Option<Attitude>,
+    /// From the parent to the frame.
+    rotations: Vec<Rotation>,
     /// Angular velocity from the ground, in this frame.
     w: Vec3,
 }
@@ -53,11 +44,12 @@ impl Frames {
         mechanism: &Mechanism,
         lowering: &Lowering<'_>,
         time: &TimeDerivative<'_>,
+        effort: Effort<'_>,
     ) -> Outcome<Self> {
         let mut frames: List<FrameId, Frame> = List::default();
         for (id, frame) in mechanism.frames.entries() {
             let mut w = frame.parent.map_or(vector::ZERO, |parent| frames[parent].w);
-            let mut turns = Vec::with_capacity(frame.turns.len());
+            let mut rotations = Vec::with_capacity(frame.turns.len());
             for turn in &frame.turns {
                 let mut angle = lowering
                     .lower(&mut algebra.graph, &turn.angle)
@@ -65,31 +57,31 @@ impl Frames {
                 if turn.negative {
                     angle = algebra.graph.neg(angle);
                 }
-                let axis = turn.axis.index();
                 let [sin, cos] = sin_cos(algebra, angle);
-                let elementary = Turn {
-                    axis,
+                rotations.push(Rotation::Turn(Turn {
+                    axis: turn.axis.index(),
                     rate: time.of(algebra, angle),
                     sin,
                     cos,
-                };
-                w = elementary.into_child(&mut algebra.graph, w);
-                w[axis] = algebra.graph.add(w[axis], elementary.rate);
-                turns.push(elementary);
+                }));
             }
-            let attitude = frame.quaternion.map(|quaternion| {
+            rotations.extend(frame.quaternion.map(|quaternion| {
                 let [e, e_dot] = [&lowering.symbols.coordinates[..], lowering.rates]
                     .map(|all| quaternion.map(|id| all[id.index()]));
-                let attitude = Attitude::new(algebra, e, e_dot);
-                w = attitude.in_child(&mut algebra.graph, w);
-                w = algebra.graph.add3(w, attitude.w);
-                attitude
-            });
-            let w = algebra.shortest3(w);
+                Rotation::Attitude(Attitude::new(algebra, e, e_dot))
+            }));
+            for rotation in &rotations {
+                let graph = &mut algebra.graph;
+                w = rotation.into_child(graph, w);
+                w = graph.add3(w, rotation.rate());
+            }
+            let w = match effort {
+                Effort::Recursive => algebra.shared3(&format!("w_{}", frame.name), w),
+                Effort::Plain | Effort::Shortest(_) => algebra.shortest3(w),
+            };
             frames.push(Frame {
                 parent: frame.parent,
-                turns,
-                attitude,
+                rotations,
                 w,
             });
         }
@@ -107,12 +99,8 @@ impl Frames {
     /// All angular velocities and rates of turns.
     pub(super) fn rates(&mut self) -> impl Iterator<Item = &mut Expr> {
         self.frames.iter_mut().flat_map(|frame| {
-            let turns = frame.turns.iter_mut().map(|turn| &mut turn.rate);
-            let attitudes = frame
-                .attitude
-                .iter_mut()
-                .flat_map(|attitude| &mut attitude.w);
-            frame.w.iter_mut().chain(turns).chain(attitudes)
+            let rates = frame.rotations.iter_mut().flat_map(Rotation::rates);
+            frame.w.iter_mut().chain(rates)
         })
     }
 
@@ -125,13 +113,9 @@ impl Frames {
         };
         let mut v = vector::ZERO;
         for &frame in &path[..last] {
-            for turn in self.frames[frame].turns.iter().rev() {
-                v[turn.axis] = graph.add(v[turn.axis], turn.rate);
-                v = turn.into_parent(graph, v);
-            }
-            if let Some(attitude) = &self.frames[frame].attitude {
-                v = graph.add3(v, attitude.w);
-                v = attitude.in_parent(graph, v);
+            for rotation in self.frames[frame].rotations.iter().rev() {
+                v = graph.add3(v, rotation.rate());
+                v = rotation.into_parent(graph, v);
             }
         }
         graph.add3(v, self.frames[to].w)
@@ -148,19 +132,13 @@ impl Frames {
             .count();
         let mut v = vector.v;
         for &frame in &up[..up.len() - shared] {
-            for turn in self.frames[frame].turns.iter().rev() {
-                v = turn.into_parent(graph, v);
-            }
-            if let Some(attitude) = &self.frames[frame].attitude {
-                v = attitude.in_parent(graph, v);
+            for rotation in self.frames[frame].rotations.iter().rev() {
+                v = rotation.into_parent(graph, v);
             }
         }
         for &frame in down[..down.len() - shared].iter().rev() {
-            for turn in &self.frames[frame].turns {
-                v = turn.into_child(graph, v);
-            }
-            if let Some(attitude) = &self.frames[frame].attitude {
-                v = attitude.in_child(graph, v);
+            for rotation in &self.frames[frame].rotations {
+                v = rotation.into_child(graph, v);
             }
         }
         v
@@ -179,32 +157,13 @@ impl Frames {
         up.len() + down.len() - 2 * shared
     }
 
+    /// The turns from the parent of a frame to it.
+    pub(super) fn rotations(&self, frame: FrameId) -> &[Rotation] {
+        &self.frames[frame].rotations
+    }
+
     /// All frames.
     pub fn ids(&self) -> impl Iterator<Item = FrameId> + use<> {
         self.frames.ids()
-    }
-}
-
-impl Turn {
-    /// R v: from the turned frame into the one before the turn.
-    fn into_parent(self, graph: &mut Graph, v: Vec3) -> Vec3 {
-        self.rotate(graph, v, self.sin)
-    }
-
-    /// Rᵀ v: into the turned frame.
-    fn into_child(self, graph: &mut Graph, v: Vec3) -> Vec3 {
-        let sin = graph.neg(self.sin);
-        self.rotate(graph, v, sin)
-    }
-
-    /// Rotation about one axis; the next two axes in cyclic order take part.
-    fn rotate(self, graph: &mut Graph, v: Vec3, sin: Expr) -> Vec3 {
-        let (i, j) = ((self.axis + 1) % 3, (self.axis + 2) % 3);
-        let mut rotated = v;
-        let (ci, sj) = (graph.mul(self.cos, v[i]), graph.mul(sin, v[j]));
-        rotated[i] = graph.sub(ci, sj);
-        let (si, cj) = (graph.mul(sin, v[i]), graph.mul(self.cos, v[j]));
-        rotated[j] = graph.add(si, cj);
-        rotated
     }
 }

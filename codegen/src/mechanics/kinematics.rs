@@ -30,6 +30,8 @@ pub struct Kinematics {
 pub enum Effort<'a> {
     /// As they come: for velocities that are used up at once.
     Plain,
+    /// Each under a name, made from those of the frame and the point before it: for long chains.
+    Recursive,
     /// Each in its shortest form and in the frame where that is shortest: for the equations. The
     /// centre of a body that rolls may move as its contact tells.
     Shortest(&'a [RollingContact]),
@@ -68,7 +70,7 @@ impl Kinematics {
     ) -> Outcome<Self> {
         let lowering = Lowering { symbols, rates };
         let time = TimeDerivative { symbols, rates };
-        let frames = Frames::new(algebra, mechanism, &lowering, &time)?;
+        let frames = Frames::new(algebra, mechanism, &lowering, &time, effort)?;
         let mut offsets = List::default();
         for (id, point) in mechanism.points.entries() {
             let v = lowering
@@ -92,6 +94,10 @@ impl Kinematics {
                     let velocity = kinematics.relative_to(algebra, &time, (id, from), carried);
                     match effort {
                         Effort::Plain => velocity,
+                        Effort::Recursive => FrameVector {
+                            v: algebra.shared3(&format!("v_{}", point.name), velocity.v),
+                            ..velocity
+                        },
                         Effort::Shortest(contacts) => {
                             kinematics.shortest(algebra, mechanism, (id, velocity), contacts)
                         }

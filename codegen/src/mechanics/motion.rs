@@ -16,6 +16,17 @@ use crate::symbolic::{Expr, Graph, Node, Rational};
 /// those whose entries are numbers of a solved system, by an unrolled factorisation with named entries.
 const LARGEST_EXPLICIT_BLOCK: usize = 2;
 
+/// How Appell's equations are solved.
+#[derive(Debug, Clone, Copy)]
+pub enum Way<'a> {
+    /// Small blocks by formulas, large ones by a factorisation.
+    Shortest,
+    /// By a factorisation: what the entries hold is solved numerically already.
+    Factorized,
+    /// By a factorisation with the speeds in this order.
+    InOrder(&'a [usize]),
+}
+
 /// The solved equations of motion.
 #[derive(Debug, Clone)]
 pub struct Motion {
@@ -54,14 +65,14 @@ pub struct Eliminated {
 }
 
 /// Solves the equations of motion. `parts` are the names that may be written out where that lets a
-/// mass or a length cancel; where `explicit`, small blocks are solved by formulas.
+/// mass or a length cancel.
 pub fn solve(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     gibbs: &GibbsForm,
     forces: &[Expr],
     parts: &[(Expr, Expr)],
-    explicit: bool,
+    way: Way<'_>,
 ) -> Outcome<Motion> {
     let names: Vec<&str> = mechanism
         .pseudo_velocities
@@ -79,7 +90,7 @@ pub fn solve(
     massless(algebra, mechanism, &gibbs.mass_matrix)?;
     let mut blocks = Vec::new();
     for speeds in independent_blocks(&gibbs.mass_matrix) {
-        let block = if explicit && speeds.len() <= LARGEST_EXPLICIT_BLOCK {
+        let block = if matches!(way, Way::Shortest) && speeds.len() <= LARGEST_EXPLICIT_BLOCK {
             let eliminated = eliminate(algebra, mechanism, &gibbs.mass_matrix, &right, &speeds)?;
             let values = substitute_back(algebra, &eliminated, &accelerations);
             let written_out = quotients(
@@ -95,7 +106,7 @@ pub fn solve(
                 && algebra.graph.operations(&other) <= algebra.graph.operations(&values);
             Block::Eliminated(if shorter { written_out } else { eliminated })
         } else {
-            let block = FactorizedBlock::new(algebra, mechanism, &gibbs.mass_matrix, &speeds)?;
+            let block = FactorizedBlock::new(algebra, mechanism, &gibbs.mass_matrix, &speeds, way)?;
             Block::Factorized(block)
         };
         match &block {

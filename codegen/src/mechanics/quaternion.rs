@@ -23,7 +23,7 @@ pub(super) fn is_norm(mechanism: &Mechanism, constraint: ConstraintId) -> bool {
 #[derive(Debug, Clone)]
 pub(super) struct Attitude {
     /// From components in the frame to those in the parent.
-    matrix: Mat3,
+    pub(super) matrix: Mat3,
     /// Angular velocity from the parent, in the frame.
     pub(super) w: Vec3,
 }
@@ -36,15 +36,6 @@ impl Attitude {
             matrix: rotation(&mut algebra.graph, e),
             w: algebra.shortest3(w),
         }
-    }
-
-    pub(super) fn in_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
-        self.matrix.map(|row| graph.dot(row, v))
-    }
-
-    pub(super) fn in_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
-        let column = |k: usize| self.matrix.map(|row| row[k]);
-        [0, 1, 2].map(|k| graph.dot(column(k), v))
     }
 }
 

@@ -45,9 +45,10 @@ impl Derivation {
         let forces = dependent::apply(&mut actual, algebra, &unbound)?;
         let forces = dependent.along_allowed(&mut algebra.graph, &forces);
         let parts = named_parts(&mut algebra.graph, &derivation.bodies);
-        let explicit = dependent.values.is_empty();
+        let way = dependent.way();
         let gibbs = &derivation.gibbs;
-        derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &parts, explicit)?;
+        derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &parts, way)?;
+        derivation.recursion = None;
         derivation.unbound.forces = unbound;
         derivation.forces = forces;
         derivation.loads = all;

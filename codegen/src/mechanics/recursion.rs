@@ -1,0 +1,232 @@
+//! The equations of motion of trees of bodies by recursion over their links: the acceleration energy, its
+//! derivatives ∂S/∂ω̇ and what these change with the state are sums over bodies, and every sum is taken link
+//! by link, in the axes of the link, instead of body by body.
+//!
+//! Outwards go angular velocities and accelerations, inwards forces and the inertia of all that a link
+//! carries (J. Y. S. Luh, M. W. Walker, R. P. C. Paul, 1980; M. W. Walker, D. E. Orin, 1982). What is kept
+//! under a name is not multiplied out, so that the cost grows with the number of links and not with its
+//! third power.
+
+mod balance;
+mod inertia;
+mod links;
+mod movement;
+
+
+use appell_spec::expr::{Expr as SpecExpr, Quantity};
+use appell_spec::mechanism::{Load, LoadKind, Mechanism};
+
+use super::algebra::Algebra;
+use super::motion;
+use super::expressions::Lowering;
+use super::finding::{Item, Outcome, division_by_zero};
+use super::gibbs_appell::{BodyMotion, GibbsForm, Rotation, Translation, named3};
+use super::kinematics::{Effort, Kinematics};
+use super::loads::{AppliedLoad, generalized_forces};
+use super::motion::{Motion, Way};
+use super::symbols::Symbols;
+use super::time::TimeDerivative;
+use crate::symbolic::Expr;
+use crate::symbolic::vector::{self, Vec3};
+
+use inertia::{Inertia, Wrench, central_inertia};
+use links::Links;
+use movement::{Driven, LinkMotion};
+
+/// A mechanism with fewer speeds has shorter equations with everything multiplied out.
+const FEWEST_SPEEDS: usize = 5;
+
+/// A mechanism as a tree of links.
+#[derive(Debug, Clone)]
+pub struct Recursion {
+    links: Links,
+    /// Inertia of each link alone.
+    own: Vec<Inertia>,
+    /// Inertia of each link with all that it carries.
+    composites: Vec<Inertia>,
+    /// The acceleration of the ground that stands for the weights.
+    rise: Vec3,
+}
+
+impl Recursion {
+    /// The recursion of a mechanism whose bodies form a tree of links and whose speeds are all free; none for
+    /// others, and for small ones.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        rates: &[Expr],
+    ) -> Outcome<Option<(Kinematics, Self)>> {
+        if mechanism.pseudo_velocities.len() < FEWEST_SPEEDS {
+            return Ok(None);
+        }
+        algebra.recursive = true;
+        let kinematics =
+            Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Recursive)?;
+        let (lowering, time) = (Lowering { symbols, rates }, TimeDerivative { symbols, rates });
+        let Some(links) = Links::new(algebra, mechanism, &kinematics, &time) else {
+            algebra.recursive = false;
+            return Ok(None);
+        };
+        let own = links.own_inertias(algebra, mechanism, &lowering)?;
+        let composites = links.composites(algebra, &own);
+        let mut rise = vector::ZERO;
+        for load in &mechanism.loads {
+            if let Some((down, g)) = steady_weight(load) {
+                let g = lowering.lower(&mut algebra.graph, g);
+                let g = g.map_err(|_| vec![division_by_zero(Item::Mechanism)])?;
+                let up = down.map(|c| algebra.graph.integer((-c).into()));
+                let part = algebra.graph.scale3(g, up);
+                rise = algebra.graph.add3(rise, part);
+            }
+        }
+        Ok(Some((kinematics, Self { links, own, composites, rise })))
+    }
+
+    /// M and b.
+    pub fn gibbs_form(&self, algebra: &mut Algebra, mechanism: &Mechanism) -> GibbsForm {
+        let speeds = mechanism.pseudo_velocities.len();
+        let motions = self.unaccelerated(algebra);
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_0");
+        GibbsForm {
+            mass_matrix: self.links.mass_matrix(algebra, mechanism, &self.composites),
+            bias: self.links.felt(&mut algebra.graph, &wrenches, speeds),
+        }
+    }
+
+    /// The motions of the links where ω̇ = 0.
+    fn unaccelerated(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
+        let driven = Driven { ground: vector::ZERO, accelerations: None, suffix: "0" };
+        self.links.motions(algebra, &driven)
+    }
+
+    /// The motions of the bodies as sums over speeds.
+    pub fn bodies(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        kinematics: &Kinematics,
+        rates: &[Expr],
+    ) -> Outcome<Vec<BodyMotion>> {
+        let lowering = Lowering { symbols, rates };
+        let motions = self.unaccelerated(algebra);
+        let mut bodies = Vec::with_capacity(mechanism.bodies.len());
+        for ((id, body), place) in mechanism.bodies.entries().zip(&self.links.bodies) {
+            let at_rest = LinkMotion::at_rest(vector::ZERO);
+            let motion = place.link.map_or(&at_rest, |link| &motions[link]);
+            let central = central_inertia(&mut algebra.graph, &lowering, id, body)?;
+            let velocity = kinematics.velocity(body.centre);
+            let turned = algebra.graph.mat_vec(&motion.turning, place.arm);
+            let bias = algebra.graph.add3(motion.a, turned);
+            let point = &mechanism.points[body.centre].name;
+            let centre = Translation {
+                point: point.clone(),
+                velocity,
+                partial: partials(algebra, velocity.v, &symbols.speeds),
+                bias: named3(algebra, &format!("a0_{point}"), bias),
+            };
+            let rotation = body.inertia.as_ref().map(|inertia| {
+                let velocity = kinematics.frames.angular_velocity(inertia.frame);
+                let rate = central.turns(&mut algebra.graph, motion);
+                Rotation {
+                    velocity,
+                    partial: partials(algebra, velocity.v, &symbols.speeds),
+                    inertia: central.tensor,
+                    bias: motion.alpha,
+                    momentum_rate: named3(algebra, &format!("h0_{}", body.name), rate),
+                }
+            });
+            bodies.push(BodyMotion { name: body.name.clone(), mass: central.mass, centre, rotation });
+        }
+        Ok(bodies)
+    }
+
+    /// Π of all loads, and of those that are no steady weights.
+    pub fn forces(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        loads: &[AppliedLoad],
+        speeds: &[Expr],
+    ) -> (Vec<Expr>, Vec<Expr>) {
+        let kinds = mechanism.loads.iter().zip(loads);
+        let others = kinds.filter(|(load, _)| steady_weight(load).is_none());
+        let others: Vec<AppliedLoad> = others.map(|(_, applied)| applied.clone()).collect();
+        let others = generalized_forces(algebra, &others, speeds);
+        let weights = self.weights(algebra, mechanism);
+        let both = others.iter().zip(weights);
+        let all = both.map(|(&other, weight)| algebra.graph.add(other, weight));
+        (all.collect(), others)
+    }
+
+    /// Appell's equations solved from the tips inwards, so that branches do not couple.
+    pub fn solve(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        gibbs: &GibbsForm,
+        forces: &[Expr],
+    ) -> Outcome<Motion> {
+        let falling = GibbsForm {
+            mass_matrix: gibbs.mass_matrix.clone(),
+            bias: self.bias_less_weights(algebra, mechanism),
+        };
+        let order = self.inwards(forces.len());
+        motion::solve(algebra, mechanism, &falling, forces, &[], Way::InOrder(&order))
+    }
+
+    /// Speeds from the tips inwards: eliminated in this order, branches do not couple.
+    pub fn inwards(&self, speeds: usize) -> Vec<usize> {
+        let columns = self.links.links.iter().rev().flat_map(|link| link.columns.iter().rev());
+        let mut order = Vec::with_capacity(speeds);
+        for &(speed, _) in columns {
+            if !order.contains(&speed) {
+                order.push(speed);
+            }
+        }
+        order.extend((0..speeds).filter(|speed| !order.contains(speed)).collect::<Vec<_>>());
+        order
+    }
+
+    /// b less the work of the weights: while all else falls freely, the ground rises.
+    pub fn bias_less_weights(&self, algebra: &mut Algebra, mechanism: &Mechanism) -> Vec<Expr> {
+        let speeds = mechanism.pseudo_velocities.len();
+        let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
+        let motions = self.links.motions(algebra, &driven);
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_r");
+        self.links.felt(&mut algebra.graph, &wrenches, speeds)
+    }
+
+    /// The work of the weights along each speed.
+    pub fn weights(&self, algebra: &mut Algebra, mechanism: &Mechanism) -> Vec<Expr> {
+        let speeds = mechanism.pseudo_velocities.len();
+        let still = self.links.still(algebra, self.rise);
+        let wrenches: Vec<Wrench> = (self.composites.iter().zip(&still))
+            .map(|(composite, &a)| {
+                let up = composite.resists(&mut algebra.graph, vector::ZERO, a);
+                Wrench { n: algebra.graph.neg3(up.n), f: algebra.graph.neg3(up.f) }
+            })
+            .collect();
+        self.links.felt(&mut algebra.graph, &wrenches, speeds)
+    }
+}
+
+fn partials(algebra: &mut Algebra, v: Vec3, speeds: &[Expr]) -> Vec<Vec3> {
+    let by = speeds.iter();
+    by.map(|&speed| v.map(|c| algebra.derivative(c, speed))).collect()
+}
+
+/// The weight of all bodies with an acceleration that never changes.
+fn steady_weight(load: &Load) -> Option<([i8; 3], &SpecExpr)> {
+    match &load.kind {
+        LoadKind::Gravity { down, acceleration } if is_constant(acceleration) => Some((*down, acceleration)),
+        _ => None,
+    }
+}
+
+fn is_constant(expr: &SpecExpr) -> bool {
+    let mut constant = true;
+    expr.visit(&mut |quantity| constant &= matches!(quantity, Quantity::Parameter(_)));
+    constant
+}

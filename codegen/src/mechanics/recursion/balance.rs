@@ -1,0 +1,79 @@
+//! Inwards: the forces that a motion takes, and what each speed feels of them.
+
+use super::super::algebra::Algebra;
+use super::inertia::{Inertia, Wrench};
+use super::links::Links;
+use super::movement::LinkMotion;
+use crate::symbolic::vector::Vec3;
+use crate::symbolic::{Expr, Graph};
+
+impl Inertia {
+    /// What a motion takes: `f = m a + (α× + ω× ω×) h` and `n = h × a + I α + ω × I ω`.
+    fn takes(&self, graph: &mut Graph, motion: &LinkMotion) -> Wrench {
+        let inertial = graph.scale3(self.mass, motion.a);
+        let turning = graph.mat_vec(&motion.turning, self.moment);
+        let moment = graph.cross(self.moment, motion.a);
+        let gyroscopic = self.turns(graph, motion);
+        Wrench {
+            n: graph.add3(moment, gyroscopic),
+            f: graph.add3(inertial, turning),
+        }
+    }
+
+    /// `I α + ω × I ω`, by the products of ω that the turning holds already.
+    pub fn turns(&self, graph: &mut Graph, motion: &LinkMotion) -> Vec3 {
+        let (t, l) = (&self.tensor, &motion.turning);
+        let mut component = |i: usize| {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            let difference = graph.sub(t[k][k], t[j][j]);
+            let product = graph.mul(motion.w[j], motion.w[k]);
+            let squares = graph.sub(l[j][j], l[k][k]);
+            let minus = graph.neg(l[k][i]);
+            let terms = [
+                graph.mul(t[i][i], motion.alpha[i]),
+                graph.mul(difference, product),
+                graph.mul(t[i][j], minus),
+                graph.mul(t[i][k], l[j][i]),
+                graph.mul(t[j][k], squares),
+            ];
+            graph.sum(&terms)
+        };
+        [0, 1, 2].map(&mut component)
+    }
+}
+
+impl Links {
+    /// The forces on all links, each with those of what it carries.
+    pub fn wrenches(
+        &self,
+        algebra: &mut Algebra,
+        inertias: &[Inertia],
+        motions: &[LinkMotion],
+        suffix: &str,
+    ) -> Vec<Wrench> {
+        let mut wrenches: Vec<Wrench> = (inertias.iter().zip(motions))
+            .map(|(inertia, motion)| inertia.takes(&mut algebra.graph, motion))
+            .collect();
+        for (place, link) in self.links.iter().enumerate().rev() {
+            let named = wrenches[place].named(algebra, &format!("{}{suffix}", link.name));
+            wrenches[place] = named;
+            if let Some(parent) = link.parent {
+                let graph = &mut algebra.graph;
+                let carried = link.on_carrier(graph, named);
+                wrenches[parent] = wrenches[parent].plus(graph, carried);
+            }
+        }
+        wrenches
+    }
+
+    /// What each speed feels of the forces on the links.
+    pub fn felt(&self, graph: &mut Graph, wrenches: &[Wrench], speeds: usize) -> Vec<Expr> {
+        let mut parts = vec![Vec::new(); speeds];
+        for (link, &wrench) in self.links.iter().zip(wrenches) {
+            for &(speed, column) in &link.columns {
+                parts[speed].push(link.work(graph, column, wrench));
+            }
+        }
+        parts.iter().map(|parts| graph.sum(parts)).collect()
+    }
+}

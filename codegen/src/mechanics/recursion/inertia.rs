@@ -1,0 +1,290 @@
+//! Inwards: the inertia of all that a link carries, and the mass matrix from it.
+
+use appell_spec::mechanism::{Body, BodyId, Mechanism, SpeedId};
+
+use super::super::algebra::Algebra;
+use super::super::expressions::Lowering;
+use super::super::finding::{Item, Outcome, division_by_zero};
+use super::super::gibbs_appell::named3;
+use super::links::{Link, Links, Place, Step};
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// Mass, first moment and inertia about the origin of a link, in its axes.
+#[derive(Debug, Clone)]
+pub(super) struct Inertia {
+    /// Mass.
+    pub mass: Expr,
+    /// First moment `m c`.
+    pub moment: Vec3,
+    /// Inertia about the origin.
+    pub tensor: Mat3,
+}
+
+/// A force at the origin of a link with a moment about it, in its axes.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Wrench {
+    /// Moment.
+    pub n: Vec3,
+    /// Force.
+    pub f: Vec3,
+}
+
+impl Inertia {
+    pub const NONE: Self = Self {
+        mass: Graph::ZERO,
+        moment: vector::ZERO,
+        tensor: [vector::ZERO; 3],
+    };
+
+    pub fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
+        let mut tensor = self.tensor;
+        for (row, other) in tensor.iter_mut().zip(other.tensor) {
+            *row = graph.add3(*row, other);
+        }
+        Self {
+            mass: graph.add(self.mass, other.mass),
+            moment: graph.add3(self.moment, other.moment),
+            tensor,
+        }
+    }
+
+    /// About an origin from which the own one is at `d`.
+    pub fn shifted(&self, graph: &mut Graph, d: Vec3) -> Self {
+        let added = graph.scale3(self.mass, d);
+        let moment = graph.add3(self.moment, added);
+        // I' = I + Σ m ((c + d)² − c²) 1 − …: with h' the new first moment, products d h' + h d.
+        let product = |graph: &mut Graph, i: usize, j: usize| {
+            let (new, old) = (graph.mul(d[i], moment[j]), graph.mul(self.moment[i], d[j]));
+            graph.add(new, old)
+        };
+        let squares = [0, 1, 2].map(|i| product(graph, i, i));
+        let mut tensor = self.tensor;
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            for square in [squares[j], squares[k]] {
+                tensor[i][i] = graph.add(tensor[i][i], square);
+            }
+            let ij = product(graph, i, j);
+            tensor[i][j] = graph.sub(tensor[i][j], ij);
+            tensor[j][i] = tensor[i][j];
+        }
+        Self {
+            mass: self.mass,
+            moment,
+            tensor,
+        }
+    }
+
+    /// What it takes to accelerate the origin by `a` and the axes by `alpha` from rest.
+    pub fn resists(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> Wrench {
+        let (inertial, turning) = (graph.scale3(self.mass, a), graph.cross(alpha, self.moment));
+        let (moment, turned) = (
+            graph.cross(self.moment, a),
+            graph.mat_vec(&self.tensor, alpha),
+        );
+        Wrench {
+            n: graph.add3(moment, turned),
+            f: graph.add3(inertial, turning),
+        }
+    }
+
+    fn named(&self, algebra: &mut Algebra, link: &str) -> Self {
+        let graph = &mut algebra.graph;
+        let mass = graph.name(&format!("mass_{link}"), self.mass);
+        let mut tensor = self.tensor;
+        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+            let axes = ['x', 'y', 'z'];
+            let name = format!("I_{link}_{}{}", axes[i], axes[j]);
+            tensor[i][j] = graph.name(&name, self.tensor[i][j]);
+            tensor[j][i] = tensor[i][j];
+        }
+        Self {
+            mass,
+            moment: named3(algebra, &format!("h_{link}"), self.moment),
+            tensor,
+        }
+    }
+}
+
+/// Of a body about its centre of mass.
+pub(super) fn central_inertia(
+    graph: &mut Graph,
+    lowering: &Lowering<'_>,
+    id: BodyId,
+    body: &Body,
+) -> Outcome<Inertia> {
+    let failed = |_| vec![division_by_zero(Item::Body(id))];
+    let mut tensor = [vector::ZERO; 3];
+    if let Some(inertia) = &body.inertia {
+        for (target, row) in tensor.iter_mut().zip(&inertia.matrix) {
+            *target = lowering.lower_all(graph, row).map_err(failed)?;
+        }
+    }
+    Ok(Inertia {
+        mass: lowering.lower(graph, &body.mass).map_err(failed)?,
+        moment: vector::ZERO,
+        tensor,
+    })
+}
+
+impl Wrench {
+    pub const NONE: Self = Self {
+        n: vector::ZERO,
+        f: vector::ZERO,
+    };
+
+    pub fn plus(self, graph: &mut Graph, other: Self) -> Self {
+        Self {
+            n: graph.add3(self.n, other.n),
+            f: graph.add3(self.f, other.f),
+        }
+    }
+
+    pub fn named(self, algebra: &mut Algebra, name: &str) -> Self {
+        Self {
+            n: named3(algebra, &format!("n_{name}"), self.n),
+            f: named3(algebra, &format!("f_{name}"), self.f),
+        }
+    }
+}
+
+impl Link {
+    /// The same force and moment as the carrier feels them.
+    pub fn on_carrier(&self, graph: &mut Graph, own: Wrench) -> Wrench {
+        match &self.step {
+            Step::Rotation { turns, .. } => {
+                let outward = |graph: &mut Graph, v: Vec3| {
+                    (turns.iter().rev()).fold(v, |v, turn| turn.into_parent(graph, v))
+                };
+                Wrench {
+                    n: outward(graph, own.n),
+                    f: outward(graph, own.f),
+                }
+            }
+            Step::Shift { d, .. } => {
+                let moment = graph.cross(*d, own.f);
+                Wrench {
+                    n: graph.add3(own.n, moment),
+                    f: own.f,
+                }
+            }
+        }
+    }
+
+    /// What a force and a moment do along a column of the step.
+    pub fn work(&self, graph: &mut Graph, column: Vec3, of: Wrench) -> Expr {
+        match self.step {
+            Step::Rotation { .. } => graph.dot(column, of.n),
+            Step::Shift { .. } => graph.dot(column, of.f),
+        }
+    }
+
+    fn inertia_in_carrier(&self, graph: &mut Graph, own: &Inertia) -> Inertia {
+        match &self.step {
+            Step::Rotation { turns, .. } => {
+                let mut inertia = own.clone();
+                for turn in turns.iter().rev() {
+                    inertia.moment = turn.into_parent(graph, inertia.moment);
+                    inertia.tensor = turn.tensor_into_parent(graph, &inertia.tensor);
+                }
+                inertia
+            }
+            Step::Shift { d, .. } => own.shifted(graph, *d),
+        }
+    }
+}
+
+impl Links {
+    /// The inertia of the bodies themselves, by link.
+    pub fn own_inertias(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        lowering: &Lowering<'_>,
+    ) -> Outcome<Vec<Inertia>> {
+        let mut inertias = vec![Inertia::NONE; self.links.len()];
+        for ((id, body), &Place { link, arm }) in mechanism.bodies.entries().zip(&self.bodies) {
+            let Some(link) = link else {
+                continue;
+            };
+            let graph = &mut algebra.graph;
+            let central = central_inertia(graph, lowering, id, body)?;
+            let placed = central.shifted(graph, arm);
+            inertias[link] = inertias[link].plus(graph, &placed);
+        }
+        for (inertia, link) in inertias.iter_mut().zip(&self.links) {
+            *inertia = inertia.named(algebra, &format!("own_{}", link.name));
+        }
+        Ok(inertias)
+    }
+
+    /// The inertia of each link with all that it carries.
+    pub fn composites(&self, algebra: &mut Algebra, own: &[Inertia]) -> Vec<Inertia> {
+        let mut composites = own.to_vec();
+        for (place, link) in self.links.iter().enumerate().rev() {
+            composites[place] = composites[place].named(algebra, &link.name);
+            if let Some(parent) = link.parent {
+                let graph = &mut algebra.graph;
+                let carried = link.inertia_in_carrier(graph, &composites[place]);
+                composites[parent] = composites[parent].plus(graph, &carried);
+            }
+        }
+        composites
+    }
+
+    /// M: what each speed's acceleration takes from its link inwards.
+    pub fn mass_matrix(
+        &self,
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        composites: &[Inertia],
+    ) -> Vec<Vec<Expr>> {
+        let speeds = mechanism.pseudo_velocities.len();
+        let mut parts = vec![vec![Vec::new(); speeds]; speeds];
+        for (place, link) in self.links.iter().enumerate() {
+            for &(speed, column) in &link.columns {
+                let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+                let mut wrench = self.resistance(algebra, place, column, &composites[place]);
+                let mut at = Some(place);
+                while let Some(here) = at {
+                    let link_here = &self.links[here];
+                    wrench = wrench.named(algebra, &format!("{}_{name}", link_here.name));
+                    for &(other, along) in &link_here.columns {
+                        let work = link_here.work(&mut algebra.graph, along, wrench);
+                        parts[speed][other].push(work);
+                        // Within one step the other order comes by itself.
+                        if here != place {
+                            parts[other][speed].push(work);
+                        }
+                    }
+                    wrench = link_here.on_carrier(&mut algebra.graph, wrench);
+                    at = link_here.parent;
+                }
+            }
+        }
+        let mut matrix = vec![vec![Graph::ZERO; speeds]; speeds];
+        for (i, row) in parts.iter().enumerate() {
+            for (j, parts) in row[..=i].iter().enumerate() {
+                matrix[i][j] = algebra.graph.sum(parts);
+                matrix[j][i] = matrix[i][j];
+            }
+        }
+        matrix
+    }
+
+    /// What a unit of acceleration along a column of a link takes.
+    pub fn resistance(
+        &self,
+        algebra: &mut Algebra,
+        link: usize,
+        column: Vec3,
+        composite: &Inertia,
+    ) -> Wrench {
+        let (alpha, a) = match self.links[link].step {
+            Step::Rotation { .. } => (column, vector::ZERO),
+            Step::Shift { .. } => (vector::ZERO, column),
+        };
+        composite.resists(&mut algebra.graph, alpha, a)
+    }
+}

@@ -1,0 +1,265 @@
+//! The tree of links. A link is a set of axes with an origin; each moves against the one that carries it by
+//! a rotation about the origin or by a shift of the origin along its axes.
+
+use appell_spec::mechanism::{FrameId, GROUND, Mechanism, ORIGIN, PointId};
+use rustc_hash::FxHashMap;
+
+use super::super::algebra::Algebra;
+use super::super::kinematics::Kinematics;
+use super::super::rotation::Rotation;
+use super::super::symbols::ids;
+use super::super::time::TimeDerivative;
+use crate::symbolic::vector::{self, Vec3};
+use crate::symbolic::{Expr, SymbolId};
+
+/// Axes with an origin.
+#[derive(Debug, Clone)]
+pub(super) struct Link {
+    /// How names call it.
+    pub name: String,
+    /// The link that carries it; none is the ground.
+    pub parent: Option<usize>,
+    /// How it moves against that.
+    pub step: Step,
+    /// Its velocity from there, by speed: angular of a rotation, linear of a shift.
+    pub columns: Vec<(usize, Vec3)>,
+}
+
+/// A motion of a link against the one that carries it.
+#[derive(Debug, Clone)]
+pub(super) enum Step {
+    /// Turns about the origin.
+    Rotation {
+        /// From the axes of the carrier to those of the link.
+        turns: Vec<Rotation>,
+        /// Angular velocity, in the axes of the link.
+        w: Vec3,
+        /// What changes its components while all speeds are held.
+        w_dot: Vec3,
+    },
+    /// The axes keep their directions.
+    Shift {
+        /// Position of the origin.
+        d: Vec3,
+        /// Rate of its components.
+        d_dot: Vec3,
+        /// What changes these while all speeds are held.
+        d_ddot: Vec3,
+    },
+}
+
+/// A place that moves with a link: its position from the origin.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Place {
+    /// The link; none is the ground.
+    pub link: Option<usize>,
+    /// Position.
+    pub arm: Vec3,
+}
+
+/// All links, carriers first, and where the bodies are.
+#[derive(Debug, Clone)]
+pub(super) struct Links {
+    pub links: Vec<Link>,
+    /// By body: the place of its centre in the link that it moves with.
+    pub bodies: Vec<Place>,
+}
+
+impl Links {
+    /// The tree of a mechanism; none where a body hangs on a frame that does not carry its axes.
+    pub fn new(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        kinematics: &Kinematics,
+        time: &TimeDerivative<'_>,
+    ) -> Option<Self> {
+        let symbols = time.symbols;
+        let signals = symbols.signals.iter().flatten().copied();
+        let changing: Vec<Expr> = (symbols.coordinates.iter().copied())
+            .chain(signals)
+            .chain([symbols.time])
+            .collect();
+        let mut planting = Planting {
+            changing: ids(&algebra.graph, &changing),
+            algebra,
+            mechanism,
+            kinematics,
+            time,
+            links: Vec::new(),
+            known: FxHashMap::default(),
+        };
+        let mut bodies = Vec::with_capacity(mechanism.bodies.len());
+        for body in &mechanism.bodies {
+            let place = planting.place(body.centre)?;
+            let frame = body.frame.unwrap_or(planting.axes_of(body.centre));
+            if body.inertia.as_ref().is_some_and(|inertia| inertia.frame != frame) {
+                return None;
+            }
+            bodies.push(if frame == planting.axes_of(body.centre) {
+                place
+            } else {
+                Place {
+                    link: planting.link(frame, body.centre)?,
+                    arm: vector::ZERO,
+                }
+            });
+        }
+        let links = planting.links;
+        Some(Self { links, bodies })
+    }
+}
+
+/// The tree while it grows.
+struct Planting<'a, 'b> {
+    algebra: &'a mut Algebra,
+    mechanism: &'a Mechanism,
+    kinematics: &'a Kinematics,
+    time: &'a TimeDerivative<'b>,
+    /// What lets a position change.
+    changing: Vec<SymbolId>,
+    links: Vec<Link>,
+    /// By frame and origin.
+    known: FxHashMap<(FrameId, PointId), Option<usize>>,
+}
+
+impl Planting<'_, '_> {
+    /// The frame along whose axes a point is placed.
+    fn axes_of(&self, point: PointId) -> FrameId {
+        self.kinematics.offset(point).frame
+    }
+
+    /// Where a point is, in the link that has the axes along which it is placed.
+    fn place(&mut self, point: PointId) -> Option<Place> {
+        // Points come after those they are placed from, so the way to the origin is short work for a loop.
+        let mut way = Vec::new();
+        let (axes, mut at) = (self.axes_of(point), point);
+        let start = loop {
+            if at == ORIGIN || self.axes_of(at) != axes {
+                break self.link(axes, at)?;
+            }
+            if let Some(&known) = self.known.get(&(axes, at)) {
+                break known;
+            }
+            way.push(at);
+            at = self.mechanism.points[at].from?;
+        };
+        let mut place = Place {
+            link: start,
+            arm: vector::ZERO,
+        };
+        for &point in way.iter().rev() {
+            let offset = self.kinematics.offset(point).v;
+            place.arm = self.algebra.graph.add3(place.arm, offset);
+            if offset.iter().any(|&c| self.algebra.graph.mentions(c, &self.changing)) {
+                let link = self.shifted(place, &self.mechanism.points[point].name.clone());
+                self.known.insert((axes, point), Some(link));
+                place = Place {
+                    link: Some(link),
+                    arm: vector::ZERO,
+                };
+            }
+        }
+        Some(place)
+    }
+
+    /// The link with the axes of a frame and its origin at a point.
+    fn link(&mut self, frame: FrameId, origin: PointId) -> Option<Option<usize>> {
+        if let Some(&known) = self.known.get(&(frame, origin)) {
+            return Some(known);
+        }
+        let from = if origin == ORIGIN { GROUND } else { self.axes_of(origin) };
+        let mut way: Vec<FrameId> = self.kinematics.frames.ancestors(frame);
+        let carrier = way.iter().position(|&f| f == from)?;
+        way.truncate(carrier);
+        let place = if origin == ORIGIN {
+            Place { link: None, arm: vector::ZERO }
+        } else {
+            self.place(origin)?
+        };
+        let start = if place.arm == vector::ZERO {
+            place.link
+        } else {
+            let name = self.mechanism.points[origin].name.clone();
+            Some(self.shifted(place, &name))
+        };
+        self.known.insert((from, origin), start);
+        let known = (way.iter()).position(|&f| self.known.contains_key(&(f, origin)));
+        let start = known.map_or(start, |place| self.known[&(way[place], origin)]);
+        way.truncate(known.unwrap_or(way.len()));
+        way.reverse();
+        let link = self.turned(start, &way);
+        self.known.insert((frame, origin), link);
+        Some(link)
+    }
+
+    /// What turns as the last of the frames does, whose axes are turned one against the other: as one link
+    /// where its angular velocity is then shorter than the rates of the turns, such as for a free body.
+    fn turned(&mut self, mut link: Option<usize>, way: &[FrameId]) -> Option<usize> {
+        let frames = &self.kinematics.frames;
+        let turns: Vec<(FrameId, Rotation)> = (way.iter())
+            .flat_map(|&frame| frames.rotations(frame).iter().map(move |turn| (frame, turn.clone())))
+            .collect();
+        let mut w = vector::ZERO;
+        let mut rates = Vec::new();
+        for (_, turn) in &turns {
+            let graph = &mut self.algebra.graph;
+            w = turn.into_child(graph, w);
+            w = graph.add3(w, turn.rate());
+            rates.extend(turn.rate());
+        }
+        let together = self.algebra.shortest3(w);
+        let graph = &self.algebra.graph;
+        if graph.operations(&together) <= graph.operations(&rates) {
+            let last = turns.last()?.0;
+            let turns = turns.into_iter().map(|(_, turn)| turn).collect();
+            return Some(self.rotated(link, last, turns, together));
+        }
+        for (frame, turn) in turns {
+            let w = turn.rate();
+            link = Some(self.rotated(link, frame, vec![turn], w));
+        }
+        link
+    }
+
+    fn rotated(&mut self, parent: Option<usize>, frame: FrameId, turns: Vec<Rotation>, w: Vec3) -> usize {
+        let w_dot = self.time.of3(self.algebra, w);
+        let w_dot = self.algebra.shortest3(w_dot);
+        let columns = self.columns(w);
+        self.push(Link {
+            name: self.mechanism.frames[frame].name.clone(),
+            parent,
+            step: Step::Rotation { turns, w, w_dot },
+            columns,
+        })
+    }
+
+    fn shifted(&mut self, place: Place, name: &str) -> usize {
+        let d = place.arm;
+        let d_dot = self.time.of3(self.algebra, d);
+        let d_ddot = self.time.of3(self.algebra, d_dot);
+        let columns = self.columns(d_dot);
+        self.push(Link {
+            name: name.to_owned(),
+            parent: place.link,
+            step: Step::Shift { d, d_dot, d_ddot },
+            columns,
+        })
+    }
+
+    fn push(&mut self, link: Link) -> usize {
+        self.links.push(link);
+        self.links.len() - 1
+    }
+
+    /// Partial velocities, those that are not zero.
+    fn columns(&mut self, velocity: Vec3) -> Vec<(usize, Vec3)> {
+        let mut columns = Vec::new();
+        for (place, &speed) in self.time.symbols.speeds.iter().enumerate() {
+            let partial = velocity.map(|c| self.algebra.derivative(c, speed));
+            if partial != vector::ZERO {
+                columns.push((place, partial));
+            }
+        }
+        columns
+    }
+}

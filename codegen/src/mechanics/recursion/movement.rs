@@ -1,0 +1,157 @@
+//! Outwards: angular velocities and accelerations of the links.
+
+use super::super::algebra::Algebra;
+use super::super::gibbs_appell::named3;
+use super::links::{Link, Links, Step};
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// The motion of a link, in its axes.
+#[derive(Debug, Clone)]
+pub(super) struct LinkMotion {
+    /// Angular velocity.
+    pub w: Vec3,
+    /// Angular acceleration.
+    pub alpha: Vec3,
+    /// Acceleration of the origin.
+    pub a: Vec3,
+    /// `α× + ω× ω×`: what it does to a position is its acceleration from the origin.
+    pub turning: Mat3,
+}
+
+/// What all links move with.
+pub(super) struct Driven<'a> {
+    /// Acceleration of the ground.
+    pub ground: Vec3,
+    /// ω̇; none where all vanish.
+    pub accelerations: Option<&'a [Expr]>,
+    /// What tells names of this motion from those of others.
+    pub suffix: &'a str,
+}
+
+impl LinkMotion {
+    /// Nothing turns.
+    pub fn at_rest(a: Vec3) -> Self {
+        Self {
+            w: vector::ZERO,
+            alpha: vector::ZERO,
+            a,
+            turning: [vector::ZERO; 3],
+        }
+    }
+
+    fn new(graph: &mut Graph, w: Vec3, alpha: Vec3, a: Vec3) -> Self {
+        let turning = turning(graph, w, alpha);
+        Self {
+            w,
+            alpha,
+            a,
+            turning,
+        }
+    }
+}
+
+/// `α× + ω× ω×`
+fn turning(graph: &mut Graph, w: Vec3, alpha: Vec3) -> Mat3 {
+    let square = |graph: &mut Graph, i: usize, j: usize| graph.mul(w[i], w[j]);
+    let mut matrix = vector::IDENTITY;
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        let (jj, kk) = (square(graph, j, j), square(graph, k, k));
+        let sum = graph.add(jj, kk);
+        matrix[i][i] = graph.neg(sum);
+        let ij = square(graph, i, j);
+        matrix[i][j] = graph.sub(ij, alpha[k]);
+        matrix[j][i] = graph.add(ij, alpha[k]);
+    }
+    matrix
+}
+
+impl Links {
+    /// The motions of all links.
+    pub fn motions(&self, algebra: &mut Algebra, driven: &Driven<'_>) -> Vec<LinkMotion> {
+        let at_rest = LinkMotion::at_rest(driven.ground);
+        let mut motions: Vec<LinkMotion> = Vec::with_capacity(self.links.len());
+        for link in &self.links {
+            let carrier = link.parent.map_or(&at_rest, |parent| &motions[parent]);
+            let motion = link.moved(algebra, carrier, driven);
+            motions.push(motion);
+        }
+        motions
+    }
+}
+
+impl Links {
+    /// The acceleration of the ground in the axes of all links, where nothing else moves.
+    pub fn still(&self, algebra: &mut Algebra, ground: Vec3) -> Vec<Vec3> {
+        let mut all: Vec<Vec3> = Vec::with_capacity(self.links.len());
+        for link in &self.links {
+            let carried = link.parent.map_or(ground, |parent| all[parent]);
+            all.push(match &link.step {
+                Step::Rotation { turns, .. } => {
+                    let graph = &mut algebra.graph;
+                    let a = (turns.iter()).fold(carried, |a, turn| turn.into_child(graph, a));
+                    named3(algebra, &format!("g_{}", link.name), a)
+                }
+                Step::Shift { .. } => carried,
+            });
+        }
+        all
+    }
+}
+
+impl Link {
+    /// The velocity of the step, or its rate, by the columns: `Σ column · speed`.
+    pub fn along(&self, graph: &mut Graph, speeds: &[Expr]) -> Vec3 {
+        let mut sum = vector::ZERO;
+        for &(speed, column) in &self.columns {
+            let part = graph.scale3(speeds[speed], column);
+            sum = graph.add3(sum, part);
+        }
+        sum
+    }
+
+    fn moved(&self, algebra: &mut Algebra, carrier: &LinkMotion, driven: &Driven<'_>) -> LinkMotion {
+        let driving = driven.accelerations.map_or(vector::ZERO, |accelerations| {
+            self.along(&mut algebra.graph, accelerations)
+        });
+        let (name, suffix) = (&self.name, driven.suffix);
+        match &self.step {
+            Step::Rotation { turns, w, w_dot } => {
+                let graph = &mut algebra.graph;
+                let inward = |graph: &mut Graph, v: Vec3| {
+                    turns.iter().fold(v, |v, turn| turn.into_child(graph, v))
+                };
+                let carried = inward(graph, carrier.w);
+                let sum = graph.add3(carried, *w);
+                let own = algebra.shared3(&format!("w_{name}"), sum);
+                let graph = &mut algebra.graph;
+                // α = Rᵀ α_carrier + ω × w + ẇ
+                let mut alpha = inward(graph, carrier.alpha);
+                let change = graph.cross(own, *w);
+                for part in [change, *w_dot, driving] {
+                    alpha = graph.add3(alpha, part);
+                }
+                let a = inward(graph, carrier.a);
+                let alpha = named3(algebra, &format!("alpha{suffix}_{name}"), alpha);
+                let a = named3(algebra, &format!("a{suffix}_{name}"), a);
+                LinkMotion::new(&mut algebra.graph, own, alpha, a)
+            }
+            Step::Shift { d, d_dot, d_ddot } => {
+                // a = a_carrier + (α× + ω× ω×) d + 2 ω × ḋ + d̈
+                let graph = &mut algebra.graph;
+                let mut a = graph.mat_vec(&carrier.turning, *d);
+                let coriolis = graph.cross(carrier.w, *d_dot);
+                let coriolis = graph.add3(coriolis, coriolis);
+                for part in [carrier.a, coriolis, *d_ddot, driving] {
+                    a = graph.add3(a, part);
+                }
+                let a = named3(algebra, &format!("a{suffix}_{name}"), a);
+                LinkMotion {
+                    a,
+                    ..carrier.clone()
+                }
+            }
+        }
+    }
+}

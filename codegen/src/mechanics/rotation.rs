@@ -1,0 +1,177 @@
+//! One step from the axes of a frame to axes turned against it: components of vectors and of symmetric
+//! tensors on either side, and how they change with a variable.
+
+use super::algebra::Algebra;
+use super::quaternion::Attitude;
+use crate::symbolic::vector::{self, Mat3, Vec3, transpose};
+use crate::symbolic::{Expr, Graph, Rational};
+
+/// From the axes before the step to those behind it.
+#[derive(Debug, Clone)]
+pub(super) enum Rotation {
+    /// About a coordinate axis.
+    Turn(Turn),
+    /// By a quaternion.
+    Attitude(Attitude),
+}
+
+/// A rotation about a coordinate axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Turn {
+    /// Which axis.
+    pub(super) axis: usize,
+    /// Rate of the angle.
+    pub(super) rate: Expr,
+    /// Sine of the angle.
+    pub(super) sin: Expr,
+    /// Its cosine.
+    pub(super) cos: Expr,
+}
+
+impl Rotation {
+    /// R v: the components before the step.
+    pub(super) fn into_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        match self {
+            Self::Turn(turn) => turn.rotate(graph, v, turn.sin, turn.cos),
+            Self::Attitude(attitude) => graph.mat_vec(&attitude.matrix, v),
+        }
+    }
+
+    /// Rᵀ v: the components behind the step.
+    pub(super) fn into_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        match self {
+            Self::Turn(turn) => {
+                let sin = graph.neg(turn.sin);
+                turn.rotate(graph, v, sin, turn.cos)
+            }
+            Self::Attitude(attitude) => graph.transposed_mat_vec(&attitude.matrix, v),
+        }
+    }
+
+    /// R T Rᵀ: the components of a symmetric tensor before the step.
+    pub(super) fn tensor_into_parent(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
+        match self {
+            Self::Turn(turn) => turn.rotate_tensor(graph, t),
+            Self::Attitude(attitude) => {
+                let half = graph.mat_mat(&attitude.matrix, t);
+                graph.mat_mat(&half, &transpose(&attitude.matrix))
+            }
+        }
+    }
+
+    /// Angular velocity of the step, in the axes behind it.
+    pub(super) fn rate(&self) -> Vec3 {
+        match self {
+            Self::Turn(turn) => {
+                let mut w = vector::ZERO;
+                w[turn.axis] = turn.rate;
+                w
+            }
+            Self::Attitude(attitude) => attitude.w,
+        }
+    }
+
+    /// The components of its angular velocity.
+    pub(super) fn rates(&mut self) -> &mut [Expr] {
+        match self {
+            Self::Turn(turn) => std::slice::from_mut(&mut turn.rate),
+            Self::Attitude(attitude) => &mut attitude.w,
+        }
+    }
+
+    /// `(∂R/∂z) v`
+    pub(super) fn change_into_parent(&self, algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
+        self.change(algebra, z).into_parent(&mut algebra.graph, v)
+    }
+
+    /// `(∂Rᵀ/∂z) v`
+    pub(super) fn change_into_child(&self, algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
+        self.change(algebra, z).into_child(&mut algebra.graph, v)
+    }
+
+    /// ∂R/∂z as if it were a rotation.
+    fn change(&self, algebra: &mut Algebra, z: Expr) -> Change {
+        match self {
+            Self::Turn(turn) => Change::Turn(Turn {
+                sin: algebra.derivative(turn.sin, z),
+                cos: algebra.derivative(turn.cos, z),
+                ..*turn
+            }),
+            Self::Attitude(attitude) => {
+                let row = |row: Vec3| row.map(|entry| algebra.derivative(entry, z));
+                Change::Matrix(attitude.matrix.map(row))
+            }
+        }
+    }
+}
+
+/// The derivative of a rotation.
+enum Change {
+    Turn(Turn),
+    Matrix(Mat3),
+}
+
+impl Change {
+    fn into_parent(self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        match self {
+            Self::Turn(turn) => turn.rotate_plane(graph, v, turn.sin, turn.cos),
+            Self::Matrix(matrix) => graph.mat_vec(&matrix, v),
+        }
+    }
+
+    fn into_child(self, graph: &mut Graph, v: Vec3) -> Vec3 {
+        match self {
+            Self::Turn(turn) => {
+                let sin = graph.neg(turn.sin);
+                turn.rotate_plane(graph, v, sin, turn.cos)
+            }
+            Self::Matrix(matrix) => graph.transposed_mat_vec(&matrix, v),
+        }
+    }
+}
+
+impl Turn {
+    /// The two axes that take part, in cyclic order.
+    fn plane(&self) -> [usize; 2] {
+        [(self.axis + 1) % 3, (self.axis + 2) % 3]
+    }
+
+    fn rotate(&self, graph: &mut Graph, v: Vec3, sin: Expr, cos: Expr) -> Vec3 {
+        let mut rotated = self.rotate_plane(graph, v, sin, cos);
+        rotated[self.axis] = v[self.axis];
+        rotated
+    }
+
+    /// What a rotation makes of the components across the axis.
+    fn rotate_plane(&self, graph: &mut Graph, v: Vec3, sin: Expr, cos: Expr) -> Vec3 {
+        let [i, j] = self.plane();
+        let mut rotated = vector::ZERO;
+        let (ci, sj) = (graph.mul(cos, v[i]), graph.mul(sin, v[j]));
+        rotated[i] = graph.sub(ci, sj);
+        let (si, cj) = (graph.mul(sin, v[i]), graph.mul(cos, v[j]));
+        rotated[j] = graph.add(si, cj);
+        rotated
+    }
+
+    /// With `k = s (Tᵢᵢ − Tⱼⱼ) + 2 c Tᵢⱼ`: `Tᵢᵢ − s k`, `Tⱼⱼ + s k` and `c k − Tᵢⱼ`.
+    fn rotate_tensor(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
+        let [i, j] = self.plane();
+        let difference = graph.sub(t[i][i], t[j][j]);
+        let along = graph.mul(self.sin, difference);
+        let twice = graph.scale(&Rational::new(2, 1), self.cos);
+        let across = graph.mul(twice, t[i][j]);
+        let k = graph.add(along, across);
+        let (sk, ck) = (graph.mul(self.sin, k), graph.mul(self.cos, k));
+        let row = self.rotate(graph, t[self.axis], self.sin, self.cos);
+        let mut rotated = *t;
+        rotated[self.axis] = row;
+        for (other, &entry) in row.iter().enumerate() {
+            rotated[other][self.axis] = entry;
+        }
+        rotated[i][i] = graph.sub(t[i][i], sk);
+        rotated[j][j] = graph.add(t[j][j], sk);
+        rotated[i][j] = graph.sub(ck, t[i][j]);
+        rotated[j][i] = rotated[i][j];
+        rotated
+    }
+}

@@ -191,14 +191,15 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let rolling = rolling_contacts(mechanism, &constraints, &elimination);
     algebra.relations = relations::relations(&mut algebra, &elimination.open);
     let mut kinematics;
-    let (bodies, unbound_gibbs, recursion);
+    let mut recursion = None;
+    let (bodies, unbound_gibbs);
     if elimination.open.unknowns.is_empty()
         && let Some(found) = Recursion::new(&mut algebra, mechanism, &symbols, rates)?
     {
         kinematics = found.0;
         let tree = found.1;
         bodies = tree.bodies(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
-        unbound_gibbs = tree.gibbs_form(&mut algebra, mechanism);
+        unbound_gibbs = tree.gibbs_form(&mut algebra);
         recursion = Some(tree);
     } else {
         kinematics = Kinematics::new(
@@ -217,18 +218,16 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
             rates,
             &directions,
         )?;
-        algebra.relations.clear();
-        algebra.check_size()?;
         unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
-        recursion = None;
     }
     algebra.relations.clear();
+    algebra.check_size()?;
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let all_loads = loads.clone();
     loads::settle(&mut loads, &mut algebra.graph, mechanism, &[])?;
-    let (forces, other_forces) = match &recursion {
+    let forces = match &mut recursion {
         Some(tree) => tree.forces(&mut algebra, mechanism, &loads, &directions),
-        None => (loads::generalized_forces(&mut algebra, &loads, &directions), Vec::new()),
+        None => loads::generalized_forces(&mut algebra, &loads, &directions),
     };
     let unbound = Unbound { forces, bodies };
     let (dependent, velocities) = DependentSpeeds::new(
@@ -249,7 +248,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let forces = dependent.along_allowed(&mut algebra.graph, &forces);
     let motion = if let Some(tree) = &recursion {
-        tree.solve(&mut algebra, mechanism, &gibbs, &other_forces)?
+        tree.solve(&mut algebra, mechanism, &gibbs)?
     } else {
         let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
         gibbs.write_out_what_cancels(&mut algebra, &parts);

@@ -536,9 +536,19 @@ impl Derivation {
                 motion: &self.motion,
                 coordinate_rates: &self.coordinate_rates,
             };
-            let residual = implicit.residual(algebra, symbols);
+            let tree = self.recursion.as_ref();
+            let residual = match tree {
+                Some(tree) => tree.residual(algebra, &symbols.accelerations),
+                None => implicit.residual(algebra, symbols),
+            };
             for variables in variables {
-                columns_of.push(implicit.jacobian(algebra, symbols, &residual, variables)?);
+                let are_parameters = variables.iter().all(|z| symbols.parameters.contains(z));
+                columns_of.push(match tree {
+                    Some(tree) if !are_parameters => {
+                        implicit.jacobian_along(algebra, symbols, tree, variables)
+                    }
+                    _ => implicit.jacobian(algebra, symbols, &residual, variables)?,
+                });
             }
         } else {
             let (unbound, dependent) = (&self.unbound, &self.dependent);
@@ -548,7 +558,9 @@ impl Derivation {
                 columns_of.push(columns.collect::<Outcome<_>>()?);
             }
         }
-        for (columns, variables) in columns_of.iter_mut().zip(variables) {
+        // A recursion has no terms that cancel.
+        let written_out = self.recursion.is_none();
+        for (columns, variables) in columns_of.iter_mut().zip(variables).filter(|_| written_out) {
             for (column, variable) in columns.iter_mut().zip(variables) {
                 if symbols.coordinates.contains(variable) {
                     for entry in column {

@@ -60,6 +60,7 @@ impl Frames {
                 let [sin, cos] = sin_cos(algebra, angle);
                 rotations.push(Rotation::Turn(Turn {
                     axis: turn.axis.index(),
+                    angle,
                     rate: time.of(algebra, angle),
                     sin,
                     cos,

@@ -5,6 +5,7 @@ use super::algebra::Algebra;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::GibbsForm;
 use super::motion::{Block, Motion};
+use super::recursion::Recursion;
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, Substitution};
 
@@ -91,6 +92,30 @@ impl ImplicitMotion<'_> {
             columns.push(column);
         }
         Ok(columns)
+    }
+}
+
+impl ImplicitMotion<'_> {
+    /// [`ImplicitMotion::jacobian`] with respect to anything but parameters, by recursion over the links.
+    pub fn jacobian_along(
+        &self,
+        algebra: &mut Algebra,
+        symbols: &Symbols,
+        tree: &Recursion,
+        variables: &[Expr],
+    ) -> Vec<Vec<Expr>> {
+        let accelerations = &self.motion.accelerations;
+        let at = tree.differentiable(algebra, accelerations);
+        let mut columns = Vec::with_capacity(variables.len());
+        for &variable in variables {
+            let right = tree.partial(algebra, &at, accelerations, variable);
+            let mut column = self.motion.solved_for(algebra, symbols, variable, right);
+            for &rate in self.coordinate_rates {
+                column.push(algebra.derivative(rate, variable));
+            }
+            columns.push(column);
+        }
+        columns
     }
 }
 

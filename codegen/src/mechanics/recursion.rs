@@ -11,6 +11,7 @@ mod balance;
 mod inertia;
 mod links;
 mod movement;
+mod partials;
 
 
 use appell_spec::expr::{Expr as SpecExpr, Quantity};
@@ -32,6 +33,7 @@ use crate::symbolic::vector::{self, Vec3};
 use inertia::{Inertia, Wrench, central_inertia};
 use links::Links;
 use movement::{Driven, LinkMotion};
+pub use partials::Differentiable;
 
 /// A mechanism with fewer speeds has shorter equations with everything multiplied out.
 const FEWEST_SPEEDS: usize = 5;
@@ -46,6 +48,8 @@ pub struct Recursion {
     composites: Vec<Inertia>,
     /// The acceleration of the ground that stands for the weights.
     rise: Vec3,
+    /// Π of the loads that are no steady weights.
+    forces: Vec<Expr>,
 }
 
 impl Recursion {
@@ -80,17 +84,16 @@ impl Recursion {
                 rise = algebra.graph.add3(rise, part);
             }
         }
-        Ok(Some((kinematics, Self { links, own, composites, rise })))
+        Ok(Some((kinematics, Self { links, own, composites, rise, forces: Vec::new() })))
     }
 
     /// M and b.
-    pub fn gibbs_form(&self, algebra: &mut Algebra, mechanism: &Mechanism) -> GibbsForm {
-        let speeds = mechanism.pseudo_velocities.len();
+    pub fn gibbs_form(&self, algebra: &mut Algebra) -> GibbsForm {
         let motions = self.unaccelerated(algebra);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_0");
         GibbsForm {
-            mass_matrix: self.links.mass_matrix(algebra, mechanism, &self.composites),
-            bias: self.links.felt(&mut algebra.graph, &wrenches, speeds),
+            mass_matrix: self.links.mass_matrix(algebra, &self.composites),
+            bias: self.links.felt(&mut algebra.graph, &wrenches),
         }
     }
 
@@ -142,22 +145,24 @@ impl Recursion {
         Ok(bodies)
     }
 
-    /// Π of all loads, and of those that are no steady weights.
+    /// Π of all loads; those that are no steady weights are kept.
     pub fn forces(
-        &self,
+        &mut self,
         algebra: &mut Algebra,
         mechanism: &Mechanism,
         loads: &[AppliedLoad],
         speeds: &[Expr],
-    ) -> (Vec<Expr>, Vec<Expr>) {
+    ) -> Vec<Expr> {
         let kinds = mechanism.loads.iter().zip(loads);
         let others = kinds.filter(|(load, _)| steady_weight(load).is_none());
         let others: Vec<AppliedLoad> = others.map(|(_, applied)| applied.clone()).collect();
         let others = generalized_forces(algebra, &others, speeds);
-        let weights = self.weights(algebra, mechanism);
+        let weights = self.weights(algebra);
         let both = others.iter().zip(weights);
         let all = both.map(|(&other, weight)| algebra.graph.add(other, weight));
-        (all.collect(), others)
+        let all = all.collect();
+        self.forces = others;
+        all
     }
 
     /// Appell's equations solved from the tips inwards, so that branches do not couple.
@@ -166,14 +171,54 @@ impl Recursion {
         algebra: &mut Algebra,
         mechanism: &Mechanism,
         gibbs: &GibbsForm,
-        forces: &[Expr],
     ) -> Outcome<Motion> {
         let falling = GibbsForm {
             mass_matrix: gibbs.mass_matrix.clone(),
-            bias: self.bias_less_weights(algebra, mechanism),
+            bias: self.bias_less_weights(algebra),
         };
-        let order = self.inwards(forces.len());
-        motion::solve(algebra, mechanism, &falling, forces, &[], Way::InOrder(&order))
+        let order = self.inwards(self.forces.len());
+        let way = Way::InOrder(&order);
+        motion::solve(algebra, mechanism, &falling, &self.forces, &[], way)
+    }
+
+    /// The links in the motion that happens.
+    pub fn differentiable(
+        &self,
+        algebra: &mut Algebra,
+        accelerations: &[Expr],
+    ) -> Differentiable {
+        let driven = Driven { ground: self.rise, accelerations: Some(accelerations), suffix: "d" };
+        let motions = self.links.motions(algebra, &driven);
+        let inertias = (self.own.as_slice(), self.composites.as_slice());
+        Differentiable::new(algebra, &self.links, inertias, self.rise, motions)
+    }
+
+    /// `∂(Π − b − M ω̇)/∂z` with ω̇ held; z is a coordinate, a speed, an input or a signal.
+    pub fn partial(
+        &self,
+        algebra: &mut Algebra,
+        at: &Differentiable,
+        accelerations: &[Expr],
+        z: Expr,
+    ) -> Vec<Expr> {
+        let taken = at.column(algebra, &self.links, accelerations, z);
+        let forces = self.forces.iter().zip(taken);
+        let partials = forces.map(|(&force, taken)| {
+            let given = algebra.derivative(force, z);
+            algebra.graph.sub(given, taken)
+        });
+        partials.collect()
+    }
+
+    /// `Π − b − M ω̇` with these accelerations.
+    pub fn residual(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Vec<Expr> {
+        let driven = Driven { ground: self.rise, accelerations: Some(accelerations), suffix: "s" };
+        let motions = self.links.motions(algebra, &driven);
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_s");
+        let graph = &mut algebra.graph;
+        let taken = self.links.felt(graph, &wrenches);
+        let forces = self.forces.iter().zip(taken);
+        forces.map(|(&force, taken)| graph.sub(force, taken)).collect()
     }
 
     /// Speeds from the tips inwards: eliminated in this order, branches do not couple.
@@ -190,17 +235,15 @@ impl Recursion {
     }
 
     /// b less the work of the weights: while all else falls freely, the ground rises.
-    pub fn bias_less_weights(&self, algebra: &mut Algebra, mechanism: &Mechanism) -> Vec<Expr> {
-        let speeds = mechanism.pseudo_velocities.len();
+    pub fn bias_less_weights(&self, algebra: &mut Algebra) -> Vec<Expr> {
         let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
         let motions = self.links.motions(algebra, &driven);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_r");
-        self.links.felt(&mut algebra.graph, &wrenches, speeds)
+        self.links.felt(&mut algebra.graph, &wrenches)
     }
 
     /// The work of the weights along each speed.
-    pub fn weights(&self, algebra: &mut Algebra, mechanism: &Mechanism) -> Vec<Expr> {
-        let speeds = mechanism.pseudo_velocities.len();
+    pub fn weights(&self, algebra: &mut Algebra) -> Vec<Expr> {
         let still = self.links.still(algebra, self.rise);
         let wrenches: Vec<Wrench> = (self.composites.iter().zip(&still))
             .map(|(composite, &a)| {
@@ -208,7 +251,7 @@ impl Recursion {
                 Wrench { n: algebra.graph.neg3(up.n), f: algebra.graph.neg3(up.f) }
             })
             .collect();
-        self.links.felt(&mut algebra.graph, &wrenches, speeds)
+        self.links.felt(&mut algebra.graph, &wrenches)
     }
 }
 

@@ -20,6 +20,8 @@ pub(super) enum Rotation {
 pub(super) struct Turn {
     /// Which axis.
     pub(super) axis: usize,
+    /// The angle.
+    pub(super) angle: Expr,
     /// Rate of the angle.
     pub(super) rate: Expr,
     /// Sine of the angle.

@@ -67,8 +67,8 @@ impl Links {
     }
 
     /// What each speed feels of the forces on the links.
-    pub fn felt(&self, graph: &mut Graph, wrenches: &[Wrench], speeds: usize) -> Vec<Expr> {
-        let mut parts = vec![Vec::new(); speeds];
+    pub fn felt(&self, graph: &mut Graph, wrenches: &[Wrench]) -> Vec<Expr> {
+        let mut parts = vec![Vec::new(); self.speeds.len()];
         for (link, &wrench) in self.links.iter().zip(wrenches) {
             for &(speed, column) in &link.columns {
                 parts[speed].push(link.work(graph, column, wrench));

@@ -1,6 +1,6 @@
 //! Inwards: the inertia of all that a link carries, and the mass matrix from it.
 
-use appell_spec::mechanism::{Body, BodyId, Mechanism, SpeedId};
+use appell_spec::mechanism::{Body, BodyId, Mechanism};
 
 use super::super::algebra::Algebra;
 use super::super::expressions::Lowering;
@@ -237,14 +237,13 @@ impl Links {
     pub fn mass_matrix(
         &self,
         algebra: &mut Algebra,
-        mechanism: &Mechanism,
         composites: &[Inertia],
     ) -> Vec<Vec<Expr>> {
-        let speeds = mechanism.pseudo_velocities.len();
+        let speeds = self.speeds.len();
         let mut parts = vec![vec![Vec::new(); speeds]; speeds];
         for (place, link) in self.links.iter().enumerate() {
             for &(speed, column) in &link.columns {
-                let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+                let name = &self.speeds[speed];
                 let mut wrench = self.resistance(algebra, place, column, &composites[place]);
                 let mut at = Some(place);
                 while let Some(here) = at {

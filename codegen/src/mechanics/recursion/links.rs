@@ -61,6 +61,8 @@ pub(super) struct Place {
 #[derive(Debug, Clone)]
 pub(super) struct Links {
     pub links: Vec<Link>,
+    /// Names of the speeds.
+    pub speeds: Vec<String>,
     /// By body: the place of its centre in the link that it moves with.
     pub bodies: Vec<Place>,
 }
@@ -105,7 +107,13 @@ impl Links {
             });
         }
         let links = planting.links;
-        Some(Self { links, bodies })
+        let speeds = mechanism.pseudo_velocities.iter();
+        let speeds = speeds.map(|speed| speed.label.name.clone()).collect();
+        Some(Self {
+            links,
+            speeds,
+            bodies,
+        })
     }
 }
 

@@ -1,0 +1,560 @@
+//! How the forces that a motion takes change with the state, ω̇ held.
+//!
+//! A coordinate or a speed changes the motion of the links whose step it drives, and with these all that they
+//! carry, which moves on rigidly. What is carried answers to changes δω, δα and δa of its link's motion as a
+//! whole. With β = δα + ω × δω, the composite mass m, first moment h and inertia I, their rates ḣ and İ and
+//! the angular momentum ℓ about the origin,
+//!
+//! ```text
+//! δf = m δa + β × h + 2 δω × ḣ        δn = h × δa + I β + İ δω − ℓ × δω
+//! ```
+//!
+//! in any axes that do not turn relative to the link. β is carried on unchanged, and δa by
+//! δa + β × d + 2 δω × u to an origin at d with the relative velocity u.
+
+use super::super::algebra::Algebra;
+use super::super::gibbs_appell::named3;
+use super::super::linear::name_of;
+use super::super::rotation::Rotation;
+use super::inertia::{Inertia, Wrench};
+use super::links::{Link, Links, Step};
+use super::movement::LinkMotion;
+use crate::symbolic::vector::{self, Mat3, Vec3};
+use crate::symbolic::{Expr, Graph};
+
+/// How fast mass moves about in a link with all that it carries, seen from its origin, in its axes.
+#[derive(Debug, Clone)]
+struct Flow {
+    /// Rate of the first moment, ḣ.
+    moment: Vec3,
+    /// Rate of the inertia, İ.
+    tensor: Mat3,
+    /// Angular momentum, ℓ.
+    momentum: Vec3,
+}
+
+/// A change of the motion of a link.
+#[derive(Debug, Clone, Copy)]
+struct Change {
+    /// δω.
+    w: Vec3,
+    /// β = δα + ω × δω.
+    beta: Vec3,
+    /// δa of the origin.
+    a: Vec3,
+}
+
+/// What a force along a column does for changes of the motion of a link.
+#[derive(Debug, Clone, Copy)]
+struct Answer {
+    /// To β and δa.
+    wrench: Wrench,
+    /// To δω.
+    w: Vec3,
+}
+
+/// The tree of links in a motion, ready to be differentiated.
+#[derive(Debug, Clone)]
+pub struct Differentiable {
+    /// Acceleration of the ground.
+    ground: Vec3,
+    motions: Vec<LinkMotion>,
+    wrenches: Vec<Wrench>,
+    composites: Vec<Inertia>,
+    flows: Vec<Flow>,
+    /// By link: what the columns of the links that it carries answer, by speed, its own included.
+    answers: Vec<Vec<(usize, Answer)>>,
+}
+
+impl Flow {
+    const NONE: Self = Self {
+        moment: vector::ZERO,
+        tensor: [vector::ZERO; 3],
+        momentum: vector::ZERO,
+    };
+
+    /// Of a rigid body that turns with the axes: `ω × h`, `ω× I − I ω×`, `I ω`.
+    fn of_rigid(graph: &mut Graph, inertia: &Inertia, w: Vec3) -> Self {
+        let mut half = [vector::ZERO; 3];
+        for (i, row) in half.iter_mut().enumerate() {
+            // Column i of ω× I; the tensor is symmetric.
+            *row = graph.cross(w, inertia.tensor[i]);
+        }
+        let mut tensor = half;
+        for i in 0..3 {
+            for j in 0..3 {
+                tensor[i][j] = graph.add(half[i][j], half[j][i]);
+            }
+        }
+        Self {
+            moment: graph.cross(w, inertia.moment),
+            tensor,
+            momentum: graph.mat_vec(&inertia.tensor, w),
+        }
+    }
+
+    fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
+        let mut tensor = self.tensor;
+        for (row, other) in tensor.iter_mut().zip(other.tensor) {
+            *row = graph.add3(*row, other);
+        }
+        Self {
+            moment: graph.add3(self.moment, other.moment),
+            tensor,
+            momentum: graph.add3(self.momentum, other.momentum),
+        }
+    }
+
+    /// About an origin from which the own one is at `d` and moves away with `u`.
+    fn shifted(&self, graph: &mut Graph, inertia: &Inertia, (d, u): (Vec3, Vec3)) -> Self {
+        let (added, arriving) = (
+            graph.scale3(inertia.mass, d),
+            graph.scale3(inertia.mass, u),
+        );
+        let h = graph.add3(inertia.moment, added);
+        let moment = graph.add3(self.moment, arriving);
+        // The rate of d h' + h d.
+        let product = |graph: &mut Graph, i: usize, j: usize| {
+            let terms = [
+                graph.mul(u[i], h[j]),
+                graph.mul(d[i], moment[j]),
+                graph.mul(self.moment[i], d[j]),
+                graph.mul(inertia.moment[i], u[j]),
+            ];
+            graph.sum(&terms)
+        };
+        let squares = [0, 1, 2].map(|i| product(graph, i, i));
+        let mut tensor = self.tensor;
+        for i in 0..3 {
+            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+            for square in [squares[j], squares[k]] {
+                tensor[i][i] = graph.add(tensor[i][i], square);
+            }
+            let ij = product(graph, i, j);
+            tensor[i][j] = graph.sub(tensor[i][j], ij);
+            tensor[j][i] = tensor[i][j];
+        }
+        let (first, second) = (graph.cross(d, moment), graph.cross(inertia.moment, u));
+        let more = graph.add3(first, second);
+        Self {
+            moment,
+            tensor,
+            momentum: graph.add3(self.momentum, more),
+        }
+    }
+
+    fn named(&self, algebra: &mut Algebra, link: &str) -> Self {
+        let mut tensor = self.tensor;
+        for (i, j) in [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)] {
+            let axes = ['x', 'y', 'z'];
+            let name = format!("I_dot_{link}_{}{}", axes[i], axes[j]);
+            tensor[i][j] = algebra.graph.name(&name, self.tensor[i][j]);
+            tensor[j][i] = tensor[i][j];
+        }
+        Self {
+            moment: named3(algebra, &format!("h_dot_{link}"), self.moment),
+            tensor,
+            momentum: named3(algebra, &format!("l_{link}"), self.momentum),
+        }
+    }
+}
+
+impl Change {
+    /// The forces that it adds.
+    fn takes(&self, graph: &mut Graph, inertia: &Inertia, flow: &Flow) -> Wrench {
+        let rigid = inertia.resists(graph, self.beta, self.a);
+        let coriolis = graph.cross(self.w, flow.moment);
+        let coriolis = graph.add3(coriolis, coriolis);
+        let growing = graph.mat_vec(&flow.tensor, self.w);
+        let gyroscopic = graph.cross(self.w, flow.momentum);
+        let n = graph.add3(growing, gyroscopic);
+        rigid.plus(graph, Wrench { n, f: coriolis })
+    }
+}
+
+impl Answer {
+    /// Of a column of a link with its inertia.
+    fn of_column(
+        graph: &mut Graph,
+        step: &Step,
+        column: Vec3,
+        wrench: Wrench,
+        flow: &Flow,
+    ) -> Self {
+        let w = match step {
+            // column · (İ δω − ℓ × δω)
+            Step::Rotation { .. } => {
+                let growing = graph.mat_vec(&flow.tensor, column);
+                let gyroscopic = graph.cross(flow.momentum, column);
+                graph.add3(growing, gyroscopic)
+            }
+            // column · (2 δω × ḣ)
+            Step::Shift { .. } => {
+                let coriolis = graph.cross(flow.moment, column);
+                graph.add3(coriolis, coriolis)
+            }
+        };
+        Self { wrench, w }
+    }
+
+    fn to(&self, graph: &mut Graph, change: &Change) -> Expr {
+        let parts = [
+            graph.dot(self.wrench.n, change.beta),
+            graph.dot(self.wrench.f, change.a),
+            graph.dot(self.w, change.w),
+        ];
+        graph.sum(&parts)
+    }
+}
+
+impl Differentiable {
+    /// The links in a motion with the weights as the acceleration of the ground.
+    pub(super) fn new(
+        algebra: &mut Algebra,
+        links: &Links,
+        (own, composites): (&[Inertia], &[Inertia]),
+        ground: Vec3,
+        motions: Vec<LinkMotion>,
+    ) -> Self {
+        let wrenches = links.wrenches(algebra, own, &motions, "_d");
+        let flows = links.flows(algebra, own, composites, &motions);
+        let answers = links.answers(algebra, composites, &flows, &motions);
+        Self {
+            ground,
+            motions,
+            wrenches,
+            composites: composites.to_vec(),
+            flows,
+            answers,
+        }
+    }
+
+    /// What the forces along the speeds change with a coordinate, a speed or a signal.
+    pub(super) fn column(
+        &self,
+        algebra: &mut Algebra,
+        links: &Links,
+        accelerations: &[Expr],
+        z: Expr,
+    ) -> Vec<Expr> {
+        let mut parts = vec![Vec::new(); accelerations.len()];
+        for (place, link) in links.links.iter().enumerate() {
+            let Some(change) = self.change(algebra, links, accelerations, place, z) else {
+                continue;
+            };
+            for (speed, answer) in &self.answers[place] {
+                parts[*speed].push(answer.to(&mut algebra.graph, &change));
+            }
+            let wrench = self.wrenches[place];
+            for &(speed, column) in &link.columns {
+                let turned = derivative3(algebra, column, z);
+                parts[speed].push(link.work(&mut algebra.graph, turned, wrench));
+            }
+            let (composite, flow) = (&self.composites[place], &self.flows[place]);
+            let taken = change.takes(&mut algebra.graph, composite, flow);
+            let mut more = link.change_on_carrier(algebra, z, taken, wrench);
+            let mut at = link.parent;
+            while let Some(here) = at {
+                let carrier = &links.links[here];
+                let by = name_of(&algebra.graph, z);
+                more = more.named(algebra, &format!("{}_by_{by}", carrier.name));
+                for &(speed, column) in &carrier.columns {
+                    parts[speed].push(carrier.work(&mut algebra.graph, column, more));
+                }
+                more = carrier.on_carrier(&mut algebra.graph, more);
+                at = carrier.parent;
+            }
+        }
+        parts.iter().map(|parts| algebra.graph.sum(parts)).collect()
+    }
+
+    /// What a variable changes of the motion of a link by its own step; none where nothing.
+    fn change(
+        &self,
+        algebra: &mut Algebra,
+        links: &Links,
+        accelerations: &[Expr],
+        place: usize,
+        z: Expr,
+    ) -> Option<Change> {
+        let link = &links.links[place];
+        let motion = &self.motions[place];
+        // ω̇ is held.
+        let mut driving = vector::ZERO;
+        for &(speed, column) in &link.columns {
+            let by = derivative3(algebra, column, z);
+            let part = algebra.graph.scale3(accelerations[speed], by);
+            driving = algebra.graph.add3(driving, part);
+        }
+        match &link.step {
+            Step::Rotation { turns, w, w_dot } => {
+                let by_w = derivative3(algebra, *w, z);
+                let by_rate = derivative3(algebra, *w_dot, z);
+                let axis = axis(algebra, turns, z);
+                let still = [by_w, by_rate, driving].iter().all(|v| *v == vector::ZERO);
+                if still && axis == Some(vector::ZERO) {
+                    return None;
+                }
+                let graph = &mut algebra.graph;
+                if let (true, Some(x), [Rotation::Turn(_)]) = (still, axis, turns.as_slice()) {
+                    // What the link carries sees the motion turn back about the axis.
+                    return Some(Change {
+                        w: graph.cross(motion.w, x),
+                        beta: graph.mat_vec(&motion.turning, x),
+                        a: graph.cross(motion.a, x),
+                    });
+                }
+                let carried = graph.sub3(motion.w, *w);
+                let change = graph.cross(motion.w, *w);
+                let mut alpha = graph.sub3(motion.alpha, change);
+                let own = link.along(graph, accelerations);
+                for part in [*w_dot, own] {
+                    alpha = graph.sub3(alpha, part);
+                }
+                let at_rest = LinkMotion::at_rest(self.ground);
+                let carrier = link.parent.map_or(&at_rest, |parent| &self.motions[parent]);
+                let turned_back = |algebra: &mut Algebra, before: Vec3, behind: Vec3| match axis {
+                    Some(x) => algebra.graph.cross(behind, x),
+                    None => change_behind(algebra, turns, before, z),
+                };
+                let mut by = turned_back(algebra, carrier.w, carried);
+                by = algebra.graph.add3(by, by_w);
+                let mut by_alpha = turned_back(algebra, carrier.alpha, alpha);
+                let by_a = turned_back(algebra, carrier.a, motion.a);
+                let graph = &mut algebra.graph;
+                let parts = [graph.cross(by, *w), graph.cross(motion.w, by_w), by_rate, driving];
+                let centripetal = graph.cross(motion.w, by);
+                for part in parts.into_iter().chain([centripetal]) {
+                    by_alpha = graph.add3(by_alpha, part);
+                }
+                Some(Change { w: by, beta: by_alpha, a: by_a })
+            }
+            Step::Shift { d, d_dot, d_ddot } => {
+                let [by_d, by_rate, by_second] =
+                    [*d, *d_dot, *d_ddot].map(|v| derivative3(algebra, v, z));
+                let graph = &mut algebra.graph;
+                let mut a = graph.mat_vec(&motion.turning, by_d);
+                let coriolis = graph.cross(motion.w, by_rate);
+                for part in [coriolis, coriolis, by_second, driving] {
+                    a = graph.add3(a, part);
+                }
+                let moves = a != vector::ZERO || by_d != vector::ZERO;
+                moves.then_some(Change {
+                    w: vector::ZERO,
+                    beta: vector::ZERO,
+                    a,
+                })
+            }
+        }
+    }
+}
+
+impl Links {
+    /// How mass moves about in all links.
+    fn flows(
+        &self,
+        algebra: &mut Algebra,
+        own: &[Inertia],
+        composites: &[Inertia],
+        motions: &[LinkMotion],
+    ) -> Vec<Flow> {
+        let mut flows: Vec<Flow> = vec![Flow::NONE; self.links.len()];
+        for (place, link) in self.links.iter().enumerate().rev() {
+            let graph = &mut algebra.graph;
+            let rigid = Flow::of_rigid(graph, &own[place], motions[place].w);
+            let flow = flows[place].plus(graph, &rigid).named(algebra, &link.name);
+            if let Some(parent) = link.parent {
+                let carried = link.flow_in_carrier(algebra, &flow, &composites[place], motions);
+                flows[parent] = flows[parent].plus(&mut algebra.graph, &carried);
+            }
+            flows[place] = flow;
+        }
+        flows
+    }
+
+    /// What the columns of all links answer, by the links that carry them.
+    fn answers(
+        &self,
+        algebra: &mut Algebra,
+        composites: &[Inertia],
+        flows: &[Flow],
+        motions: &[LinkMotion],
+    ) -> Vec<Vec<(usize, Answer)>> {
+        let mut answers: Vec<Vec<(usize, Answer)>> = vec![Vec::new(); self.links.len()];
+        for (place, link) in self.links.iter().enumerate() {
+            for &(speed, column) in &link.columns {
+                let name = &self.speeds[speed];
+                let wrench = self.resistance(algebra, place, column, &composites[place]);
+                let flow = &flows[place];
+                let graph = &mut algebra.graph;
+                let mut answer = Answer::of_column(graph, &link.step, column, wrench, flow);
+                let mut at = Some(place);
+                while let Some(here) = at {
+                    let carrier = &self.links[here];
+                    let by = format!("{}_{name}", carrier.name);
+                    answer = Answer {
+                        wrench: answer.wrench.named(algebra, &by),
+                        w: named3(algebra, &format!("b_{by}"), answer.w),
+                    };
+                    answers[here].push((speed, answer));
+                    answer = carrier.answer_in_carrier(algebra, &answer, motions);
+                    at = carrier.parent;
+                }
+            }
+        }
+        answers
+    }
+}
+
+impl Link {
+    /// Velocity of the origin from that of the carrier, in axes that do not turn.
+    fn leaving(&self, graph: &mut Graph, motions: &[LinkMotion]) -> Vec3 {
+        match (&self.step, self.parent) {
+            (Step::Shift { d, d_dot, .. }, Some(parent)) => {
+                let turning = graph.cross(motions[parent].w, *d);
+                graph.add3(turning, *d_dot)
+            }
+            (Step::Shift { d_dot, .. }, None) => *d_dot,
+            (Step::Rotation { .. }, _) => vector::ZERO,
+        }
+    }
+
+    fn flow_in_carrier(
+        &self,
+        algebra: &mut Algebra,
+        flow: &Flow,
+        composite: &Inertia,
+        motions: &[LinkMotion],
+    ) -> Flow {
+        let graph = &mut algebra.graph;
+        match &self.step {
+            Step::Rotation { turns, .. } => {
+                let mut flow = flow.clone();
+                for turn in turns.iter().rev() {
+                    flow = Flow {
+                        moment: turn.into_parent(graph, flow.moment),
+                        tensor: turn.tensor_into_parent(graph, &flow.tensor),
+                        momentum: turn.into_parent(graph, flow.momentum),
+                    };
+                }
+                flow
+            }
+            Step::Shift { d, .. } => {
+                let u = self.leaving(graph, motions);
+                let u = named3(algebra, &format!("u_{}", self.name), u);
+                flow.shifted(&mut algebra.graph, composite, (*d, u))
+            }
+        }
+    }
+
+    fn answer_in_carrier(
+        &self,
+        algebra: &mut Algebra,
+        answer: &Answer,
+        motions: &[LinkMotion],
+    ) -> Answer {
+        let graph = &mut algebra.graph;
+        let wrench = self.on_carrier(graph, answer.wrench);
+        let w = match &self.step {
+            Step::Rotation { turns, .. } => {
+                (turns.iter().rev()).fold(answer.w, |v, turn| turn.into_parent(graph, v))
+            }
+            Step::Shift { .. } => {
+                let u = self.leaving(graph, motions);
+                let u = named3(algebra, &format!("u_{}", self.name), u);
+                let graph = &mut algebra.graph;
+                let coriolis = graph.cross(u, answer.wrench.f);
+                let coriolis = graph.add3(coriolis, coriolis);
+                graph.add3(answer.w, coriolis)
+            }
+        };
+        Answer { wrench, w }
+    }
+
+    /// The change of what the carrier feels: of a change of the own force, and of the way to the carrier.
+    fn change_on_carrier(&self, algebra: &mut Algebra, z: Expr, change: Wrench, own: Wrench) -> Wrench {
+        match &self.step {
+            Step::Rotation { turns, .. } => match axis(algebra, turns, z) {
+                Some(x) => {
+                    let graph = &mut algebra.graph;
+                    let turned = Wrench {
+                        n: graph.cross(x, own.n),
+                        f: graph.cross(x, own.f),
+                    };
+                    let both = change.plus(graph, turned);
+                    self.on_carrier(graph, both)
+                }
+                None => {
+                    let turned = Wrench {
+                        n: change_before(algebra, turns, own.n, z),
+                        f: change_before(algebra, turns, own.f, z),
+                    };
+                    let carried = self.on_carrier(&mut algebra.graph, change);
+                    carried.plus(&mut algebra.graph, turned)
+                }
+            },
+            Step::Shift { d, .. } => {
+                let by_d = derivative3(algebra, *d, z);
+                let graph = &mut algebra.graph;
+                let carried = self.on_carrier(graph, change);
+                let n = graph.cross(by_d, own.f);
+                carried.plus(graph, Wrench { n, f: vector::ZERO })
+            }
+        }
+    }
+}
+
+fn derivative3(algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
+    v.map(|c| algebra.derivative(c, z))
+}
+
+/// The axis about which a variable turns what is behind the turns, in the axes there; none where a turn is
+/// no turn about an axis.
+fn axis(algebra: &mut Algebra, turns: &[Rotation], z: Expr) -> Option<Vec3> {
+    let mut x = vector::ZERO;
+    for turn in turns {
+        x = turn.into_child(&mut algebra.graph, x);
+        match turn {
+            Rotation::Turn(turn) => {
+                let rate = algebra.derivative(turn.angle, z);
+                x[turn.axis] = algebra.graph.add(x[turn.axis], rate);
+            }
+            Rotation::Attitude(attitude) => {
+                let mut entries = attitude.matrix.into_iter().flatten();
+                if entries.any(|entry| algebra.derivative(entry, z) != Graph::ZERO) {
+                    return None;
+                }
+            }
+        }
+    }
+    Some(x)
+}
+
+/// `(∂Rᵀ/∂z) v` of all turns.
+fn change_behind(algebra: &mut Algebra, turns: &[Rotation], v: Vec3, z: Expr) -> Vec3 {
+    let mut sum = vector::ZERO;
+    for (place, turn) in turns.iter().enumerate() {
+        let graph = &mut algebra.graph;
+        let until = (turns[..place].iter()).fold(v, |v, turn| turn.into_child(graph, v));
+        let changed = turn.change_into_child(algebra, until, z);
+        let graph = &mut algebra.graph;
+        let part = (turns[place + 1..].iter()).fold(changed, |v, turn| turn.into_child(graph, v));
+        sum = graph.add3(sum, part);
+    }
+    sum
+}
+
+/// `(∂R/∂z) v` of all turns.
+fn change_before(algebra: &mut Algebra, turns: &[Rotation], v: Vec3, z: Expr) -> Vec3 {
+    let mut sum = vector::ZERO;
+    for (place, turn) in turns.iter().enumerate() {
+        let graph = &mut algebra.graph;
+        let behind = turns[place + 1..].iter().rev();
+        let until = behind.fold(v, |v, turn| turn.into_parent(graph, v));
+        let changed = turn.change_into_parent(algebra, until, z);
+        let graph = &mut algebra.graph;
+        let part = (turns[..place].iter().rev()).fold(changed, |v, turn| turn.into_parent(graph, v));
+        sum = graph.add3(sum, part);
+    }
+    sum
+}

@@ -7,6 +7,7 @@
 //! under a name is not multiplied out, so that the cost grows with the number of links and not with its
 //! third power.
 
+mod articulated;
 mod balance;
 mod inertia;
 mod links;
@@ -178,7 +179,20 @@ impl Recursion {
         };
         let order = self.inwards(self.forces.len());
         let way = Way::InOrder(&order);
-        motion::solve(algebra, mechanism, &falling, &self.forces, &[], way)
+        let mut motion = motion::solve(algebra, mechanism, &falling, &self.forces, &[], way)?;
+        let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
+        let motions = self.links.motions(algebra, &driven);
+        let articulated = self.links.articulated(algebra, &self.own, &motions, &self.forces);
+        if let Some(accelerations) = articulated {
+            let graph = &algebra.graph;
+            if std::env::var("ABA").is_ok() {
+                eprintln!("ABA {} LDL {}", graph.operations(&accelerations), graph.operations(&motion.accelerations));
+            }
+            if graph.operations(&accelerations) < graph.operations(&motion.accelerations) {
+                motion.accelerations = accelerations;
+            }
+        }
+        Ok(motion)
     }
 
     /// The links in the motion that happens.

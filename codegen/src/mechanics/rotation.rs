@@ -4,7 +4,7 @@
 use super::algebra::Algebra;
 use super::quaternion::Attitude;
 use crate::symbolic::vector::{self, Mat3, Vec3, transpose};
-use crate::symbolic::{Expr, Graph, Rational};
+use crate::symbolic::{Expr, Graph};
 
 /// From the axes before the step to those behind it.
 #[derive(Debug, Clone)]
@@ -50,7 +50,7 @@ impl Rotation {
         }
     }
 
-    /// R T Rᵀ: the components of a symmetric tensor before the step.
+    /// R T Rᵀ: the components of a tensor before the step.
     pub(super) fn tensor_into_parent(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
         match self {
             Self::Turn(turn) => turn.rotate_tensor(graph, t),
@@ -155,25 +155,26 @@ impl Turn {
         rotated
     }
 
-    /// With `k = s (Tᵢᵢ − Tⱼⱼ) + 2 c Tᵢⱼ`: `Tᵢᵢ − s k`, `Tⱼⱼ + s k` and `c k − Tᵢⱼ`.
+    /// With `k = s (Tᵢᵢ − Tⱼⱼ) + c (Tᵢⱼ + Tⱼᵢ)`: `Tᵢᵢ − s k`, `Tⱼⱼ + s k`, `c k − Tⱼᵢ` and `c k − Tᵢⱼ`.
     fn rotate_tensor(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
         let [i, j] = self.plane();
         let difference = graph.sub(t[i][i], t[j][j]);
         let along = graph.mul(self.sin, difference);
-        let twice = graph.scale(&Rational::new(2, 1), self.cos);
-        let across = graph.mul(twice, t[i][j]);
+        let sum = graph.add(t[i][j], t[j][i]);
+        let across = graph.mul(self.cos, sum);
         let k = graph.add(along, across);
         let (sk, ck) = (graph.mul(self.sin, k), graph.mul(self.cos, k));
         let row = self.rotate(graph, t[self.axis], self.sin, self.cos);
+        let column = self.rotate(graph, t.map(|row| row[self.axis]), self.sin, self.cos);
         let mut rotated = *t;
         rotated[self.axis] = row;
-        for (other, &entry) in row.iter().enumerate() {
-            rotated[other][self.axis] = entry;
+        for (row, entry) in rotated.iter_mut().zip(column) {
+            row[self.axis] = entry;
         }
         rotated[i][i] = graph.sub(t[i][i], sk);
         rotated[j][j] = graph.add(t[j][j], sk);
-        rotated[i][j] = graph.sub(ck, t[i][j]);
-        rotated[j][i] = rotated[i][j];
+        rotated[i][j] = graph.sub(ck, t[j][i]);
+        rotated[j][i] = graph.sub(ck, t[i][j]);
         rotated
     }
 }

@@ -9,7 +9,7 @@ use crate::symbolic::{Expr, Graph};
 
 impl Inertia {
     /// What a motion takes: `f = m a + (α× + ω× ω×) h` and `n = h × a + I α + ω × I ω`.
-    fn takes(&self, graph: &mut Graph, motion: &LinkMotion) -> Wrench {
+    pub fn takes(&self, graph: &mut Graph, motion: &LinkMotion) -> Wrench {
         let inertial = graph.scale3(self.mass, motion.a);
         let turning = graph.mat_vec(&motion.turning, self.moment);
         let moment = graph.cross(self.moment, motion.a);

@@ -4,6 +4,8 @@
 pub const MAX_FILE: usize = 1 << 20;
 /// Most items in one section.
 pub const MAX_ITEMS: usize = 256;
+/// Most parameters: ten for each of many bodies, and their places.
+pub const MAX_PARAMETERS: usize = 4096;
 /// Most samples of one signal.
 pub const MAX_SAMPLES: usize = 100_000;
 /// Longest name, in characters.

@@ -118,6 +118,7 @@ fn limit_table() -> String {
     for (what, most) in [
         ("bytes of a file", limits::MAX_FILE),
         ("items of a section", limits::MAX_ITEMS),
+        ("parameters", limits::MAX_PARAMETERS),
         ("samples of a signal", limits::MAX_SAMPLES),
         ("characters of a name", limits::MAX_NAME),
         ("bytes of a sentence", limits::MAX_SENTENCE),

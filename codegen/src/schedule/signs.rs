@@ -4,6 +4,8 @@
 //! difference. What a sum subtracts or adds costs the same. A result or an argument of a function
 //! that is wanted negative costs a negation.
 
+use std::collections::BTreeSet;
+
 use super::dag::{Dag, Id, Item, Op};
 
 /// Costs of what is to be avoided.
@@ -21,42 +23,15 @@ const ROUNDS: usize = 2;
 
 /// For every node, whether minus its value is wanted.
 pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
-    let mut signs = Signs {
-        dag,
-        order,
-        wanted: vec![false; dag.len()],
-        built: vec![false; dag.len()],
-        wrong: vec![false; dag.len()],
-        minus: vec![false; dag.len()],
-        labels: vec![None; dag.len()],
-    };
-    for result in &dag.results {
-        let sign = *signs.labels[result.id.index()].get_or_insert(result.flip);
-        signs.wanted[result.id.index()] = sign;
-    }
-    for &id in order {
-        if let Some(name) = dag.names[id.index()] {
-            signs.wanted[id.index()] = name.negative;
-        }
-    }
-    let mut cost = signs.cost();
+    let mut signs = Signs::new(dag, order);
     for _ in 0..ROUNDS {
-        let before = cost;
+        let before = signs.cost;
         for candidate in signs.candidates() {
-            let place = candidate.index();
-            signs.wanted[place] = !signs.wanted[place];
-            let now = signs.cost();
-            if now < cost {
-                cost = now;
-            } else {
-                signs.wanted[place] = !signs.wanted[place];
-            }
+            signs.flip_if_cheaper(candidate);
         }
-        if cost == 0 || cost == before {
+        if signs.cost == 0 || signs.cost == before {
             break;
         }
-        // The signs in `built` are those of the last trial.
-        cost = signs.cost();
     }
     signs.wanted
 }
@@ -81,74 +56,152 @@ fn has_number(dag: &Dag, id: Id) -> bool {
 struct Signs<'a> {
     dag: &'a Dag,
     order: &'a [Id],
+    /// Place of each node in the order.
+    places: Vec<usize>,
+    /// What is made from each node.
+    users: Vec<Vec<Id>>,
+    /// By node: how many results want it as it is, and how many with the other sign.
+    results: Vec<[usize; 2]>,
     wanted: Vec<bool>,
     /// What the wishes lead to.
-    built: Vec<bool>,
-    /// What came out with the other sign than its name's.
-    wrong: Vec<bool>,
-    /// Products whose number is written with a minus.
-    minus: Vec<bool>,
+    states: Vec<State>,
     /// The first sign in which a result wants a node.
     labels: Vec<Option<bool>>,
+    /// Of all nodes together.
+    cost: usize,
 }
 
-impl Signs<'_> {
-    fn cost(&mut self) -> usize {
-        let dag = self.dag;
-        let mut cost = 0;
-        for &id in self.order {
-            let place = id.index();
-            let negative = |item: &Item| item.flip != self.built[item.id.index()];
-            let built = match dag.op(id) {
-                Op::Number(_) | Op::Argument(_) => continue,
-                Op::Sum(terms) => {
-                    let minus = terms.iter().filter(|term| negative(term)).count();
-                    if self.wanted[place] {
-                        minus > 0
-                    } else {
-                        minus == terms.len()
-                    }
-                }
-                Op::Product(factors) => {
-                    let built = factors.iter().filter(|f| self.built[f.id.index()]);
-                    let natural = built.count() % 2 == 1;
-                    if has_number(dag, id) {
-                        // The number is written with a minus.
-                        self.minus[place] =
-                            self.wanted[place] != natural && self.sign(id).is_none();
-                        cost += match (self.minus[place], natural) {
-                            (false, _) => 0,
-                            (true, true) => MINUS,
-                            (true, false) => MINUS_IN_NAME,
-                        };
-                        self.wanted[place]
-                    } else {
-                        natural
-                    }
-                }
-                _ => {
-                    let mut negations = 0;
-                    dag.for_each_part(id, |part| {
-                        negations +=
-                            usize::from(negative(&part) && dag.as_number(part.id).is_none());
-                    });
-                    cost += NEGATION * negations;
-                    false
-                }
-            };
-            self.built[place] = built;
-            self.wrong[place] = self.sign(id).is_some_and(|sign| sign != built);
-            if self.wrong[place] {
-                cost += WRONG_SIGN;
-                // It is negated, or it gives up its name.
-                self.built[place] =
-                    built != (dag.names[id.index()].is_some() || keeps_its_name(dag, id));
+/// What the wishes make of one node.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
+struct State {
+    /// Whether minus its value is computed.
+    built: bool,
+    /// Whether it came out with the other sign than its name's.
+    wrong: bool,
+    /// Whether it is a product whose number is written with a minus.
+    minus: bool,
+    cost: usize,
+}
+
+impl<'a> Signs<'a> {
+    fn new(dag: &'a Dag, order: &'a [Id]) -> Self {
+        let mut signs = Self {
+            dag,
+            order,
+            places: vec![0; dag.len()],
+            users: vec![Vec::new(); dag.len()],
+            results: vec![[0; 2]; dag.len()],
+            wanted: vec![false; dag.len()],
+            states: vec![State::default(); dag.len()],
+            labels: vec![None; dag.len()],
+            cost: 0,
+        };
+        for result in &dag.results {
+            let place = result.id.index();
+            signs.wanted[place] = *signs.labels[place].get_or_insert(result.flip);
+            signs.results[place][usize::from(result.flip)] += 1;
+        }
+        for (place, &id) in order.iter().enumerate() {
+            if let Some(name) = dag.names[id.index()] {
+                signs.wanted[id.index()] = name.negative;
+            }
+            signs.places[id.index()] = place;
+            dag.for_each_part(id, |part| signs.users[part.id.index()].push(id));
+        }
+        for &id in order {
+            let state = signs.state(id);
+            signs.cost += state.cost;
+            signs.states[id.index()] = state;
+        }
+        signs
+    }
+
+    fn built(&self, id: Id) -> bool {
+        self.states[id.index()].built
+    }
+
+    /// Wants the opposite of a node where all that follows then costs less.
+    fn flip_if_cheaper(&mut self, candidate: Id) {
+        let before = self.cost;
+        let mut undone = Vec::new();
+        self.wanted[candidate.index()] ^= true;
+        // In order, so that the parts of a node are settled before it.
+        let mut open = BTreeSet::from([self.places[candidate.index()]]);
+        while let Some(place) = open.pop_first() {
+            let id = self.order[place];
+            let (old, new) = (self.states[id.index()], self.state(id));
+            if old == new {
+                continue;
+            }
+            undone.push((id, old));
+            self.cost = self.cost - old.cost + new.cost;
+            self.states[id.index()] = new;
+            if old.built != new.built {
+                open.extend(self.users[id.index()].iter().map(|user| self.places[user.index()]));
             }
         }
-        let results = dag.results.iter().filter(|result| {
-            result.flip != self.built[result.id.index()] && dag.as_number(result.id).is_none()
-        });
-        cost + NEGATION * results.count()
+        if self.cost >= before {
+            self.wanted[candidate.index()] ^= true;
+            for (id, old) in undone {
+                self.states[id.index()] = old;
+            }
+            self.cost = before;
+        }
+    }
+
+    /// What a node becomes where its parts are as they are.
+    fn state(&self, id: Id) -> State {
+        let (dag, place) = (self.dag, id.index());
+        let negative = |item: &Item| item.flip != self.built(item.id);
+        let mut state = State::default();
+        if matches!(dag.op(id), Op::Number(_)) {
+            return state;
+        }
+        state.built = match dag.op(id) {
+            Op::Number(_) | Op::Argument(_) => false,
+            Op::Sum(terms) => {
+                let minus = terms.iter().filter(|term| negative(term)).count();
+                if self.wanted[place] {
+                    minus > 0
+                } else {
+                    minus == terms.len()
+                }
+            }
+            Op::Product(factors) => {
+                let built = factors.iter().filter(|f| self.built(f.id));
+                let natural = built.count() % 2 == 1;
+                if has_number(dag, id) {
+                    // The number is written with a minus.
+                    state.minus = self.wanted[place] != natural && self.sign(id).is_none();
+                    state.cost += match (state.minus, natural) {
+                        (false, _) => 0,
+                        (true, true) => MINUS,
+                        (true, false) => MINUS_IN_NAME,
+                    };
+                    self.wanted[place]
+                } else {
+                    natural
+                }
+            }
+            _ => {
+                dag.for_each_part(id, |part| {
+                    if negative(&part) && dag.as_number(part.id).is_none() {
+                        state.cost += NEGATION;
+                    }
+                });
+                false
+            }
+        };
+        let is_value = !matches!(dag.op(id), Op::Argument(_));
+        if is_value && self.sign(id).is_some_and(|sign| sign != state.built) {
+            state.wrong = true;
+            state.cost += WRONG_SIGN;
+            // It is negated, or it gives up its name.
+            state.built ^= dag.names[place].is_some() || keeps_its_name(dag, id);
+        }
+        let [as_it_is, opposite] = self.results[place];
+        state.cost += NEGATION * if state.built { as_it_is } else { opposite };
+        state
     }
 
     /// The sign in which a value has its name.
@@ -165,7 +218,7 @@ impl Signs<'_> {
         let mut seen = vec![false; dag.len()];
         let mut candidates = Vec::new();
         let mut roots = Vec::new();
-        let negative = |item: Item| item.flip != self.built[item.id.index()];
+        let negative = |item: Item| item.flip != self.built(item.id);
         for &id in self.order {
             if !matches!(dag.op(id), Op::Sum(_) | Op::Product(_)) {
                 dag.for_each_part(id, |part| roots.extend(negative(part).then_some(part.id)));
@@ -173,11 +226,11 @@ impl Signs<'_> {
         }
         for &id in self.order {
             // A named sum of the wrong sign is mended by one of its terms, too.
-            if self.wrong[id.index()] {
+            if self.states[id.index()].wrong {
                 dag.for_each_part(id, |part| roots.push(part.id));
                 roots.push(id);
             }
-            roots.extend(self.minus[id.index()].then_some(id));
+            roots.extend(self.states[id.index()].minus.then_some(id));
         }
         roots.extend(
             dag.results

@@ -6,7 +6,7 @@ use crate::ast::{Entry, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
 use crate::language::{Form, Key, Kind, Need, Section, Shape};
-use crate::limits::MAX_ITEMS;
+use crate::limits::{MAX_ITEMS, MAX_PARAMETERS};
 use crate::name;
 use crate::suggest::{self, did_you_mean, shown};
 
@@ -40,18 +40,22 @@ impl Reader<'_> {
             };
             return vec![self.keys(&owner, keys, None, table)];
         }
-        if table.len() > MAX_ITEMS {
+        let most = match section.name {
+            "parameters" => MAX_PARAMETERS,
+            _ => MAX_ITEMS,
+        };
+        if table.len() > most {
             self.incomplete = true;
             self.tell(
                 Diagnostic::error(
                     Code::LimitExceeded,
-                    format!("`[{}]` has at most {MAX_ITEMS} items", section.name),
+                    format!("`[{}]` has at most {most} items", section.name),
                 )
                 .at(key.span(), format!("{} items", table.len())),
             );
         }
         let mut items = Vec::new();
-        for (key, value) in in_text_order(table).into_iter().take(MAX_ITEMS) {
+        for (key, value) in in_text_order(table).into_iter().take(most) {
             if self.is_valid_name(key.get_ref(), key.span()) {
                 items.extend(self.item(section, key, value));
             } else {

@@ -21,6 +21,7 @@ mod node;
 pub mod print;
 mod rational;
 mod substitute;
+mod support;
 pub mod vector;
 
 pub use differentiate::Derivatives;

@@ -24,7 +24,7 @@ impl Derivatives {
     /// `∂expr/∂symbol`
     pub fn of(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
         let unknown =
-            |e: Expr| graph.support(e).may_hold(self.symbol) && !self.known.contains_key(&e);
+            |e: Expr| graph.mentions(e, &[self.symbol]) && !self.known.contains_key(&e);
         for part in graph.in_order_where(&[expr], unknown) {
             let derivative = self.step(graph, part);
             self.known.insert(part, derivative);

@@ -12,10 +12,7 @@ use super::{Graph, Rational};
 /// count as constants.
 pub fn gradient(graph: &mut Graph, weighted: &[(Expr, Expr)], by: &[SymbolId]) -> Vec<Expr> {
     let results: Vec<Expr> = weighted.iter().map(|&(result, _)| result).collect();
-    let order = graph.in_order_where(&results, |part| {
-        let support = graph.support(part);
-        by.iter().any(|&symbol| support.may_hold(symbol))
-    });
+    let order = graph.in_order_where(&results, |part| graph.mentions(part, by));
     let mut sweep = Sweep::default();
     for &part in &order {
         if let Node::Solution { system, .. } = graph.node(part) {

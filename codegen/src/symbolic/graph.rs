@@ -5,6 +5,7 @@ use rustc_hash::FxHashMap;
 use super::Rational;
 use super::expand::operations_of;
 use super::node::{Definition, Expr, Node, SymbolId, System};
+use super::support::{Support, Supports};
 
 /// Owner of all expressions of a derivation.
 #[derive(Debug, Clone)]
@@ -12,6 +13,7 @@ pub struct Graph {
     nodes: Vec<Node>,
     /// Which symbols each node contains.
     supports: Vec<Support>,
+    sets: Supports,
     /// Operations of each node beside those of its parts.
     costs: Vec<u32>,
     index: FxHashMap<Node, Expr>,
@@ -39,6 +41,7 @@ impl Graph {
         let mut graph = Self {
             nodes: Vec::new(),
             supports: Vec::new(),
+            sets: Supports::default(),
             costs: Vec::new(),
             index: FxHashMap::default(),
             symbols: Vec::new(),
@@ -283,13 +286,17 @@ impl Graph {
     /// Whether any of `symbols` occurs in `expr` as it is written.
     pub fn mentions(&self, expr: Expr, symbols: &[SymbolId]) -> bool {
         let support = self.support(expr);
-        symbols.iter().any(|&s| {
-            support.may_hold(s)
-                && (Support::is_exact(s) || {
-                    let found = |&e: &Expr| self.as_symbol(e) == Some(s);
-                    self.in_order(&[expr]).iter().any(found)
-                })
-        })
+        symbols.iter().any(|&symbol| self.sets.holds(support, symbol))
+    }
+
+    /// Whether an expression can have a part with this support.
+    pub(super) fn may_hold(&self, expr: Expr, part: Support) -> bool {
+        self.sets.contains(self.support(expr), part)
+    }
+
+    /// Which symbols an expression contains.
+    pub(super) fn support(&self, expr: Expr) -> Support {
+        self.supports[expr.0 as usize]
     }
 
     /// How many additions, multiplications, divisions and function calls compute `roots`, each shared
@@ -334,48 +341,14 @@ impl Graph {
         }
     }
 
-    /// Which symbols an expression contains.
-    pub(super) fn support(&self, expr: Expr) -> Support {
-        self.supports[expr.0 as usize]
-    }
-
-    fn support_of_new(&self, expr: Expr) -> Support {
+    fn support_of_new(&mut self, expr: Expr) -> Support {
         if let Node::Symbol(symbol) = self.node(expr) {
-            return Support::of(*symbol);
+            return self.sets.of(*symbol);
         }
-        let mut support = Support::default();
-        self.for_each_part(expr, |part| support = support.union(self.support(part)));
-        support
-    }
-}
-
-/// A set of symbols: exact for the first 127, the others share a place.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Support(u128);
-
-impl Support {
-    const SHARED_PLACE: u32 = 127;
-
-    pub(super) fn of(symbol: SymbolId) -> Self {
-        Self(1 << symbol.0.min(Self::SHARED_PLACE))
-    }
-
-    fn union(self, other: Self) -> Self {
-        Self(self.0 | other.0)
-    }
-
-    fn is_exact(symbol: SymbolId) -> bool {
-        symbol.0 < Self::SHARED_PLACE
-    }
-
-    /// Exact for symbols with a place of their own.
-    pub(super) fn may_hold(self, symbol: SymbolId) -> bool {
-        self.contains(Self::of(symbol))
-    }
-
-    /// Whether an expression with this support can have a part with the other.
-    pub(super) fn contains(self, other: Self) -> bool {
-        self.0 & other.0 == other.0
+        let mut parts = Vec::new();
+        self.for_each_part(expr, |part| parts.push(self.support(part)));
+        let sets = &mut self.sets;
+        parts.into_iter().fold(Support::default(), |all, part| sets.union(all, part))
     }
 }
 

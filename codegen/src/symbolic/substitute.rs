@@ -3,8 +3,8 @@
 use rustc_hash::FxHashMap;
 
 use super::Graph;
-use super::graph::Support;
 use super::node::{Expr, Node, SymbolId};
+use super::support::Support;
 
 /// A simultaneous replacement of symbols, remembered between calls. A name whose definition changes
 /// dissolves: it would stand for something else.
@@ -66,8 +66,7 @@ impl Substitution {
     /// by zero on the way.
     pub fn apply(&mut self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
         let unknown = |e: Expr| {
-            let support = graph.support(e);
-            self.targets.iter().any(|&target| support.contains(target))
+            self.targets.iter().any(|&target| graph.may_hold(e, target))
                 && !self.known.contains_key(&e)
         };
         for part in graph.in_order_where(&[expr], unknown) {

@@ -5,7 +5,7 @@
 
 VECTORS is a folder of `NAME.FORMAT.json`. Each names the package and the path of a robot file, or a file beside it,
 and holds states with M, bias, energies, positions and accelerations by another program, in the blocks `rigid`,
-`as_written` and `mimic`. Packages are looked for in the virtual environment DIR. README.md tells how to make both.
+`as_written`, `mimic` and `constrained`. Packages are looked for in the virtual environment DIR. README.md tells how to make both.
 """
 
 import argparse
@@ -24,6 +24,8 @@ DEFAULT_TOLERANCE = 1e-12
 # What other programs leave out of both blocks.
 ALWAYS = ["friction", "limits"]
 RIGID = ["damping", "armature", "springs", "compensation"]
+# Where joints follow others.
+BOUND = ["mimic", "constrained"]
 
 
 def arguments():
@@ -111,7 +113,7 @@ class Differences(dict):
 
 def compare(vectors, block, robot, appell, folder):
     """Imports a robot and evaluates it at the states of a block."""
-    without = ALWAYS + ([] if block == "mimic" else ["couplings"]) + ([] if block == "as_written" else RIGID)
+    without = ALWAYS + ([] if block in BOUND else ["couplings"]) + ([] if block == "as_written" else RIGID)
     imported = folder / "imported.toml"
     floating = ["--floating"] if vectors["base"] == "floating" and robot.suffix == ".urdf" else []
     _, seconds = run([appell, "import", robot, "-o", imported, "--without", ",".join(without), *floating])
@@ -125,8 +127,8 @@ def compare(vectors, block, robot, appell, folder):
     section = spec[spec.index("[pseudo_velocities]"):].split("\n[", 2)[0]
     order = re.findall(r"^(\w+) += \{", section, re.M)
     names = [name for joint in joints for name in joint.speeds]
-    # In the block `mimic`, joints that follow others have no speed of their own.
-    free = [name for name in names if name in order] if block == "mimic" else names
+    # Joints that follow others have no speed of their own.
+    free = [name for name in names if name in order] if block in BOUND else names
     if sorted(order) != sorted(free):
         raise RuntimeError(f"speeds are {order}, not {names}")
     cases = []
@@ -149,6 +151,10 @@ def compare(vectors, block, robot, appell, folder):
         differences.add("V", ours, theirs, largest(heights[1]))
     for state, at_rest, driven in zip(states, answers[::2], answers[1::2]):
         rigid, here = state["rigid"], state.get(block, {})
+        if block == "constrained":
+            theirs = dict(zip(names, here["qdd"]))
+            differences.add("qdd", [driven["rates"][name] for name in free], [theirs[name] for name in free], largest(here["qdd"]))
+            continue
         mass = [[at_rest["mass_matrix"][i][j] for j in place] for i in place]
         theirs = [list(row) for row in here.get("mass_matrix_lower", rigid["mass_matrix_lower"])]
         for index, added in enumerate(here.get("mass_matrix_added_diagonal", [])):
@@ -180,7 +186,7 @@ def main():
         if options.names and path.stem not in options.names:
             continue
         robot = robot_file(vectors, path.parent, options.env)
-        for block in ["rigid", "as_written", *(["mimic"] if "mimic" in vectors["states"][0] else [])]:
+        for block in ["rigid", "as_written", *(block for block in BOUND if block in vectors["states"][0])]:
             with tempfile.TemporaryDirectory() as folder:
                 try:
                     differences, seconds, evaluation, joints = compare(vectors, block, robot, options.appell, Path(folder))

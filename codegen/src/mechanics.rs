@@ -174,10 +174,19 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
-    let constraints = constraints::constraints(&mut algebra, mechanism, &symbols, &mut intervals)?;
+    let unknown = Kinematics::new(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        &symbols.rates,
+        &[],
+        Effort::Plain,
+    )?;
+    let constraints =
+        constraints::constraints(&mut algebra, mechanism, &symbols, &unknown, &mut intervals)?;
     let (contacts, not_judged) =
         contacts::contacts(&mut algebra, mechanism, &symbols, &constraints)?;
-    let positions = Positions::new(&mut algebra, mechanism, &symbols, &mut intervals)?;
+    let positions = Positions::new(&mut algebra, mechanism, &symbols, &unknown, &mut intervals)?;
     algebra.check_size()?;
     let elimination = elimination::eliminate(
         &mut algebra,
@@ -247,7 +256,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let motion = if let Some(tree) = &recursion {
+    let motion = if let Some(tree) = &mut recursion {
         tree.solve(&mut algebra, mechanism, &gibbs)?
     } else {
         let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
@@ -307,7 +316,13 @@ fn rolling_contacts(
     let contacts = mechanism.constraints.entries();
     contacts
         .filter_map(|(id, constraint)| match constraint.kind {
-            ConstraintKind::Rolling { body, contact, .. } => holds(id).then_some(RollingContact {
+            // A surface that moves does not hold the contact still.
+            ConstraintKind::Rolling {
+                body,
+                contact,
+                on: None,
+                ..
+            } => holds(id).then_some(RollingContact {
                 body,
                 point: contact,
             }),

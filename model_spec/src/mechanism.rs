@@ -270,12 +270,14 @@ pub struct Constraint {
 /// What a constraint demands.
 #[derive(Debug, Clone)]
 pub enum ConstraintKind {
-    /// The material point of `body` at `contact` is at rest in the ground.
+    /// The material points of `body` and of what it rolls on have one velocity at `contact`.
     Rolling {
         /// The rolling body.
         body: BodyId,
         /// Contact point.
         contact: PointId,
+        /// The body that carries the surface; the ground, where there is none.
+        on: Option<BodyId>,
         /// Normal of the surface, if the spec gives it.
         normal: Option<Normal>,
         /// Coefficient of friction, if the spec gives it.

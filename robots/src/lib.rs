@@ -13,12 +13,14 @@
 //! | `model.rs` | what a robot is: links in a tree, joints with their properties |
 //! | `rotation.rs`, `inertia.rs` | rotations and their turns; inertias turned, shifted, put together |
 //! | `tree.rs` | links that are fixed together become one body |
+//! | `loops.rs` | what connects two links of the tree: equations, and which coordinates follow from them |
 //! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
 //! | `options.rs`, `without.rs`, `snap.rs` | requests; what is left out; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
 mod inertia;
 mod letters;
+mod loops;
 mod mjcf;
 mod model;
 mod names;

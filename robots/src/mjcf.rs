@@ -14,6 +14,7 @@ use crate::rotation::{Pose, Rotation, Vector};
 use crate::xml::{Element, Findings, Span, child, children, elements, exactly, tag};
 
 use defaults::Defaults;
+use equality::Equality;
 use orientation::Angles;
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
@@ -95,14 +96,29 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
     if let Some(total) = reader.compiler.total_mass {
         reader.scale_to(total);
     }
-    let couplings = equality::read(root, &mut reader);
+    let Equality {
+        couplings,
+        connections,
+    } = equality::read(root, &mut reader);
     Robot {
         name: root.attribute("model").unwrap_or("robot").to_owned(),
         gravity: gravity(root, findings),
         links: reader.links,
         couplings,
+        connections,
+        driven: driven(root),
         left_out: reader.left_out,
     }
+}
+
+/// Joints that actuators drive, by tendons or by themselves.
+fn driven(root: Element<'_>) -> Vec<String> {
+    let sections = ["actuator", "tendon"].into_iter();
+    let drives = sections.flat_map(|section| children(root, section));
+    let named = drives.flat_map(|drive| drive.descendants());
+    named
+        .filter_map(|element| element.attribute("joint").map(str::to_owned))
+        .collect()
 }
 
 /// `<option gravity>`; later elements add to earlier ones.

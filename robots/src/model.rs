@@ -12,6 +12,9 @@ pub(crate) struct Robot {
     /// Parents stand before their children.
     pub(crate) links: Vec<Link>,
     pub(crate) couplings: Vec<Coupling>,
+    pub(crate) connections: Vec<Connection>,
+    /// Joints that something drives.
+    pub(crate) driven: Vec<String>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
@@ -107,6 +110,29 @@ pub(crate) struct Coupling {
     pub(crate) zeros: [f64; 2],
     /// The polynomial, from its constant on.
     pub(crate) coefficients: Vec<f64>,
+}
+
+/// Two links that meet, and close a loop of the tree.
+#[derive(Debug)]
+pub(crate) struct Connection {
+    pub(crate) name: String,
+    /// The links, and a point of each, in its frame; no link is the ground.
+    pub(crate) ends: [(Option<usize>, Vector); 2],
+    /// The pose of the first in the second; as they are drawn, where there is none.
+    pub(crate) second: Option<Pose>,
+    /// Whether they do not turn against each other either.
+    pub(crate) rigid: bool,
+}
+
+impl Connection {
+    /// The points that have to meet, from the first end in its frame.
+    pub(crate) fn points(&self) -> Vec<Vector> {
+        let mut points = vec![[0.0; 3]];
+        if self.rigid {
+            points.extend([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]);
+        }
+        points
+    }
 }
 
 /// What has no place in a spec.

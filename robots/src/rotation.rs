@@ -339,6 +339,15 @@ impl Pose {
         }
     }
 
+    /// The pose of the outer frame in this one.
+    pub(crate) fn inverse(self) -> Self {
+        let rotation = self.rotation.inverse();
+        Self {
+            rotation,
+            position: scaled(rotation.of(self.position), -1.0),
+        }
+    }
+
     /// A position given in this frame.
     pub(crate) fn of(self, position: Vector) -> Vector {
         add(self.position, self.rotation.of(position))

@@ -1,12 +1,14 @@
 //! The spec of a robot.
 
 mod bodies;
+mod connections;
 mod joints;
 mod remarks;
 
 use appell_spec::limits::MAX_SENTENCE;
 
 use crate::letters::{Numbers, Parameter};
+use crate::loops;
 use crate::model::{LeftOut, Link, Motion, Robot};
 use crate::names::{Names, short};
 use crate::options::Options;
@@ -76,7 +78,9 @@ pub(crate) fn write(
     writer.links_on_the_ground();
     writer.links_on_bodies();
     writer.carried(robot.gravity, &letters);
-    writer.couplings(&robot.couplings);
+    let meetings = loops::meetings(robot, tree);
+    writer.connections(&meetings);
+    writer.couplings(&robot.couplings, &meetings);
     writer.ends();
     let name = Names::default().new_one(&robot.name);
     let mut text = remarks::head(file, kind, robot, tree);

@@ -35,6 +35,8 @@ pub(crate) struct Body {
     pub(crate) link: usize,
     /// Constant turns from the parent's frame before that of the joint.
     pub(crate) turns: Vec<Turn>,
+    /// From the axes of the body's frame to those of the link that the joint moves.
+    pub(crate) own: Rotation,
     /// Axis of the joint in the body's frame.
     pub(crate) axis: Axis,
     /// What is added to the coordinate: the angle or the way at which the coordinate is zero.
@@ -148,6 +150,7 @@ impl Tree {
             joint: joint.clone(),
             link,
             turns,
+            own,
             axis,
             offset,
             position: position_without_rounding(pose.of(anchor)),

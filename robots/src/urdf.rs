@@ -66,6 +66,8 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
         gravity: GRAVITY,
         links: tree(&links, &inertias, connections, findings),
         couplings,
+        connections: Vec::new(),
+        driven: Vec::new(),
         left_out,
     }
 }

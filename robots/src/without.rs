@@ -15,7 +15,7 @@ pub enum Without {
     Friction,
     /// Ranges of coordinates.
     Limits,
-    /// Joints that follow others, which then move freely.
+    /// Joints that follow others, and connections of links: all then move freely.
     Couplings,
     /// Forces that carry the weight of links (`gravcomp`).
     Compensation,
@@ -49,6 +49,7 @@ impl Without {
     pub(crate) fn apply(self, robot: &mut Robot) {
         if self == Self::Couplings {
             robot.couplings.clear();
+            robot.connections.clear();
         }
         for link in &mut robot.links {
             if self == Self::Compensation {

@@ -6,6 +6,7 @@
 
 use crate::dense::solved_in_place;
 use crate::model::{At, Model};
+use crate::positions::followers;
 
 /// `δẋ = A δx + B δu` in the independent states: pseudo-velocities and independent coordinates.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,12 +17,14 @@ pub struct Linearisation {
     pub a: Vec<f64>,
     /// B, row by row: a column for each input and signal.
     pub b: Vec<f64>,
-    /// How the dependent coordinates follow: a row for each, in the order of
-    /// [`Model::dependent_coordinates`], a column for each independent state.
+    /// The dependent coordinates, one per position constraint: those that the model declares, unless others
+    /// follow much better at this state.
+    pub dependent: Vec<usize>,
+    /// How they follow: a row for each, a column for each independent state.
     pub dependence: Vec<f64>,
 }
 
-/// The position constraints do not determine the dependent coordinates at this state.
+/// The position constraints determine no coordinates at this state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the position constraints do not determine the dependent coordinates at this state; choose other \
@@ -35,13 +38,19 @@ impl Linearisation {
     pub fn about(model: &dyn Model, at: At<'_>) -> Result<Self, Undetermined> {
         let info = model.info();
         let (n, m) = (info.states.len(), info.inputs.len());
-        let dependent = model.dependent_coordinates();
-        let dependent: Vec<usize> = dependent.iter().map(|q| info.speeds + q).collect();
+        let count = model.dependent_coordinates().len();
+        let coordinates = n - info.speeds;
+        let (mut residual, mut slopes) = (vec![0.0; count], vec![0.0; count * coordinates]);
+        if count > 0 {
+            model.position_constraints(at, &mut residual, &mut slopes);
+        }
+        let follow = followers(&slopes, coordinates, model.dependent_coordinates());
+        let dependent: Vec<usize> = follow.iter().map(|q| info.speeds + q).collect();
         let states: Vec<usize> = (0..n).filter(|state| !dependent.contains(state)).collect();
         let (mut rates, mut all, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
         model.jacobians(at, &mut rates, &mut all, &mut b);
 
-        let dependence = dependence(model, at, &states)?;
+        let dependence = dependence(&slopes, info.speeds, &follow, &states)?;
         let entry = |&row: &usize, (place, &column): (usize, &usize)| {
             let by_way_of = dependent.iter().enumerate();
             let by_way_of = by_way_of
@@ -58,6 +67,7 @@ impl Linearisation {
                 .iter()
                 .flat_map(|&row| b[row * m..(row + 1) * m].to_vec())
                 .collect(),
+            dependent: follow,
             dependence,
             states,
         })
@@ -71,20 +81,22 @@ impl Linearisation {
 }
 
 /// `-(∂f/∂q_dependent)⁻¹ ∂f/∂q` in the columns of the independent states.
-fn dependence(model: &dyn Model, at: At<'_>, states: &[usize]) -> Result<Vec<f64>, Undetermined> {
-    let (info, dependent) = (model.info(), model.dependent_coordinates());
-    let (count, coordinates) = (dependent.len(), info.states.len() - info.speeds);
+fn dependence(
+    slopes: &[f64],
+    speeds: usize,
+    dependent: &[usize],
+    states: &[usize],
+) -> Result<Vec<f64>, Undetermined> {
+    let count = dependent.len();
     if count == 0 {
         return Ok(Vec::new());
     }
-    let (mut residual, mut slopes) = (vec![0.0; count], vec![0.0; count * coordinates]);
-    model.position_constraints(at, &mut residual, &mut slopes);
     let mut matrix = Vec::with_capacity(count * count);
     let mut right = Vec::with_capacity(count * states.len());
-    for row in slopes.chunks(coordinates) {
+    for row in slopes.chunks(slopes.len() / count) {
         matrix.extend(dependent.iter().map(|&q| row[q]));
         // Positions do not depend on pseudo-velocities.
-        let slope = |&state: &usize| state.checked_sub(info.speeds).map_or(0.0, |q| -row[q]);
+        let slope = |&state: &usize| state.checked_sub(speeds).map_or(0.0, |q| -row[q]);
         right.extend(states.iter().map(slope));
     }
     let determined = solved_in_place(&mut matrix, &mut right, count);

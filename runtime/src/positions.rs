@@ -13,6 +13,9 @@ const MOST_STEPS: usize = 20;
 /// Residuals that count as zero, in units of rounding of the coordinates.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
+/// A coordinate whose slope in its constraint is less than this share of the largest one follows poorly.
+const POOR: f64 = 0.2;
+
 /// Which coordinates move.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moving {
@@ -51,6 +54,8 @@ impl Inconsistent {
 pub struct Positions {
     count: usize,
     coordinates: usize,
+    /// Coordinates that follow from the others, one per constraint.
+    dependent: Vec<usize>,
     residual: Vec<f64>,
     jacobian: Vec<f64>,
     matrix: Vec<f64>,
@@ -64,10 +69,19 @@ impl Positions {
         (count > 0).then(|| Self {
             count,
             coordinates,
+            dependent: model.dependent_coordinates().to_vec(),
             residual: vec![0.0; count],
             jacobian: vec![0.0; count * coordinates],
             matrix: vec![0.0; count * count],
         })
+    }
+
+    /// Lets those coordinates follow that do so best at a place: of a unit quaternion no component does
+    /// everywhere. Returns them, one per constraint.
+    pub fn choose_dependent(&mut self, model: &dyn Model, at: At<'_>) -> &[usize] {
+        model.position_constraints(at, &mut self.residual, &mut self.jacobian);
+        self.dependent = followers(&self.jacobian, self.coordinates, model.dependent_coordinates());
+        &self.dependent
     }
 
     /// Moves coordinates of `x` until the constraints hold up to rounding. `u` are inputs and
@@ -96,20 +110,20 @@ impl Positions {
                 return Ok(());
             }
             last = size;
-            if !size.is_finite() || !self.step(model, &mut x[speeds..], moving) {
+            if !size.is_finite() || !self.step(&mut x[speeds..], moving) {
                 break;
             }
         }
         Err(Inconsistent {
             residual: last,
-            state: speeds + model.dependent_coordinates()[worst],
+            state: speeds + self.dependent[worst],
         })
     }
 
     /// One Newton step; false where the Jacobian is singular.
-    fn step(&mut self, model: &dyn Model, q: &mut [f64], moving: Moving) -> bool {
+    fn step(&mut self, q: &mut [f64], moving: Moving) -> bool {
         let row = |i: usize| i * self.coordinates..(i + 1) * self.coordinates;
-        let dependent = model.dependent_coordinates();
+        let dependent = &self.dependent;
         for i in 0..self.count {
             for j in 0..self.count {
                 self.matrix[i * self.count + j] = match moving {
@@ -137,6 +151,30 @@ impl Positions {
         }
         true
     }
+}
+
+/// The coordinates that follow from the others where ∂f/∂q is `jacobian`, row by row: the declared ones, or
+/// others that determine themselves much better here.
+pub(crate) fn followers(jacobian: &[f64], coordinates: usize, declared: &[usize]) -> Vec<usize> {
+    let mut rows = jacobian.to_vec();
+    let mut chosen: Vec<usize> = Vec::with_capacity(declared.len());
+    for (place, &own) in declared.iter().enumerate() {
+        let (_, rest) = rows.split_at_mut(place * coordinates);
+        let (row, below) = rest.split_at_mut(coordinates);
+        let size = |&q: &usize| row[q] * row[q];
+        let open = (0..coordinates).filter(|q| !chosen.contains(q));
+        let best = open.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(own);
+        let keeps = !chosen.contains(&own) && size(&own) >= POOR * POOR * size(&best);
+        let follows = if keeps { own } else { best };
+        chosen.push(follows);
+        for other in below.chunks_exact_mut(coordinates) {
+            let factor = other[follows] / row[follows];
+            for (entry, own) in other.iter_mut().zip(row.iter()) {
+                *entry -= factor * own;
+            }
+        }
+    }
+    chosen
 }
 
 fn largest(values: &[f64]) -> f64 {

@@ -40,6 +40,7 @@ pub(super) fn findings(
             let ConstraintKind::Rolling {
                 body,
                 contact,
+                on: None,
                 normal,
                 ..
             } = constraint.kind

@@ -276,8 +276,14 @@ impl<'a> Inertial<'a> {
                 });
             };
             match &item.kind {
-                ConstraintKind::Rolling { body, contact, .. } => {
-                    let v = self.velocity(&mut algebra.graph, Some(*body), *contact);
+                ConstraintKind::Rolling {
+                    body, contact, on, ..
+                } => {
+                    let mut v = self.velocity(&mut algebra.graph, Some(*body), *contact);
+                    if on.is_some() {
+                        let carried = self.velocity(&mut algebra.graph, *on, *contact);
+                        v = algebra.graph.sub3(v, carried);
+                    }
                     for (value, axis) in v.into_iter().zip(vector::IDENTITY) {
                         row(value, axis);
                     }

@@ -13,6 +13,7 @@ use super::gibbs_appell::{
 use super::glossary;
 use super::info::{info, tabulated_inputs};
 use super::letters;
+use super::motion::Motion;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
 use super::positions::Positions;
@@ -137,8 +138,10 @@ impl Derivation {
                 let states = [symbols.speeds.as_slice(), &symbols.coordinates].concat();
                 let inputs = input_symbols(symbols, info);
                 let [a, b] = self.derivatives([&states, &inputs])?;
+                let factorized = self.factorized_motion().accelerations;
+                let rates = [factorized, self.coordinate_rates.clone()].concat();
                 vec![
-                    Array::rates(info, self.rates()),
+                    Array::rates(info, rates),
                     Array::jacobian("a", A, info, Space::State, a),
                     Array::jacobian("b", B, info, Space::Inputs, b),
                 ]
@@ -521,19 +524,29 @@ impl Derivation {
         [self.motion.accelerations.as_slice(), &self.coordinate_rates].concat()
     }
 
+    /// The motion with ω̇ by the factors of M, which derivatives of ω̇ use as well.
+    fn factorized_motion(&self) -> Motion {
+        let mut motion = self.motion.clone();
+        if let Some(tree) = &self.recursion {
+            motion.accelerations.clone_from(&tree.factorized);
+        }
+        motion
+    }
+
     /// Derivatives of ẋ with respect to each list of variables, row by row.
     pub(super) fn derivatives<const N: usize>(
         &mut self,
         variables: [&[Expr]; N],
     ) -> Outcome<[Vec<Expr>; N]> {
+        let motion = self.factorized_motion();
         let (algebra, symbols) = (&mut self.algebra, &self.symbols);
-        let rows = self.motion.accelerations.len() + self.coordinate_rates.len();
+        let rows = motion.accelerations.len() + self.coordinate_rates.len();
         let mut columns_of: Vec<Vec<Vec<Expr>>> = Vec::with_capacity(N);
         if self.dependent.values.is_empty() {
             let implicit = ImplicitMotion {
                 gibbs: &self.gibbs,
                 forces: &self.forces,
-                motion: &self.motion,
+                motion: &motion,
                 coordinate_rates: &self.coordinate_rates,
             };
             let tree = self.recursion.as_ref();
@@ -552,7 +565,7 @@ impl Derivation {
             }
         } else {
             let (unbound, dependent) = (&self.unbound, &self.dependent);
-            let mut bound = BoundMotion::new(algebra, symbols, unbound, dependent, &self.motion)?;
+            let mut bound = BoundMotion::new(algebra, symbols, unbound, dependent, &motion)?;
             for variables in variables {
                 let columns = variables.iter().map(|&z| bound.column(algebra, z));
                 columns_of.push(columns.collect::<Outcome<_>>()?);

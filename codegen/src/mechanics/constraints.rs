@@ -2,7 +2,7 @@
 
 use appell_runtime::model::Reaction as Reported;
 use appell_spec::Code;
-use appell_spec::mechanism::{ConstraintId, ConstraintKind, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{BodyId, ConstraintId, ConstraintKind, GROUND, Mechanism, PointId};
 use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
@@ -10,7 +10,8 @@ use super::auxiliary::AuxiliaryMotions;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::kinematics::{Effort, Kinematics, root_of};
+use super::kinematics::{Kinematics, root_of};
+use super::motions::told;
 use super::quaternion::is_norm;
 use super::redundancy::leave_out;
 use super::row::{Reaction, Row};
@@ -53,20 +54,13 @@ pub fn constraints(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
+    kinematics: &Kinematics,
     intervals: &mut Intervals,
 ) -> Outcome<Constraints> {
-    let kinematics = Kinematics::new(
-        algebra,
-        mechanism,
-        symbols,
-        &symbols.rates,
-        &[],
-        Effort::Plain,
-    )?;
     let mut places: Vec<Place> = Vec::new();
     let (mut rows, mut findings) = (Vec::new(), Vec::new());
     for index in by_precedence(mechanism) {
-        let scalars = scalar_rows(algebra, mechanism, symbols, &kinematics, index);
+        let scalars = scalar_rows(algebra, mechanism, symbols, kinematics, index);
         let (place, scalars) = match scalars {
             Ok(scalars) => scalars,
             Err(finding) => {
@@ -210,12 +204,21 @@ fn scalar_rows(
         ConstraintKind::Rolling {
             body,
             contact,
+            on,
             normal,
             ..
         } => {
             let frame = normal.map_or(GROUND, |normal| normal.frame);
             let graph = &mut algebra.graph;
-            let v = kinematics.material_velocity(graph, mechanism, *body, *contact, frame);
+            let mut v = kinematics.material_velocity(graph, mechanism, *body, *contact, frame);
+            if let Some(on) = on {
+                let carried =
+                    kinematics.material_velocity(graph, mechanism, *on, *contact, frame);
+                v = graph.sub3(v, carried);
+            }
+            let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
+            // What carries both does not part them.
+            let own = Some(root(*body)).filter(|own| on.is_none_or(|on| root(on) != *own));
             let scalars = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
                 let unit = FrameVector {
                     frame,
@@ -226,7 +229,7 @@ fn scalar_rows(
                     value: v[k],
                     along: unit,
                     direction: kinematics.frames.express(graph, unit, GROUND),
-                    root: Some(root_of(mechanism, mechanism.bodies[*body].centre)),
+                    root: own,
                 }
             });
             (Place::Point(*contact), scalars.collect())
@@ -235,6 +238,8 @@ fn scalar_rows(
             zero: left, equals, ..
         } => {
             let left = lowering.lower(&mut algebra.graph, left).map_err(zero)?;
+            let left = told(algebra, mechanism, symbols, kinematics, left)
+                .ok_or_else(|| division_by_zero(item))?;
             let right = lowering.lower(&mut algebra.graph, equals).map_err(zero)?;
             let value = algebra.graph.sub(left, right);
             (Place::Constraint(index), vec![single(value)])
@@ -283,6 +288,8 @@ fn scalar_rows(
         }
         ConstraintKind::Position { zero: position, .. } => {
             let position = lowering.lower(&mut algebra.graph, position).map_err(zero)?;
+            let position = told(algebra, mechanism, symbols, kinematics, position)
+                    .ok_or_else(|| division_by_zero(item))?;
             let along = TimeDerivative {
                 symbols,
                 rates: &symbols.rates,

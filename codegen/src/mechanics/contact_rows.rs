@@ -53,7 +53,13 @@ impl ContactRows {
     ) -> Outcome<Vec<Self>> {
         let mut all = Vec::new();
         for (index, constraint) in mechanism.constraints.entries() {
-            let ConstraintKind::Rolling { body, contact, .. } = constraint.kind else {
+            let ConstraintKind::Rolling {
+                body,
+                contact,
+                on: None,
+                ..
+            } = constraint.kind
+            else {
                 continue;
             };
             let rows = elimination.open.rows.iter();

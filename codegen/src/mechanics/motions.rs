@@ -25,6 +25,24 @@ pub fn motions(
     Some(Substitution::of_parts(&algebra.graph, &values))
 }
 
+/// An expression with what its kinematic quantities are; none where a number is divided by zero.
+pub fn told(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    kinematics: &Kinematics,
+    expr: Expr,
+) -> Option<Expr> {
+    let mut values = Vec::new();
+    for &(motion, symbol) in &symbols.motions {
+        let known = algebra.graph.as_symbol(symbol);
+        if known.is_some_and(|known| algebra.graph.mentions(expr, &[known])) {
+            values.push((symbol, value(algebra, mechanism, kinematics, motion)));
+        }
+    }
+    Substitution::of_parts(&algebra.graph, &values).apply(&mut algebra.graph, expr)
+}
+
 fn value(
     algebra: &mut Algebra,
     mechanism: &Mechanism,

@@ -6,6 +6,8 @@ use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechani
 use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::kinematics::Kinematics;
+use super::motions::told;
 use super::rank::{LinearRow, Standing, is_finite, standings};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Intervals};
@@ -33,6 +35,7 @@ impl Positions {
         algebra: &mut Algebra,
         mechanism: &Mechanism,
         symbols: &Symbols,
+        kinematics: &Kinematics,
         intervals: &mut Intervals,
     ) -> Outcome<Self> {
         let lowering = Lowering {
@@ -49,7 +52,9 @@ impl Positions {
             };
             let residual = lowering
                 .lower(&mut algebra.graph, zero)
-                .map_err(|_| vec![division_by_zero(Item::Constraint(index))])?;
+                .ok()
+                .and_then(|zero| told(algebra, mechanism, symbols, kinematics, zero))
+                .ok_or_else(|| vec![division_by_zero(Item::Constraint(index))])?;
             let row: Vec<Expr> = symbols
                 .coordinates
                 .iter()

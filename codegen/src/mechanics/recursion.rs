@@ -51,6 +51,8 @@ pub struct Recursion {
     rise: Vec3,
     /// Π of the loads that are no steady weights.
     forces: Vec<Expr>,
+    /// ω̇ by the factorised mass matrix, which its derivatives need as well.
+    pub factorized: Vec<Expr>,
 }
 
 impl Recursion {
@@ -85,7 +87,7 @@ impl Recursion {
                 rise = algebra.graph.add3(rise, part);
             }
         }
-        Ok(Some((kinematics, Self { links, own, composites, rise, forces: Vec::new() })))
+        Ok(Some((kinematics, Self { links, own, composites, rise, forces: Vec::new(), factorized: Vec::new() })))
     }
 
     /// M and b.
@@ -168,7 +170,7 @@ impl Recursion {
 
     /// Appell's equations solved from the tips inwards, so that branches do not couple.
     pub fn solve(
-        &self,
+        &mut self,
         algebra: &mut Algebra,
         mechanism: &Mechanism,
         gibbs: &GibbsForm,
@@ -180,19 +182,23 @@ impl Recursion {
         let order = self.inwards(self.forces.len());
         let way = Way::InOrder(&order);
         let mut motion = motion::solve(algebra, mechanism, &falling, &self.forces, &[], way)?;
-        let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
-        let motions = self.links.motions(algebra, &driven);
-        let articulated = self.links.articulated(algebra, &self.own, &motions, &self.forces);
-        if let Some(accelerations) = articulated {
-            let graph = &algebra.graph;
-            if std::env::var("ABA").is_ok() {
-                eprintln!("ABA {} LDL {}", graph.operations(&accelerations), graph.operations(&motion.accelerations));
-            }
-            if graph.operations(&accelerations) < graph.operations(&motion.accelerations) {
-                motion.accelerations = accelerations;
-            }
+        self.factorized.clone_from(&motion.accelerations);
+        let motions = self.falling(algebra);
+        let articulated = (self.links).articulated(algebra, &self.own, &motions, &self.forces);
+        let graph = &algebra.graph;
+        let is_shorter = |other: &Vec<Expr>| {
+            graph.operations(other) < graph.operations(&motion.accelerations)
+        };
+        if let Some(accelerations) = articulated.filter(is_shorter) {
+            motion.accelerations = accelerations;
         }
         Ok(motion)
+    }
+
+    /// The motions of the links where ω̇ = 0 and the ground rises, as the weights have it.
+    fn falling(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
+        let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
+        self.links.motions(algebra, &driven)
     }
 
     /// The links in the motion that happens.
@@ -250,8 +256,7 @@ impl Recursion {
 
     /// b less the work of the weights: while all else falls freely, the ground rises.
     pub fn bias_less_weights(&self, algebra: &mut Algebra) -> Vec<Expr> {
-        let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
-        let motions = self.links.motions(algebra, &driven);
+        let motions = self.falling(algebra);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_r");
         self.links.felt(&mut algebra.graph, &wrenches)
     }

@@ -1,7 +1,7 @@
 //! The symbols of a mechanism.
 
 use appell_spec::expr::{Motion as MotionQuantity, Quantity, Response};
-use appell_spec::mechanism::{Axis, FrameId, Mechanism, PointId};
+use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, Mechanism, PointId};
 use rustc_hash::FxHashMap;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
@@ -106,6 +106,14 @@ impl Named {
         for load in &mechanism.loads {
             for expr in load.kind.expressions() {
                 expr.visit(&mut see);
+            }
+        }
+        for constraint in &mechanism.constraints {
+            match &constraint.kind {
+                ConstraintKind::Position { zero, .. } | ConstraintKind::Velocity { zero, .. } => {
+                    zero.visit(&mut see);
+                }
+                ConstraintKind::Rolling { .. } | ConstraintKind::FixedVelocity { .. } => {}
             }
         }
         for speed in &mechanism.pseudo_velocities {

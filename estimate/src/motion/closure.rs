@@ -77,6 +77,8 @@ impl Closure {
         plant.at(Place { z, ..place }, scratch, |at| {
             let (model, x) = (plant.model, &mut self.z[..states]);
             let positions = &mut self.positions;
+            let follow = positions.choose_dependent(model, At { x, ..at });
+            self.dependent = follow.iter().map(|q| self.speeds + q).collect();
             closed = positions.restore(model, at.t, x, at.u, at.p, Moving::Dependent);
             if closed.is_ok() {
                 let at = At { x, ..at };

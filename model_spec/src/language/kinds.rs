@@ -7,7 +7,7 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
     Kind {
         word: "rolling",
         is: ItemKind::Constraint(ConstraintWord::Rolling),
-        about: "The material point of a body at the contact is at rest.",
+        about: "The material point of a body at the contact moves as the surface does: on the ground it is at rest.",
         keys: &[
             key(
                 "body",
@@ -20,6 +20,12 @@ pub(super) static CONSTRAINTS: &[Kind] = &[
                 Form::Reference(Target::Point),
                 Need::Always,
                 "Contact point.",
+            ),
+            key(
+                "on",
+                Form::Reference(Target::Body),
+                Need::Optional,
+                "Body that carries the surface, such as a turntable; the ground by default.",
             ),
             key(
                 "normal",

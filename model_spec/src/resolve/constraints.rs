@@ -17,7 +17,7 @@ const PRESCRIBED: Place = Place::prescribed("the prescribed velocity");
 const DIRECTION: Place = Place::prescribed("a direction");
 const FRICTION: Place = Place::surface("a coefficient of friction");
 const CREEP: Place = Place::surface("the creep of a contact");
-const CLOSURE: Place = Place::geometry("a position constraint");
+const CLOSURE: Place = Place::closure("a position constraint");
 
 impl Resolver<'_> {
     pub(super) fn constraints(&mut self, bodies: &[Body]) -> Vec<Constraint> {
@@ -55,11 +55,24 @@ impl Resolver<'_> {
     fn rolling(&mut self, item: &ItemAst, bodies: &[Body]) -> ConstraintKind {
         let body = self.reference(item, "body");
         self.needs_frame(item, "body", bodies, "roll");
+        let on = self.optional_reference(item, "on");
+        self.needs_frame(item, "on", bodies, "carry a surface");
         let friction = item.expression("friction").cloned();
         let creep = self.creep(item);
+        if let (Some(_), Some(given)) = (&creep, item.entry("on")) {
+            self.tell(
+                Diagnostic::error(
+                    Code::NotAllowedHere,
+                    format!("`{}` creeps on a body that moves", item.name.value),
+                )
+                .at(given.span.clone(), "creep is known on the ground only")
+                .help("remove the creep coefficients, or `on`"),
+            );
+        }
         ConstraintKind::Rolling {
             body,
             contact: self.reference(item, "contact"),
+            on,
             normal: self.normal(item),
             friction: friction.map(|ast| self.expression(&ast, &FRICTION, Dim::NONE)),
             creep,

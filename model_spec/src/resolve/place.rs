@@ -1,6 +1,6 @@
 //! Where an expression stands, and what it may depend on there.
 
-use crate::expr::{Quantity, Response, Word};
+use crate::expr::{Motion, Quantity, Response, Word};
 use crate::mechanism::Interpolation;
 
 /// A place for an expression.
@@ -9,7 +9,7 @@ pub(super) struct Place {
     /// The place as named in messages: `the angle of a frame`.
     pub(super) what: &'static str,
     /// Which quantities may occur, besides parameters and `pi`.
-    allows: u8,
+    allows: u16,
     /// How smooth a signal must be here.
     pub(super) smooth: Smooth,
     /// Whether the expression must be linear in the rates.
@@ -27,17 +27,18 @@ pub(super) enum Smooth {
     Twice,
 }
 
-const COORDINATES: u8 = 1;
-const RATES: u8 = 2;
-const SPEEDS: u8 = 4;
-const INPUTS: u8 = 8;
-const TIME: u8 = 16;
-const MOTIONS: u8 = 32;
-const ACCELERATIONS: u8 = 64;
-const FORCES: u8 = 128;
+const COORDINATES: u16 = 1;
+const RATES: u16 = 2;
+const SPEEDS: u16 = 4;
+const INPUTS: u16 = 8;
+const TIME: u16 = 16;
+const MOTIONS: u16 = 32;
+const ACCELERATIONS: u16 = 64;
+const FORCES: u16 = 128;
+const POSITIONS: u16 = 256;
 
 impl Place {
-    const fn new(what: &'static str, allows: u8, smooth: Smooth) -> Self {
+    const fn new(what: &'static str, allows: u16, smooth: Smooth) -> Self {
         Self {
             what,
             allows,
@@ -63,6 +64,11 @@ impl Place {
         Self::new(what, COORDINATES | TIME, Smooth::Twice)
     }
 
+    /// What the positions of a mechanism satisfy.
+    pub(super) const fn closure(what: &'static str) -> Self {
+        Self::new(what, COORDINATES | TIME | POSITIONS, Smooth::Twice)
+    }
+
     /// A prescribed velocity.
     pub(super) const fn prescribed(what: &'static str) -> Self {
         Self::new(what, COORDINATES | TIME, Smooth::Once)
@@ -80,7 +86,7 @@ impl Place {
 
     /// A force.
     pub(super) const fn force(what: &'static str) -> Self {
-        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME | MOTIONS | FORCES;
+        let all = COORDINATES | RATES | SPEEDS | INPUTS | TIME | POSITIONS | MOTIONS | FORCES;
         Self::new(what, all, Smooth::Any)
     }
 
@@ -100,21 +106,24 @@ impl Place {
     }
 
     /// A quantity of interest.
-    pub(super) const OUTPUT: Self = Self::new("an output", u8::MAX, Smooth::Any);
+    pub(super) const OUTPUT: Self = Self::new("an output", u16::MAX, Smooth::Any);
     /// A named expression.
-    pub(super) const DEFINITION: Self = Self::new("a definition", u8::MAX, Smooth::Any);
+    pub(super) const DEFINITION: Self = Self::new("a definition", u16::MAX, Smooth::Any);
     /// Definition of a pseudo-velocity.
     pub(super) const SPEED: Self = Self {
-        allows: COORDINATES | RATES | TIME | MOTIONS,
+        allows: COORDINATES | RATES | TIME | POSITIONS | MOTIONS,
         ..Self::linear("a pseudo-velocity")
     };
     /// Velocity along which a force acts.
     pub(super) const ALONG: Self = Self {
-        allows: COORDINATES | RATES | SPEEDS | TIME | MOTIONS,
+        allows: COORDINATES | RATES | SPEEDS | TIME | POSITIONS | MOTIONS,
         ..Self::linear("the velocity along which a force acts")
     };
     /// Left side of a velocity constraint.
-    pub(super) const RATE_ROW: Self = Self::linear("a velocity constraint");
+    pub(super) const RATE_ROW: Self = Self {
+        allows: COORDINATES | RATES | TIME | POSITIONS | MOTIONS,
+        ..Self::linear("a velocity constraint")
+    };
 
     pub(super) fn allows(&self, quantity: Quantity) -> bool {
         let asked = match quantity {
@@ -124,6 +133,7 @@ impl Place {
             Quantity::PseudoVelocity(_) => SPEEDS,
             Quantity::Input(_) => INPUTS,
             Quantity::Signal(_) | Quantity::Time => TIME,
+            Quantity::Motion(Motion::Position(..)) => POSITIONS,
             Quantity::Motion(_) => MOTIONS,
             Quantity::Response(Response::Acceleration(..) | Response::AngularAcceleration(..)) => {
                 ACCELERATIONS
@@ -136,7 +146,8 @@ impl Place {
     /// Whether a kind of quantity by name may occur, whatever it is of.
     pub(super) fn allows_word(&self, word: Word) -> bool {
         let asked = match word {
-            Word::Position | Word::Velocity | Word::Speed | Word::AngularVelocity => MOTIONS,
+            Word::Position => POSITIONS,
+            Word::Velocity | Word::Speed | Word::AngularVelocity => MOTIONS,
             Word::Acceleration | Word::AngularAcceleration => ACCELERATIONS,
             Word::Reaction | Word::NormalForce | Word::Force => FORCES,
         };
@@ -162,7 +173,8 @@ impl Place {
             (SPEEDS, "pseudo-velocities"),
             (INPUTS, "inputs"),
             (TIME, "signals and time"),
-            (MOTIONS, "motions of points and frames"),
+            (POSITIONS, "positions of points"),
+            (MOTIONS, "velocities of points and frames"),
             (FORCES, "forces of loads and constraints"),
             (ACCELERATIONS, "accelerations"),
         ] {

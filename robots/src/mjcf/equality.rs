@@ -1,65 +1,141 @@
-//! Constraints between joints; others are refused.
+//! Constraints between joints and between bodies.
 
 use appell_spec::{Code, did_you_mean};
 
-use crate::model::Coupling;
-use crate::xml::{Element, children, elements, numbers, tag};
+use crate::model::{Connection, Coupling, Link};
+use crate::rotation::{Pose, Rotation};
+use crate::xml::{Element, children, elements, exactly, numbers, tag};
 
 use super::Reader;
 
 /// Most coefficients of a polynomial.
 const MOST: usize = 5;
 
+/// What `<equality>` demands.
+#[derive(Default)]
+pub(super) struct Equality {
+    pub(super) couplings: Vec<Coupling>,
+    pub(super) connections: Vec<Connection>,
+}
+
 /// Reads `<equality>`.
-pub(super) fn read<'x>(root: Element<'x>, reader: &mut Reader<'x, '_>) -> Vec<Coupling> {
-    let mut couplings = Vec::new();
+pub(super) fn read<'x>(root: Element<'x>, reader: &mut Reader<'x, '_>) -> Equality {
+    let mut read = Equality::default();
     for element in children(root, "equality").flat_map(elements) {
         if element.attribute("active") == Some("false") {
             reader.leave_out("inactive equality".to_owned(), element);
             continue;
         }
         match element.tag_name().name() {
-            "joint" => couplings.extend(coupling(element, reader, couplings.len())),
-            name => {
-                let references = ["body1", "body2"].map(|key| body(element, key, reader));
-                if references.iter().all(|known| *known) {
-                    reader.findings.error(
-                        Code::NotAllowedHere,
-                        tag(element),
-                        format!("`equality/{name}` is not imported yet"),
-                        "remove it to import the tree alone; add position constraints to the spec",
-                    );
-                }
+            "joint" => {
+                let count = read.couplings.len();
+                read.couplings.extend(coupling(element, reader, count));
             }
+            word @ ("connect" | "weld") => {
+                let count = read.connections.len();
+                read.connections.extend(connection(element, reader, word == "weld", count));
+            }
+            name => reader.findings.error(
+                Code::NotAllowedHere,
+                tag(element),
+                format!("`equality/{name}` is not imported"),
+                "remove it to import the tree alone; add position constraints to the spec",
+            ),
         }
     }
-    couplings
+    read
 }
 
-/// Whether a body that is named exists.
-fn body(element: Element<'_>, key: &str, reader: &Reader<'_, '_>) -> bool {
-    let Some(given) = element.attribute_node(key) else {
-        return true;
+/// `equality/connect` and `equality/weld`: two bodies meet at a point, or everywhere.
+fn connection(
+    element: Element<'_>,
+    reader: &Reader<'_, '_>,
+    rigid: bool,
+    count: usize,
+) -> Option<Connection> {
+    if let Some(site) = element.attribute_node("site1") {
+        reader.findings.error(
+            Code::NotAllowedHere,
+            site.range_value(),
+            "a connection of sites is not imported",
+            "name the bodies, `body1` and `body2`, and the `anchor` in the frame of the first",
+        );
+        return None;
+    }
+    let (first, second) = (body(element, "body1", reader)?, body(element, "body2", reader)?);
+    let anchor = match element.attribute_node("anchor") {
+        Some(given) => exactly(reader.findings, &given, "a point, x y z,")?,
+        None => [0.0; 3],
     };
+    let name = element.attribute("name").map_or_else(
+        || format!("{}_{}", element.tag_name().name(), count + 1),
+        str::to_owned,
+    );
+    if !rigid {
+        return Some(Connection {
+            name,
+            ends: [(first, anchor), (second, [0.0; 3])],
+            second: None,
+            rigid,
+        });
+    }
+    // The pose of the second in the first, and the anchor in the second.
+    let relative = match element.attribute_node("relpose") {
+        Some(given) => {
+            let [x, y, z, q @ ..]: [f64; 7] =
+                exactly(reader.findings, &given, "a position and a quaternion, x y z and w x y z,")?;
+            Rotation::quaternion(q).map(|rotation| Pose {
+                rotation,
+                position: [x, y, z],
+            })
+        }
+        None => None,
+    };
+    Some(match relative {
+        Some(pose) => Connection {
+            name,
+            ends: [(first, pose.of(anchor)), (second, anchor)],
+            second: Some(pose.inverse()),
+            rigid,
+        },
+        // The same wherever it is anchored.
+        None => Connection {
+            name,
+            ends: [(first, [0.0; 3]), (second, [0.0; 3])],
+            second: None,
+            rigid,
+        },
+    })
+}
+
+/// The link of a body that is named; none is the world, which is meant where no body is named.
+fn body(element: Element<'_>, key: &str, reader: &Reader<'_, '_>) -> Option<Option<usize>> {
+    let Some(given) = element.attribute_node(key) else {
+        return Some(None);
+    };
+    let named = |link: &Link| link.written && link.name == given.value();
+    if given.value() == "world" {
+        return Some(None);
+    }
+    if let Some(found) = reader.links.iter().position(named) {
+        return Some(Some(found));
+    }
     let bodies = reader.links.iter().filter(|link| link.written);
     let known: Vec<&str> = bodies
         .map(|link| link.name.as_str())
         .chain(["world"])
         .collect();
-    let found = known.contains(&given.value());
-    if !found {
-        let list = || {
-            let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
-            format!("known bodies: {}", names.join(", "))
-        };
-        reader.findings.error(
-            Code::UnknownReference,
-            given.range_value(),
-            format!("there is no body `{}`", appell_spec::shown(given.value())),
-            did_you_mean(given.value(), known.iter().copied(), list),
-        );
-    }
-    found
+    let list = || {
+        let names: Vec<String> = known.iter().map(|name| format!("`{name}`")).collect();
+        format!("known bodies: {}", names.join(", "))
+    };
+    reader.findings.error(
+        Code::UnknownReference,
+        given.range_value(),
+        format!("there is no body `{}`", appell_spec::shown(given.value())),
+        did_you_mean(given.value(), known.iter().copied(), list),
+    );
+    None
 }
 
 /// `equality/joint`: a joint follows another one by a polynomial, or stands still.

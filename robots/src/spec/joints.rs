@@ -1,6 +1,7 @@
 //! Coordinates, what drives and resists them, and what couples them.
 
 use crate::letters::{Kind, Number, plain, quantity};
+use crate::loops::Meeting;
 use crate::model::{Coupling, Joint, Motion};
 use crate::table::{Item, list};
 
@@ -203,14 +204,15 @@ impl Writer<'_> {
 
     /// Their speeds: those of the place in the ground, and the angular velocity from what carries the joint, in the
     /// frame of the body.
-    fn several_speeds(&mut self, index: usize) {
+    fn several_speeds(&mut self, index: usize, followers: &[usize]) {
         let body = &self.tree.bodies[index];
         let q = self.called.coordinates[index].clone();
         if body.joint.motion == Motion::Free {
-            for (axis, name) in ["x", "y", "z"]
-                .iter()
-                .zip(self.called.several[index].clone())
-            {
+            let axes = ["x", "y", "z"].iter().enumerate();
+            for ((component, axis), name) in axes.zip(self.called.several[index].clone()) {
+                if followers.contains(&component) {
+                    continue;
+                }
                 let speed = self.quantities.new_one(&format!("v_{q}_{axis}"));
                 let item = Item::default().text("value", &format!("dot({name})"));
                 self.speeds.add(&speed, &item.text("unit", "m/s"));
@@ -291,7 +293,7 @@ impl Writer<'_> {
     }
 
     /// Speeds of the coordinates that are free, and the equations of the others.
-    pub(super) fn couplings(&mut self, couplings: &[Coupling]) {
+    pub(super) fn couplings(&mut self, couplings: &[Coupling], meetings: &[(String, Vec<Meeting>)]) {
         let find = |name: &str| {
             self.tree
                 .bodies
@@ -299,6 +301,7 @@ impl Writer<'_> {
                 .position(|body| body.joint.motion.has_axis() && body.joint.name == name)
         };
         let mut follows = vec![false; self.tree.bodies.len()];
+        let rows = || meetings.iter().flat_map(|(_, of)| of).flat_map(|meeting| &meeting.rows);
         for coupling in couplings {
             let Some(own) = find(&coupling.joint) else {
                 continue;
@@ -359,9 +362,13 @@ impl Writer<'_> {
             );
         }
         for (index, body) in self.tree.bodies.iter().enumerate() {
+            let followers: Vec<usize> = rows()
+                .filter(|(_, follower)| follower.body == index)
+                .map(|(_, follower)| follower.component)
+                .collect();
             if !body.joint.motion.has_axis() {
-                self.several_speeds(index);
-            } else if !follows[index] {
+                self.several_speeds(index, &followers);
+            } else if !follows[index] && followers.is_empty() {
                 let q = &self.called.coordinates[index];
                 let name = self.quantities.new_one(&format!("v_{q}"));
                 let item = Item::default().text("value", &format!("dot({q})"));

@@ -1,0 +1,55 @@
+//! Points that meet where links close a loop.
+
+use crate::letters::quantity;
+use crate::loops::Meeting;
+use crate::rotation::{Vector, is_zero};
+use crate::table::Item;
+
+use super::Writer;
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+impl Writer<'_> {
+    /// The equations of what connects links.
+    pub(super) fn connections(&mut self, meetings: &[(String, Vec<Meeting>)]) {
+        let mut names = crate::names::Names::default();
+        for (name, meetings) in meetings {
+            for meeting in meetings {
+                let called = names.new_one(name);
+                let along = self.frame_of(meeting.along);
+                let [first, second] =
+                    [0, 1].map(|end| self.end(&called, end, meeting.ends[end]));
+                for &(axis, follower) in &meeting.rows {
+                    let axis = AXES[axis];
+                    let of = |point: &str| match along.as_str() {
+                        "ground" => format!("position({point}, {axis})"),
+                        along => format!("position({point}, {axis}, {along})"),
+                    };
+                    let several = &self.called.several[follower.body];
+                    let dependent = several
+                        .get(follower.component)
+                        .unwrap_or(&self.called.coordinates[follower.body]);
+                    let item = Item::default()
+                        .text("kind", "position")
+                        .text("zero", &format!("{} - {}", of(&first), of(&second)))
+                        .text("dependent", dependent);
+                    self.constraints.add(&format!("{called}_{axis}"), &item);
+                }
+            }
+        }
+    }
+
+    /// The point at one end of a connection.
+    fn end(&mut self, connection: &str, end: usize, (body, at): (Option<usize>, Vector)) -> String {
+        if is_zero(at) {
+            return self.point_of(body);
+        }
+        let name = self.places.new_one(&format!("{connection}_{}", end + 1));
+        let at: Vec<String> = at.iter().map(|one| quantity(*one, "m")).collect();
+        let item = Item::default()
+            .text("from", &self.point_of(body))
+            .text("in", &self.frame_of(body));
+        self.points.add(&name, &item.expressions("at", &at));
+        name
+    }
+}

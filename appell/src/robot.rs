@@ -7,6 +7,9 @@ pub use appell_robots::{Imported, LeftOut, Letters, Options, SNAP, Without};
 
 use crate::{Error, Field, Source, files};
 
+/// Largest mesh, in bytes.
+const MAX_MESH: u64 = 1 << 28;
+
 /// Turns the text of a URDF or an MJCF file into a spec; `file` is its name in messages and in the spec.
 ///
 /// ```
@@ -22,19 +25,30 @@ use crate::{Error, Field, Source, files};
 /// # Ok::<(), appell::Error>(())
 /// ```
 pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Error> {
-    appell_robots::import(file, text, options).map_err(|failure| match failure {
+    appell_robots::import(file, text, options).map_err(told)
+}
+
+fn told(failure: Failure) -> Error {
+    match failure {
         Failure::File(report) => Error::Report(report),
         Failure::Unknown { name, help } => Error::request(
             Field::Letters,
             format!("`{name}` is no link, joint or parameter of the robot; {help}"),
         ),
-    })
+    }
 }
 
-/// Reads a file and turns it into a spec.
+/// Reads a file, and the meshes beside it that give bodies their inertia, and turns it into a spec.
 pub fn read(path: &Path, options: &Options) -> Result<Imported, Error> {
     let text = files::read(path, MAX_FILE)?;
-    import(&path.to_string_lossy().replace('\\', "/"), &text, options)
+    let file = path.to_string_lossy().replace('\\', "/");
+    let folder = path.parent().unwrap_or(Path::new(""));
+    let others = |name: &str| {
+        let named = folder.join(name);
+        let size = std::fs::metadata(&named).ok()?.len();
+        (size <= MAX_MESH).then(|| std::fs::read(&named).ok())?
+    };
+    appell_robots::import_with(&file, &text, options, &others).map_err(told)
 }
 
 /// The spec of a robot, as if it were read from a file.

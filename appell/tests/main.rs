@@ -7,4 +7,5 @@ mod ensemble;
 mod errors;
 mod orientations;
 mod robots;
+mod spinning;
 mod taylor;

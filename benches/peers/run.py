@@ -185,7 +185,9 @@ def main():
         times.append(run(program, chosen.rounds, text))
     about["load"] = max(about["load"], os.getloadavg()[0])
     about["command"] = f"python3.11 benches/peers/run.py --layouts {chosen.layouts} --rounds {chosen.rounds}"
-    chosen.out.write_text(table.page(about, told, found, times))
+    # The block of benches/scaling stands at the end.
+    block = "".join(chosen.out.read_text().partition("\n<!-- scaling:")[1:]) if chosen.out.exists() else ""
+    chosen.out.write_text(table.page(about, told, found, times) + block)
     print(f"wrote {chosen.out}")
 
 

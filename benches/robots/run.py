@@ -90,7 +90,9 @@ class Joint:
             self.added += f'[loads.force_tested]\nkind = "force"\non = "{frame}"\nin = "ground"\nvector = {json.dumps(wrench[0])}\n'
             self.added += f'[loads.torque_tested]\nkind = "torque"\non = "{frame}"\nin = "{frame}"\nvector = {json.dumps(wrench[1])}\n'
         elif joint["nq"] == 4:
-            raise RuntimeError("torques at ball joints are not tested")
+            self.coordinates = [f"{name}_{end}" for end in ("qw", "qx", "qy", "qz")]
+            self.speeds, self.inputs = ([f"{kind}_{name}_{axis}" for axis in "xyz"] for kind in ("w", "tau"))
+            self.added = ""
         else:
             self.coordinates, self.speeds, self.added = [name], [f"v_{name}"], ""
             self.inputs = [f"tau_{name}" if f"tau_{name} " in spec else f"force_{name}"]

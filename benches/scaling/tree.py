@@ -95,12 +95,13 @@ class Tree:
         while point != "O":
             chain.append(self.points[point])
             point = chain[-1]["from"]
-        for step in [*reversed(chain), {"in": body["frame"], "at": [0, 0, 0]}]:
-            free = [name for text in step["at"] for name in self.named(text)]
-            inner = body["frame"] if len(free) == 3 else step["in"]
-            if len(free) == 3:
-                at = self.joint(Link("free", "free", -1, np.eye(3), place, angles=self.angles(inner)))
-                frame, rotation, place = inner, np.eye(3), [0.0] * 3
+        steps = [*reversed(chain), {"in": body["frame"], "at": [0, 0, 0]}]
+        for step, following in zip(steps, [*steps[1:], None]):
+            inner = step["in"]
+            if sum(len(self.named(text)) for text in step["at"]) == 3:
+                frame = following["in"]
+                at = self.joint(Link("free", "free", -1, np.eye(3), place, angles=self.angles(frame)))
+                rotation, place = np.eye(3), [0.0] * 3
                 continue
             for turn in self.turns(frame, inner):
                 axis, names = unit(turn["about_axis"]), self.named(turn["by"])

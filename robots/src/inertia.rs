@@ -1,7 +1,7 @@
 //! Mass, centre of mass and inertia: turned, shifted, put together.
 
 use crate::letters::plain;
-use crate::rotation::{Pose, Rotation, Vector, add, dot, minus, scaled};
+use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
 
 /// A symmetric tensor: xx, yy, zz, xy, xz, yz.
 pub(crate) type Tensor = [f64; 6];
@@ -25,6 +25,37 @@ const PLACES: [(usize, usize); 6] = [(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1,
 
 fn rows([xx, yy, zz, xy, xz, yz]: Tensor) -> [Vector; 3] {
     [[xx, xy, xz], [xy, yy, yz], [xz, yz, zz]]
+}
+
+/// Volume of tetrahedra, each by its size, and the inertia of them all with a mass of 1.
+pub(crate) fn of_triangles(tetrahedra: &[[Vector; 4]]) -> Option<(f64, Inertia)> {
+    let mut whole = Inertia::NONE;
+    for &[a, b, c, d] in tetrahedra {
+        let edges = [minus(b, a), minus(c, a), minus(d, a)];
+        let volume = (dot(edges[0], cross(edges[1], edges[2])) / 6.0).abs();
+        if volume == 0.0 {
+            continue;
+        }
+        let centre = scaled(add(add(a, b), add(c, d)), 0.25);
+        let arms = [a, b, c, d].map(|corner| minus(corner, centre));
+        // A homogeneous tetrahedron has the second moments of its corners, each with a twentieth of the mass.
+        let moments = arms.map(|arm| of_point(volume / 20.0, arm));
+        let tensor = moments.into_iter().fold([0.0; 6], sum);
+        whole = whole.with(&Inertia {
+            mass: volume,
+            centre,
+            tensor,
+        });
+    }
+    (whole.mass > 0.0).then(|| {
+        let tensor = whole.tensor.map(|entry| entry / whole.mass);
+        let one = Inertia {
+            mass: 1.0,
+            tensor,
+            ..whole
+        };
+        (whole.mass, one)
+    })
 }
 
 /// The tensor along the axes from which those of `tensor` are turned.

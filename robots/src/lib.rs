@@ -112,6 +112,17 @@ fn float(robot: &mut model::Robot) {
 /// assert!(door.spec.contains("leaf = { parent = \"ground\", about_axis = \"z\", by = \"hinge\" }"));
 /// ```
 pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Failure> {
+    import_with(file, text, options, &|_| None)
+}
+
+/// [`import`] where meshes that the file names may be read: `others` gives the bytes of a file by its path from
+/// the folder of this one. Meshes are read where a body has no other inertia.
+pub fn import_with(
+    file: &str,
+    text: &str,
+    options: &Options,
+    others: &dyn Fn(&str) -> Option<Vec<u8>>,
+) -> Result<Imported, Failure> {
     let fail =
         |findings: Vec<Diagnostic>| Failure::File(Box::new(Report::new(file, text, findings)));
     let document = xml::parse(text).map_err(|error| fail(vec![error]))?;
@@ -119,7 +130,7 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Fai
     let root = document.root_element();
     let (kind, mut robot) = match root.tag_name().name() {
         "robot" => ("URDF", urdf::read(root, &findings)),
-        "mujoco" => ("MJCF", mjcf::read(root, &findings)),
+        "mujoco" => ("MJCF", mjcf::read(root, &findings, others)),
         other => {
             let message = format!("the file begins with `<{}>`", appell_spec::shown(other));
             let error = Diagnostic::error(Code::UnknownWord, message).at(xml::tag(root), "");

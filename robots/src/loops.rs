@@ -101,10 +101,13 @@ impl<'a> Rows<'a> {
             // The second end is where the first is while all is as drawn.
             let first = (ends[0].0, add(ends[0].1, offset));
             let place = self.place(first, &self.drawn);
-            let second = (ends[1].0, match connection.second {
-                Some(pose) => pose.of(first.1),
-                None => self.within(ends[1].0, place),
-            });
+            let second = (
+                ends[1].0,
+                match connection.second {
+                    Some(pose) => pose.of(first.1),
+                    None => self.within(ends[1].0, place),
+                },
+            );
             for axis in 0..3 {
                 let direction = turned.0.map(|row| row[axis]);
                 let mut row = vec![0.0; self.columns.len()];
@@ -124,7 +127,13 @@ impl<'a> Rows<'a> {
     }
 
     /// Adds how a point of a link moves along a direction with every coordinate.
-    fn add_slopes(&self, row: &mut [f64], sign: f64, end: (Option<usize>, Vector), direction: Vector) {
+    fn add_slopes(
+        &self,
+        row: &mut [f64],
+        sign: f64,
+        end: (Option<usize>, Vector),
+        direction: Vector,
+    ) {
         let place = self.place(end, &self.near);
         let mut at = end.0;
         while let Some(index) = at {
@@ -166,7 +175,8 @@ impl<'a> Rows<'a> {
             let driven = self.robot.driven.contains(joint);
             row[column].abs() * if driven { DRIVEN } else { 1.0 }
         };
-        let open = (0..row.len()).filter(|&column| !follows(column) && row[column].abs() > NOTHING * whole);
+        let open = (0..row.len())
+            .filter(|&column| !follows(column) && row[column].abs() > NOTHING * whole);
         let pivot = open.max_by(|&a, &b| weight(a).total_cmp(&weight(b)))?;
         self.known.push((pivot, row));
         Some(self.columns[pivot])
@@ -217,7 +227,10 @@ impl<'a> Rows<'a> {
             Motion::Sliding | Motion::Free => [0.0; 3],
         };
         let origin = self.drawn[moved.link].of(origin);
-        let at = self.axes(body, &self.drawn).inverse().of(minus(place, origin));
+        let at = self
+            .axes(body, &self.drawn)
+            .inverse()
+            .of(minus(place, origin));
         (Some(body), crate::inertia::position_without_rounding(at))
     }
 }

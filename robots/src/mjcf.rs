@@ -4,6 +4,7 @@ mod defaults;
 mod equality;
 mod geoms;
 mod joints;
+mod meshes;
 mod orientation;
 
 use appell_spec::{Code, did_you_mean};
@@ -52,6 +53,9 @@ pub(crate) struct Reader<'x, 'f> {
     defaults: Defaults<'x>,
     links: Vec<Link>,
     left_out: Vec<LeftOut>,
+    root: Element<'x>,
+    /// Reads a file that this one names.
+    read: &'f dyn Fn(&str) -> Option<Vec<u8>>,
 }
 
 /// A place in the tree from which bodies are read.
@@ -64,13 +68,19 @@ struct Level<'x> {
 }
 
 /// Reads `<mujoco>`.
-pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
+pub(crate) fn read(
+    root: Element<'_>,
+    findings: &Findings,
+    others: &dyn Fn(&str) -> Option<Vec<u8>>,
+) -> Robot {
     let mut reader = Reader {
         findings,
         compiler: compiler(root, findings),
         defaults: Defaults::new(root, findings),
         links: Vec::new(),
         left_out: Vec::new(),
+        root,
+        read: others,
     };
     let ground = Level {
         parent: None,

@@ -80,7 +80,11 @@ impl Positions {
     /// everywhere. Returns them, one per constraint.
     pub fn choose_dependent(&mut self, model: &dyn Model, at: At<'_>) -> &[usize] {
         model.position_constraints(at, &mut self.residual, &mut self.jacobian);
-        self.dependent = followers(&self.jacobian, self.coordinates, model.dependent_coordinates());
+        self.dependent = followers(
+            &self.jacobian,
+            self.coordinates,
+            model.dependent_coordinates(),
+        );
         &self.dependent
     }
 
@@ -163,7 +167,9 @@ pub(crate) fn followers(jacobian: &[f64], coordinates: usize, declared: &[usize]
         let (row, below) = rest.split_at_mut(coordinates);
         let size = |&q: &usize| row[q] * row[q];
         let open = (0..coordinates).filter(|q| !chosen.contains(q));
-        let best = open.max_by(|a, b| size(a).total_cmp(&size(b))).unwrap_or(own);
+        let best = open
+            .max_by(|a, b| size(a).total_cmp(&size(b)))
+            .unwrap_or(own);
         let keeps = !chosen.contains(&own) && size(&own) >= POOR * POOR * size(&best);
         let follows = if keeps { own } else { best };
         chosen.push(follows);

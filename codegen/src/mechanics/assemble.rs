@@ -13,9 +13,9 @@ use super::gibbs_appell::{
 use super::glossary;
 use super::info::{info, tabulated_inputs};
 use super::letters;
-use super::motion::Motion;
 use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
+use super::motion::Motion;
 use super::positions::Positions;
 use super::prescribed;
 use super::reactions;

@@ -212,8 +212,7 @@ fn scalar_rows(
             let graph = &mut algebra.graph;
             let mut v = kinematics.material_velocity(graph, mechanism, *body, *contact, frame);
             if let Some(on) = on {
-                let carried =
-                    kinematics.material_velocity(graph, mechanism, *on, *contact, frame);
+                let carried = kinematics.material_velocity(graph, mechanism, *on, *contact, frame);
                 v = graph.sub3(v, carried);
             }
             let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
@@ -289,7 +288,7 @@ fn scalar_rows(
         ConstraintKind::Position { zero: position, .. } => {
             let position = lowering.lower(&mut algebra.graph, position).map_err(zero)?;
             let position = told(algebra, mechanism, symbols, kinematics, position)
-                    .ok_or_else(|| division_by_zero(item))?;
+                .ok_or_else(|| division_by_zero(item))?;
             let along = TimeDerivative {
                 symbols,
                 rates: &symbols.rates,

@@ -247,7 +247,14 @@ fn per_mass(
         bias: vec![Graph::ZERO; momenta.len()],
         ..derivation.gibbs.clone()
     };
-    let solved = motion::solve(algebra, mechanism, &without_bias, &kicks, &[], Way::Shortest)?;
+    let solved = motion::solve(
+        algebra,
+        mechanism,
+        &without_bias,
+        &kicks,
+        &[],
+        Way::Shortest,
+    )?;
     let mut all = Vec::with_capacity(momenta.len());
     for &solved in &solved.accelerations {
         let mut parts = Vec::with_capacity(momenta.len());

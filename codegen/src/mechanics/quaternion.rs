@@ -10,7 +10,14 @@ use crate::symbolic::{Expr, Graph, Rational};
 /// The coordinates of the quaternions, by their places.
 pub(super) fn quaternions(mechanism: &Mechanism) -> impl Iterator<Item = [usize; 4]> {
     let frames = mechanism.frames.iter();
-    frames.filter_map(|frame| Some(frame.quaternion?.map(CoordinateId::index)))
+    let all = frames.filter_map(|frame| Some(frame.quaternion?.map(CoordinateId::index)));
+    let mut told = Vec::new();
+    // Frames that turn alike share one.
+    all.filter(move |quaternion| {
+        let is_new = !told.contains(quaternion);
+        told.push(*quaternion);
+        is_new
+    })
 }
 
 /// Whether a constraint keeps the norm of a quaternion: these follow those of the spec.

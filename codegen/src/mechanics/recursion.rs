@@ -14,17 +14,16 @@ mod links;
 mod movement;
 mod partials;
 
-
 use appell_spec::expr::{Expr as SpecExpr, Quantity};
 use appell_spec::mechanism::{Load, LoadKind, Mechanism};
 
 use super::algebra::Algebra;
-use super::motion;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{BodyMotion, GibbsForm, Rotation, Translation, named3};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{AppliedLoad, generalized_forces};
+use super::motion;
 use super::motion::{Motion, Way};
 use super::symbols::Symbols;
 use super::time::TimeDerivative;
@@ -70,7 +69,10 @@ impl Recursion {
         algebra.recursive = true;
         let kinematics =
             Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Recursive)?;
-        let (lowering, time) = (Lowering { symbols, rates }, TimeDerivative { symbols, rates });
+        let (lowering, time) = (
+            Lowering { symbols, rates },
+            TimeDerivative { symbols, rates },
+        );
         let Some(links) = Links::new(algebra, mechanism, &kinematics, &time) else {
             algebra.recursive = false;
             return Ok(None);
@@ -87,7 +89,17 @@ impl Recursion {
                 rise = algebra.graph.add3(rise, part);
             }
         }
-        Ok(Some((kinematics, Self { links, own, composites, rise, forces: Vec::new(), factorized: Vec::new() })))
+        Ok(Some((
+            kinematics,
+            Self {
+                links,
+                own,
+                composites,
+                rise,
+                forces: Vec::new(),
+                factorized: Vec::new(),
+            },
+        )))
     }
 
     /// M and b.
@@ -102,7 +114,11 @@ impl Recursion {
 
     /// The motions of the links where ω̇ = 0.
     fn unaccelerated(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
-        let driven = Driven { ground: vector::ZERO, accelerations: None, suffix: "0" };
+        let driven = Driven {
+            ground: vector::ZERO,
+            accelerations: None,
+            suffix: "0",
+        };
         self.links.motions(algebra, &driven)
     }
 
@@ -143,7 +159,12 @@ impl Recursion {
                     momentum_rate: named3(algebra, &format!("h0_{}", body.name), rate),
                 }
             });
-            bodies.push(BodyMotion { name: body.name.clone(), mass: central.mass, centre, rotation });
+            bodies.push(BodyMotion {
+                name: body.name.clone(),
+                mass: central.mass,
+                centre,
+                rotation,
+            });
         }
         Ok(bodies)
     }
@@ -186,9 +207,8 @@ impl Recursion {
         let motions = self.falling(algebra);
         let articulated = (self.links).articulated(algebra, &self.own, &motions, &self.forces);
         let graph = &algebra.graph;
-        let is_shorter = |other: &Vec<Expr>| {
-            graph.operations(other) < graph.operations(&motion.accelerations)
-        };
+        let is_shorter =
+            |other: &Vec<Expr>| graph.operations(other) < graph.operations(&motion.accelerations);
         if let Some(accelerations) = articulated.filter(is_shorter) {
             motion.accelerations = accelerations;
         }
@@ -197,17 +217,21 @@ impl Recursion {
 
     /// The motions of the links where ω̇ = 0 and the ground rises, as the weights have it.
     fn falling(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
-        let driven = Driven { ground: self.rise, accelerations: None, suffix: "r" };
+        let driven = Driven {
+            ground: self.rise,
+            accelerations: None,
+            suffix: "r",
+        };
         self.links.motions(algebra, &driven)
     }
 
     /// The links in the motion that happens.
-    pub fn differentiable(
-        &self,
-        algebra: &mut Algebra,
-        accelerations: &[Expr],
-    ) -> Differentiable {
-        let driven = Driven { ground: self.rise, accelerations: Some(accelerations), suffix: "d" };
+    pub fn differentiable(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Differentiable {
+        let driven = Driven {
+            ground: self.rise,
+            accelerations: Some(accelerations),
+            suffix: "d",
+        };
         let motions = self.links.motions(algebra, &driven);
         let inertias = (self.own.as_slice(), self.composites.as_slice());
         Differentiable::new(algebra, &self.links, inertias, self.rise, motions)
@@ -232,25 +256,40 @@ impl Recursion {
 
     /// `Π − b − M ω̇` with these accelerations.
     pub fn residual(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Vec<Expr> {
-        let driven = Driven { ground: self.rise, accelerations: Some(accelerations), suffix: "s" };
+        let driven = Driven {
+            ground: self.rise,
+            accelerations: Some(accelerations),
+            suffix: "s",
+        };
         let motions = self.links.motions(algebra, &driven);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_s");
         let graph = &mut algebra.graph;
         let taken = self.links.felt(graph, &wrenches);
         let forces = self.forces.iter().zip(taken);
-        forces.map(|(&force, taken)| graph.sub(force, taken)).collect()
+        forces
+            .map(|(&force, taken)| graph.sub(force, taken))
+            .collect()
     }
 
     /// Speeds from the tips inwards: eliminated in this order, branches do not couple.
     pub fn inwards(&self, speeds: usize) -> Vec<usize> {
-        let columns = self.links.links.iter().rev().flat_map(|link| link.columns.iter().rev());
+        let columns = self
+            .links
+            .links
+            .iter()
+            .rev()
+            .flat_map(|link| link.columns.iter().rev());
         let mut order = Vec::with_capacity(speeds);
         for &(speed, _) in columns {
             if !order.contains(&speed) {
                 order.push(speed);
             }
         }
-        order.extend((0..speeds).filter(|speed| !order.contains(speed)).collect::<Vec<_>>());
+        order.extend(
+            (0..speeds)
+                .filter(|speed| !order.contains(speed))
+                .collect::<Vec<_>>(),
+        );
         order
     }
 
@@ -267,7 +306,10 @@ impl Recursion {
         let wrenches: Vec<Wrench> = (self.composites.iter().zip(&still))
             .map(|(composite, &a)| {
                 let up = composite.resists(&mut algebra.graph, vector::ZERO, a);
-                Wrench { n: algebra.graph.neg3(up.n), f: algebra.graph.neg3(up.f) }
+                Wrench {
+                    n: algebra.graph.neg3(up.n),
+                    f: algebra.graph.neg3(up.f),
+                }
             })
             .collect();
         self.links.felt(&mut algebra.graph, &wrenches)
@@ -276,13 +318,16 @@ impl Recursion {
 
 fn partials(algebra: &mut Algebra, v: Vec3, speeds: &[Expr]) -> Vec<Vec3> {
     let by = speeds.iter();
-    by.map(|&speed| v.map(|c| algebra.derivative(c, speed))).collect()
+    by.map(|&speed| v.map(|c| algebra.derivative(c, speed)))
+        .collect()
 }
 
 /// The weight of all bodies with an acceleration that never changes.
 fn steady_weight(load: &Load) -> Option<([i8; 3], &SpecExpr)> {
     match &load.kind {
-        LoadKind::Gravity { down, acceleration } if is_constant(acceleration) => Some((*down, acceleration)),
+        LoadKind::Gravity { down, acceleration } if is_constant(acceleration) => {
+            Some((*down, acceleration))
+        }
         _ => None,
     }
 }

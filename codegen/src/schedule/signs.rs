@@ -137,7 +137,11 @@ impl<'a> Signs<'a> {
             self.cost = self.cost - old.cost + new.cost;
             self.states[id.index()] = new;
             if old.built != new.built {
-                open.extend(self.users[id.index()].iter().map(|user| self.places[user.index()]));
+                open.extend(
+                    self.users[id.index()]
+                        .iter()
+                        .map(|user| self.places[user.index()]),
+                );
             }
         }
         if self.cost >= before {

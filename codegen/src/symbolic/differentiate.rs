@@ -23,8 +23,7 @@ impl Derivatives {
 
     /// `∂expr/∂symbol`
     pub fn of(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
-        let unknown =
-            |e: Expr| graph.mentions(e, &[self.symbol]) && !self.known.contains_key(&e);
+        let unknown = |e: Expr| graph.mentions(e, &[self.symbol]) && !self.known.contains_key(&e);
         for part in graph.in_order_where(&[expr], unknown) {
             let derivative = self.step(graph, part);
             self.known.insert(part, derivative);

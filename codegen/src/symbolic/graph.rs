@@ -286,7 +286,9 @@ impl Graph {
     /// Whether any of `symbols` occurs in `expr` as it is written.
     pub fn mentions(&self, expr: Expr, symbols: &[SymbolId]) -> bool {
         let support = self.support(expr);
-        symbols.iter().any(|&symbol| self.sets.holds(support, symbol))
+        symbols
+            .iter()
+            .any(|&symbol| self.sets.holds(support, symbol))
     }
 
     /// Whether an expression can have a part with this support.
@@ -348,7 +350,9 @@ impl Graph {
         let mut parts = Vec::new();
         self.for_each_part(expr, |part| parts.push(self.support(part)));
         let sets = &mut self.sets;
-        parts.into_iter().fold(Support::default(), |all, part| sets.union(all, part))
+        parts
+            .into_iter()
+            .fold(Support::default(), |all, part| sets.union(all, part))
     }
 }
 

@@ -32,7 +32,7 @@ impl Default for Supports {
 
 impl Supports {
     /// The set of one symbol.
-    pub fn of(&mut self, symbol: SymbolId) -> Support {
+    pub(super) fn of(&mut self, symbol: SymbolId) -> Support {
         let (word, bit) = place(symbol);
         let mut bits = vec![0; word + 1];
         bits[word] = bit;
@@ -40,7 +40,7 @@ impl Supports {
     }
 
     /// What either holds.
-    pub fn union(&mut self, a: Support, b: Support) -> Support {
+    pub(super) fn union(&mut self, a: Support, b: Support) -> Support {
         let (a, b) = (a.min(b), a.max(b));
         if a == b || a == Support::default() {
             return b;
@@ -62,15 +62,19 @@ impl Supports {
     }
 
     /// Whether a set holds a symbol.
-    pub fn holds(&self, set: Support, symbol: SymbolId) -> bool {
+    pub(super) fn holds(&self, set: Support, symbol: SymbolId) -> bool {
         let (word, bit) = place(symbol);
         self.bits(set).get(word).is_some_and(|word| word & bit != 0)
     }
 
     /// Whether a set holds all of another.
-    pub fn contains(&self, set: Support, other: Support) -> bool {
+    pub(super) fn contains(&self, set: Support, other: Support) -> bool {
         let (bits, others) = (self.bits(set), self.bits(other));
-        others.len() <= bits.len() && others.iter().zip(bits).all(|(other, word)| word & other == *other)
+        others.len() <= bits.len()
+            && others
+                .iter()
+                .zip(bits)
+                .all(|(other, word)| word & other == *other)
     }
 
     fn bits(&self, set: Support) -> &[u64] {

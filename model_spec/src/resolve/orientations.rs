@@ -18,8 +18,17 @@ impl Resolver<'_> {
             return None;
         };
         let mut taken = [CoordinateId::new(0); 4];
-        for (place, name) in names.iter().enumerate() {
-            let id = self.find(&name.value, &name.span)?;
+        for (target, name) in taken.iter_mut().zip(names.iter()) {
+            *target = self.find(&name.value, &name.span)?;
+        }
+        if self
+            .in_quaternions
+            .chunks_exact(4)
+            .any(|other| other == taken)
+        {
+            return Some(taken);
+        }
+        for (name, id) in names.iter().zip(taken) {
             if self.in_quaternions.contains(&id) {
                 self.tell(
                     Diagnostic::error(
@@ -27,7 +36,7 @@ impl Resolver<'_> {
                         format!("`{}` is a component of a quaternion twice", name.value),
                     )
                     .at(name.span.clone(), "here again")
-                    .help("each quaternion has four coordinates of its own"),
+                    .help("each quaternion has four coordinates of its own; frames that turn alike have all four in common"),
                 );
                 return None;
             }
@@ -42,7 +51,6 @@ impl Resolver<'_> {
             }
             self.in_quaternions.push(id);
             self.used.add(Quantity::Coordinate(id));
-            taken[place] = id;
         }
         Some(taken)
     }
@@ -50,9 +58,16 @@ impl Resolver<'_> {
 
 /// The constraints w² + x² + y² + z² = 1 of all quaternions.
 pub(super) fn norms(frames: &[Frame], taken: &[Constraint]) -> Vec<Constraint> {
+    let mut told = Vec::new();
     let quaternions = frames
         .iter()
         .filter_map(|frame| Some((frame, frame.quaternion?)));
+    // Several frames may turn alike.
+    let quaternions = quaternions.filter(|(_, quaternion)| {
+        let is_new = !told.contains(quaternion);
+        told.push(*quaternion);
+        is_new
+    });
     let norms = quaternions.map(|(frame, [w, x, y, z])| {
         let mut name = format!("norm_{}", frame.name);
         while taken.iter().any(|constraint| constraint.name == name) {

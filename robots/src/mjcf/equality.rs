@@ -33,7 +33,8 @@ pub(super) fn read<'x>(root: Element<'x>, reader: &mut Reader<'x, '_>) -> Equali
             }
             word @ ("connect" | "weld") => {
                 let count = read.connections.len();
-                read.connections.extend(connection(element, reader, word == "weld", count));
+                read.connections
+                    .extend(connection(element, reader, word == "weld", count));
             }
             name => reader.findings.error(
                 Code::NotAllowedHere,
@@ -62,7 +63,10 @@ fn connection(
         );
         return None;
     }
-    let (first, second) = (body(element, "body1", reader)?, body(element, "body2", reader)?);
+    let (first, second) = (
+        body(element, "body1", reader)?,
+        body(element, "body2", reader)?,
+    );
     let anchor = match element.attribute_node("anchor") {
         Some(given) => exactly(reader.findings, &given, "a point, x y z,")?,
         None => [0.0; 3],
@@ -82,8 +86,11 @@ fn connection(
     // The pose of the second in the first, and the anchor in the second.
     let relative = match element.attribute_node("relpose") {
         Some(given) => {
-            let [x, y, z, q @ ..]: [f64; 7] =
-                exactly(reader.findings, &given, "a position and a quaternion, x y z and w x y z,")?;
+            let [x, y, z, q @ ..]: [f64; 7] = exactly(
+                reader.findings,
+                &given,
+                "a position and a quaternion, x y z and w x y z,",
+            )?;
             Rotation::quaternion(q).map(|rotation| Pose {
                 rotation,
                 position: [x, y, z],

@@ -88,24 +88,42 @@ impl<'x> Reader<'x, '_> {
             return None;
         }
         let of_surface = attribute("shellinertia").is_some_and(|given| given.value() == "true");
-        if (["mesh", "sdf"].contains(&shape) || of_surface) && matters {
-            let (what, help) = if of_surface {
-                ("with `shellinertia`", "give the body an `inertial`")
-            } else {
-                (
-                    "made of a mesh",
-                    "give the body an `inertial`, or the geom `mass=\"0\"`; meshes are not read",
-                )
-            };
-            self.findings.error(
-                Code::NotAllowedHere,
-                tag(geom),
-                format!("the mass of a geom {what} is not known"),
-                help,
-            );
-        }
-        if ["mesh", "sdf"].contains(&shape) || of_surface {
+        if of_surface || shape == "sdf" {
+            if matters {
+                self.mass_unknown(
+                    geom,
+                    if of_surface {
+                        "with `shellinertia`"
+                    } else {
+                        "of type `sdf`"
+                    },
+                );
+            }
             return None;
+        }
+        if shape == "mesh" {
+            let name = attribute("mesh").map_or("", |given| given.value());
+            let pose = self.pose(geom, Some(("geom", class)));
+            return match self.mesh(self.root, name) {
+                Ok((volume, one)) => {
+                    let mass = given_mass.unwrap_or(density * volume);
+                    let tensor = one.tensor.map(|entry| entry * mass);
+                    Some((
+                        Inertia {
+                            mass,
+                            tensor,
+                            ..one
+                        },
+                        pose,
+                    ))
+                }
+                Err(why) => {
+                    if matters {
+                        self.mass_unknown(geom, &format!("made of a mesh: {why}"));
+                    }
+                    None
+                }
+            };
         }
         if !SHAPES.contains(&shape) {
             self.findings.error(
@@ -127,6 +145,15 @@ impl<'x> Reader<'x, '_> {
             tensor: [xx, yy, zz, 0.0, 0.0, 0.0],
         };
         Some((inertia, pose))
+    }
+
+    fn mass_unknown(&self, geom: Element<'_>, what: &str) {
+        self.findings.error(
+            Code::NotAllowedHere,
+            tag(geom),
+            format!("the mass of a geom is not known, {what}"),
+            "give the body an `inertial`, or the geom `mass=\"0\"`",
+        );
     }
 
     /// Where a geom is, and half its length if it is given by its ends.

@@ -55,7 +55,28 @@ impl<'x> Reader<'x, '_> {
         let motion = self.motion(element, kind)?;
         if !motion.has_axis() {
             let anchor = vector("pos", "a position, x y z,").unwrap_or_default();
-            return Some(Joint::without_axis(name, motion, anchor));
+            let positive = |key: &str| number(key).filter(|number| *number != 0.0);
+            let mut left_out = vec!["stiffness", "frictionloss"];
+            left_out.extend((motion == Motion::Free).then_some("armature"));
+            for &key in &left_out {
+                if positive(key).is_some() {
+                    self.findings.warning(
+                        Code::NotAllowedHere,
+                        tag(element),
+                        format!("`{key}` of joint `{name}` is left out"),
+                        "it is read of hinges and slides; add a load to the spec",
+                    );
+                }
+            }
+            return Some(Joint {
+                damping: number("damping").unwrap_or_default(),
+                armature: if motion == Motion::Free {
+                    0.0
+                } else {
+                    number("armature").unwrap_or_default()
+                },
+                ..Joint::without_axis(name, motion, anchor)
+            });
         }
         let angle = |value: f64| match motion {
             Motion::Turning => self.compiler.angles.radians(value),

@@ -17,8 +17,7 @@ impl Writer<'_> {
             for meeting in meetings {
                 let called = names.new_one(name);
                 let along = self.frame_of(meeting.along);
-                let [first, second] =
-                    [0, 1].map(|end| self.end(&called, end, meeting.ends[end]));
+                let [first, second] = [0, 1].map(|end| self.end(&called, end, meeting.ends[end]));
                 for &(axis, follower) in &meeting.rows {
                     let axis = AXES[axis];
                     let of = |point: &str| match along.as_str() {

@@ -216,6 +216,7 @@ impl Writer<'_> {
                 let speed = self.quantities.new_one(&format!("v_{q}_{axis}"));
                 let item = Item::default().text("value", &format!("dot({name})"));
                 self.speeds.add(&speed, &item.text("unit", "m/s"));
+                self.along(index, axis, &speed, &Units::of(Motion::Sliding));
             }
         }
         let own = self.called.frames[index].clone();
@@ -228,7 +229,59 @@ impl Writer<'_> {
             let speed = self.quantities.new_one(&format!("w_{q}_{axis}"));
             let item = Item::default().text("value", &value);
             self.speeds.add(&speed, &item.text("unit", "rad/s"));
+            self.along(index, axis, &speed, &Units::of(Motion::Turning));
         }
+        if body.joint.armature != 0.0 {
+            self.armature_of_several(index);
+        }
+    }
+
+    /// What drives and resists one of several speeds. Nothing drives a free body.
+    fn along(&mut self, index: usize, axis: &str, speed: &str, units: &Units) {
+        let joint = &self.tree.bodies[index].joint;
+        let q = self.called.coordinates[index].clone();
+        let item = |force: &str| {
+            let item = Item::default().text("kind", "generalized");
+            item.text("velocity", speed).text("force", force)
+        };
+        if joint.motion == Motion::Ball {
+            let input = self.quantities.new_one(&format!("tau_{q}_{axis}"));
+            let about = sentence(&format!("torque at joint {}, {axis}", joint.name));
+            let declared = Item::default().text("unit", units.force);
+            self.inputs.add(&input, &declared.text("about", &about));
+            self.loads.add(&format!("drive_{q}_{axis}"), &item(&input));
+        }
+        if joint.damping != 0.0 {
+            let damping = self.of_joint(
+                joint,
+                &q,
+                joint.damping,
+                ("damping", units.damping, "damping"),
+            );
+            self.loads.add(
+                &format!("damping_{q}_{axis}"),
+                &item(&format!("-{damping}*{speed}")),
+            );
+        }
+    }
+
+    /// Inertia of what turns with a ball joint alone.
+    fn armature_of_several(&mut self, index: usize) {
+        let joint = &self.tree.bodies[index].joint;
+        let q = self.called.coordinates[index].clone();
+        let inertia = self.of_joint(
+            joint,
+            &q,
+            joint.armature,
+            ("armature", "kg*m^2", "inertia of the drive"),
+        );
+        let rotor = self.places.new_one(&format!("rotor_{q}"));
+        let all = &self.called.several[index];
+        let quaternion = all[all.len() - 4..].to_vec();
+        let item = Item::default().text("parent", "ground");
+        self.frames
+            .add(&rotor, &item.raw("quaternion", &list(&quaternion)));
+        self.rotor(&rotor, &inertia, joint);
     }
 
     fn coordinate(&mut self, joint: &Joint, q: &str, units: &Units) {
@@ -272,13 +325,18 @@ impl Writer<'_> {
             .text("parent", "ground")
             .text("about_axis", "z");
         self.frames.add(&rotor, &item.text("by", &by));
-        let tensor = Item::default().text("in", &rotor);
+        self.rotor(&rotor, &inertia, joint);
+    }
+
+    /// A body without mass at the origin, with an inertia about it.
+    fn rotor(&mut self, rotor: &str, inertia: &str, joint: &Joint) {
+        let tensor = Item::default().text("in", rotor);
         let tensor = tensor.raw(
             "diagonal",
-            &list(&[inertia.clone(), inertia.clone(), inertia]),
+            &list(&[inertia, inertia, inertia].map(str::to_owned)),
         );
         let item = Item::default()
-            .text("frame", &rotor)
+            .text("frame", rotor)
             .text("centre", "O")
             .raw("mass", "0")
             .raw("inertia", &tensor.table())
@@ -289,11 +347,15 @@ impl Writer<'_> {
                     joint.name
                 )),
             );
-        self.bodies.add(&rotor, &item);
+        self.bodies.add(rotor, &item);
     }
 
     /// Speeds of the coordinates that are free, and the equations of the others.
-    pub(super) fn couplings(&mut self, couplings: &[Coupling], meetings: &[(String, Vec<Meeting>)]) {
+    pub(super) fn couplings(
+        &mut self,
+        couplings: &[Coupling],
+        meetings: &[(String, Vec<Meeting>)],
+    ) {
         let find = |name: &str| {
             self.tree
                 .bodies
@@ -301,7 +363,12 @@ impl Writer<'_> {
                 .position(|body| body.joint.motion.has_axis() && body.joint.name == name)
         };
         let mut follows = vec![false; self.tree.bodies.len()];
-        let rows = || meetings.iter().flat_map(|(_, of)| of).flat_map(|meeting| &meeting.rows);
+        let rows = || {
+            meetings
+                .iter()
+                .flat_map(|(_, of)| of)
+                .flat_map(|meeting| &meeting.rows)
+        };
         for coupling in couplings {
             let Some(own) = find(&coupling.joint) else {
                 continue;

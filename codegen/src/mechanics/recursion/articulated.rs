@@ -188,8 +188,7 @@ impl Link {
         match &self.step {
             Step::Rotation { turns, .. } => {
                 let mut outward = |t: &Mat3| {
-                    (turns.iter().rev())
-                        .fold(*t, |t, turn| turn.tensor_into_parent(graph, &t))
+                    (turns.iter().rev()).fold(*t, |t, turn| turn.tensor_into_parent(graph, &t))
                 };
                 Articulated {
                     moment: outward(&own.moment),

@@ -9,7 +9,7 @@ use crate::symbolic::{Expr, Graph};
 
 impl Inertia {
     /// What a motion takes: `f = m a + (α× + ω× ω×) h` and `n = h × a + I α + ω × I ω`.
-    pub fn takes(&self, graph: &mut Graph, motion: &LinkMotion) -> Wrench {
+    pub(super) fn takes(&self, graph: &mut Graph, motion: &LinkMotion) -> Wrench {
         let inertial = graph.scale3(self.mass, motion.a);
         let turning = graph.mat_vec(&motion.turning, self.moment);
         let moment = graph.cross(self.moment, motion.a);
@@ -21,7 +21,7 @@ impl Inertia {
     }
 
     /// `I α + ω × I ω`, by the products of ω that the turning holds already.
-    pub fn turns(&self, graph: &mut Graph, motion: &LinkMotion) -> Vec3 {
+    pub(super) fn turns(&self, graph: &mut Graph, motion: &LinkMotion) -> Vec3 {
         let (t, l) = (&self.tensor, &motion.turning);
         let mut component = |i: usize| {
             let (j, k) = ((i + 1) % 3, (i + 2) % 3);
@@ -44,7 +44,7 @@ impl Inertia {
 
 impl Links {
     /// The forces on all links, each with those of what it carries.
-    pub fn wrenches(
+    pub(super) fn wrenches(
         &self,
         algebra: &mut Algebra,
         inertias: &[Inertia],
@@ -67,7 +67,7 @@ impl Links {
     }
 
     /// What each speed feels of the forces on the links.
-    pub fn felt(&self, graph: &mut Graph, wrenches: &[Wrench]) -> Vec<Expr> {
+    pub(super) fn felt(&self, graph: &mut Graph, wrenches: &[Wrench]) -> Vec<Expr> {
         let mut parts = vec![Vec::new(); self.speeds.len()];
         for (link, &wrench) in self.links.iter().zip(wrenches) {
             for &(speed, column) in &link.columns {

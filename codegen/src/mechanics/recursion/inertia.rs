@@ -14,30 +14,30 @@ use crate::symbolic::{Expr, Graph};
 #[derive(Debug, Clone)]
 pub(super) struct Inertia {
     /// Mass.
-    pub mass: Expr,
+    pub(super) mass: Expr,
     /// First moment `m c`.
-    pub moment: Vec3,
+    pub(super) moment: Vec3,
     /// Inertia about the origin.
-    pub tensor: Mat3,
+    pub(super) tensor: Mat3,
 }
 
 /// A force at the origin of a link with a moment about it, in its axes.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Wrench {
     /// Moment.
-    pub n: Vec3,
+    pub(super) n: Vec3,
     /// Force.
-    pub f: Vec3,
+    pub(super) f: Vec3,
 }
 
 impl Inertia {
-    pub const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         mass: Graph::ZERO,
         moment: vector::ZERO,
         tensor: [vector::ZERO; 3],
     };
 
-    pub fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
+    pub(super) fn plus(&self, graph: &mut Graph, other: &Self) -> Self {
         let mut tensor = self.tensor;
         for (row, other) in tensor.iter_mut().zip(other.tensor) {
             *row = graph.add3(*row, other);
@@ -50,7 +50,7 @@ impl Inertia {
     }
 
     /// About an origin from which the own one is at `d`.
-    pub fn shifted(&self, graph: &mut Graph, d: Vec3) -> Self {
+    pub(super) fn shifted(&self, graph: &mut Graph, d: Vec3) -> Self {
         let added = graph.scale3(self.mass, d);
         let moment = graph.add3(self.moment, added);
         // I' = I + Σ m ((c + d)² − c²) 1 − …: with h' the new first moment, products d h' + h d.
@@ -77,7 +77,7 @@ impl Inertia {
     }
 
     /// What it takes to accelerate the origin by `a` and the axes by `alpha` from rest.
-    pub fn resists(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> Wrench {
+    pub(super) fn resists(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> Wrench {
         let (inertial, turning) = (graph.scale3(self.mass, a), graph.cross(alpha, self.moment));
         let (moment, turned) = (
             graph.cross(self.moment, a),
@@ -129,19 +129,19 @@ pub(super) fn central_inertia(
 }
 
 impl Wrench {
-    pub const NONE: Self = Self {
+    pub(super) const NONE: Self = Self {
         n: vector::ZERO,
         f: vector::ZERO,
     };
 
-    pub fn plus(self, graph: &mut Graph, other: Self) -> Self {
+    pub(super) fn plus(self, graph: &mut Graph, other: Self) -> Self {
         Self {
             n: graph.add3(self.n, other.n),
             f: graph.add3(self.f, other.f),
         }
     }
 
-    pub fn named(self, algebra: &mut Algebra, name: &str) -> Self {
+    pub(super) fn named(self, algebra: &mut Algebra, name: &str) -> Self {
         Self {
             n: named3(algebra, &format!("n_{name}"), self.n),
             f: named3(algebra, &format!("f_{name}"), self.f),
@@ -151,7 +151,7 @@ impl Wrench {
 
 impl Link {
     /// The same force and moment as the carrier feels them.
-    pub fn on_carrier(&self, graph: &mut Graph, own: Wrench) -> Wrench {
+    pub(super) fn on_carrier(&self, graph: &mut Graph, own: Wrench) -> Wrench {
         match &self.step {
             Step::Rotation { turns, .. } => {
                 let outward = |graph: &mut Graph, v: Vec3| {
@@ -173,7 +173,7 @@ impl Link {
     }
 
     /// What a force and a moment do along a column of the step.
-    pub fn work(&self, graph: &mut Graph, column: Vec3, of: Wrench) -> Expr {
+    pub(super) fn work(&self, graph: &mut Graph, column: Vec3, of: Wrench) -> Expr {
         match self.step {
             Step::Rotation { .. } => graph.dot(column, of.n),
             Step::Shift { .. } => graph.dot(column, of.f),
@@ -197,7 +197,7 @@ impl Link {
 
 impl Links {
     /// The inertia of the bodies themselves, by link.
-    pub fn own_inertias(
+    pub(super) fn own_inertias(
         &self,
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -220,7 +220,7 @@ impl Links {
     }
 
     /// The inertia of each link with all that it carries.
-    pub fn composites(&self, algebra: &mut Algebra, own: &[Inertia]) -> Vec<Inertia> {
+    pub(super) fn composites(&self, algebra: &mut Algebra, own: &[Inertia]) -> Vec<Inertia> {
         let mut composites = own.to_vec();
         for (place, link) in self.links.iter().enumerate().rev() {
             composites[place] = composites[place].named(algebra, &link.name);
@@ -234,7 +234,7 @@ impl Links {
     }
 
     /// M: what each speed's acceleration takes from its link inwards.
-    pub fn mass_matrix(
+    pub(super) fn mass_matrix(
         &self,
         algebra: &mut Algebra,
         composites: &[Inertia],
@@ -273,7 +273,7 @@ impl Links {
     }
 
     /// What a unit of acceleration along a column of a link takes.
-    pub fn resistance(
+    pub(super) fn resistance(
         &self,
         algebra: &mut Algebra,
         link: usize,

@@ -16,13 +16,13 @@ use crate::symbolic::{Expr, SymbolId};
 #[derive(Debug, Clone)]
 pub(super) struct Link {
     /// How names call it.
-    pub name: String,
+    pub(super) name: String,
     /// The link that carries it; none is the ground.
-    pub parent: Option<usize>,
+    pub(super) parent: Option<usize>,
     /// How it moves against that.
-    pub step: Step,
+    pub(super) step: Step,
     /// Its velocity from there, by speed: angular of a rotation, linear of a shift.
-    pub columns: Vec<(usize, Vec3)>,
+    pub(super) columns: Vec<(usize, Vec3)>,
 }
 
 /// A motion of a link against the one that carries it.
@@ -52,24 +52,24 @@ pub(super) enum Step {
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
     /// The link; none is the ground.
-    pub link: Option<usize>,
+    pub(super) link: Option<usize>,
     /// Position.
-    pub arm: Vec3,
+    pub(super) arm: Vec3,
 }
 
 /// All links, carriers first, and where the bodies are.
 #[derive(Debug, Clone)]
 pub(super) struct Links {
-    pub links: Vec<Link>,
+    pub(super) links: Vec<Link>,
     /// Names of the speeds.
-    pub speeds: Vec<String>,
+    pub(super) speeds: Vec<String>,
     /// By body: the place of its centre in the link that it moves with.
-    pub bodies: Vec<Place>,
+    pub(super) bodies: Vec<Place>,
 }
 
 impl Links {
     /// The tree of a mechanism; none where a body hangs on a frame that does not carry its axes.
-    pub fn new(
+    pub(super) fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
         kinematics: &Kinematics,
@@ -94,7 +94,11 @@ impl Links {
         for body in &mechanism.bodies {
             let place = planting.place(body.centre)?;
             let frame = body.frame.unwrap_or(planting.axes_of(body.centre));
-            if body.inertia.as_ref().is_some_and(|inertia| inertia.frame != frame) {
+            if body
+                .inertia
+                .as_ref()
+                .is_some_and(|inertia| inertia.frame != frame)
+            {
                 return None;
             }
             bodies.push(if frame == planting.axes_of(body.centre) {
@@ -158,7 +162,10 @@ impl Planting<'_, '_> {
         for &point in way.iter().rev() {
             let offset = self.kinematics.offset(point).v;
             place.arm = self.algebra.graph.add3(place.arm, offset);
-            if offset.iter().any(|&c| self.algebra.graph.mentions(c, &self.changing)) {
+            if offset
+                .iter()
+                .any(|&c| self.algebra.graph.mentions(c, &self.changing))
+            {
                 let link = self.shifted(place, &self.mechanism.points[point].name.clone());
                 self.known.insert((axes, point), Some(link));
                 place = Place {
@@ -175,12 +182,19 @@ impl Planting<'_, '_> {
         if let Some(&known) = self.known.get(&(frame, origin)) {
             return Some(known);
         }
-        let from = if origin == ORIGIN { GROUND } else { self.axes_of(origin) };
+        let from = if origin == ORIGIN {
+            GROUND
+        } else {
+            self.axes_of(origin)
+        };
         let mut way: Vec<FrameId> = self.kinematics.frames.ancestors(frame);
         let carrier = way.iter().position(|&f| f == from)?;
         way.truncate(carrier);
         let place = if origin == ORIGIN {
-            Place { link: None, arm: vector::ZERO }
+            Place {
+                link: None,
+                arm: vector::ZERO,
+            }
         } else {
             self.place(origin)?
         };
@@ -205,7 +219,12 @@ impl Planting<'_, '_> {
     fn turned(&mut self, mut link: Option<usize>, way: &[FrameId]) -> Option<usize> {
         let frames = &self.kinematics.frames;
         let turns: Vec<(FrameId, Rotation)> = (way.iter())
-            .flat_map(|&frame| frames.rotations(frame).iter().map(move |turn| (frame, turn.clone())))
+            .flat_map(|&frame| {
+                frames
+                    .rotations(frame)
+                    .iter()
+                    .map(move |turn| (frame, turn.clone()))
+            })
             .collect();
         let mut w = vector::ZERO;
         let mut rates = Vec::new();
@@ -229,7 +248,13 @@ impl Planting<'_, '_> {
         link
     }
 
-    fn rotated(&mut self, parent: Option<usize>, frame: FrameId, turns: Vec<Rotation>, w: Vec3) -> usize {
+    fn rotated(
+        &mut self,
+        parent: Option<usize>,
+        frame: FrameId,
+        turns: Vec<Rotation>,
+        w: Vec3,
+    ) -> usize {
         let w_dot = self.time.of3(self.algebra, w);
         let w_dot = self.algebra.shortest3(w_dot);
         let columns = self.columns(w);

@@ -10,28 +10,28 @@ use crate::symbolic::{Expr, Graph};
 #[derive(Debug, Clone)]
 pub(super) struct LinkMotion {
     /// Angular velocity.
-    pub w: Vec3,
+    pub(super) w: Vec3,
     /// Angular acceleration.
-    pub alpha: Vec3,
+    pub(super) alpha: Vec3,
     /// Acceleration of the origin.
-    pub a: Vec3,
+    pub(super) a: Vec3,
     /// `α× + ω× ω×`: what it does to a position is its acceleration from the origin.
-    pub turning: Mat3,
+    pub(super) turning: Mat3,
 }
 
 /// What all links move with.
 pub(super) struct Driven<'a> {
     /// Acceleration of the ground.
-    pub ground: Vec3,
+    pub(super) ground: Vec3,
     /// ω̇; none where all vanish.
-    pub accelerations: Option<&'a [Expr]>,
+    pub(super) accelerations: Option<&'a [Expr]>,
     /// What tells names of this motion from those of others.
-    pub suffix: &'a str,
+    pub(super) suffix: &'a str,
 }
 
 impl LinkMotion {
     /// Nothing turns.
-    pub fn at_rest(a: Vec3) -> Self {
+    pub(super) fn at_rest(a: Vec3) -> Self {
         Self {
             w: vector::ZERO,
             alpha: vector::ZERO,
@@ -69,7 +69,7 @@ fn turning(graph: &mut Graph, w: Vec3, alpha: Vec3) -> Mat3 {
 
 impl Links {
     /// The motions of all links.
-    pub fn motions(&self, algebra: &mut Algebra, driven: &Driven<'_>) -> Vec<LinkMotion> {
+    pub(super) fn motions(&self, algebra: &mut Algebra, driven: &Driven<'_>) -> Vec<LinkMotion> {
         let at_rest = LinkMotion::at_rest(driven.ground);
         let mut motions: Vec<LinkMotion> = Vec::with_capacity(self.links.len());
         for link in &self.links {
@@ -83,7 +83,7 @@ impl Links {
 
 impl Links {
     /// The acceleration of the ground in the axes of all links, where nothing else moves.
-    pub fn still(&self, algebra: &mut Algebra, ground: Vec3) -> Vec<Vec3> {
+    pub(super) fn still(&self, algebra: &mut Algebra, ground: Vec3) -> Vec<Vec3> {
         let mut all: Vec<Vec3> = Vec::with_capacity(self.links.len());
         for link in &self.links {
             let carried = link.parent.map_or(ground, |parent| all[parent]);
@@ -102,7 +102,7 @@ impl Links {
 
 impl Link {
     /// The velocity of the step, or its rate, by the columns: `Σ column · speed`.
-    pub fn along(&self, graph: &mut Graph, speeds: &[Expr]) -> Vec3 {
+    pub(super) fn along(&self, graph: &mut Graph, speeds: &[Expr]) -> Vec3 {
         let mut sum = vector::ZERO;
         for &(speed, column) in &self.columns {
             let part = graph.scale3(speeds[speed], column);
@@ -111,7 +111,12 @@ impl Link {
         sum
     }
 
-    fn moved(&self, algebra: &mut Algebra, carrier: &LinkMotion, driven: &Driven<'_>) -> LinkMotion {
+    fn moved(
+        &self,
+        algebra: &mut Algebra,
+        carrier: &LinkMotion,
+        driven: &Driven<'_>,
+    ) -> LinkMotion {
         let driving = driven.accelerations.map_or(vector::ZERO, |accelerations| {
             self.along(&mut algebra.graph, accelerations)
         });

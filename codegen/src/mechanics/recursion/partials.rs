@@ -107,10 +107,7 @@ impl Flow {
 
     /// About an origin from which the own one is at `d` and moves away with `u`.
     fn shifted(&self, graph: &mut Graph, inertia: &Inertia, (d, u): (Vec3, Vec3)) -> Self {
-        let (added, arriving) = (
-            graph.scale3(inertia.mass, d),
-            graph.scale3(inertia.mass, u),
-        );
+        let (added, arriving) = (graph.scale3(inertia.mass, d), graph.scale3(inertia.mass, u));
         let h = graph.add3(inertia.moment, added);
         let moment = graph.add3(self.moment, arriving);
         // The rate of d h' + h d.
@@ -322,12 +319,21 @@ impl Differentiable {
                 let mut by_alpha = turned_back(algebra, carrier.alpha, alpha);
                 let by_a = turned_back(algebra, carrier.a, motion.a);
                 let graph = &mut algebra.graph;
-                let parts = [graph.cross(by, *w), graph.cross(motion.w, by_w), by_rate, driving];
+                let parts = [
+                    graph.cross(by, *w),
+                    graph.cross(motion.w, by_w),
+                    by_rate,
+                    driving,
+                ];
                 let centripetal = graph.cross(motion.w, by);
                 for part in parts.into_iter().chain([centripetal]) {
                     by_alpha = graph.add3(by_alpha, part);
                 }
-                Some(Change { w: by, beta: by_alpha, a: by_a })
+                Some(Change {
+                    w: by,
+                    beta: by_alpha,
+                    a: by_a,
+                })
             }
             Step::Shift { d, d_dot, d_ddot } => {
                 let [by_d, by_rate, by_second] =
@@ -472,7 +478,13 @@ impl Link {
     }
 
     /// The change of what the carrier feels: of a change of the own force, and of the way to the carrier.
-    fn change_on_carrier(&self, algebra: &mut Algebra, z: Expr, change: Wrench, own: Wrench) -> Wrench {
+    fn change_on_carrier(
+        &self,
+        algebra: &mut Algebra,
+        z: Expr,
+        change: Wrench,
+        own: Wrench,
+    ) -> Wrench {
         match &self.step {
             Step::Rotation { turns, .. } => match axis(algebra, turns, z) {
                 Some(x) => {
@@ -553,7 +565,8 @@ fn change_before(algebra: &mut Algebra, turns: &[Rotation], v: Vec3, z: Expr) ->
         let until = behind.fold(v, |v, turn| turn.into_parent(graph, v));
         let changed = turn.change_into_parent(algebra, until, z);
         let graph = &mut algebra.graph;
-        let part = (turns[..place].iter().rev()).fold(changed, |v, turn| turn.into_parent(graph, v));
+        let part =
+            (turns[..place].iter().rev()).fold(changed, |v, turn| turn.into_parent(graph, v));
         sum = graph.add3(sum, part);
     }
     sum

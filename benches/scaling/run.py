@@ -59,9 +59,9 @@ DIFFERENTIATED = 7
 # All functions, those with the parameters among them, are derived of mechanisms with up to so many joints.
 WHOLE = 14
 FAMILIES = {
-    **{f"arm{n}": lambda n=n: specs.arm(n) for n in table.ARMS},
-    **{f"chain{n}": lambda n=n: specs.chain(n) for n in table.CHAINS},
-    "float4x3": lambda: specs.floating(4, 3),
+    **{f"arm{n}": specs.arm(n) for n in table.SIZES["arm"]},
+    **{f"chain{n}": specs.chain(n) for n in table.SIZES["chain"]},
+    "float4x3": specs.floating(4, 3),
 }
 
 
@@ -73,7 +73,7 @@ def write_specs(folder, robots, appell):
     """Specs of the families and of the robots that can be imported; what refuses the others."""
     folder.mkdir(exist_ok=True)
     for name, text in FAMILIES.items():
-        (folder / f"{name}.toml").write_text(text())
+        (folder / f"{name}.toml").write_text(text)
     refused = {}
     for name, path in ROBOTS.items():
         found = list(robots.glob(f"lib/python*/site-packages/{path}"))

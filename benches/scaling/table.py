@@ -1,14 +1,15 @@
 """The block of docs/performance.md about growth, from the results of one run."""
 
+from dataclasses import dataclass
+
 import numpy as np
 
 BEGIN = "<!-- scaling: written by benches/scaling/run.py -->"
 END = "<!-- end scaling -->"
-ARMS = (3, 4, 5, 6, 7, 10, 14, 18, 24, 30)
-CHAINS = (6, 12, 20, 30)
+SIZES = {"arm": (3, 4, 5, 6, 7, 10, 14, 18, 24, 30), "chain": (6, 12, 20, 30)}
 FUNCTIONS = {"mass_matrix_and_bias": "M, bias", "rates": "rates", "jacobians": "rates, A, B"}
 # Exponents are fitted to mechanisms with at least so many joints.
-LARGE = 14
+LARGE = 12
 # Bounds of the time of a function, relative to Pinocchio's.
 TIMES = {
     "rates": {"arms": 0.33, "go1_mjcf": 0.6, "g1_mjcf": 0.8},
@@ -59,7 +60,8 @@ def seconds(value):
 
 
 def rows(header, lines):
-    return "\n".join([f"| {' | '.join(header)} |", "|" + "---|" * len(header), *(f"| {' | '.join(line)} |" for line in lines)]) + "\n\n"
+    table = [header, ["---"] * len(header), *lines]
+    return "\n".join("| " + " | ".join(line) + " |" for line in table) + "\n\n"
 
 
 def is_file(name):
@@ -67,14 +69,18 @@ def is_file(name):
     return name.endswith(("_mjcf", "_urdf"))
 
 
+@dataclass
 class Target:
     """A bound of a measured value."""
 
-    def __init__(self, what, value, bound, form="{:,}"):
-        self.what, self.value, self.bound, self.form = what, value, bound, form
+    what: str
+    value: float
+    bound: float
+    form: str = "{:,}"
 
     def line(self):
-        return [self.what, self.form.format(self.value), "≤ " + self.form.format(self.bound), "yes" if self.value <= self.bound else "**no**"]
+        met = "yes" if self.value <= self.bound else "**no**"
+        return [self.what, self.form.format(self.value), "≤ " + self.form.format(self.bound), met]
 
 
 def operations(costs, counts, names):
@@ -93,17 +99,22 @@ def derivation(costs, names):
     return rows(["", *FUNCTIONS.values(), "all functions"], lines)
 
 
-def exponent(costs, family, sizes, function):
-    sizes = [n for n in sizes if n >= LARGE] if family == "arm" else sizes[1:]
+def exponent(costs, family, function):
+    sizes = large(family)
     operations = [costs[f"{family}{n}", function]["operations"] for n in sizes]
     return float(np.polyfit(np.log(sizes), np.log(operations), 1)[0])
 
 
+def large(family):
+    return [n for n in SIZES[family] if n >= LARGE]
+
+
 def growth(costs):
     lines = []
-    for title, family, sizes in ((f"arms, {LARGE} to {ARMS[-1]} joints", "arm", ARMS), (f"chains, {CHAINS[1]} to {CHAINS[-1]} links", "chain", CHAINS)):
-        lines.append([title, *(f"{exponent(costs, family, sizes, function):.2f}" for function in FUNCTIONS)])
-    return rows(["exponent of", *FUNCTIONS.values()], lines)
+    for family in SIZES:
+        title = f"{family}s, {large(family)[0]} to {large(family)[-1]} joints"
+        lines.append([title, *(f"{exponent(costs, family, function):.2f}" for function in FUNCTIONS)])
+    return rows(["growth, exponent of", *FUNCTIONS.values()], lines)
 
 
 def ratios(times, one, other):
@@ -131,9 +142,10 @@ def targets(costs, counts, times, timed, compiled):
         Target("arm7: rates, A, B", count("arm7", "jacobians"), 9000),
         Target("float4x3: rates", count("float4x3", "rates"), 5000),
         Target("float4x3: rates, A, B", count("float4x3", "jacobians"), 22000),
-        Target("arms: growth of rates", exponent(costs, "arm", ARMS, "rates"), 1.3, "{:.2f}"),
-        Target("arms: growth of rates, A, B", exponent(costs, "arm", ARMS, "jacobians"), 2.2, "{:.2f}"),
     ]
+    for family in SIZES:
+        for function, bound in (("rates", 1.3), ("jacobians", 2.2)):
+            found.append(Target(f"{family}s: growth of {FUNCTIONS[function]}", exponent(costs, family, function), bound, "{:.2f}"))
     files = {name: count(name, "rates") / counts[name, "rates"][0] for name, function in counts if function == "rates" and is_file(name)}
     worst = max(files, key=files.get)
     found.append(Target(f"robot files: rates / CasADi's, largest ({worst})", files[worst], 0.85, "{:.2f}"))

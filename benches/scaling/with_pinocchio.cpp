@@ -70,11 +70,11 @@ void pinocchio_read(const char *path) {
     }
 }
 
-// Accelerations; they stay in Pinocchio's data where `out` is null.
+// Accelerations, in the faster of the two conventions; they stay in the data where `out` is null.
 void pinocchio_rates(int robot, const double *x, double *out) {
     Robot &r = *robots[robot];
     const Parts parts(r.model, x);
-    aba(r.model, r.data, parts.q, parts.v, parts.tau);
+    aba(r.model, r.data, parts.q, parts.v, parts.tau, Convention::WORLD);
     if (out) copy(r.data.ddq, out);
 }
 

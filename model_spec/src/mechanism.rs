@@ -4,7 +4,9 @@
 //! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
 //! before children, and that every expression has the dimension its place requires.
 
-use crate::expr::{Expr, Quantity, Response, Span};
+use num_traits::Zero;
+
+use crate::expr::{Expr, ExprKind, Quantity, Response, Span};
 use crate::units::{Dimension, Unit};
 
 pub use crate::axis::Axis;
@@ -232,6 +234,13 @@ pub struct Body {
 }
 
 impl Body {
+    /// Whether it is anywhere: what has no mass and turns about the origin, such as the rotor of a drive, has no
+    /// place of its own.
+    pub fn has_place(&self) -> bool {
+        let massless = matches!(&self.mass.kind, ExprKind::Number(mass) if mass.is_zero());
+        !(massless && self.centre == ORIGIN)
+    }
+
     /// Minus one for what is taken away.
     pub(crate) fn sign(&self) -> f64 {
         if self.taken_away { -1.0 } else { 1.0 }

@@ -103,6 +103,11 @@ pub(super) struct Axes {
 pub(super) fn axes(mechanism: &Mechanism, scene: &Scene) -> Vec<Axes> {
     let mut drawn: Vec<Axes> = Vec::new();
     for (id, frame) in mechanism.frames.entries() {
+        let mut bodies = mechanism.bodies.iter();
+        let own = bodies.find(|body| body.frame == Some(id));
+        if own.is_some_and(|body| !body.has_place()) {
+            continue;
+        }
         let place = link::seat(mechanism, id);
         let at = place.and_then(|point| scene.points[point]);
         let (Some(at), Some(directions)) = (at, scene.frames[id]) else {

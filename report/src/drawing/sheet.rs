@@ -293,7 +293,10 @@ impl Sheet<'_> {
             let Some(at) = place.map(|place| self.place(place)) else {
                 continue;
             };
-            let mut bodies = mechanism.bodies.iter().filter(|body| body.centre == id);
+            let mut bodies = mechanism
+                .bodies
+                .iter()
+                .filter(|body| body.centre == id && body.has_place());
             match bodies.clone().find(|body| body.inertia.is_none()) {
                 Some(_) => self.dot("mass", at, MASS_RADIUS),
                 None => self.dot("point", at, POINT_RADIUS),

@@ -71,7 +71,8 @@ fn thinned(rows: usize) -> Vec<usize> {
 
 fn points(mechanism: &Mechanism) -> Vec<Value> {
     let point = |(id, point): (PointId, &Point)| {
-        let mut bodies = mechanism.bodies.iter().filter(|body| body.centre == id);
+        let mut bodies =
+            (mechanism.bodies.iter()).filter(|body| body.centre == id && body.has_place());
         let body = bodies.clone().next();
         json!({
             "name": point.name,

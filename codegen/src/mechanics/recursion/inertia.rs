@@ -129,11 +129,6 @@ pub(super) fn central_inertia(
 }
 
 impl Wrench {
-    pub(super) const NONE: Self = Self {
-        n: vector::ZERO,
-        f: vector::ZERO,
-    };
-
     pub(super) fn plus(self, graph: &mut Graph, other: Self) -> Self {
         Self {
             n: graph.add3(self.n, other.n),

@@ -34,6 +34,7 @@ mod positions;
 mod prescribed;
 mod reactions;
 mod recordings;
+mod recursion;
 mod redundancy;
 mod reference;
 mod shooting;

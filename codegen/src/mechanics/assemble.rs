@@ -286,10 +286,17 @@ impl Derivation {
         function: Function,
         bodies: &[BodyMotion],
     ) -> Function {
+        let (terms, groups) = match &self.recursion {
+            Some(tree) => (tree.terms(), tree.groups()),
+            None => (
+                glossary::of_motions(mechanism, &self.kinematics, bodies),
+                glossary::groups_of_motions(mechanism, bodies),
+            ),
+        };
         function
-            .explaining(glossary::of_motions(mechanism, &self.kinematics, bodies))
+            .explaining(terms)
             .explaining(glossary::of_solution(mechanism, &self.motion))
-            .grouping(glossary::groups_of_motions(mechanism, bodies))
+            .grouping(groups)
             .grouping(glossary::groups_of_solution(mechanism, &self.motion))
     }
 

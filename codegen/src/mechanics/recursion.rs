@@ -9,6 +9,7 @@
 
 mod articulated;
 mod balance;
+mod glossary;
 mod inertia;
 mod links;
 mod movement;
@@ -105,7 +106,7 @@ impl Recursion {
     /// M and b.
     pub fn gibbs_form(&self, algebra: &mut Algebra) -> GibbsForm {
         let motions = self.unaccelerated(algebra);
-        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_0");
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "0");
         GibbsForm {
             mass_matrix: self.links.mass_matrix(algebra, &self.composites),
             bias: self.links.felt(&mut algebra.graph, &wrenches),
@@ -117,7 +118,7 @@ impl Recursion {
         let driven = Driven {
             ground: vector::ZERO,
             accelerations: None,
-            suffix: "0",
+            kind: "0",
         };
         self.links.motions(algebra, &driven)
     }
@@ -220,7 +221,7 @@ impl Recursion {
         let driven = Driven {
             ground: self.rise,
             accelerations: None,
-            suffix: "r",
+            kind: "g",
         };
         self.links.motions(algebra, &driven)
     }
@@ -230,7 +231,7 @@ impl Recursion {
         let driven = Driven {
             ground: self.rise,
             accelerations: Some(accelerations),
-            suffix: "d",
+            kind: "",
         };
         let motions = self.links.motions(algebra, &driven);
         let inertias = (self.own.as_slice(), self.composites.as_slice());
@@ -259,10 +260,10 @@ impl Recursion {
         let driven = Driven {
             ground: self.rise,
             accelerations: Some(accelerations),
-            suffix: "s",
+            kind: "s",
         };
         let motions = self.links.motions(algebra, &driven);
-        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_s");
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "s");
         let graph = &mut algebra.graph;
         let taken = self.links.felt(graph, &wrenches);
         let forces = self.forces.iter().zip(taken);
@@ -296,7 +297,7 @@ impl Recursion {
     /// b less the work of the weights: while all else falls freely, the ground rises.
     pub fn bias_less_weights(&self, algebra: &mut Algebra) -> Vec<Expr> {
         let motions = self.falling(algebra);
-        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "_r");
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "g");
         self.links.felt(&mut algebra.graph, &wrenches)
     }
 

@@ -65,13 +65,13 @@ impl Links {
         let mut pivots: Vec<Vec<Pivot>> = Vec::with_capacity(self.links.len());
         for (place, link) in self.links.iter().enumerate().rev() {
             let mut articulated = resisting[place].named(algebra, &link.name);
-            let mut wrench = wrenches[place].named(algebra, &format!("{}_p", link.name));
+            let mut wrench = wrenches[place].named(algebra, "p", &link.name);
             let mut own_pivots = Vec::with_capacity(link.columns.len());
             for &(speed, column) in &link.columns {
                 let name = &self.speeds[speed];
                 let (alpha, a) = link.directed(column);
                 let taken = articulated.takes(&mut algebra.graph, alpha, a);
-                let taken = taken.named(algebra, &format!("{}_{name}", link.name));
+                let taken = taken.named(algebra, "", &format!("{}_{name}", link.name));
                 let graph = &mut algebra.graph;
                 let inertia = link.work(graph, column, taken);
                 let inertia = graph.name(&format!("D_{name}"), inertia);
@@ -98,7 +98,7 @@ impl Links {
             if let Some(parent) = link.parent {
                 let name = format!("{}_free", link.name);
                 let articulated = articulated.named(algebra, &name);
-                let wrench = wrench.named(algebra, &name);
+                let wrench = wrench.named(algebra, "t", &link.name);
                 let graph = &mut algebra.graph;
                 let carried = link.articulated_in_carrier(graph, &articulated);
                 resisting[parent] = resisting[parent].plus(graph, &carried);

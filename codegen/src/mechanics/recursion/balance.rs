@@ -49,13 +49,13 @@ impl Links {
         algebra: &mut Algebra,
         inertias: &[Inertia],
         motions: &[LinkMotion],
-        suffix: &str,
+        kind: &str,
     ) -> Vec<Wrench> {
         let mut wrenches: Vec<Wrench> = (inertias.iter().zip(motions))
             .map(|(inertia, motion)| inertia.takes(&mut algebra.graph, motion))
             .collect();
         for (place, link) in self.links.iter().enumerate().rev() {
-            let named = wrenches[place].named(algebra, &format!("{}{suffix}", link.name));
+            let named = wrenches[place].named(algebra, kind, &link.name);
             wrenches[place] = named;
             if let Some(parent) = link.parent {
                 let graph = &mut algebra.graph;

@@ -136,10 +136,11 @@ impl Wrench {
         }
     }
 
-    pub(super) fn named(self, algebra: &mut Algebra, name: &str) -> Self {
+    /// Under names; `kind` tells forces of one motion from those of others.
+    pub(super) fn named(self, algebra: &mut Algebra, kind: &str, of: &str) -> Self {
         Self {
-            n: named3(algebra, &format!("n_{name}"), self.n),
-            f: named3(algebra, &format!("f_{name}"), self.f),
+            n: named3(algebra, &format!("n{kind}_{of}"), self.n),
+            f: named3(algebra, &format!("f{kind}_{of}"), self.f),
         }
     }
 }
@@ -243,7 +244,7 @@ impl Links {
                 let mut at = Some(place);
                 while let Some(here) = at {
                     let link_here = &self.links[here];
-                    wrench = wrench.named(algebra, &format!("{}_{name}", link_here.name));
+                    wrench = wrench.named(algebra, "", &format!("{}_{name}", link_here.name));
                     for &(other, along) in &link_here.columns {
                         let work = link_here.work(&mut algebra.graph, along, wrench);
                         parts[speed][other].push(work);

@@ -26,7 +26,7 @@ pub(super) struct Driven<'a> {
     /// ω̇; none where all vanish.
     pub(super) accelerations: Option<&'a [Expr]>,
     /// What tells names of this motion from those of others.
-    pub(super) suffix: &'a str,
+    pub(super) kind: &'a str,
 }
 
 impl LinkMotion {
@@ -120,7 +120,7 @@ impl Link {
         let driving = driven.accelerations.map_or(vector::ZERO, |accelerations| {
             self.along(&mut algebra.graph, accelerations)
         });
-        let (name, suffix) = (&self.name, driven.suffix);
+        let (name, kind) = (&self.name, driven.kind);
         match &self.step {
             Step::Rotation { turns, w, w_dot } => {
                 let graph = &mut algebra.graph;
@@ -138,8 +138,8 @@ impl Link {
                     alpha = graph.add3(alpha, part);
                 }
                 let a = inward(graph, carrier.a);
-                let alpha = named3(algebra, &format!("alpha{suffix}_{name}"), alpha);
-                let a = named3(algebra, &format!("a{suffix}_{name}"), a);
+                let alpha = named3(algebra, &format!("alpha{kind}_{name}"), alpha);
+                let a = named3(algebra, &format!("a{kind}_{name}"), a);
                 LinkMotion::new(&mut algebra.graph, own, alpha, a)
             }
             Step::Shift { d, d_dot, d_ddot } => {
@@ -151,7 +151,7 @@ impl Link {
                 for part in [carrier.a, coriolis, *d_ddot, driving] {
                     a = graph.add3(a, part);
                 }
-                let a = named3(algebra, &format!("a{suffix}_{name}"), a);
+                let a = named3(algebra, &format!("a{kind}_{name}"), a);
                 LinkMotion {
                     a,
                     ..carrier.clone()

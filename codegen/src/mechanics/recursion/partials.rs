@@ -213,7 +213,7 @@ impl Differentiable {
         ground: Vec3,
         motions: Vec<LinkMotion>,
     ) -> Self {
-        let wrenches = links.wrenches(algebra, own, &motions, "_d");
+        let wrenches = links.wrenches(algebra, own, &motions, "");
         let flows = links.flows(algebra, own, composites, &motions);
         let answers = links.answers(algebra, composites, &flows, &motions);
         Self {
@@ -254,7 +254,7 @@ impl Differentiable {
             while let Some(here) = at {
                 let carrier = &links.links[here];
                 let by = name_of(&algebra.graph, z);
-                more = more.named(algebra, &format!("{}_by_{by}", carrier.name));
+                more = more.named(algebra, "", &format!("{}_by_{by}", carrier.name));
                 for &(speed, column) in &carrier.columns {
                     parts[speed].push(carrier.work(&mut algebra.graph, column, more));
                 }
@@ -399,7 +399,7 @@ impl Links {
                     let carrier = &self.links[here];
                     let by = format!("{}_{name}", carrier.name);
                     answer = Answer {
-                        wrench: answer.wrench.named(algebra, &by),
+                        wrench: answer.wrench.named(algebra, "", &by),
                         w: named3(algebra, &format!("b_{by}"), answer.w),
                     };
                     answers[here].push((speed, answer));

@@ -79,8 +79,12 @@ fn fill_buffered(
 
 /// Writes JSON with a final line break.
 pub fn write_json(path: &Path, value: &impl serde::Serialize) -> Result<(), Error> {
-    let text = serde_json::to_string_pretty(value)?;
-    write(path, &(text + "\n"))
+    write(path, &json_text(value)?)
+}
+
+/// The text of a JSON file.
+pub fn json_text(value: &impl serde::Serialize) -> Result<String, Error> {
+    Ok(serde_json::to_string_pretty(value)? + "\n")
 }
 
 /// Writes to standard output; a closed pipe is not an error.

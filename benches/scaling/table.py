@@ -22,7 +22,7 @@ One run of `{command}` on {date}, commit {commit}. {processor}, {cores} cores, l
 CasADi {casadi}, Pinocchio {pinocchio}. C and C++ with `-O3 -march=native`, Rust with `-C target-cpu=native`.
 
 - **Operations** are additions, multiplications, divisions and signs after elimination of common subexpressions. Sines and
-  cosines are not among them; they are equal for all.
+  cosines are not among them. The rates of appell include those of the quaternion of a base, the peers' do not.
 - **CasADi**: composite bodies and Newton-Euler for M and bias, articulated bodies for the rates, each in SX with
   `casadi.cse` (`benches/scaling/with_casadi.py`), symmetric blocks computed once, zeros and right angles of the
   placements dropped; derivatives by its automatic differentiation. The base of a robot has a quaternion and its

@@ -181,3 +181,28 @@ fn mistakes_have_their_place_and_status() {
         &["nothing.toml"],
     );
 }
+
+#[test]
+fn rows_go_to_an_object_store_as_to_a_folder() {
+    let folder = Folder::new();
+    folder.write("study.toml", &STUDY.replace("3000", "120"));
+    let place = folder.path("objects");
+    std::fs::create_dir(&place).expect("a folder");
+    let address = format!("file://{}", place.display());
+    if cfg!(feature = "object-store") {
+        folder.done(&["ensemble", "study.toml", "-o", &address]);
+        folder.done(&["ensemble", "study.toml", "-o", "beside"]);
+        assert_eq!(chunks(&folder, "objects"), chunks(&folder, "beside"));
+        for name in ["statistics.json", "reached-histogram.svg"] {
+            let [there, here] = ["objects", "beside"].map(|f| folder.read(&format!("{f}/{name}")));
+            assert_eq!(there, here, "{name}");
+        }
+    } else {
+        let refused = folder.run(&["ensemble", "study.toml", "-o", &address]);
+        assert!(
+            refused.stderr.contains("--features object-store"),
+            "{}",
+            refused.stderr
+        );
+    }
+}

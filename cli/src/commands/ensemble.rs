@@ -2,11 +2,11 @@
 
 mod on_ray;
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
-use appell::ensemble::{self, Ended, Ensemble, Folder, Running, Shard, Store as _, Summary, Watch};
+use appell::ensemble::{self, Ended, Ensemble, Folder, Running, Shard, Store, Summary, Watch};
 use appell::{files, json};
 
 use crate::failure::{Error, note};
@@ -26,7 +26,8 @@ Examples:
 pub(crate) struct EnsembleCommand {
     /// The study file
     study: PathBuf,
-    /// Folder for chunks, statistics, figures and the page
+    /// Folder for chunks, statistics, figures and the page, or the address of an object store, such as
+    /// `s3://bucket/study`
     #[arg(long, short, value_name = "FOLDER")]
     out: PathBuf,
     /// Threads [default: one for each processor]
@@ -57,22 +58,23 @@ impl EnsembleCommand {
         let ensemble = Ensemble::from_file(&self.study);
         spinner.finish_and_clear();
         let ensemble = ensemble?;
-        let store = Folder::new(&self.out).map_err(appell::Error::computation)?;
+        let store = store_at(&self.out)?;
+        let store = store.as_ref();
         let running = Running {
             jobs: self.jobs,
             shard: self.shard,
             chunk: self.chunk,
         };
         let ended = match &self.ray {
-            Some(address) => self.spread(&ensemble, &store, address, running)?,
-            None => self.fill(&ensemble, &store, running)?,
+            Some(address) => self.spread(&ensemble, store, address, running)?,
+            None => self.fill(&ensemble, store, running)?,
         };
         let whole = Running {
             shard: None,
             ..running
         };
-        let left = ensemble.missing(&store, whole)?.len()
-            + ensemble.missing_replicates(&store, whole)?.len();
+        let left = ensemble.missing(store, whole)?.len()
+            + ensemble.missing_replicates(store, whole)?.len();
         let replicates = ensemble
             .replicates()
             .map_or(0, |replicates| replicates.count());
@@ -90,13 +92,18 @@ impl EnsembleCommand {
         }
         store.tidy().map_err(appell::Error::computation)?;
         let spinner = progress::spinner("computing statistics");
-        let summary = ensemble.summary(&store);
+        let summary = ensemble.summary(store);
         spinner.finish_and_clear();
-        self.tell(&ensemble, &summary?)
+        self.tell(&ensemble, store, &summary?)
     }
 
     /// Runs what is missing, under a bar, until Ctrl-C.
-    fn fill(&self, ensemble: &Ensemble, store: &Folder, running: Running) -> Result<Ended, Error> {
+    fn fill(
+        &self,
+        ensemble: &Ensemble,
+        store: &dyn Store,
+        running: Running,
+    ) -> Result<Ended, Error> {
         let missing = ensemble.missing(store, running)?;
         let replicates = ensemble.missing_replicates(store, running)?;
         let cases: u64 = missing.iter().map(|c| c.cases.end - c.cases.start).sum();
@@ -140,11 +147,16 @@ impl EnsembleCommand {
     fn spread(
         &self,
         ensemble: &Ensemble,
-        store: &Folder,
+        store: &dyn Store,
         address: &str,
         running: Running,
     ) -> Result<Ended, Error> {
         let left = ensemble.missing(store, running)?.len();
+        if left > 0 && is_address(&self.out) {
+            let message =
+                "a cluster writes to a folder that all its machines see, not to an address";
+            return Err(Error::Usage(message.to_owned()));
+        }
         if left > 0 {
             on_ray::run(&self.study, &self.out, address, running, left as u64)?;
         }
@@ -153,13 +165,17 @@ impl EnsembleCommand {
     }
 
     /// Writes statistics, figures and the page.
-    fn tell(&self, ensemble: &Ensemble, summary: &Summary) -> Result<(), Error> {
+    fn tell(&self, ensemble: &Ensemble, store: &dyn Store, summary: &Summary) -> Result<(), Error> {
         let about = ensemble.about(summary);
         let told = json::ensemble(ensemble.columns(), summary);
-        files::write_json(&self.out.join("statistics.json"), &told)?;
-        files::write(&self.out.join("report.html"), &ensemble::page(&about))?;
+        let write = |name: &str, text: String| {
+            let written = store.write(name, text.into_bytes());
+            written.map_err(appell::Error::computation)
+        };
+        write("statistics.json", files::json_text(&told)?)?;
+        write("report.html", ensemble::page(&about))?;
         for figure in ensemble::figures(&about) {
-            files::write(&self.out.join(format!("{}.svg", figure.name)), &figure.svg)?;
+            write(&format!("{}.svg", figure.name), figure.svg)?;
         }
         if let Some(path) = &self.json {
             files::write_json(path, &told)?;
@@ -168,4 +184,32 @@ impl EnsembleCommand {
         let text = format!("{}\nfigures: {}\n", ensemble::text(&about), page.display());
         output::print_beside(&text, &[&self.json])
     }
+}
+
+/// Whether a place is that of an object store and not a folder.
+fn is_address(place: &Path) -> bool {
+    place.to_str().is_some_and(|place| place.contains("://"))
+}
+
+/// Where the rows go: a folder, or an object store.
+fn store_at(place: &Path) -> Result<Box<dyn Store>, Error> {
+    if !is_address(place) {
+        let folder = Folder::new(place).map_err(appell::Error::computation)?;
+        return Ok(Box::new(folder));
+    }
+    objects_at(&place.to_string_lossy())
+}
+
+#[cfg(feature = "object-store")]
+fn objects_at(address: &str) -> Result<Box<dyn Store>, Error> {
+    let objects = ensemble::Objects::at(address).map_err(appell::Error::computation)?;
+    Ok(Box::new(objects))
+}
+
+#[cfg(not(feature = "object-store"))]
+fn objects_at(_: &str) -> Result<Box<dyn Store>, Error> {
+    Err(Error::Usage(
+        "this program was built without object stores: name a folder, or build with `--features object-store`"
+            .to_owned(),
+    ))
 }

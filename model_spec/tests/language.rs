@@ -156,6 +156,7 @@ fn constraints_and_loads_refer_to_their_items() {
     let ConstraintKind::Rolling {
         body,
         contact,
+        on: None,
         normal: None,
         friction: None,
         creep: None,

@@ -13,7 +13,10 @@ fn columns<const N: usize>(spec: &str, t_end: f64, names: [&str; N]) -> Vec<[f64
         .simulate(&motion)
         .unwrap_or_else(|error| panic!("{error}"));
     assert_eq!(done.failure, None);
-    let columns = names.map(|name| done.trajectory.column(name).unwrap());
+    let columns = names.map(|name| match name {
+        "t" => done.trajectory.times().to_vec(),
+        name => done.trajectory.column(name).unwrap(),
+    });
     (0..columns[0].len())
         .map(|row| std::array::from_fn(|place| columns[place][row]))
         .collect()
@@ -188,8 +191,6 @@ J = {{ value = 0.05, unit = "kg*m^2" }}
 [coordinates]
 {ATTITUDE}
 {angles}
-[inputs]
-{torques}
 [frames]
 hull = {{ parent = "ground", quaternion = ["e0", "e1", "e2", "e3"] }}
 {frames}
@@ -205,7 +206,6 @@ w_z = {{ value = "angular_velocity(hull, z, hull)", unit = "rad/s", initial = -0
 {motors}
 "#,
         angles = each(&|k| format!("q_{k} = {{ unit = \"rad\" }}\n")),
-        torques = each(&|k| format!("tau_{k} = {{ unit = \"N*m\", nominal = 0.{} }}\n", k.len())),
         frames = each(&|k| format!(
             "wheel_{k} = {{ parent = \"hull\", about_axis = \"{k}\", by = \"q_{k}\" }}\n"
         )),
@@ -216,7 +216,7 @@ w_z = {{ value = "angular_velocity(hull, z, hull)", unit = "rad/s", initial = -0
             "s_{k} = {{ value = \"dot(q_{k})\", unit = \"rad/s\", initial = 5 }}\n"
         )),
         motors = each(&|k| format!(
-            "motor_{k} = {{ kind = \"generalized\", coordinate = \"q_{k}\", force = \"tau_{k}\" }}\n"
+            "motor_{k} = {{ kind = \"generalized\", coordinate = \"q_{k}\", force = \"0.1 [N*m]\" }}\n"
         )),
     );
     let names = [

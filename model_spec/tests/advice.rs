@@ -56,12 +56,12 @@ fn a_finding_says_what_to_write() {
         ("\"m/s^2\"", "\"m/s2\"", "as in `m/s^2`"),
         (
             "x - l*sin(delta)",
-            "position(B, x) - x",
-            "cannot depend on the motion `position(B, x)`",
+            "velocity(B, x) - x",
+            "cannot depend on the motion `velocity(B, x)`",
         ),
         (
             "x - l*sin(delta)",
-            "position(B, x) - x",
+            "velocity(B, x) - x",
             "help: write the coordinates that the motion depends on",
         ),
     ] {
@@ -73,7 +73,7 @@ fn a_finding_says_what_to_write() {
 #[test]
 fn nothing_follows_from_a_constraint_that_cannot_be_read() {
     for zero in [
-        "position(B, x) - x",
+        "velocity(B, x) - x",
         "x - l*sni(delta)",
         "x - l*stranger",
         "x + l^2",

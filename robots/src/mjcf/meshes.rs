@@ -113,9 +113,8 @@ fn text(text: &str) -> Option<Vec<Triangle>> {
     let corners = lines.filter_map(|line| line.strip_prefix("vertex "));
     let corners = corners.map(vector).collect::<Option<Vec<Vector>>>()?;
     let all = corners.chunks_exact(3);
-    all.remainder()
-        .is_empty()
-        .then(|| all.map(|c| [c[0], c[1], c[2]]).collect())
+    let is_whole = !corners.is_empty() && all.remainder().is_empty();
+    is_whole.then(|| all.map(|c| [c[0], c[1], c[2]]).collect())
 }
 
 /// An OBJ: corners, and faces by their numbers, fans of triangles.

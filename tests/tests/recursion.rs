@@ -79,7 +79,7 @@ v2 = { value = "2*dot(q2)", unit = "rad/s" }
 [loads]
 weight = { kind = "gravity", down = "-z", acceleration = "g" }
 motor = { kind = "torque", on = "arm", reaction_on = "hull", in = "arm", vector = [0, "tau", 0] }
-spring = { kind = "spring", between = ["T", "L"], stiffness = "k", unstretched = "l" }
+spring = { kind = "spring", between = ["T", "L"], stiffness = "k", relaxed = "l" }
 damper = { kind = "damper", coordinate = "s", damping = "c" }
 wind = { kind = "force", on = "R", in = "ground", vector = ["push", 0, "-c*velocity(R, z)"] }
 "#;

@@ -7,7 +7,6 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
 use super::finding::{Finding, Item, Outcome};
-use super::gibbs_appell::named3;
 use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
 
@@ -310,4 +309,20 @@ pub fn seed(mechanism: &Mechanism) -> u64 {
         .fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
             (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
         })
+}
+
+/// A vector with names for its components.
+pub(super) fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
+    let mut named = v;
+    for (component, axis) in named.iter_mut().zip(["x", "y", "z"]) {
+        *component = algebra.graph.name(&format!("{name}_{axis}"), *component);
+    }
+    named
+}
+
+/// Name of a symbol.
+pub(super) fn name_of(graph: &Graph, symbol: Expr) -> String {
+    graph
+        .as_symbol(symbol)
+        .map_or_else(String::new, |symbol| graph.symbol_name(symbol).to_owned())
 }

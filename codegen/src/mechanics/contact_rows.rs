@@ -6,12 +6,12 @@
 
 use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, Mechanism, PointId};
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, named3};
 use super::constraints::Constraints;
 use super::elimination::{Elimination, TurnedRow};
 use super::finding::{Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
-use super::gibbs_appell::{BodyMotion, frame_rate, named3};
+use super::gibbs_appell::{BodyMotion, frame_rate};
 use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use super::time::TimeDerivative;

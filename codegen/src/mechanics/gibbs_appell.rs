@@ -3,7 +3,7 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, FrameId, GROUND, Mechanism, PointId};
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, named3};
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::frames::FrameVector;
@@ -243,14 +243,6 @@ pub(super) fn frame_rate(
 ) -> Vec3 {
     let w = kinematics.frames.angular_velocity(frame).v;
     named3(algebra, &format!("w_{}", mechanism.frames[frame].name), w)
-}
-
-pub(super) fn named3(algebra: &mut Algebra, name: &str, v: Vec3) -> Vec3 {
-    let mut named = v;
-    for (component, axis) in named.iter_mut().zip(["x", "y", "z"]) {
-        *component = algebra.graph.name(&format!("{name}_{axis}"), *component);
-    }
-    named
 }
 
 /// The named parts of the bodies' motions, each with its value written out down to the rates of the

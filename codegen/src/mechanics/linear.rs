@@ -1,7 +1,7 @@
 //! Jacobians of the rates by implicit differentiation: the equations of motion are differentiated
 //! with the accelerations held as unknowns, and solved with the pivots that solve the motion.
 
-use super::algebra::Algebra;
+use super::algebra::{Algebra, name_of};
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::GibbsForm;
 use super::motion::{Block, Motion};
@@ -169,11 +169,4 @@ impl Motion {
         }
         column
     }
-}
-
-/// Name of a symbol.
-pub(super) fn name_of(graph: &Graph, symbol: Expr) -> String {
-    graph
-        .as_symbol(symbol)
-        .map_or_else(String::new, |symbol| graph.symbol_name(symbol).to_owned())
 }

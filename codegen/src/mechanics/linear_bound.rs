@@ -12,11 +12,10 @@
 //! constraints, and holding λ takes the place of differentiating B.
 
 use super::Unbound;
-use super::algebra::Algebra;
+use super::algebra::{Algebra, name_of, named3};
 use super::dependent::{DependentSpeeds, apply};
 use super::finding::Outcome;
-use super::gibbs_appell::{ActualMotion, named3};
-use super::linear::name_of;
+use super::gibbs_appell::ActualMotion;
 use super::motion::Motion;
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Substitution};

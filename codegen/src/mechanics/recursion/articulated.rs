@@ -2,8 +2,7 @@
 //! carries are free (R. Featherstone, 1983). Its cost grows with the number of links; that of a factorised
 //! mass matrix with its third power on a chain.
 
-use super::super::algebra::Algebra;
-use super::super::gibbs_appell::named3;
+use super::super::algebra::{Algebra, named3};
 use super::inertia::{Inertia, Wrench};
 use super::links::{Link, Links, Step};
 use super::movement::LinkMotion;

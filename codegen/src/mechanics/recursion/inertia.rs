@@ -2,10 +2,9 @@
 
 use appell_spec::mechanism::{Body, BodyId, Mechanism};
 
-use super::super::algebra::Algebra;
+use super::super::algebra::{Algebra, named3};
 use super::super::expressions::Lowering;
 use super::super::finding::{Item, Outcome, division_by_zero};
-use super::super::gibbs_appell::named3;
 use super::links::{Link, Links, Place, Step};
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph};

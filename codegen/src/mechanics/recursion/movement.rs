@@ -1,7 +1,6 @@
 //! Outwards: angular velocities and accelerations of the links.
 
-use super::super::algebra::Algebra;
-use super::super::gibbs_appell::named3;
+use super::super::algebra::{Algebra, named3};
 use super::links::{Link, Links, Step};
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph};

@@ -12,9 +12,7 @@
 //! in any axes that do not turn relative to the link. β is carried on unchanged, and δa by
 //! δa + β × d + 2 δω × u to an origin at d with the relative velocity u.
 
-use super::super::algebra::Algebra;
-use super::super::gibbs_appell::named3;
-use super::super::linear::name_of;
+use super::super::algebra::{Algebra, name_of, named3};
 use super::super::rotation::Rotation;
 use super::inertia::{Inertia, Wrench};
 use super::links::{Link, Links, Step};

@@ -157,11 +157,12 @@ pub fn import_with(
             help,
         );
     }
+    let meetings = loops::meetings(&robot, &tree, &findings);
     if findings.has_errors() {
         return Err(fail(findings.into_inner()));
     }
     let findings = findings.into_inner();
-    let written = spec::write(file, kind, &robot, &tree, options);
+    let written = spec::write(file, kind, &robot, &tree, &meetings, options);
     if let Some(name) = written.unused.first() {
         let known = written.known.iter().map(String::as_str);
         let help = did_you_mean(name, known, || {

@@ -2,9 +2,12 @@
 //! say the same, as that across the plane of a four-bar; these are left out, and of the others each gets the
 //! coordinate that follows from it.
 
+use appell_spec::Code;
+
 use crate::model::{Connection, Coupling, Link, Motion, Robot};
 use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
 use crate::tree::Tree;
+use crate::xml::Findings;
 
 /// A row shorter than this share of itself, less what others say, adds nothing.
 const NOTHING: f64 = 1e-5;
@@ -22,7 +25,7 @@ pub(crate) struct Meeting {
     pub(crate) rows: Vec<(usize, Follower)>,
 }
 
-/// A coordinate: a body, and which of its coordinates.
+/// A way of a body to move: which of its coordinates, or, behind those of its place, about which axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Follower {
     pub(crate) body: usize,
@@ -30,8 +33,12 @@ pub(crate) struct Follower {
 }
 
 /// The equations of all connections.
-pub(crate) fn meetings(robot: &Robot, tree: &Tree) -> Vec<(String, Vec<Meeting>)> {
-    let mut rows = Rows::new(robot, tree);
+pub(crate) fn meetings(
+    robot: &Robot,
+    tree: &Tree,
+    findings: &Findings,
+) -> Vec<(String, Vec<Meeting>)> {
+    let mut rows = Rows::new(robot, tree, findings);
     (robot.connections.iter())
         .map(|connection| (connection.name.clone(), rows.of(connection)))
         .collect()
@@ -41,6 +48,7 @@ pub(crate) fn meetings(robot: &Robot, tree: &Tree) -> Vec<(String, Vec<Meeting>)
 struct Rows<'a> {
     robot: &'a Robot,
     tree: &'a Tree,
+    findings: &'a Findings,
     /// Poses of the links as they are drawn, and near by, where no link is in line with another by chance.
     drawn: Vec<Pose>,
     near: Vec<Pose>,
@@ -49,20 +57,20 @@ struct Rows<'a> {
 }
 
 impl<'a> Rows<'a> {
-    fn new(robot: &'a Robot, tree: &'a Tree) -> Self {
+    fn new(robot: &'a Robot, tree: &'a Tree, findings: &'a Findings) -> Self {
         let mut columns = Vec::new();
         for (body, moved) in tree.bodies.iter().enumerate() {
             let count = match moved.joint.motion {
                 Motion::Turning | Motion::Sliding => 1,
-                // Its place follows; its attitude does not.
-                Motion::Free => 3,
-                Motion::Ball => 0,
+                Motion::Free => 6,
+                Motion::Ball => 3,
             };
             columns.extend((0..count).map(|component| Follower { body, component }));
         }
         let mut rows = Self {
             robot,
             tree,
+            findings,
             drawn: poses(&robot.links, |_| 0.0),
             near: poses(&robot.links, |link| 0.1 + 0.05 * ((7 * link) % 5) as f64),
             columns,
@@ -114,8 +122,10 @@ impl<'a> Rows<'a> {
                 for (sign, end) in [(1.0, first), (-1.0, second)] {
                     self.add_slopes(&mut row, sign, end, direction);
                 }
-                if let Some(follower) = self.follower(row) {
-                    rows.push((axis, follower));
+                match self.follower(row) {
+                    Some(follower) if self.turns(follower) => self.refuse(connection, follower),
+                    Some(follower) => rows.push((axis, follower)),
+                    None => {}
                 }
             }
             if !rows.is_empty() {
@@ -149,8 +159,13 @@ impl<'a> Rows<'a> {
                     let velocity = match joint.motion {
                         Motion::Turning => cross(axis, minus(place, pose.of(joint.anchor))),
                         Motion::Sliding => axis,
-                        Motion::Free => Rotation::IDENTITY.0[column.component],
-                        Motion::Ball => [0.0; 3],
+                        Motion::Free if column.component < 3 => {
+                            Rotation::IDENTITY.0[column.component]
+                        }
+                        Motion::Free | Motion::Ball => {
+                            let axis = pose.rotation.0.map(|row| row[column.component % 3]);
+                            cross(axis, minus(place, pose.of(joint.anchor)))
+                        }
                     };
                     *slope += sign * dot(velocity, direction);
                 }
@@ -171,6 +186,9 @@ impl<'a> Rows<'a> {
         }
         let follows = |column: usize| self.known.iter().any(|(pivot, _)| *pivot == column);
         let weight = |column: usize| {
+            if self.turns(self.columns[column]) {
+                return 0.0;
+            }
             let joint = &self.tree.bodies[self.columns[column].body].joint.name;
             let driven = self.robot.driven.contains(joint);
             row[column].abs() * if driven { DRIVEN } else { 1.0 }
@@ -180,6 +198,28 @@ impl<'a> Rows<'a> {
         let pivot = open.max_by(|&a, &b| weight(a).total_cmp(&weight(b)))?;
         self.known.push((pivot, row));
         Some(self.columns[pivot])
+    }
+
+    /// Whether a way to move is a turn of what has no angle.
+    fn turns(&self, way: Follower) -> bool {
+        match self.tree.bodies[way.body].joint.motion {
+            Motion::Turning | Motion::Sliding => false,
+            Motion::Free => way.component >= 3,
+            Motion::Ball => true,
+        }
+    }
+
+    fn refuse(&self, connection: &Connection, follower: Follower) {
+        let joint = &self.tree.bodies[follower.body].joint.name;
+        self.findings.error(
+            Code::NotAllowedHere,
+            connection.place.clone(),
+            format!(
+                "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
+                connection.name
+            ),
+            "connect by a point what a ball joint or a free joint turns, or use hinges",
+        );
     }
 
     /// The body of the last link that carries both; none is the ground.

@@ -122,6 +122,7 @@ pub(crate) struct Connection {
     pub(crate) second: Option<Pose>,
     /// Whether they do not turn against each other either.
     pub(crate) rigid: bool,
+    pub(crate) place: Span,
 }
 
 impl Connection {

@@ -8,7 +8,7 @@ mod remarks;
 use appell_spec::limits::MAX_SENTENCE;
 
 use crate::letters::{Numbers, Parameter};
-use crate::loops;
+use crate::loops::Meeting;
 use crate::model::{LeftOut, Link, Motion, Robot};
 use crate::names::{Names, short};
 use crate::options::Options;
@@ -63,6 +63,7 @@ pub(crate) fn write(
     kind: &str,
     robot: &Robot,
     tree: &Tree,
+    meetings: &[(String, Vec<Meeting>)],
     options: &Options,
 ) -> Written {
     // The folder may be another one where the spec is read.
@@ -78,9 +79,8 @@ pub(crate) fn write(
     writer.links_on_the_ground();
     writer.links_on_bodies();
     writer.carried(robot.gravity, &letters);
-    let meetings = loops::meetings(robot, tree);
-    writer.connections(&meetings);
-    writer.couplings(&robot.couplings, &meetings);
+    writer.connections(meetings);
+    writer.couplings(&robot.couplings, meetings);
     writer.ends();
     let name = Names::default().new_one(&robot.name);
     let mut text = remarks::head(file, kind, robot, tree);

@@ -81,6 +81,7 @@ fn connection(
             ends: [(first, anchor), (second, [0.0; 3])],
             second: None,
             rigid,
+            place: tag(element),
         });
     }
     // The pose of the second in the first, and the anchor in the second.
@@ -104,6 +105,7 @@ fn connection(
             ends: [(first, pose.of(anchor)), (second, anchor)],
             second: Some(pose.inverse()),
             rigid,
+            place: tag(element),
         },
         // The same wherever it is anchored.
         None => Connection {
@@ -111,6 +113,7 @@ fn connection(
             ends: [(first, [0.0; 3]), (second, [0.0; 3])],
             second: None,
             rigid,
+            place: tag(element),
         },
     })
 }

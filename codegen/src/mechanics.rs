@@ -197,39 +197,19 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     )?;
     let rates = &elimination.rates;
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
-    let rolling = rolling_contacts(mechanism, &constraints, &elimination);
-    algebra.relations = relations::relations(&mut algebra, &elimination.open);
-    let mut kinematics;
-    let mut recursion = None;
-    let (bodies, unbound_gibbs);
-    if elimination.open.unknowns.is_empty()
-        && let Some(found) = Recursion::new(&mut algebra, mechanism, &symbols, rates)?
-    {
-        kinematics = found.0;
-        let tree = found.1;
-        bodies = tree.bodies(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
-        unbound_gibbs = tree.gibbs_form(&mut algebra);
-        recursion = Some(tree);
-    } else {
-        kinematics = Kinematics::new(
-            &mut algebra,
-            mechanism,
-            &symbols,
-            rates,
-            &[],
-            Effort::Shortest(&rolling),
-        )?;
-        bodies = gibbs_appell::body_motions(
-            &mut algebra,
-            mechanism,
-            &symbols,
-            &kinematics,
-            rates,
-            &directions,
-        )?;
-        unbound_gibbs = gibbs_appell::gibbs_form(&mut algebra, &bodies, directions.len());
-    }
-    algebra.relations.clear();
+    let moving = moving(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        &constraints,
+        &elimination,
+    )?;
+    let Moving {
+        mut kinematics,
+        bodies,
+        gibbs: unbound_gibbs,
+        mut recursion,
+    } = moving;
     algebra.check_size()?;
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let all_loads = loads.clone();
@@ -298,6 +278,50 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         warnings,
     };
     Ok((derivation, all_loads))
+}
+
+/// Motions of the bodies, and what they make of S.
+struct Moving {
+    kinematics: Kinematics,
+    bodies: Vec<BodyMotion>,
+    gibbs: GibbsForm,
+    recursion: Option<Recursion>,
+}
+
+/// By recursion over links where that is shorter, else by the sums over bodies.
+fn moving(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    constraints: &Constraints,
+    elimination: &Elimination,
+) -> Outcome<Moving> {
+    let rates = &elimination.rates;
+    if elimination.open.unknowns.is_empty()
+        && let Some((kinematics, tree)) = Recursion::new(algebra, mechanism, symbols, rates)?
+    {
+        return Ok(Moving {
+            bodies: tree.bodies(algebra, mechanism, symbols, &kinematics, rates)?,
+            gibbs: tree.gibbs_form(algebra),
+            kinematics,
+            recursion: Some(tree),
+        });
+    }
+    let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
+    let rolling = rolling_contacts(mechanism, constraints, elimination);
+    algebra.relations = relations::relations(algebra, &elimination.open);
+    let effort = Effort::Shortest(&rolling);
+    let kinematics = Kinematics::new(algebra, mechanism, symbols, rates, &[], effort)?;
+    let bodies =
+        gibbs_appell::body_motions(algebra, mechanism, symbols, &kinematics, rates, &directions)?;
+    algebra.relations.clear();
+    algebra.check_size()?;
+    Ok(Moving {
+        gibbs: gibbs_appell::gibbs_form(algebra, &bodies, directions.len()),
+        kinematics,
+        bodies,
+        recursion: None,
+    })
 }
 
 /// The contacts whose every row holds for all pseudo-velocities: by a formula or by geometry.

@@ -19,6 +19,7 @@ use super::motion::Motion;
 use super::positions::Positions;
 use super::prescribed;
 use super::reactions;
+use super::recursion::Recursion;
 use super::switches::switches;
 use super::symbols::{Symbols, ids};
 use super::systems::systems;
@@ -287,7 +288,7 @@ impl Derivation {
         bodies: &[BodyMotion],
     ) -> Function {
         let (terms, groups) = match &self.recursion {
-            Some(tree) => (tree.terms(), tree.groups()),
+            Some(tree) => (Recursion::terms(), tree.groups()),
             None => (
                 glossary::of_motions(mechanism, &self.kinematics, bodies),
                 glossary::groups_of_motions(mechanism, bodies),

@@ -2,7 +2,9 @@
 
 use appell_runtime::model::Reaction as Reported;
 use appell_spec::Code;
-use appell_spec::mechanism::{BodyId, ConstraintId, ConstraintKind, GROUND, Mechanism, PointId};
+use appell_spec::mechanism::{
+    BodyId, ConstraintId, ConstraintKind, FrameId, GROUND, Mechanism, PointId,
+};
 use appell_spec::units::{Dimension, Unit};
 
 use super::algebra::Algebra;
@@ -209,29 +211,16 @@ fn scalar_rows(
             ..
         } => {
             let frame = normal.map_or(GROUND, |normal| normal.frame);
-            let graph = &mut algebra.graph;
-            let mut v = kinematics.material_velocity(graph, mechanism, *body, *contact, frame);
-            if let Some(on) = on {
-                let carried = kinematics.material_velocity(graph, mechanism, *on, *contact, frame);
-                v = graph.sub3(v, carried);
-            }
-            let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
-            // What carries both does not part them.
-            let own = Some(root(*body)).filter(|own| on.is_none_or(|on| root(on) != *own));
-            let scalars = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
-                let unit = FrameVector {
-                    frame,
-                    v: vector::IDENTITY[k],
-                };
-                Scalar {
-                    name: format!("{}.{axis}", constraint.name),
-                    value: v[k],
-                    along: unit,
-                    direction: kinematics.frames.express(graph, unit, GROUND),
-                    root: own,
-                }
-            });
-            (Place::Point(*contact), scalars.collect())
+            let rows = rolling_rows(
+                algebra,
+                mechanism,
+                kinematics,
+                &constraint.name,
+                (*body, *on),
+                *contact,
+                frame,
+            );
+            (Place::Point(*contact), rows)
         }
         ConstraintKind::Velocity {
             zero: left, equals, ..
@@ -297,6 +286,41 @@ fn scalar_rows(
             (Place::Constraint(index), vec![single(value)])
         }
     })
+}
+
+/// The velocity of a body at a contact, from that of what it rolls on, along the axes of a frame.
+fn rolling_rows(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    kinematics: &Kinematics,
+    name: &str,
+    (body, on): (BodyId, Option<BodyId>),
+    contact: PointId,
+    frame: FrameId,
+) -> Vec<Scalar> {
+    let graph = &mut algebra.graph;
+    let mut v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
+    if let Some(on) = on {
+        let carried = kinematics.material_velocity(graph, mechanism, on, contact, frame);
+        v = graph.sub3(v, carried);
+    }
+    let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
+    // What carries both does not part them.
+    let own = Some(root(body)).filter(|own| on.is_none_or(|on| root(on) != *own));
+    let rows = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
+        let unit = FrameVector {
+            frame,
+            v: vector::IDENTITY[k],
+        };
+        Scalar {
+            name: format!("{}.{axis}", name),
+            value: v[k],
+            along: unit,
+            direction: kinematics.frames.express(graph, unit, GROUND),
+            root: own,
+        }
+    });
+    rows.collect()
 }
 
 /// Splits a row into its coefficients.

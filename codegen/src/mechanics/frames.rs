@@ -73,7 +73,7 @@ impl Frames {
             }));
             for rotation in &rotations {
                 let graph = &mut algebra.graph;
-                w = rotation.into_child(graph, w);
+                w = rotation.in_child(graph, w);
                 w = graph.add3(w, rotation.rate());
             }
             let w = match effort {
@@ -116,7 +116,7 @@ impl Frames {
         for &frame in &path[..last] {
             for rotation in self.frames[frame].rotations.iter().rev() {
                 v = graph.add3(v, rotation.rate());
-                v = rotation.into_parent(graph, v);
+                v = rotation.in_parent(graph, v);
             }
         }
         graph.add3(v, self.frames[to].w)
@@ -134,12 +134,12 @@ impl Frames {
         let mut v = vector.v;
         for &frame in &up[..up.len() - shared] {
             for rotation in self.frames[frame].rotations.iter().rev() {
-                v = rotation.into_parent(graph, v);
+                v = rotation.in_parent(graph, v);
             }
         }
         for &frame in down[..down.len() - shared].iter().rev() {
             for rotation in &self.frames[frame].rotations {
-                v = rotation.into_child(graph, v);
+                v = rotation.in_child(graph, v);
             }
         }
         v

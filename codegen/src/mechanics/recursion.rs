@@ -284,7 +284,7 @@ impl Recursion {
     pub fn inwards(&self, speeds: usize) -> Vec<usize> {
         let columns = self
             .links
-            .links
+            .all
             .iter()
             .rev()
             .flat_map(|link| link.columns.iter().rev());

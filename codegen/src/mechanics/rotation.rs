@@ -32,7 +32,7 @@ pub(super) struct Turn {
 
 impl Rotation {
     /// R v: the components before the step.
-    pub(super) fn into_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    pub(super) fn in_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match self {
             Self::Turn(turn) => turn.rotate(graph, v, turn.sin, turn.cos),
             Self::Attitude(attitude) => graph.mat_vec(&attitude.matrix, v),
@@ -40,7 +40,7 @@ impl Rotation {
     }
 
     /// Rᵀ v: the components behind the step.
-    pub(super) fn into_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    pub(super) fn in_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match self {
             Self::Turn(turn) => {
                 let sin = graph.neg(turn.sin);
@@ -51,7 +51,7 @@ impl Rotation {
     }
 
     /// R T Rᵀ: the components of a tensor before the step.
-    pub(super) fn tensor_into_parent(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
+    pub(super) fn tensor_in_parent(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
         match self {
             Self::Turn(turn) => turn.rotate_tensor(graph, t),
             Self::Attitude(attitude) => {
@@ -82,13 +82,13 @@ impl Rotation {
     }
 
     /// `(∂R/∂z) v`
-    pub(super) fn change_into_parent(&self, algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
-        self.change(algebra, z).into_parent(&mut algebra.graph, v)
+    pub(super) fn change_in_parent(&self, algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
+        self.change(algebra, z).in_parent(&mut algebra.graph, v)
     }
 
     /// `(∂Rᵀ/∂z) v`
-    pub(super) fn change_into_child(&self, algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
-        self.change(algebra, z).into_child(&mut algebra.graph, v)
+    pub(super) fn change_in_child(&self, algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
+        self.change(algebra, z).in_child(&mut algebra.graph, v)
     }
 
     /// ∂R/∂z as if it were a rotation.
@@ -114,14 +114,14 @@ enum Change {
 }
 
 impl Change {
-    fn into_parent(self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    fn in_parent(self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match self {
             Self::Turn(turn) => turn.rotate_plane(graph, v, turn.sin, turn.cos),
             Self::Matrix(matrix) => graph.mat_vec(&matrix, v),
         }
     }
 
-    fn into_child(self, graph: &mut Graph, v: Vec3) -> Vec3 {
+    fn in_child(self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match self {
             Self::Turn(turn) => {
                 let sin = graph.neg(turn.sin);

@@ -49,7 +49,7 @@ impl Links {
         motions: &[LinkMotion],
         forces: &[Expr],
     ) -> Option<Vec<Expr>> {
-        let mut speeds: Vec<usize> = self.links.iter().flat_map(Link::speeds).collect();
+        let mut speeds: Vec<usize> = self.all.iter().flat_map(Link::speeds).collect();
         speeds.sort_unstable();
         if !speeds.iter().copied().eq(0..forces.len()) {
             return None;
@@ -61,8 +61,8 @@ impl Links {
         let mut wrenches: Vec<Wrench> = (own.iter().zip(motions))
             .map(|(inertia, motion)| inertia.takes(&mut algebra.graph, motion))
             .collect();
-        let mut pivots: Vec<Vec<Pivot>> = Vec::with_capacity(self.links.len());
-        for (place, link) in self.links.iter().enumerate().rev() {
+        let mut pivots: Vec<Vec<Pivot>> = Vec::with_capacity(self.all.len());
+        for (place, link) in self.all.iter().enumerate().rev() {
             let mut articulated = resisting[place].named(algebra, &link.name);
             let mut wrench = wrenches[place].named(algebra, "p", &link.name);
             let mut own_pivots = Vec::with_capacity(link.columns.len());
@@ -115,9 +115,9 @@ impl Links {
             alpha: vector::ZERO,
             a: vector::ZERO,
         };
-        let mut beyond: Vec<Beyond> = Vec::with_capacity(self.links.len());
+        let mut beyond: Vec<Beyond> = Vec::with_capacity(self.all.len());
         let mut accelerations = vec![Graph::ZERO; self.speeds.len()];
-        for (link, pivots) in self.links.iter().zip(pivots) {
+        for (link, pivots) in self.all.iter().zip(pivots) {
             let carrier = link.parent.map_or(at_rest, |parent| beyond[parent]);
             let graph = &mut algebra.graph;
             let mut motion = link.carried(graph, carrier);
@@ -166,8 +166,7 @@ impl Link {
     fn carried(&self, graph: &mut Graph, carrier: Beyond) -> Beyond {
         match &self.step {
             Step::Rotation { turns, .. } => {
-                let mut inward =
-                    |v: Vec3| turns.iter().fold(v, |v, turn| turn.into_child(graph, v));
+                let mut inward = |v: Vec3| turns.iter().fold(v, |v, turn| turn.in_child(graph, v));
                 Beyond {
                     alpha: inward(carrier.alpha),
                     a: inward(carrier.a),
@@ -187,7 +186,7 @@ impl Link {
         match &self.step {
             Step::Rotation { turns, .. } => {
                 let mut outward = |t: &Mat3| {
-                    (turns.iter().rev()).fold(*t, |t, turn| turn.tensor_into_parent(graph, &t))
+                    (turns.iter().rev()).fold(*t, |t, turn| turn.tensor_in_parent(graph, &t))
                 };
                 Articulated {
                     moment: outward(&own.moment),

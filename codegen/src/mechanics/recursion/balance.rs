@@ -54,7 +54,7 @@ impl Links {
         let mut wrenches: Vec<Wrench> = (inertias.iter().zip(motions))
             .map(|(inertia, motion)| inertia.takes(&mut algebra.graph, motion))
             .collect();
-        for (place, link) in self.links.iter().enumerate().rev() {
+        for (place, link) in self.all.iter().enumerate().rev() {
             let named = wrenches[place].named(algebra, kind, &link.name);
             wrenches[place] = named;
             if let Some(parent) = link.parent {
@@ -69,7 +69,7 @@ impl Links {
     /// What each speed feels of the forces on the links.
     pub(super) fn felt(&self, graph: &mut Graph, wrenches: &[Wrench]) -> Vec<Expr> {
         let mut parts = vec![Vec::new(); self.speeds.len()];
-        for (link, &wrench) in self.links.iter().zip(wrenches) {
+        for (link, &wrench) in self.all.iter().zip(wrenches) {
             for &(speed, column) in &link.columns {
                 parts[speed].push(link.work(graph, column, wrench));
             }

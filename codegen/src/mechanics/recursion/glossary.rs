@@ -63,7 +63,7 @@ const MEANINGS: [(&str, &str); 24] = [
 
 impl Recursion {
     /// The meaning of the names.
-    pub(in super::super) fn terms(&self) -> Vec<Term> {
+    pub(in super::super) fn terms() -> Vec<Term> {
         let term = |(symbol, meaning): &(&str, &str)| Term {
             symbol: (*symbol).to_owned(),
             names: Names::Any,
@@ -76,7 +76,7 @@ impl Recursion {
     pub(in super::super) fn groups(&self) -> Vec<Group> {
         let mut named: Vec<&str> = Vec::new();
         let mut groups = Vec::new();
-        for link in &self.links.links {
+        for link in &self.links.all {
             let name = link.name.as_str();
             if named.contains(&name) {
                 continue;

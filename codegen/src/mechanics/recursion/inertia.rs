@@ -150,7 +150,7 @@ impl Link {
         match &self.step {
             Step::Rotation { turns, .. } => {
                 let outward = |graph: &mut Graph, v: Vec3| {
-                    (turns.iter().rev()).fold(v, |v, turn| turn.into_parent(graph, v))
+                    (turns.iter().rev()).fold(v, |v, turn| turn.in_parent(graph, v))
                 };
                 Wrench {
                     n: outward(graph, own.n),
@@ -180,8 +180,8 @@ impl Link {
             Step::Rotation { turns, .. } => {
                 let mut inertia = own.clone();
                 for turn in turns.iter().rev() {
-                    inertia.moment = turn.into_parent(graph, inertia.moment);
-                    inertia.tensor = turn.tensor_into_parent(graph, &inertia.tensor);
+                    inertia.moment = turn.in_parent(graph, inertia.moment);
+                    inertia.tensor = turn.tensor_in_parent(graph, &inertia.tensor);
                 }
                 inertia
             }
@@ -198,7 +198,7 @@ impl Links {
         mechanism: &Mechanism,
         lowering: &Lowering<'_>,
     ) -> Outcome<Vec<Inertia>> {
-        let mut inertias = vec![Inertia::NONE; self.links.len()];
+        let mut inertias = vec![Inertia::NONE; self.all.len()];
         for ((id, body), &Place { link, arm }) in mechanism.bodies.entries().zip(&self.bodies) {
             let Some(link) = link else {
                 continue;
@@ -208,7 +208,7 @@ impl Links {
             let placed = central.shifted(graph, arm);
             inertias[link] = inertias[link].plus(graph, &placed);
         }
-        for (inertia, link) in inertias.iter_mut().zip(&self.links) {
+        for (inertia, link) in inertias.iter_mut().zip(&self.all) {
             *inertia = inertia.named(algebra, &format!("own_{}", link.name));
         }
         Ok(inertias)
@@ -217,7 +217,7 @@ impl Links {
     /// The inertia of each link with all that it carries.
     pub(super) fn composites(&self, algebra: &mut Algebra, own: &[Inertia]) -> Vec<Inertia> {
         let mut composites = own.to_vec();
-        for (place, link) in self.links.iter().enumerate().rev() {
+        for (place, link) in self.all.iter().enumerate().rev() {
             composites[place] = composites[place].named(algebra, &link.name);
             if let Some(parent) = link.parent {
                 let graph = &mut algebra.graph;
@@ -236,13 +236,13 @@ impl Links {
     ) -> Vec<Vec<Expr>> {
         let speeds = self.speeds.len();
         let mut parts = vec![vec![Vec::new(); speeds]; speeds];
-        for (place, link) in self.links.iter().enumerate() {
+        for (place, link) in self.all.iter().enumerate() {
             for &(speed, column) in &link.columns {
                 let name = &self.speeds[speed];
                 let mut wrench = self.resistance(algebra, place, column, &composites[place]);
                 let mut at = Some(place);
                 while let Some(here) = at {
-                    let link_here = &self.links[here];
+                    let link_here = &self.all[here];
                     wrench = wrench.named(algebra, "", &format!("{}_{name}", link_here.name));
                     for &(other, along) in &link_here.columns {
                         let work = link_here.work(&mut algebra.graph, along, wrench);
@@ -275,7 +275,7 @@ impl Links {
         column: Vec3,
         composite: &Inertia,
     ) -> Wrench {
-        let (alpha, a) = match self.links[link].step {
+        let (alpha, a) = match self.all[link].step {
             Step::Rotation { .. } => (column, vector::ZERO),
             Step::Shift { .. } => (vector::ZERO, column),
         };

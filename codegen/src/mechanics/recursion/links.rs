@@ -57,10 +57,20 @@ pub(super) struct Place {
     pub(super) arm: Vec3,
 }
 
+impl Place {
+    /// The origin of a link.
+    fn at(link: Option<usize>) -> Self {
+        Self {
+            link,
+            arm: vector::ZERO,
+        }
+    }
+}
+
 /// All links, carriers first, and where the bodies are.
 #[derive(Debug, Clone)]
 pub(super) struct Links {
-    pub(super) links: Vec<Link>,
+    pub(super) all: Vec<Link>,
     /// Names of the speeds.
     pub(super) speeds: Vec<String>,
     /// By body: the place of its centre in the link that it moves with.
@@ -104,17 +114,14 @@ impl Links {
             bodies.push(if frame == planting.axes_of(body.centre) {
                 place
             } else {
-                Place {
-                    link: planting.link(frame, body.centre)?,
-                    arm: vector::ZERO,
-                }
+                planting.link(frame, body.centre)?
             });
         }
-        let links = planting.links;
+        let all = planting.links;
         let speeds = mechanism.pseudo_velocities.iter();
         let speeds = speeds.map(|speed| speed.label.name.clone()).collect();
         Some(Self {
-            links,
+            all,
             speeds,
             bodies,
         })
@@ -131,7 +138,7 @@ struct Planting<'a, 'b> {
     changing: Vec<SymbolId>,
     links: Vec<Link>,
     /// By frame and origin.
-    known: FxHashMap<(FrameId, PointId), Option<usize>>,
+    known: FxHashMap<(FrameId, PointId), Place>,
 }
 
 impl Planting<'_, '_> {
@@ -155,10 +162,7 @@ impl Planting<'_, '_> {
             way.push(at);
             at = self.mechanism.points[at].from?;
         };
-        let mut place = Place {
-            link: start,
-            arm: vector::ZERO,
-        };
+        let mut place = start;
         for &point in way.iter().rev() {
             let offset = self.kinematics.offset(point).v;
             place.arm = self.algebra.graph.add3(place.arm, offset);
@@ -167,18 +171,15 @@ impl Planting<'_, '_> {
                 .any(|&c| self.algebra.graph.mentions(c, &self.changing))
             {
                 let link = self.shifted(place, &self.mechanism.points[point].name.clone());
-                self.known.insert((axes, point), Some(link));
-                place = Place {
-                    link: Some(link),
-                    arm: vector::ZERO,
-                };
+                place = Place::at(Some(link));
+                self.known.insert((axes, point), place);
             }
         }
         Some(place)
     }
 
     /// The link with the axes of a frame and its origin at a point.
-    fn link(&mut self, frame: FrameId, origin: PointId) -> Option<Option<usize>> {
+    fn link(&mut self, frame: FrameId, origin: PointId) -> Option<Place> {
         if let Some(&known) = self.known.get(&(frame, origin)) {
             return Some(known);
         }
@@ -190,28 +191,24 @@ impl Planting<'_, '_> {
         let mut way: Vec<FrameId> = self.kinematics.frames.ancestors(frame);
         let carrier = way.iter().position(|&f| f == from)?;
         way.truncate(carrier);
-        let place = if origin == ORIGIN {
-            Place {
-                link: None,
-                arm: vector::ZERO,
-            }
+        let mut start = if origin == ORIGIN {
+            Place::at(None)
         } else {
             self.place(origin)?
         };
-        let start = if place.arm == vector::ZERO {
-            place.link
-        } else {
+        if start.arm != vector::ZERO {
             let name = self.mechanism.points[origin].name.clone();
-            Some(self.shifted(place, &name))
-        };
+            start = Place::at(Some(self.shifted(start, &name)));
+        }
         self.known.insert((from, origin), start);
-        let known = (way.iter()).position(|&f| self.known.contains_key(&(f, origin)));
-        let start = known.map_or(start, |place| self.known[&(way[place], origin)]);
-        way.truncate(known.unwrap_or(way.len()));
+        if let Some(known) = (way.iter()).position(|&f| self.known.contains_key(&(f, origin))) {
+            start = self.known[&(way[known], origin)];
+            way.truncate(known);
+        }
         way.reverse();
-        let link = self.turned(start, &way);
-        self.known.insert((frame, origin), link);
-        Some(link)
+        let place = Place::at(self.turned(start.link, &way));
+        self.known.insert((frame, origin), place);
+        Some(place)
     }
 
     /// What turns as the last of the frames does, whose axes are turned one against the other: as one link
@@ -226,18 +223,20 @@ impl Planting<'_, '_> {
                     .map(move |turn| (frame, turn.clone()))
             })
             .collect();
+        let Some(&(last, _)) = turns.last() else {
+            return link;
+        };
         let mut w = vector::ZERO;
         let mut rates = Vec::new();
         for (_, turn) in &turns {
             let graph = &mut self.algebra.graph;
-            w = turn.into_child(graph, w);
+            w = turn.in_child(graph, w);
             w = graph.add3(w, turn.rate());
             rates.extend(turn.rate());
         }
         let together = self.algebra.shortest3(w);
         let graph = &self.algebra.graph;
         if graph.operations(&together) <= graph.operations(&rates) {
-            let last = turns.last()?.0;
             let turns = turns.into_iter().map(|(_, turn)| turn).collect();
             return Some(self.rotated(link, last, turns, together));
         }

@@ -70,8 +70,8 @@ impl Links {
     /// The motions of all links.
     pub(super) fn motions(&self, algebra: &mut Algebra, driven: &Driven<'_>) -> Vec<LinkMotion> {
         let at_rest = LinkMotion::at_rest(driven.ground);
-        let mut motions: Vec<LinkMotion> = Vec::with_capacity(self.links.len());
-        for link in &self.links {
+        let mut motions: Vec<LinkMotion> = Vec::with_capacity(self.all.len());
+        for link in &self.all {
             let carrier = link.parent.map_or(&at_rest, |parent| &motions[parent]);
             let motion = link.moved(algebra, carrier, driven);
             motions.push(motion);
@@ -83,13 +83,13 @@ impl Links {
 impl Links {
     /// The acceleration of the ground in the axes of all links, where nothing else moves.
     pub(super) fn still(&self, algebra: &mut Algebra, ground: Vec3) -> Vec<Vec3> {
-        let mut all: Vec<Vec3> = Vec::with_capacity(self.links.len());
-        for link in &self.links {
+        let mut all: Vec<Vec3> = Vec::with_capacity(self.all.len());
+        for link in &self.all {
             let carried = link.parent.map_or(ground, |parent| all[parent]);
             all.push(match &link.step {
                 Step::Rotation { turns, .. } => {
                     let graph = &mut algebra.graph;
-                    let a = (turns.iter()).fold(carried, |a, turn| turn.into_child(graph, a));
+                    let a = (turns.iter()).fold(carried, |a, turn| turn.in_child(graph, a));
                     named3(algebra, &format!("g_{}", link.name), a)
                 }
                 Step::Shift { .. } => carried,
@@ -124,7 +124,7 @@ impl Link {
             Step::Rotation { turns, w, w_dot } => {
                 let graph = &mut algebra.graph;
                 let inward = |graph: &mut Graph, v: Vec3| {
-                    turns.iter().fold(v, |v, turn| turn.into_child(graph, v))
+                    turns.iter().fold(v, |v, turn| turn.in_child(graph, v))
                 };
                 let carried = inward(graph, carrier.w);
                 let sum = graph.add3(carried, *w);

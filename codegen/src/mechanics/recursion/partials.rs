@@ -233,7 +233,7 @@ impl Differentiable {
         z: Expr,
     ) -> Vec<Expr> {
         let mut parts = vec![Vec::new(); accelerations.len()];
-        for (place, link) in links.links.iter().enumerate() {
+        for (place, link) in links.all.iter().enumerate() {
             let Some(change) = self.change(algebra, links, accelerations, place, z) else {
                 continue;
             };
@@ -250,7 +250,7 @@ impl Differentiable {
             let mut more = link.change_on_carrier(algebra, z, taken, wrench);
             let mut at = link.parent;
             while let Some(here) = at {
-                let carrier = &links.links[here];
+                let carrier = &links.all[here];
                 let by = name_of(&algebra.graph, z);
                 more = more.named(algebra, "", &format!("{}_by_{by}", carrier.name));
                 for &(speed, column) in &carrier.columns {
@@ -272,7 +272,7 @@ impl Differentiable {
         place: usize,
         z: Expr,
     ) -> Option<Change> {
-        let link = &links.links[place];
+        let link = &links.all[place];
         let motion = &self.motions[place];
         // ω̇ is held.
         let mut driving = vector::ZERO;
@@ -362,8 +362,8 @@ impl Links {
         composites: &[Inertia],
         motions: &[LinkMotion],
     ) -> Vec<Flow> {
-        let mut flows: Vec<Flow> = vec![Flow::NONE; self.links.len()];
-        for (place, link) in self.links.iter().enumerate().rev() {
+        let mut flows: Vec<Flow> = vec![Flow::NONE; self.all.len()];
+        for (place, link) in self.all.iter().enumerate().rev() {
             let graph = &mut algebra.graph;
             let rigid = Flow::of_rigid(graph, &own[place], motions[place].w);
             let flow = flows[place].plus(graph, &rigid).named(algebra, &link.name);
@@ -384,8 +384,8 @@ impl Links {
         flows: &[Flow],
         motions: &[LinkMotion],
     ) -> Vec<Vec<(usize, Answer)>> {
-        let mut answers: Vec<Vec<(usize, Answer)>> = vec![Vec::new(); self.links.len()];
-        for (place, link) in self.links.iter().enumerate() {
+        let mut answers: Vec<Vec<(usize, Answer)>> = vec![Vec::new(); self.all.len()];
+        for (place, link) in self.all.iter().enumerate() {
             for &(speed, column) in &link.columns {
                 let name = &self.speeds[speed];
                 let wrench = self.resistance(algebra, place, column, &composites[place]);
@@ -394,7 +394,7 @@ impl Links {
                 let mut answer = Answer::of_column(graph, &link.step, column, wrench, flow);
                 let mut at = Some(place);
                 while let Some(here) = at {
-                    let carrier = &self.links[here];
+                    let carrier = &self.all[here];
                     let by = format!("{}_{name}", carrier.name);
                     answer = Answer {
                         wrench: answer.wrench.named(algebra, "", &by),
@@ -436,9 +436,9 @@ impl Link {
                 let mut flow = flow.clone();
                 for turn in turns.iter().rev() {
                     flow = Flow {
-                        moment: turn.into_parent(graph, flow.moment),
-                        tensor: turn.tensor_into_parent(graph, &flow.tensor),
-                        momentum: turn.into_parent(graph, flow.momentum),
+                        moment: turn.in_parent(graph, flow.moment),
+                        tensor: turn.tensor_in_parent(graph, &flow.tensor),
+                        momentum: turn.in_parent(graph, flow.momentum),
                     };
                 }
                 flow
@@ -461,7 +461,7 @@ impl Link {
         let wrench = self.on_carrier(graph, answer.wrench);
         let w = match &self.step {
             Step::Rotation { turns, .. } => {
-                (turns.iter().rev()).fold(answer.w, |v, turn| turn.into_parent(graph, v))
+                (turns.iter().rev()).fold(answer.w, |v, turn| turn.in_parent(graph, v))
             }
             Step::Shift { .. } => {
                 let u = self.leaving(graph, motions);
@@ -484,25 +484,23 @@ impl Link {
         own: Wrench,
     ) -> Wrench {
         match &self.step {
-            Step::Rotation { turns, .. } => match axis(algebra, turns, z) {
-                Some(x) => {
+            Step::Rotation { turns, .. } => {
+                if let Some(x) = axis(algebra, turns, z) {
                     let graph = &mut algebra.graph;
                     let turned = Wrench {
                         n: graph.cross(x, own.n),
                         f: graph.cross(x, own.f),
                     };
                     let both = change.plus(graph, turned);
-                    self.on_carrier(graph, both)
+                    return self.on_carrier(graph, both);
                 }
-                None => {
-                    let turned = Wrench {
-                        n: change_before(algebra, turns, own.n, z),
-                        f: change_before(algebra, turns, own.f, z),
-                    };
-                    let carried = self.on_carrier(&mut algebra.graph, change);
-                    carried.plus(&mut algebra.graph, turned)
-                }
-            },
+                let turned = Wrench {
+                    n: change_before(algebra, turns, own.n, z),
+                    f: change_before(algebra, turns, own.f, z),
+                };
+                let carried = self.on_carrier(&mut algebra.graph, change);
+                carried.plus(&mut algebra.graph, turned)
+            }
             Step::Shift { d, .. } => {
                 let by_d = derivative3(algebra, *d, z);
                 let graph = &mut algebra.graph;
@@ -523,7 +521,7 @@ fn derivative3(algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
 fn axis(algebra: &mut Algebra, turns: &[Rotation], z: Expr) -> Option<Vec3> {
     let mut x = vector::ZERO;
     for turn in turns {
-        x = turn.into_child(&mut algebra.graph, x);
+        x = turn.in_child(&mut algebra.graph, x);
         match turn {
             Rotation::Turn(turn) => {
                 let rate = algebra.derivative(turn.angle, z);
@@ -545,10 +543,10 @@ fn change_behind(algebra: &mut Algebra, turns: &[Rotation], v: Vec3, z: Expr) ->
     let mut sum = vector::ZERO;
     for (place, turn) in turns.iter().enumerate() {
         let graph = &mut algebra.graph;
-        let until = (turns[..place].iter()).fold(v, |v, turn| turn.into_child(graph, v));
-        let changed = turn.change_into_child(algebra, until, z);
+        let until = (turns[..place].iter()).fold(v, |v, turn| turn.in_child(graph, v));
+        let changed = turn.change_in_child(algebra, until, z);
         let graph = &mut algebra.graph;
-        let part = (turns[place + 1..].iter()).fold(changed, |v, turn| turn.into_child(graph, v));
+        let part = (turns[place + 1..].iter()).fold(changed, |v, turn| turn.in_child(graph, v));
         sum = graph.add3(sum, part);
     }
     sum
@@ -560,11 +558,10 @@ fn change_before(algebra: &mut Algebra, turns: &[Rotation], v: Vec3, z: Expr) ->
     for (place, turn) in turns.iter().enumerate() {
         let graph = &mut algebra.graph;
         let behind = turns[place + 1..].iter().rev();
-        let until = behind.fold(v, |v, turn| turn.into_parent(graph, v));
-        let changed = turn.change_into_parent(algebra, until, z);
+        let until = behind.fold(v, |v, turn| turn.in_parent(graph, v));
+        let changed = turn.change_in_parent(algebra, until, z);
         let graph = &mut algebra.graph;
-        let part =
-            (turns[..place].iter().rev()).fold(changed, |v, turn| turn.into_parent(graph, v));
+        let part = (turns[..place].iter().rev()).fold(changed, |v, turn| turn.in_parent(graph, v));
         sum = graph.add3(sum, part);
     }
     sum

@@ -174,14 +174,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
     let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
 
-    let unknown = Kinematics::new(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &symbols.rates,
-        &[],
-        Effort::Plain,
-    )?;
+    let unknown = with_unknown_rates(&mut algebra, mechanism, &symbols)?;
     let constraints =
         constraints::constraints(&mut algebra, mechanism, &symbols, &unknown, &mut intervals)?;
     let (contacts, not_judged) =
@@ -197,19 +190,18 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     )?;
     let rates = &elimination.rates;
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
-    let moving = moving(
+    let Moving {
+        mut kinematics,
+        bodies,
+        gibbs: unbound_gibbs,
+        mut recursion,
+    } = moving(
         &mut algebra,
         mechanism,
         &symbols,
         &constraints,
         &elimination,
     )?;
-    let Moving {
-        mut kinematics,
-        bodies,
-        gibbs: unbound_gibbs,
-        mut recursion,
-    } = moving;
     algebra.check_size()?;
     let mut loads = loads::applied_loads(&mut algebra, mechanism, &symbols, &kinematics, rates)?;
     let all_loads = loads.clone();
@@ -278,6 +270,16 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         warnings,
     };
     Ok((derivation, all_loads))
+}
+
+/// Velocities with symbols for q̇.
+fn with_unknown_rates(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+) -> Outcome<Kinematics> {
+    let rates = &symbols.rates;
+    Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain)
 }
 
 /// Motions of the bodies, and what they make of S.

@@ -313,7 +313,7 @@ fn rolling_rows(
             v: vector::IDENTITY[k],
         };
         Scalar {
-            name: format!("{}.{axis}", name),
+            name: format!("{name}.{axis}"),
             value: v[k],
             along: unit,
             direction: kinematics.frames.express(graph, unit, GROUND),

@@ -108,12 +108,12 @@ impl<'a> Rows<'a> {
             let mut rows = Vec::new();
             // The second end is where the first is while all is as drawn.
             let first = (ends[0].0, add(ends[0].1, offset));
-            let place = self.place(first, &self.drawn);
+            let met = place(first, &self.drawn);
             let second = (
                 ends[1].0,
                 match connection.second {
                     Some(pose) => pose.of(first.1),
-                    None => self.within(ends[1].0, place),
+                    None => self.within(ends[1].0, met),
                 },
             );
             for axis in 0..3 {
@@ -144,7 +144,7 @@ impl<'a> Rows<'a> {
         end: (Option<usize>, Vector),
         direction: Vector,
     ) {
-        let place = self.place(end, &self.near);
+        let end_at = place(end, &self.near);
         let mut at = end.0;
         while let Some(index) = at {
             let link = &self.robot.links[index];
@@ -157,14 +157,14 @@ impl<'a> Rows<'a> {
                         continue;
                     }
                     let velocity = match joint.motion {
-                        Motion::Turning => cross(axis, minus(place, pose.of(joint.anchor))),
+                        Motion::Turning => cross(axis, minus(end_at, pose.of(joint.anchor))),
                         Motion::Sliding => axis,
                         Motion::Free if column.component < 3 => {
                             Rotation::IDENTITY.0[column.component]
                         }
                         Motion::Free | Motion::Ball => {
                             let axis = pose.rotation.0.map(|row| row[column.component % 3]);
-                            cross(axis, minus(place, pose.of(joint.anchor)))
+                            cross(axis, minus(end_at, pose.of(joint.anchor)))
                         }
                     };
                     *slope += sign * dot(velocity, direction);
@@ -243,10 +243,6 @@ impl<'a> Rows<'a> {
         poses[moved.link].rotation.then(moved.own)
     }
 
-    fn place(&self, (link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
-        link.map_or(at, |link| poses[link].of(at))
-    }
-
     /// A place as a link has it while all is as drawn.
     fn within(&self, link: Option<usize>, place: Vector) -> Vector {
         link.map_or(place, |link| {
@@ -257,9 +253,9 @@ impl<'a> Rows<'a> {
 
     /// A point of a link as its body has it.
     fn on_body(&self, link: Option<usize>, at: Vector) -> (Option<usize>, Vector) {
-        let place = self.place((link, at), &self.drawn);
+        let at = place((link, at), &self.drawn);
         let Some(body) = link.and_then(|link| self.body_of(link)) else {
-            return (None, place);
+            return (None, at);
         };
         let moved = &self.tree.bodies[body];
         let origin = match moved.joint.motion {
@@ -267,12 +263,14 @@ impl<'a> Rows<'a> {
             Motion::Sliding | Motion::Free => [0.0; 3],
         };
         let origin = self.drawn[moved.link].of(origin);
-        let at = self
-            .axes(body, &self.drawn)
-            .inverse()
-            .of(minus(place, origin));
+        let at = self.axes(body, &self.drawn).inverse().of(minus(at, origin));
         (Some(body), crate::inertia::position_without_rounding(at))
     }
+}
+
+/// Where a point of a link is.
+fn place((link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
+    link.map_or(at, |link| poses[link].of(at))
 }
 
 /// Poses of all links where joints with an axis have moved by some way from how they are drawn.

@@ -64,8 +64,8 @@ fn connection(
         return None;
     }
     let (first, second) = (
-        body(element, "body1", reader)?,
-        body(element, "body2", reader)?,
+        body(element, "body1", reader).ok()?,
+        body(element, "body2", reader).ok()?,
     );
     let anchor = match element.attribute_node("anchor") {
         Some(given) => exactly(reader.findings, &given, "a point, x y z,")?,
@@ -118,17 +118,24 @@ fn connection(
     })
 }
 
+/// There is no body of a name, which is told.
+struct Unknown;
+
 /// The link of a body that is named; none is the world, which is meant where no body is named.
-fn body(element: Element<'_>, key: &str, reader: &Reader<'_, '_>) -> Option<Option<usize>> {
+fn body(
+    element: Element<'_>,
+    key: &str,
+    reader: &Reader<'_, '_>,
+) -> Result<Option<usize>, Unknown> {
     let Some(given) = element.attribute_node(key) else {
-        return Some(None);
+        return Ok(None);
     };
     let named = |link: &Link| link.written && link.name == given.value();
     if given.value() == "world" {
-        return Some(None);
+        return Ok(None);
     }
     if let Some(found) = reader.links.iter().position(named) {
-        return Some(Some(found));
+        return Ok(Some(found));
     }
     let bodies = reader.links.iter().filter(|link| link.written);
     let known: Vec<&str> = bodies
@@ -145,7 +152,7 @@ fn body(element: Element<'_>, key: &str, reader: &Reader<'_, '_>) -> Option<Opti
         format!("there is no body `{}`", appell_spec::shown(given.value())),
         did_you_mean(given.value(), known.iter().copied(), list),
     );
-    None
+    Err(Unknown)
 }
 
 /// `equality/joint`: a joint follows another one by a polynomial, or stands still.

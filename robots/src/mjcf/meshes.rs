@@ -1,4 +1,4 @@
-//! Volume and inertia of meshes: STL, binary or as text, and OBJ. As MuJoCo has it, pyramids over the faces from
+//! Volume and inertia of meshes: STL, binary or as text, and OBJ. As `MuJoCo` has it, pyramids over the faces from
 //! one point within count by their size, which is exact for convex meshes.
 
 use crate::inertia::{Inertia, of_triangles};

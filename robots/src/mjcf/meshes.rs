@@ -161,9 +161,9 @@ mod tests {
 
     #[test]
     fn a_box_has_the_inertia_of_a_box() {
-        let triangles = triangles("box.OBJ", BOX.as_bytes()).unwrap();
+        let triangles = triangles("box.OBJ", BOX.as_bytes()).expect("a mesh");
         assert_eq!(triangles.len(), 12);
-        let (volume, inertia) = of_triangles(&pyramids(&triangles)).unwrap();
+        let (volume, inertia) = of_triangles(&pyramids(&triangles)).expect("a mesh");
         assert!((volume - 24.0).abs() < 1e-12);
         for (ours, theirs) in inertia.centre.iter().zip([1.0, 1.5, 2.0]) {
             assert!((ours - theirs).abs() < 1e-12);
@@ -177,7 +177,7 @@ mod tests {
     #[test]
     fn both_forms_of_stl_are_read() {
         let text = "solid a\nfacet normal 0 0 1\n outer loop\n  vertex 0 0 1\n  vertex 1 0 1.5\n  vertex 0 1 1\n endloop\nendfacet\nendsolid a\n";
-        let told = triangles("a.stl", text.as_bytes()).unwrap();
+        let told = triangles("a.stl", text.as_bytes()).expect("a mesh");
         let mut bytes = vec![0; 80];
         bytes.extend(1_u32.to_le_bytes());
         bytes.extend([0; 12]);
@@ -185,7 +185,7 @@ mod tests {
             bytes.extend(number.to_le_bytes());
         }
         bytes.extend([0; 2]);
-        assert_eq!(triangles("a.stl", &bytes).unwrap(), told);
+        assert_eq!(triangles("a.stl", &bytes).expect("a mesh"), told);
         assert_eq!(triangles("a.stl", &bytes[..100]), None);
         assert_eq!(triangles("a.obj", b"f 1 2 9"), None);
     }

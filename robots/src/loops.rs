@@ -101,7 +101,8 @@ impl<'a> Rows<'a> {
 
     fn of(&mut self, connection: &Connection) -> Vec<Meeting> {
         let ends = connection.ends;
-        let along = self.carrier_of_both(ends.map(|(link, _)| link));
+        let shared = self.carrier_of_both(ends.map(|(link, _)| link));
+        let along = shared.and_then(|link| self.body_of(link));
         let turned = along.map_or(Rotation::IDENTITY, |body| self.axes(body, &self.near));
         let mut meetings = Vec::new();
         for offset in connection.points() {
@@ -120,7 +121,7 @@ impl<'a> Rows<'a> {
                 let direction = turned.0.map(|row| row[axis]);
                 let mut row = vec![0.0; self.columns.len()];
                 for (sign, end) in [(1.0, first), (-1.0, second)] {
-                    self.add_slopes(&mut row, sign, end, direction);
+                    self.add_slopes(&mut row, sign, end, direction, shared);
                 }
                 match self.follower(row) {
                     Some(follower) if self.turns(follower) => self.refuse(connection, follower),
@@ -136,17 +137,19 @@ impl<'a> Rows<'a> {
         meetings
     }
 
-    /// Adds how a point of a link moves along a direction with every coordinate.
+    /// Adds how a point of a link moves along a direction with every coordinate behind the link that carries
+    /// both ends: what moves that moves both.
     fn add_slopes(
         &self,
         row: &mut [f64],
         sign: f64,
         end: (Option<usize>, Vector),
         direction: Vector,
+        shared: Option<usize>,
     ) {
         let end_at = place(end, &self.near);
         let mut at = end.0;
-        while let Some(index) = at {
+        while let Some(index) = at.filter(|_| at != shared) {
             let link = &self.robot.links[index];
             let found = (self.tree.bodies.iter()).position(|body| body.link == index);
             if let (Some(joint), Some(body)) = (&link.joint, found) {
@@ -222,14 +225,13 @@ impl<'a> Rows<'a> {
         );
     }
 
-    /// The body of the last link that carries both; none is the ground.
+    /// The last link that carries both; none is the ground.
     fn carrier_of_both(&self, ends: [Option<usize>; 2]) -> Option<usize> {
         let way = |end: Option<usize>| -> Vec<usize> {
             std::iter::successors(end, |&link| self.robot.links[link].parent).collect()
         };
         let [first, second] = ends.map(way);
-        let shared = first.into_iter().find(|link| second.contains(link))?;
-        self.body_of(shared)
+        first.into_iter().find(|link| second.contains(link))
     }
 
     fn body_of(&self, link: usize) -> Option<usize> {

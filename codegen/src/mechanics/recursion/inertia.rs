@@ -57,17 +57,7 @@ impl Inertia {
             let (new, old) = (graph.mul(d[i], moment[j]), graph.mul(self.moment[i], d[j]));
             graph.add(new, old)
         };
-        let squares = [0, 1, 2].map(|i| product(graph, i, i));
-        let mut tensor = self.tensor;
-        for i in 0..3 {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            for square in [squares[j], squares[k]] {
-                tensor[i][i] = graph.add(tensor[i][i], square);
-            }
-            let ij = product(graph, i, j);
-            tensor[i][j] = graph.sub(tensor[i][j], ij);
-            tensor[j][i] = tensor[i][j];
-        }
+        let tensor = with_products(graph, &self.tensor, product);
         Self {
             mass: self.mass,
             moment,
@@ -104,6 +94,26 @@ impl Inertia {
             tensor,
         }
     }
+}
+
+/// An inertia, or its rate, with second moments added: `T + tr(P) 1 − P` for a symmetric P.
+pub(super) fn with_products(
+    graph: &mut Graph,
+    tensor: &Mat3,
+    mut product: impl FnMut(&mut Graph, usize, usize) -> Expr,
+) -> Mat3 {
+    let squares = [0, 1, 2].map(|i| product(graph, i, i));
+    let mut sum = *tensor;
+    for i in 0..3 {
+        let (j, k) = ((i + 1) % 3, (i + 2) % 3);
+        for square in [squares[j], squares[k]] {
+            sum[i][i] = graph.add(sum[i][i], square);
+        }
+        let ij = product(graph, i, j);
+        sum[i][j] = graph.sub(sum[i][j], ij);
+        sum[j][i] = sum[i][j];
+    }
+    sum
 }
 
 /// Of a body about its centre of mass.

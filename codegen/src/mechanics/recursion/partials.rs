@@ -14,7 +14,7 @@
 
 use super::super::algebra::{Algebra, name_of, named3};
 use super::super::rotation::Rotation;
-use super::inertia::{Inertia, Wrench};
+use super::inertia::{Inertia, Wrench, with_products};
 use super::links::{Link, Links, Step};
 use super::movement::LinkMotion;
 use crate::symbolic::vector::{self, Mat3, Vec3};
@@ -118,17 +118,7 @@ impl Flow {
             ];
             graph.sum(&terms)
         };
-        let squares = [0, 1, 2].map(|i| product(graph, i, i));
-        let mut tensor = self.tensor;
-        for i in 0..3 {
-            let (j, k) = ((i + 1) % 3, (i + 2) % 3);
-            for square in [squares[j], squares[k]] {
-                tensor[i][i] = graph.add(tensor[i][i], square);
-            }
-            let ij = product(graph, i, j);
-            tensor[i][j] = graph.sub(tensor[i][j], ij);
-            tensor[j][i] = tensor[i][j];
-        }
+        let tensor = with_products(graph, &self.tensor, product);
         let (first, second) = (graph.cross(d, moment), graph.cross(inertia.moment, u));
         let more = graph.add3(first, second);
         Self {

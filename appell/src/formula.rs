@@ -118,6 +118,7 @@ impl StateFunction {
             parameters: ids(&graph, &symbols.parameters),
             weights: Vec::new(),
             output_weights: Vec::new(),
+            accelerations: Vec::new(),
             pi: graph.as_symbol(symbols.pi),
         };
         let count = exprs.len();

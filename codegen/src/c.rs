@@ -9,7 +9,7 @@ mod types;
 use std::fmt::Write as _;
 
 use crate::infix::{Dialect, Infix, harmless, math_name, shape};
-use crate::program::{Array, Function, FunctionKind, Layout, Program};
+use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
 use crate::symbolic::{self, Rational, Relation};
@@ -359,6 +359,9 @@ fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> St
     let real = types.real.name();
     let mut text = format!("{} {{\n", types.signature(function));
     let groups = types.groups();
+    let own = function.kind.takes().map(|own| types.own(own));
+    let own = own.unwrap_or_default();
+    let accelerations = types.fields(Space::Accelerations);
     for &argument in &schedule.arguments {
         let name = types.local(argument);
         let _ = match argument {
@@ -377,7 +380,11 @@ fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> St
                 )
             }
             Argument::Weight(i) | Argument::OutputWeight(i) => {
-                writeln!(text, "    const {real} {name} = {}[{i}];", groups.weights)
+                writeln!(text, "    const {real} {name} = {own}[{i}];")
+            }
+            Argument::Acceleration(i) => {
+                let field = &accelerations[i as usize];
+                writeln!(text, "    const {real} {name} = {own}->{field};")
             }
         };
     }

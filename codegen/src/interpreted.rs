@@ -5,7 +5,7 @@
 
 use std::sync::OnceLock;
 
-use appell_runtime::differences;
+use appell_runtime::{differences, inverse_dynamics};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 use appell_runtime::series::Series;
 
@@ -125,6 +125,40 @@ impl Model for InterpretedModel {
 
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]) {
         self.evaluate(FunctionKind::Outputs, at, &mut [("outputs", outputs)]);
+    }
+
+    fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
+        let kind = FunctionKind::InverseDynamics;
+        match self.program.function(kind) {
+            Some(_) => {
+                self.evaluate_weighted(kind, at, accelerations, &mut [("demand", demand)]);
+            }
+            None => inverse_dynamics::demand(self, at, accelerations, demand),
+        }
+    }
+
+    fn inverse_dynamics_jacobians(
+        &self,
+        at: At<'_>,
+        accelerations: &[f64],
+        demand: &mut [f64],
+        by_state: &mut [f64],
+        by_inputs: &mut [f64],
+        mass: &mut [f64],
+    ) {
+        let kind = FunctionKind::InverseDynamicsJacobians;
+        if self.program.function(kind).is_none() {
+            let results = [demand, by_state, by_inputs, mass];
+            inverse_dynamics::jacobians(self, at, accelerations, results);
+            return;
+        }
+        let wanted = &mut [
+            ("demand", demand),
+            ("by_state", by_state),
+            ("by_inputs", by_inputs),
+            ("mass_matrix", mass),
+        ];
+        self.evaluate_weighted(kind, at, accelerations, wanted);
     }
 
     fn has_adjoint(&self) -> bool {

@@ -24,6 +24,7 @@ pub mod glossary;
 mod hints;
 mod info;
 pub mod initial;
+mod inverse;
 pub mod kinematics;
 mod letters;
 pub mod linear;

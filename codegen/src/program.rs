@@ -72,6 +72,8 @@ pub struct Arguments {
     pub weights: Vec<SymbolId>,
     /// Weights of [`FunctionKind::OutputAdjoint`], where the program has it.
     pub output_weights: Vec<SymbolId>,
+    /// Given pseudo-accelerations.
+    pub accelerations: Vec<SymbolId>,
     /// The number π, where expressions may contain it.
     pub pi: Option<SymbolId>,
 }
@@ -249,6 +251,10 @@ pub enum FunctionKind {
     /// Systems that are solved with pivoting, where there are any: result `matrices`, one after the
     /// other.
     Systems,
+    /// M ω̇ + b − Π for given ω̇: result `demand`.
+    InverseDynamics,
+    /// The same with its derivatives: results `demand`, `by_state`, `by_inputs`, and `mass_matrix`, that by ω̇.
+    InverseDynamicsJacobians,
     /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩: results `x`, `u`, `p`.
     Adjoint,
     /// Outputs, C, D: results `outputs`, `c`, `d`.
@@ -257,9 +263,30 @@ pub enum FunctionKind {
     OutputAdjoint,
 }
 
+/// What a function takes beside time, parameters, state and inputs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Own {
+    /// Weights of the rates and their derivatives.
+    Weights,
+    /// Weights of the outputs and their derivatives.
+    OutputWeights,
+    /// Pseudo-accelerations.
+    Accelerations,
+}
+
+impl Own {
+    /// Name of the argument.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Weights | Self::OutputWeights => "weights",
+            Self::Accelerations => "accelerations",
+        }
+    }
+}
+
 impl FunctionKind {
     /// All of them, in the order of emitted code.
-    pub const ALL: [Self; 20] = [
+    pub const ALL: [Self; 22] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -277,6 +304,8 @@ impl FunctionKind {
         Self::PositionConstraints,
         Self::Contacts,
         Self::Systems,
+        Self::InverseDynamics,
+        Self::InverseDynamicsJacobians,
         Self::Adjoint,
         Self::OutputJacobians,
         Self::OutputAdjoint,
@@ -284,7 +313,7 @@ impl FunctionKind {
 
     /// Those of every model. The others, which estimation asks for, are as long as all of these
     /// together.
-    pub const STANDARD: [Self; 17] = [
+    pub const STANDARD: [Self; 19] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -302,6 +331,8 @@ impl FunctionKind {
         Self::PositionConstraints,
         Self::Contacts,
         Self::Systems,
+        Self::InverseDynamics,
+        Self::InverseDynamicsJacobians,
     ];
 
     /// Those that a motion needs: of [`Self::STANDARD`], all but derivatives and what other functions
@@ -319,6 +350,16 @@ impl FunctionKind {
         Self::Contacts,
         Self::Systems,
     ];
+
+    /// What it takes beside time, parameters, state and inputs.
+    pub fn takes(self) -> Option<Own> {
+        match self {
+            Self::Adjoint => Some(Own::Weights),
+            Self::OutputAdjoint => Some(Own::OutputWeights),
+            Self::InverseDynamics | Self::InverseDynamicsJacobians => Some(Own::Accelerations),
+            _ => None,
+        }
+    }
 
     /// Name of the emitted function.
     pub fn name(self) -> &'static str {
@@ -411,6 +452,18 @@ impl FunctionKind {
                 "systems",
                 "Systems",
                 "Matrices of the systems that are solved with pivoting, row by row.",
+            ),
+            Self::InverseDynamics => (
+                "inverse_dynamics",
+                "InverseDynamics",
+                "Inverse dynamics: the pseudo-forces M ω̇ + b − Π that a motion takes beyond the loads. With \
+                 inputs of zero they are what drives along the pseudo-velocities have to bring.",
+            ),
+            Self::InverseDynamicsJacobians => (
+                "inverse_dynamics_jacobians",
+                "InverseDynamicsJacobians",
+                "Inverse dynamics with its Jacobians with respect to state, inputs and pseudo-accelerations; \
+                 the last is the mass matrix M.",
             ),
             Self::Adjoint => (
                 "adjoint",

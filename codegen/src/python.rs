@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use appell_runtime::model::Quantity;
 
 use crate::infix::{Dialect, Infix, harmless, math_name, shape};
-use crate::program::{Function, FunctionKind, Program};
+use crate::program::{Function, FunctionKind, Own, Program};
 use crate::schedule::names::ArgumentNames;
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
@@ -126,21 +126,17 @@ fn definition(
         schedule,
         names: arguments,
     };
-    let [t, x, u, p, weights] = ["t", "x", "u", "p", "weights"].map(|name| {
+    let own = function.kind.takes().map_or("", Own::name);
+    let [t, x, u, p, own] = ["t", "x", "u", "p", own].map(|name| {
         if name == "t" {
             Python.name(&arguments.time)
         } else {
             infix.free(name)
         }
     });
-    let adjoint = matches!(
-        function.kind,
-        FunctionKind::Adjoint | FunctionKind::OutputAdjoint
-    );
-    let last = if adjoint {
-        format!(", {weights}")
-    } else {
-        String::new()
+    let last = match function.kind.takes() {
+        Some(_) => format!(", {own}"),
+        None => String::new(),
     };
     let _ = writeln!(
         text,
@@ -172,7 +168,9 @@ fn definition(
             Argument::State(i) => (&x, i),
             Argument::Input(i) => (&u, i),
             Argument::Parameter(i) => (&p, i),
-            Argument::Weight(i) | Argument::OutputWeight(i) => (&weights, i),
+            Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i) => {
+                (&own, i)
+            }
         };
         let _ = writeln!(text, "    {name} = {of}[{index}]");
     }

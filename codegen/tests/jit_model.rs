@@ -111,6 +111,7 @@ fn pendulum() -> Program {
         time: symbol(t),
         weights: Vec::new(),
         output_weights: Vec::new(),
+        accelerations: Vec::new(),
         pi: None,
         states: vec![symbol(w), symbol(theta)],
         inputs: vec![symbol(u)],

@@ -140,7 +140,7 @@ fn slopes(at: &[f64], by: &mut [f64], first: usize, mut scalar: impl FnMut(&[f64
 }
 
 /// Slopes of a vector, a column of `matrix` for each variable.
-fn columns(
+pub(crate) fn columns(
     at: &[f64],
     matrix: &mut [f64],
     width: usize,

@@ -31,6 +31,7 @@ pub mod contact;
 pub mod dense;
 #[cfg(feature = "std")]
 pub mod differences;
+pub mod inverse_dynamics;
 #[cfg(any(feature = "std", feature = "libm"))]
 pub mod elementary;
 #[cfg(feature = "std")]

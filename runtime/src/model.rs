@@ -3,6 +3,7 @@
 use std::borrow::Cow;
 
 use crate::differences;
+use crate::inverse_dynamics;
 use crate::lanes::{AtLanes, LANES, place_by_place};
 use crate::series::Series;
 
@@ -382,6 +383,26 @@ pub trait Model: Sync {
     /// Outputs with the elementary functions of [`Model::outputs_lanes`], bit for bit.
     fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
         self.outputs(at, outputs);
+    }
+    /// Inverse dynamics: the pseudo-forces M ω̇ + b − Π that given pseudo-accelerations take beyond the
+    /// loads (`s`).
+    fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
+        inverse_dynamics::demand(self, at, accelerations, demand);
+    }
+    /// [`Model::inverse_dynamics`] with its Jacobians with respect to the state (`s·n`), the inputs
+    /// (`s·m`) and the pseudo-accelerations, which is M (`s·s`). The answer of this trait is made of
+    /// differences, right to some nine digits.
+    fn inverse_dynamics_jacobians(
+        &self,
+        at: At<'_>,
+        accelerations: &[f64],
+        demand: &mut [f64],
+        by_state: &mut [f64],
+        by_inputs: &mut [f64],
+        mass: &mut [f64],
+    ) {
+        let results = [demand, by_state, by_inputs, mass];
+        inverse_dynamics::jacobians(self, at, accelerations, results);
     }
     /// Whether the derivatives below are formulas. The answers of this trait are differences of the
     /// functions above: slower, and right to some nine digits.

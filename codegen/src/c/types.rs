@@ -6,7 +6,7 @@ use appell_runtime::model::Quantity;
 
 use super::{Real, is_empty};
 use crate::infix::{Dialect, harmless, shape};
-use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
+use crate::program::{Array, Function, Layout, Own, Program, Space};
 use crate::schedule::names::{ArgumentNames, identifier};
 use crate::schedule::{Argument, Schedule};
 
@@ -27,7 +27,6 @@ pub(super) struct Groups {
     pub(super) parameters: String,
     pub(super) state: String,
     pub(super) inputs: String,
-    pub(super) weights: String,
 }
 
 impl<'a> Types<'a> {
@@ -57,20 +56,27 @@ impl<'a> Types<'a> {
 
     /// Arguments of functions, none of them called like a quantity.
     pub(super) fn groups(&self) -> Groups {
-        let free = |name: &str| {
-            let mut name = name.to_owned();
-            while self.names.iter().any(|other| *other == name) {
-                name.push('_');
-            }
-            name
-        };
+        let free = |name| self.free(name);
         Groups {
             time: self.local(Argument::Time),
             parameters: free("parameters"),
             state: free("state"),
             inputs: free("inputs"),
-            weights: free("weights"),
         }
+    }
+
+    /// A name that is not called like a quantity.
+    fn free(&self, name: &str) -> String {
+        let mut name = name.to_owned();
+        while self.names.iter().any(|other| *other == name) {
+            name.push('_');
+        }
+        name
+    }
+
+    /// Name of what a function takes beside these arguments.
+    pub(super) fn own(&self, own: Own) -> String {
+        self.free(own.name())
     }
 
     pub(super) fn type_name(&self, space: Space) -> String {
@@ -167,8 +173,12 @@ impl<'a> Types<'a> {
             format!("const {} *{}", self.type_name(Space::State), groups.state),
             format!("const {} *{}", self.type_name(Space::Inputs), groups.inputs),
         ];
-        if is_adjoint(function.kind) {
-            arguments.push(format!("const {real} *{}", groups.weights));
+        if let Some(own) = function.kind.takes() {
+            let type_name = match own {
+                Own::Weights | Own::OutputWeights => real.to_owned(),
+                Own::Accelerations => self.type_name(Space::Accelerations),
+            };
+            arguments.push(format!("const {type_name} *{}", self.own(own)));
         }
         for array in &function.results {
             if is_empty(self.program, array) {
@@ -365,10 +375,6 @@ SIGNATURE {
     memcpy(x, at, sizeof at);
 }
 ";
-
-fn is_adjoint(kind: FunctionKind) -> bool {
-    matches!(kind, FunctionKind::Adjoint | FunctionKind::OutputAdjoint)
-}
 
 /// What a field means, and the unit of the spec.
 fn told(quantity: &Quantity, space: Space) -> String {

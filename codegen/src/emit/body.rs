@@ -21,7 +21,7 @@ pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) 
         statements: Statements::new(Places::Locals(&types.names), schedule),
     };
     body.arguments();
-    body.weights();
+    body.own(function);
     body.statements.constants();
     body.statements.steps();
     body.results(function);
@@ -53,15 +53,24 @@ impl Body<'_> {
         }
     }
 
-    /// `let lambda_v = weights[0];`
-    fn weights(&mut self) {
+    /// `let lambda_v = weights[0];`, `let v_dot = accelerations.v_dot;`
+    fn own(&mut self, function: &Function) {
+        let Some((own, _)) = self.types.own(function.kind) else {
+            return;
+        };
+        let accelerations = self.types.fields(Space::Accelerations);
         for &argument in &self.schedule.arguments {
-            if let Argument::Weight(index) | Argument::OutputWeight(index) = argument {
-                let weights = &self.types.argument_names()[4];
-                let value = s::entry(s::name(weights), &[index as usize]);
-                self.statements
-                    .push(s::binding(self.types.names.get(argument)), value);
-            }
+            let value = match argument {
+                Argument::Weight(index) | Argument::OutputWeight(index) => {
+                    s::entry(s::name(&own), &[index as usize])
+                }
+                Argument::Acceleration(index) => {
+                    s::field(s::name(&own), &accelerations[index as usize])
+                }
+                _ => continue,
+            };
+            let local = s::binding(self.types.names.get(argument));
+            self.statements.push(local, value);
         }
     }
 

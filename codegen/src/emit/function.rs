@@ -1,6 +1,5 @@
 //! One function of a model: signature, rustdoc, body.
 
-use proc_macro2::Literal;
 use quote::quote;
 use syn::ItemFn;
 
@@ -105,7 +104,7 @@ pub(super) fn function(
             quote::format_ident!("_{}", ident(name))
         }
     };
-    let [time, parameters, state, inputs, weights] = types.argument_names();
+    let [time, parameters, state, inputs] = types.argument_names();
     let time = types.program.info.explicit_time.then(|| {
         let time = argument(time, uses(Argument::Time));
         quote!(#time: T,)
@@ -113,15 +112,11 @@ pub(super) fn function(
     let parameters = argument(parameters, uses(Argument::Parameter(0)));
     let state = argument(state, uses(Argument::State(0)));
     let inputs = argument(inputs, uses(Argument::Input(0)));
-    let weights = match types.weights(function.kind) {
-        0 => None,
-        count => {
-            let uses = uses(Argument::Weight(0)) || uses(Argument::OutputWeight(0));
-            let weights = argument(weights, uses);
-            let count = Literal::usize_unsuffixed(count);
-            Some(quote!(#weights: &[T; #count],))
-        }
-    };
+    let own = types.own(function.kind).map(|(name, type_name)| {
+        let all = [Argument::Weight(0), Argument::OutputWeight(0), Argument::Acceleration(0)];
+        let name = argument(&name, all.into_iter().any(uses));
+        quote!(#name: &#type_name,)
+    });
     let result = match result_struct(function) {
         Some(name) => {
             let name = known(name);
@@ -148,7 +143,7 @@ pub(super) fn function(
             #parameters: &#parameters_type,
             #state: &#state_type,
             #inputs: &#inputs_type,
-            #weights
+            #own
         ) -> #result {}
     };
     let mut item: ItemFn = syn::parse2(tokens).map_err(|error| Error::Syntax(error.to_string()))?;

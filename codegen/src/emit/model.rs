@@ -278,6 +278,12 @@ pub(super) fn implementation(
         position_methods(types)?,
         provided(types, FunctionKind::Contacts, &["normals", "friction"])?,
         system_methods(types)?,
+        inverse_method(types, FunctionKind::InverseDynamics, &["demand"])?,
+        inverse_method(
+            types,
+            FunctionKind::InverseDynamicsJacobians,
+            &["demand", "by_state", "by_inputs", "mass"],
+        )?,
         adjoint_methods(types)?,
         provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
         gradient_method(types, FunctionKind::OutputAdjoint)?,
@@ -360,8 +366,11 @@ fn helpers(types: &Types<'_>) -> TokenStream {
 fn call(types: &Types<'_>, kind: FunctionKind) -> TokenStream {
     let function = known(kind.name());
     let time = types.program.info.explicit_time.then(|| quote!(at.t,));
-    let weights = (types.weights(kind) > 0).then(|| quote!(, &weights));
-    quote!(self::#function(#time &parameters(&at), &state(&at), &inputs(&at) #weights))
+    let own = kind.takes().map(|own| {
+        let name = known(own.name());
+        quote!(, &#name)
+    });
+    quote!(self::#function(#time &parameters(&at), &state(&at), &inputs(&at) #own))
 }
 
 /// Writes a result of a layout into a slice.
@@ -580,13 +589,37 @@ fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> Result<TokenStream,
         return Ok(TokenStream::new());
     }
     let name = known(kind.name());
-    let count = Literal::usize_unsuffixed(types.weights(kind));
     let body = written(types, kind, &[quote!(by.x), quote!(by.u), quote!(by.p)])?;
     let blank = blank_tokens();
     Ok(quote! {
         #blank
         fn #name(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
-            let weights = first::<#count>(weights);
+            let weights = first(weights);
+            #body
+        }
+    })
+}
+
+/// A method of given pseudo-accelerations, where the program has it.
+fn inverse_method(
+    types: &Types<'_>,
+    kind: FunctionKind,
+    arguments: &[&'static str],
+) -> Result<TokenStream, Error> {
+    if types.program.function(kind).is_none() {
+        return Ok(TokenStream::new());
+    }
+    let name = known(kind.name());
+    let given = known(Types::type_name(Space::Accelerations));
+    let arguments: Vec<TokenStream> = (arguments.iter().map(|name| known(name)))
+        .map(|name| quote!(#name))
+        .collect();
+    let body = written(types, kind, &arguments)?;
+    let blank = blank_tokens();
+    Ok(quote! {
+        #blank
+        fn #name(&self, at: At<'_>, accelerations: &[f64], #(#arguments: &mut [f64]),*) {
+            let accelerations = #given::from(first(accelerations));
             #body
         }
     })

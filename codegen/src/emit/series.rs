@@ -110,7 +110,9 @@ fn body(slices: [&'static str; 4], time: &'static str, schedule: &Schedule) -> T
             Argument::State(index) => (0, index),
             Argument::Input(index) => (1, index),
             Argument::Parameter(index) => (2, index),
-            Argument::Weight(index) | Argument::OutputWeight(index) => (3, index),
+            Argument::Weight(index)
+            | Argument::OutputWeight(index)
+            | Argument::Acceleration(index) => (3, index),
         };
         let field = known(slices[slice]);
         s::entry(syn::parse_quote!(from.#field), &[index as usize])

@@ -211,6 +211,16 @@ pub(super) fn entry(array: Expr, indices: &[usize]) -> Expr {
     })
 }
 
+/// `value.field`
+pub(super) fn field(value: Expr, name: &str) -> Expr {
+    Expr::Field(syn::ExprField {
+        attrs: Vec::new(),
+        base: Box::new(value),
+        dot_token: token::Dot::default(),
+        member: Member::Named(ident(name)),
+    })
+}
+
 /// `Type { field: value, …, ..rest }`, short where field and value have the same name.
 pub(super) fn structure(
     type_name: &'static str,

@@ -9,7 +9,7 @@ use quote::quote;
 use super::body::Group;
 use super::layout::{blank_tokens, docs, escaped, one_line};
 use super::syntax::{ident, known, number};
-use crate::program::{Function, FunctionKind, Layout, Program, Space};
+use crate::program::{Function, FunctionKind, Layout, Own, Program, Space};
 use crate::schedule::Argument;
 use crate::schedule::names::{ArgumentNames, Names};
 
@@ -22,26 +22,19 @@ pub(super) struct Types<'a> {
     outputs: Vec<String>,
     constraint_rows: Vec<String>,
     reactions: Vec<String>,
-    arguments: [String; 5],
+    arguments: [String; 4],
 }
 
 impl<'a> Types<'a> {
     pub(super) fn new(program: &'a Program) -> Self {
         let names = ArgumentNames::of(program);
         let info = &program.info;
-        let argument = |name: &str| {
-            let mut name = name.to_owned();
-            while names.iter().any(|other| *other == name) {
-                name.push('_');
-            }
-            name
-        };
+        let argument = |name: &str| unlike(&names, name);
         let arguments = [
             names.time.clone(),
             argument("parameters"),
             argument("state"),
             argument("inputs"),
-            argument("weights"),
         ];
         Self {
             program,
@@ -54,8 +47,8 @@ impl<'a> Types<'a> {
         }
     }
 
-    /// Names of the arguments of functions: time, parameters, state, inputs; for adjoints weights.
-    pub(super) fn argument_names(&self) -> &[String; 5] {
+    /// Names of the arguments of all functions: time, parameters, state, inputs.
+    pub(super) fn argument_names(&self) -> &[String; 4] {
         &self.arguments
     }
 
@@ -77,7 +70,7 @@ impl<'a> Types<'a> {
 
     /// The structs that hold the arguments.
     pub(super) fn groups(&self) -> [Group; 3] {
-        let [_, parameters, state, inputs, _] = &self.arguments;
+        let [_, parameters, state, inputs] = &self.arguments;
         let group = |type_name, argument: &String, len, like| Group {
             type_name,
             argument: argument.clone(),
@@ -97,13 +90,19 @@ impl<'a> Types<'a> {
         ]
     }
 
-    /// How many weights a function takes.
-    pub(super) fn weights(&self, kind: FunctionKind) -> usize {
-        match kind {
-            FunctionKind::Adjoint => self.names.weights.len(),
-            FunctionKind::OutputAdjoint => self.names.output_weights.len(),
-            _ => 0,
-        }
+    /// Name and type of what a function takes beside them.
+    pub(super) fn own(&self, kind: FunctionKind) -> Option<(String, TokenStream)> {
+        let own = kind.takes()?;
+        let list = |names: &[String]| {
+            let count = proc_macro2::Literal::usize_unsuffixed(names.len());
+            quote!([T; #count])
+        };
+        let type_name = match own {
+            Own::Weights => list(&self.names.weights),
+            Own::OutputWeights => list(&self.names.output_weights),
+            Own::Accelerations => self.vector(Space::Accelerations, &quote!(T)),
+        };
+        Some((unlike(&self.names, own.name()), type_name))
     }
 
     /// Name of the struct of a vector.
@@ -256,10 +255,10 @@ impl<'a> Types<'a> {
             }
         }
         let mass_matrix = [FunctionKind::MassMatrix, FunctionKind::MassMatrixAndBias];
-        if functions
-            .iter()
-            .any(|function| mass_matrix.contains(&function.kind))
-        {
+        let kinds = functions.iter().map(|function| function.kind);
+        if kinds.into_iter().any(|kind| {
+            mass_matrix.contains(&kind) || kind.takes() == Some(Own::Accelerations)
+        }) {
             spaces.insert(Space::Accelerations);
         }
         if spaces.contains(&Space::Rates) {
@@ -385,6 +384,15 @@ impl<'a> Types<'a> {
 /// The struct a function returns, if it returns more than one array.
 pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
     (function.results.len() != 1).then(|| function.kind.result_struct())
+}
+
+/// A name like `wanted` that no argument has.
+fn unlike(names: &ArgumentNames, wanted: &str) -> String {
+    let mut name = wanted.to_owned();
+    while names.iter().any(|other| *other == name) {
+        name.push('_');
+    }
+    name
 }
 
 /// Identifiers of names, no two equal.

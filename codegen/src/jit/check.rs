@@ -211,7 +211,9 @@ impl Checker {
             Argument::State(index) => ("state", index, self.sizes.states),
             Argument::Input(index) => ("input", index, self.sizes.inputs),
             Argument::Parameter(index) => ("parameter", index, self.sizes.parameters),
-            Argument::Weight(index) | Argument::OutputWeight(index) => {
+            Argument::Weight(index)
+            | Argument::OutputWeight(index)
+            | Argument::Acceleration(index) => {
                 // Every call has to bring as many.
                 self.weights = self.weights.max(index as usize + 1);
                 ("weight", index, MOST_ARGUMENTS)

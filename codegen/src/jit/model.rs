@@ -5,6 +5,7 @@ use std::slice::from_mut;
 use std::sync::OnceLock;
 
 use appell_runtime::differences;
+use appell_runtime::inverse_dynamics;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 use appell_runtime::series::Series;
@@ -86,6 +87,16 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
         _ if program.function(kind).is_none() => vec![],
         FunctionKind::Adjoint | FunctionKind::OutputAdjoint => {
             vec![("x", n), ("u", m), ("p", k)]
+        }
+        FunctionKind::InverseDynamics => vec![("demand", info.speeds)],
+        FunctionKind::InverseDynamicsJacobians => {
+            let s = info.speeds;
+            vec![
+                ("demand", s),
+                ("by_state", s * n),
+                ("by_inputs", s * m),
+                ("mass_matrix", s * s),
+            ]
         }
         FunctionKind::OutputJacobians => {
             let l = info.output_len();
@@ -263,6 +274,31 @@ impl Model for JitModel {
         self.evaluate_own(FunctionKind::Outputs, at, [outputs]);
     }
 
+    fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
+        let kind = FunctionKind::InverseDynamics;
+        match self.program.function(kind) {
+            Some(_) => self.evaluate_weighted(kind, at, accelerations, [demand]),
+            None => inverse_dynamics::demand(self, at, accelerations, demand),
+        }
+    }
+
+    fn inverse_dynamics_jacobians(
+        &self,
+        at: At<'_>,
+        accelerations: &[f64],
+        demand: &mut [f64],
+        by_state: &mut [f64],
+        by_inputs: &mut [f64],
+        mass: &mut [f64],
+    ) {
+        let kind = FunctionKind::InverseDynamicsJacobians;
+        let results = [demand, by_state, by_inputs, mass];
+        match self.program.function(kind) {
+            Some(_) => self.evaluate_weighted(kind, at, accelerations, results),
+            None => inverse_dynamics::jacobians(self, at, accelerations, results),
+        }
+    }
+
     fn has_adjoint(&self) -> bool {
         self.program.function(FunctionKind::Adjoint).is_some()
     }
@@ -365,7 +401,9 @@ mod tests {
             Kind::Switches => Kind::PositionConstraints,
             Kind::PositionConstraints => Kind::Contacts,
             Kind::Contacts => Kind::Systems,
-            Kind::Systems => Kind::Adjoint,
+            Kind::Systems => Kind::InverseDynamics,
+            Kind::InverseDynamics => Kind::InverseDynamicsJacobians,
+            Kind::InverseDynamicsJacobians => Kind::Adjoint,
             Kind::Adjoint => Kind::OutputJacobians,
             Kind::OutputJacobians => Kind::OutputAdjoint,
             Kind::OutputAdjoint => return None,

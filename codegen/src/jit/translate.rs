@@ -354,7 +354,9 @@ impl<'a> Translation<'a> {
             Argument::State(index) => (self.received.states, index),
             Argument::Input(index) => (self.received.inputs, index),
             Argument::Parameter(index) => (self.received.parameters, index),
-            Argument::Weight(index) | Argument::OutputWeight(index) => {
+            Argument::Weight(index)
+            | Argument::OutputWeight(index)
+            | Argument::Acceleration(index) => {
                 (self.received.weights, index)
             }
         };

@@ -72,6 +72,7 @@ pub fn program(
         parameters: ids(graph, &symbols.parameters),
         weights: ids(graph, &symbols.weights),
         output_weights: ids(graph, &symbols.output_weights),
+        accelerations: ids(graph, &symbols.accelerations),
         pi: graph.as_symbol(symbols.pi),
     };
     let (hints, meanings) = derivation.hints(mechanism, &arguments);
@@ -192,6 +193,10 @@ impl Derivation {
                 let layout = Layout::List(matrices.len());
                 vec![Array::new("matrices", "Matrices.", layout, matrices)]
             }
+            FunctionKind::InverseDynamics => vec![self.inverse_dynamics(speeds)],
+            FunctionKind::InverseDynamicsJacobians => {
+                self.inverse_dynamics_jacobians(mechanism, info)?
+            }
             FunctionKind::Adjoint => self.adjoint(info)?,
             FunctionKind::OutputJacobians => self.output_jacobians(mechanism, info)?,
             FunctionKind::OutputAdjoint => self.output_adjoint(mechanism, info)?,
@@ -210,7 +215,7 @@ impl Derivation {
             .equations(graph, (&self.gibbs.mass_matrix, &right), unknowns)
     }
 
-    fn mass_matrix(&self, mechanism: &Mechanism, speeds: &[Quantity]) -> Array {
+    pub(super) fn mass_matrix(&self, mechanism: &Mechanism, speeds: &[Quantity]) -> Array {
         let entries = self.gibbs.mass_matrix.concat();
         let all = 0..entries.len();
         let layout = Layout::Matrix(speeds.len(), speeds.len());
@@ -237,7 +242,12 @@ impl Derivation {
                 .explaining(glossary::of_rows(mechanism, &self.constraints))
                 .remarking(embedded(mechanism, &self.constraints)),
             F::Energies => self.staged_by_velocities(mechanism, function),
-            F::Bias | F::MassMatrixAndBias | F::Rates | F::Jacobians => {
+            F::Bias
+            | F::MassMatrixAndBias
+            | F::Rates
+            | F::Jacobians
+            | F::InverseDynamics
+            | F::InverseDynamicsJacobians => {
                 let bodies = self.bodies.clone();
                 self.explained(mechanism, function, &bodies)
             }
@@ -608,7 +618,7 @@ const B: &str = "B = ∂ẋ/∂u: one row per rate, one column per input.";
 const P: &str = "P = ∂ẋ/∂p: one row per rate, one column per parameter.";
 
 /// One entry per pseudo-velocity.
-fn by_speed(
+pub(super) fn by_speed(
     name: &str,
     result: &str,
     about: &str,

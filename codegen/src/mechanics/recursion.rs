@@ -265,19 +265,32 @@ impl Recursion {
 
     /// `Π − b − M ω̇` with these accelerations.
     pub fn residual(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Vec<Expr> {
+        let taken = self.taken(algebra, accelerations, "s");
+        let forces = self.forces.iter().zip(taken);
+        forces
+            .map(|(&force, taken)| algebra.graph.sub(force, taken))
+            .collect()
+    }
+
+    /// `M ω̇ + b − Π` with these accelerations.
+    pub fn demand(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Vec<Expr> {
+        let taken = self.taken(algebra, accelerations, "");
+        let forces = self.forces.iter().zip(taken);
+        forces
+            .map(|(&force, taken)| algebra.graph.sub(taken, force))
+            .collect()
+    }
+
+    /// The forces along the speeds that these accelerations take, while the ground rises.
+    fn taken(&self, algebra: &mut Algebra, accelerations: &[Expr], kind: &'static str) -> Vec<Expr> {
         let driven = Driven {
             ground: self.rise,
             accelerations: Some(accelerations),
-            kind: "s",
+            kind,
         };
         let motions = self.links.motions(algebra, &driven);
-        let wrenches = self.links.wrenches(algebra, &self.own, &motions, "s");
-        let graph = &mut algebra.graph;
-        let taken = self.links.felt(graph, &wrenches);
-        let forces = self.forces.iter().zip(taken);
-        forces
-            .map(|(&force, taken)| graph.sub(force, taken))
-            .collect()
+        let wrenches = self.links.wrenches(algebra, &self.own, &motions, kind);
+        self.links.felt(&mut algebra.graph, &wrenches)
     }
 
     /// Speeds from the tips inwards: eliminated in this order, branches do not couple.

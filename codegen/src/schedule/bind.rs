@@ -9,7 +9,7 @@ use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
 use super::signs::{choose_signs, keeps_its_name};
 use super::steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
-use crate::program::{Function, Program};
+use crate::program::{Function, Own, Program};
 use crate::symbolic::{Function as Elementary, Rational};
 
 /// Columns of an emitted line.
@@ -89,6 +89,11 @@ impl<'a> Binding<'a> {
         let mut names = Names::default();
         for name in arguments.iter() {
             names.reserve(name);
+        }
+        if function.kind.takes() == Some(Own::Accelerations) {
+            for name in &arguments.accelerations {
+                names.reserve(name);
+            }
         }
         let outline = Outline::new(program, function, dag);
         for &id in &outline.order {
@@ -652,7 +657,9 @@ fn reading_order(tree: &Tree) -> (u8, u32) {
         Tree::Argument(Argument::Time) => (3, 0),
         Tree::Argument(Argument::State(i)) => (4, *i),
         Tree::Argument(Argument::Input(i)) => (5, *i),
-        Tree::Argument(Argument::Weight(i) | Argument::OutputWeight(i)) => (6, *i),
+        Tree::Argument(
+            Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i),
+        ) => (6, *i),
         _ => (7, 0),
     }
 }

@@ -97,9 +97,9 @@ impl Machine<'_> {
             Tree::Argument(Argument::State(i)) => self.at.x[*i as usize],
             Tree::Argument(Argument::Input(i)) => self.at.u[*i as usize],
             Tree::Argument(Argument::Parameter(i)) => self.at.p[*i as usize],
-            Tree::Argument(Argument::Weight(i) | Argument::OutputWeight(i)) => {
-                self.weights[*i as usize]
-            }
+            Tree::Argument(
+                Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i),
+            ) => self.weights[*i as usize],
             Tree::Constant(value) => value.to_f64(),
             Tree::Negate(a) => -self.tree(a),
             Tree::Binary(operation, a, b) => {

@@ -95,6 +95,7 @@ fn arguments(program: &Program) -> FxHashMap<SymbolId, Argument> {
         .chain(numbered(&of.parameters, Argument::Parameter))
         .chain(numbered(&of.weights, Argument::Weight))
         .chain(numbered(&of.output_weights, Argument::OutputWeight))
+        .chain(numbered(&of.accelerations, Argument::Acceleration))
         .collect()
 }
 

@@ -72,6 +72,8 @@ pub(crate) struct ArgumentNames {
     pub(crate) weights: Vec<String>,
     /// Weights of the adjoint of the outputs.
     pub(crate) output_weights: Vec<String>,
+    /// Given pseudo-accelerations, in functions that take some.
+    pub(crate) accelerations: Vec<String>,
 }
 
 impl ArgumentNames {
@@ -94,6 +96,10 @@ impl ArgumentNames {
                 .map(|&w| names.fresh(program.graph.symbol_name(w)))
                 .collect()
         });
+        let speeds = states.iter().take(info.speeds);
+        let accelerations = speeds
+            .map(|speed| names.fresh(&format!("{speed}_dot")))
+            .collect();
         Self {
             time,
             states,
@@ -101,6 +107,7 @@ impl ArgumentNames {
             parameters,
             weights,
             output_weights,
+            accelerations,
         }
     }
 
@@ -113,10 +120,11 @@ impl ArgumentNames {
             Argument::Parameter(i) => &self.parameters[i as usize],
             Argument::Weight(i) => &self.weights[i as usize],
             Argument::OutputWeight(i) => &self.output_weights[i as usize],
+            Argument::Acceleration(i) => &self.accelerations[i as usize],
         }
     }
 
-    /// All names.
+    /// All names but those of accelerations, which most functions compute.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &String> {
         let lists = self
             .states

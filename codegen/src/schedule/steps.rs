@@ -34,6 +34,8 @@ pub enum Argument {
     Weight(u32),
     /// Weight of an adjoint of the outputs by index.
     OutputWeight(u32),
+    /// Given pseudo-acceleration by index.
+    Acceleration(u32),
 }
 
 /// A step.

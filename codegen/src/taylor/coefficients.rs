@@ -84,9 +84,10 @@ impl Expansion {
         Some(match argument {
             Argument::State(_) | Argument::Input(_) => self.sweep.argument(argument),
             Argument::Time => self.order(OrderNumber::Time),
-            Argument::Parameter(_) | Argument::Weight(_) | Argument::OutputWeight(_) => {
-                return None;
-            }
+            Argument::Parameter(_)
+            | Argument::Weight(_)
+            | Argument::OutputWeight(_)
+            | Argument::Acceleration(_) => return None,
         })
     }
 

@@ -85,6 +85,7 @@ impl Sketch {
             time: symbols(&[quantity("t", "Time.", "s", 0.0)])[0],
             weights: Vec::new(),
             output_weights: Vec::new(),
+            accelerations: Vec::new(),
             pi: None,
         };
         let info = ModelInfo {

@@ -158,7 +158,9 @@ impl Lowering {
             Argument::State(index) => (Array::States, index),
             Argument::Input(index) => (Array::Inputs, index),
             Argument::Parameter(index) => (Array::Parameters, index),
-            Argument::Weight(index) | Argument::OutputWeight(index) => (Array::Weights, index),
+            Argument::Weight(index)
+            | Argument::OutputWeight(index)
+            | Argument::Acceleration(index) => (Array::Weights, index),
         };
         self.node(Node::Argument(array, index))
     }

@@ -1,0 +1,103 @@
+//! Inverse dynamics: the pseudo-forces M ω̇ + b − Π that a given motion takes beyond the loads, and how they
+//! change with the motion.
+//!
+//! Π is that of the state and the inputs, as in the equations of motion: what loads know of reactions is
+//! that of the motion which the inputs bring about.
+
+use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::mechanism::Mechanism;
+
+use super::Derivation;
+use super::assemble::{by_speed, input_symbols};
+use super::finding::Outcome;
+use crate::program::{Array, Layout, Space};
+use crate::symbolic::Expr;
+
+impl Derivation {
+    /// M ω̇ + b − Π with symbols for ω̇.
+    pub(super) fn inverse_dynamics(&mut self, speeds: &[Quantity]) -> Array {
+        let demand = self.demand();
+        let about = "M ω̇ + b − Π.";
+        by_speed("demand", "demand", about, speeds, demand)
+    }
+
+    /// The same with its derivatives.
+    pub(super) fn inverse_dynamics_jacobians(
+        &mut self,
+        mechanism: &Mechanism,
+        info: &ModelInfo,
+    ) -> Outcome<Vec<Array>> {
+        let speeds = &info.states[..info.speeds];
+        let states = [self.symbols.speeds.as_slice(), &self.symbols.coordinates].concat();
+        let inputs = input_symbols(&self.symbols, info);
+        let demand = self.inverse_dynamics(speeds);
+        let by_state = self.changes_of_demand(&demand.entries, &states);
+        let by_inputs = self.changes_of_demand(&demand.entries, &inputs);
+        let jacobian = |name: &str, about: &str, by: Space, entries: Vec<Expr>| {
+            let columns = by.quantities(info);
+            let labels = speeds.iter().flat_map(|row| {
+                let label = move |column: &Quantity| format!("d_{}_d_{}", row.name, column.name);
+                columns.iter().map(label)
+            });
+            let layout = Layout::Jacobian(Space::GeneralizedForces, by);
+            let mut array = Array::new(name, about, layout, entries).labelled(labels);
+            for (row, speed) in speeds.iter().enumerate() {
+                let title = format!("Row `{}` of `{name}`.", speed.name);
+                array = array.under(&title, row * columns.len()..(row + 1) * columns.len());
+            }
+            array
+        };
+        Ok(vec![
+            demand,
+            jacobian(
+                "by_state",
+                "∂(M ω̇ + b − Π)/∂x, ω̇ held.",
+                Space::State,
+                by_state,
+            ),
+            jacobian("by_inputs", "−∂Π/∂u.", Space::Inputs, by_inputs),
+            self.mass_matrix(mechanism, speeds),
+        ])
+    }
+
+    fn demand(&mut self) -> Vec<Expr> {
+        let accelerations = &self.symbols.accelerations;
+        if let Some(tree) = &self.recursion {
+            return tree.demand(&mut self.algebra, accelerations);
+        }
+        let graph = &mut self.algebra.graph;
+        let (mass, bias) = (&self.gibbs.mass_matrix, &self.gibbs.bias);
+        let rows = mass.iter().zip(bias).zip(&self.forces);
+        rows.map(|((row, &bias), &force)| {
+            let inertial = row.iter().zip(accelerations);
+            let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
+            terms.extend([bias, graph.neg(force)]);
+            graph.sum(&terms)
+        })
+        .collect()
+    }
+
+    /// ∂(M ω̇ + b − Π)/∂z, row by row.
+    fn changes_of_demand(&mut self, demand: &[Expr], variables: &[Expr]) -> Vec<Expr> {
+        let (algebra, accelerations) = (&mut self.algebra, &self.symbols.accelerations);
+        let columns: Vec<Vec<Expr>> = if let Some(tree) = &self.recursion {
+            let at = tree.differentiable(algebra, accelerations);
+            let columns = variables.iter().map(|&z| {
+                let left = tree.partial(algebra, &at, accelerations, z);
+                left.iter().map(|&entry| algebra.graph.neg(entry)).collect()
+            });
+            columns.collect()
+        } else {
+            let columns = variables.iter().map(|&z| {
+                let rows = demand.iter().map(|&row| {
+                    let entry = algebra.derivative(row, z);
+                    algebra.unless_zero(entry)
+                });
+                rows.collect()
+            });
+            columns.collect()
+        };
+        let row = |row| columns.iter().map(move |column: &Vec<Expr>| column[row]);
+        (0..demand.len()).flat_map(row).collect()
+    }
+}

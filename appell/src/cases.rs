@@ -23,6 +23,8 @@ pub struct Case {
     pub u: Vec<Option<f64>>,
     /// Parameters.
     pub p: Vec<f64>,
+    /// Pseudo-accelerations whose inverse dynamics is asked for; omitted ones are zero.
+    pub accelerations: Option<Vec<f64>>,
 }
 
 /// The entries of a JSON object in the order of the text; values keep their places.
@@ -61,7 +63,8 @@ impl<'de> Deserialize<'de> for Object<'de> {
 /// Maximum number of mistakes reported for a file.
 const MOST: usize = 20;
 
-/// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`.
+/// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`; a case may have
+/// `"accelerations"` by pseudo-velocity.
 pub fn read_cases(file: &str, text: &str, info: &ModelInfo) -> Result<Vec<Case>, Error> {
     let mut reader = Reader {
         text,
@@ -192,7 +195,7 @@ impl<'a> Reader<'a> {
 
     fn case(&mut self, raw: &'a RawValue, info: &ModelInfo) -> Case {
         let object = self.object(raw, "an object").unwrap_or_default();
-        let known = ["parameters", "state", "inputs", "t"];
+        let known = ["parameters", "state", "inputs", "accelerations", "t"];
         self.keys(&object, self.head(raw), &known, "state");
         let mut numbers = |key: &str, what: &str, list: &[Quantity]| match object.get(key) {
             Some(raw) => self.numbers(raw, what, list),
@@ -201,6 +204,10 @@ impl<'a> Reader<'a> {
         let state = numbers("state", "state", &info.states);
         let u = numbers("inputs", "input", &info.inputs);
         let parameters = numbers("parameters", "parameter", &info.parameters);
+        let accelerations = object.get("accelerations").map(|raw| {
+            let given = self.numbers(raw, "pseudo-velocity", info.speed_quantities());
+            given.into_iter().map(Option::unwrap_or_default).collect()
+        });
         if let Some(raw) = object.get("state") {
             let given = info.states.iter().zip(&state);
             let missing: Vec<&str> = given
@@ -236,6 +243,7 @@ impl<'a> Reader<'a> {
                 .zip(info.parameters.iter())
                 .map(|(v, q)| v.unwrap_or(q.value))
                 .collect(),
+            accelerations,
         }
     }
 

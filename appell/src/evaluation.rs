@@ -41,6 +41,8 @@ pub struct Values {
     pub conditions: Conditions,
     /// Outputs.
     pub outputs: Vec<f64>,
+    /// M ω̇ + b − Π for the pseudo-accelerations of the case, where it has some.
+    pub inverse_dynamics: Option<Vec<f64>>,
 }
 
 /// The values of all cases.
@@ -79,7 +81,7 @@ impl Model {
                 u: &u,
                 p: &case.p,
             };
-            Values::at(model, at)
+            Values::at(model, at, case.accelerations.as_deref())
         });
         let values = values.collect();
         Ok(Evaluation { info, values })
@@ -87,7 +89,7 @@ impl Model {
 }
 
 impl Values {
-    fn at(model: &dyn Equations, at: At<'_>) -> Self {
+    fn at(model: &dyn Equations, at: At<'_>, accelerations: Option<&[f64]>) -> Self {
         let info = model.info();
         let (n, s, m, k) = (
             info.state_len(),
@@ -123,6 +125,11 @@ impl Values {
             contacts: ContactForces::new().at(model, at).to_vec(),
             conditions: Conditions::of(model, at),
             outputs,
+            inverse_dynamics: accelerations.map(|given| {
+                let mut demand = vec![0.0; s];
+                model.inverse_dynamics(at, given, &mut demand);
+                demand
+            }),
         }
     }
 
@@ -134,7 +141,8 @@ impl Values {
             self.energies.power,
             self.energies.acceleration,
         ];
-        let lists: [&[f64]; 11] = [
+        let demand = self.inverse_dynamics.as_deref();
+        let lists: [&[f64]; 12] = [
             &self.rates,
             &self.a,
             &self.b,
@@ -146,6 +154,7 @@ impl Values {
             &self.reactions,
             &self.outputs,
             &energies,
+            demand.unwrap_or_default(),
         ];
         lists.into_iter().flatten().all(|value| value.is_finite())
     }
@@ -166,7 +175,7 @@ impl Values {
             .zip(self.reactions.chunks(3))
             .map(|(reaction, force)| (reaction.name.to_string(), json!(force)))
             .collect();
-        json!({
+        let mut value = json!({
             "rates": named(&info.states, &self.rates),
             "mass_matrix": rows(&self.mass_matrix, info.speeds),
             "bias": self.bias,
@@ -187,7 +196,11 @@ impl Values {
                 "systems": self.conditions.systems,
             },
             "outputs": named(&info.outputs, &self.outputs),
-        })
+        });
+        if let Some(demand) = &self.inverse_dynamics {
+            value["inverse_dynamics"] = json!(demand);
+        }
+        value
     }
 
     /// The contact forces. An infinite friction demand is `null`.

@@ -225,6 +225,7 @@ fn values(spec: &str, states: &[[f64; 8]]) -> Vec<Values> {
             x,
             u: vec![None; model.info().input_len()],
             p: model.info().default_parameters(),
+            accelerations: None,
         }
     });
     let cases: Vec<Case> = cases.collect();

@@ -56,6 +56,21 @@ fn the_pendulum_obeys_its_textbook_equation() {
 }
 
 #[test]
+fn inverse_dynamics_is_what_a_motion_takes_beyond_its_loads() {
+    let folder = Folder::new();
+    let case = r#"{"cases": [{"state": {"omega": 0, "theta": 0}, "accelerations": {"omega": 2}}]}"#;
+    folder.write("in.json", case);
+    folder.done(&[
+        "evaluate", "pendulum", "--cases", "in.json", "--json", "out.json",
+    ]);
+    let out = folder.json("out.json");
+    let case = &out["cases"][0];
+    let about_pivot = number(case, "mass_matrix/0/0");
+    let demand = number(case, "inverse_dynamics/0");
+    assert_close(demand, 2.0 * about_pivot, ROUNDING, "demand");
+}
+
+#[test]
 fn reactions_carry_the_name_of_the_contact() {
     let folder = Folder::new();
     folder.write("in.json", UNICYCLE);

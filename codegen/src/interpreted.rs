@@ -5,9 +5,9 @@
 
 use std::sync::OnceLock;
 
-use appell_runtime::{differences, inverse_dynamics};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 use appell_runtime::series::Series;
+use appell_runtime::{differences, inverse_dynamics};
 
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{Schedule, interpret_weighted, schedule};

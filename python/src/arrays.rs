@@ -68,6 +68,8 @@ pub(crate) struct Places<'a, 'py> {
     pub(crate) u: Option<&'a Bound<'py, PyAny>>,
     pub(crate) p: Option<&'a Bound<'py, PyAny>>,
     pub(crate) t: Option<&'a Bound<'py, PyAny>>,
+    /// Pseudo-accelerations, for functions that take them.
+    pub(crate) accelerations: Option<&'a Bound<'py, PyAny>>,
 }
 
 /// Values of the spec.
@@ -124,6 +126,15 @@ impl<'py> Call<'_, 'py> {
         shapes: [&[usize]; R],
         function: impl Fn(At<'_>, [&mut [f64]; R]) + Send,
     ) -> PyResult<Vec<Array<'py>>> {
+        self.evaluate_moving(shapes, |at, _, results| function(at, results))
+    }
+
+    /// [`Self::evaluate`] for a function that takes pseudo-accelerations; those that are left out are zero.
+    pub(crate) fn evaluate_moving<const R: usize>(
+        self,
+        shapes: [&[usize]; R],
+        function: impl Fn(At<'_>, &[f64], [&mut [f64]; R]) + Send,
+    ) -> PyResult<Vec<Array<'py>>> {
         let Self {
             py,
             model,
@@ -140,14 +151,16 @@ impl<'py> Call<'_, 'py> {
         let x = rows(places.x, &[info.state_len()], "x")?;
         let u = rows(places.u, &[declared, m][..=usize::from(m != declared)], "u")?;
         let p = rows(places.p, &[info.parameter_len()], "p")?;
+        let accelerations = rows(places.accelerations, &[info.speeds], "accelerations")?;
         let times = places.t.map(contiguous).transpose()?;
         let t_count = times
             .as_ref()
             .filter(|t| t.ndim() > 0)
             .map(PyUntypedArrayMethods::len);
-        let counts = [&x, &u, &p].map(|rows| rows.as_ref().and_then(|rows| rows.count));
+        let all = [&x, &u, &p, &accelerations];
+        let counts = all.map(|rows| rows.as_ref().and_then(|rows| rows.count));
         let count = common(
-            ["x", "u", "p", "t"]
+            ["x", "u", "p", "accelerations", "t"]
                 .into_iter()
                 .zip(counts.into_iter().chain([t_count])),
         )?;
@@ -169,6 +182,8 @@ impl<'py> Call<'_, 'py> {
         let x = Column::of(x.as_ref(), &defaults.x)?;
         let u = Column::of(u.as_ref(), &defaults.u)?;
         let p = Column::of(p.as_ref(), &defaults.p)?;
+        let still = vec![0.0; info.speeds];
+        let accelerations = Column::of(accelerations.as_ref(), &still)?;
         let times = times.as_ref().map(PyArrayMethods::readonly);
         let t: &[f64] = match &times {
             Some(times) => times.as_slice()?,
@@ -198,7 +213,7 @@ impl<'py> Call<'_, 'py> {
                     let size = sizes.next().unwrap_or(0);
                     &mut numbers[row * size..][..size]
                 });
-                function(at, results);
+                function(at, accelerations.row(row), results);
             }
         };
         match count {

@@ -131,6 +131,7 @@ impl Model {
     }
 
     /// The results of a function at one place or at N; `out` takes them where it is given.
+    #[pyo3(signature = (function, x, u, p, t, out, accelerations = None))]
     #[expect(clippy::too_many_arguments, reason = "called from Python alone")]
     fn _evaluate<'py>(
         &self,
@@ -141,6 +142,7 @@ impl Model {
         p: Any<'_, 'py>,
         t: Any<'_, 'py>,
         out: Option<Vec<Bound<'py, PyAny>>>,
+        accelerations: Any<'_, 'py>,
     ) -> PyResult<Vec<Array<'py>>> {
         let model = self.inner.equations();
         let info = model.info();
@@ -150,7 +152,13 @@ impl Model {
             py,
             model,
             defaults: &self.defaults,
-            places: Places { x, u, p, t },
+            places: Places {
+                x,
+                u,
+                p,
+                t,
+                accelerations,
+            },
             out,
         };
         match function {
@@ -181,6 +189,22 @@ impl Model {
             "constraint_forces" => call.evaluate([&[r, 3]], |at, [forces]| {
                 model.constraint_forces(at, forces);
             }),
+            "inverse_dynamics" => call.evaluate_moving([&[s]], |at, accelerations, [demand]| {
+                model.inverse_dynamics(at, accelerations, demand);
+            }),
+            "inverse_dynamics_jacobians" => call.evaluate_moving(
+                [&[s], &[s, n], &[s, m], &[s, s]],
+                |at, accelerations, [demand, by_state, by_inputs, mass]| {
+                    model.inverse_dynamics_jacobians(
+                        at,
+                        accelerations,
+                        demand,
+                        by_state,
+                        by_inputs,
+                        mass,
+                    );
+                },
+            ),
             other => Err(PyValueError::new_err(format!(
                 "there is no function `{other}`"
             ))),

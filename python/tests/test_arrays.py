@@ -57,6 +57,20 @@ def test_appells_equations_hold(model):
     np.testing.assert_allclose(mass @ m.rates(x, u, p)[:speeds] + bias, forces, atol=1e-9 * np.abs(mass).max())
 
 
+def test_inverse_dynamics_takes_the_accelerations_of_the_motion_and_no_more(model):
+    m = model("bicycle")
+    x, u, p = places(m, 4)
+    accelerations = m.rates(x, u, p)[:, : len(m.speeds)]
+    scale = np.abs(m.mass_matrix(x, u, p)).max()
+    np.testing.assert_allclose(m.inverse_dynamics(accelerations, x, u, p), 0, atol=1e-9 * scale)
+    demand, by_state, by_inputs, mass = m.inverse_dynamics_jacobians(2 * accelerations, x, u, p)
+    np.testing.assert_allclose(demand, np.einsum("nij,nj->ni", mass, accelerations), atol=1e-9 * scale)
+    a, b = (m.jacobians(x, u, p)[i][:, : len(m.speeds)] for i in (1, 2))
+    by_state, by_inputs = m.inverse_dynamics_jacobians(accelerations, x, u, p)[1:3]
+    np.testing.assert_allclose(by_state, -np.einsum("nij,njk->nik", mass, a), rtol=1e-7, atol=1e-7 * scale)
+    np.testing.assert_allclose(by_inputs, -np.einsum("nij,njk->nik", mass, b), rtol=1e-7, atol=1e-7 * scale)
+
+
 def test_results_go_where_they_are_wanted(model):
     m = model("cart_pole")
     x, u, _ = places(m, 6)

@@ -31,13 +31,13 @@ pub mod contact;
 pub mod dense;
 #[cfg(feature = "std")]
 pub mod differences;
-pub mod inverse_dynamics;
 #[cfg(any(feature = "std", feature = "libm"))]
 pub mod elementary;
 #[cfg(feature = "std")]
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
+pub mod inverse_dynamics;
 pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;

@@ -3,7 +3,7 @@
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::Program;
-use appell_codegen::schedule::{interpret, schedule};
+use appell_codegen::schedule::{interpret_weighted, schedule};
 use appell_codegen::symbolic::evaluate;
 use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
@@ -90,6 +90,10 @@ pub struct Evaluation {
     pub contacts: Vec<f64>,
     /// Matrices of the systems solved with pivoting.
     pub systems: Vec<f64>,
+    /// M ω̇ + b − Π of some ω̇.
+    pub demand: Vec<f64>,
+    /// Its derivatives with respect to state, inputs and ω̇.
+    pub demand_by: [Vec<f64>; 3],
 }
 
 impl Evaluation {
@@ -117,6 +121,8 @@ impl Evaluation {
             outputs: nan(info.output_len()),
             contacts: nan(4 * info.contacts.len()),
             systems: nan(model.system_sizes().iter().map(|n| n * n).sum()),
+            demand: nan(s),
+            demand_by: [nan(s * n), nan(s * m), nan(s * s)],
         };
         model.jacobians(at, &mut e.rates, &mut e.a, &mut e.b);
         model.rates(at, &mut e.rates);
@@ -135,11 +141,15 @@ impl Evaluation {
         let (normals, friction) = e.contacts.split_at_mut(3 * info.contacts.len());
         model.contacts(at, normals, friction);
         model.systems(at, &mut e.systems);
+        let given = some_accelerations(at.x, s);
+        let [by_state, by_inputs, mass] = &mut e.demand_by;
+        model.inverse_dynamics_jacobians(at, &given, &mut e.demand, by_state, by_inputs, mass);
+        model.inverse_dynamics(at, &given, &mut e.demand);
         e
     }
 
     /// Its arrays with their names.
-    pub fn arrays(&self) -> [(&'static str, &[f64]); 13] {
+    pub fn arrays(&self) -> [(&'static str, &[f64]); 17] {
         [
             ("rates", &self.rates),
             ("A", &self.a),
@@ -154,8 +164,17 @@ impl Evaluation {
             ("outputs", &self.outputs),
             ("contacts", &self.contacts),
             ("systems", &self.systems),
+            ("demand", &self.demand),
+            ("demand by state", &self.demand_by[0]),
+            ("demand by inputs", &self.demand_by[1]),
+            ("demand by accelerations", &self.demand_by[2]),
         ]
     }
+}
+
+/// Pseudo-accelerations that no motion has.
+pub fn some_accelerations(x: &[f64], speeds: usize) -> Vec<f64> {
+    x.iter().take(speeds).map(|w| 1.5 - w).collect()
 }
 
 /// Two orders of a thousand operations round differently.
@@ -180,8 +199,12 @@ pub fn assert_schedules(program: &Program, points: &[Point]) {
             }
         }
         values[arguments.time.0 as usize] = point.t;
+        let given = some_accelerations(&point.x, program.info.speeds);
+        for (symbol, &number) in arguments.accelerations.iter().zip(&given) {
+            values[symbol.0 as usize] = number;
+        }
         for (function, schedule) in &schedules {
-            let results = interpret(schedule, point.t, &point.x, &point.u, &point.p);
+            let results = interpret_weighted(schedule, point.at(), &given);
             for (array, scheduled) in function.results.iter().zip(results) {
                 let derived = evaluate(&program.graph, &values, &array.entries);
                 let what = format!("{}, {:?}, {}", program.info.name, function.kind, array.name);

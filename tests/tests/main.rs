@@ -23,6 +23,7 @@ mod four_bar;
 mod gallery;
 mod gallery_unicycles;
 mod inverse;
+mod inverse_dynamics;
 mod kinematic_names;
 mod lanes;
 mod laws;

@@ -113,7 +113,11 @@ pub(super) fn function(
     let state = argument(state, uses(Argument::State(0)));
     let inputs = argument(inputs, uses(Argument::Input(0)));
     let own = types.own(function.kind).map(|(name, type_name)| {
-        let all = [Argument::Weight(0), Argument::OutputWeight(0), Argument::Acceleration(0)];
+        let all = [
+            Argument::Weight(0),
+            Argument::OutputWeight(0),
+            Argument::Acceleration(0),
+        ];
         let name = argument(&name, all.into_iter().any(uses));
         quote!(#name: &#type_name,)
     });

@@ -256,9 +256,10 @@ impl<'a> Types<'a> {
         }
         let mass_matrix = [FunctionKind::MassMatrix, FunctionKind::MassMatrixAndBias];
         let kinds = functions.iter().map(|function| function.kind);
-        if kinds.into_iter().any(|kind| {
-            mass_matrix.contains(&kind) || kind.takes() == Some(Own::Accelerations)
-        }) {
+        if kinds
+            .into_iter()
+            .any(|kind| mass_matrix.contains(&kind) || kind.takes() == Some(Own::Accelerations))
+        {
             spaces.insert(Space::Accelerations);
         }
         if spaces.contains(&Space::Rates) {

@@ -356,9 +356,7 @@ impl<'a> Translation<'a> {
             Argument::Parameter(index) => (self.received.parameters, index),
             Argument::Weight(index)
             | Argument::OutputWeight(index)
-            | Argument::Acceleration(index) => {
-                (self.received.weights, index)
-            }
+            | Argument::Acceleration(index) => (self.received.weights, index),
         };
         // Loaded where it is used: to load it again costs less than to keep it.
         let (flags, place) = (MemFlagsData::trusted(), offset(index as usize));

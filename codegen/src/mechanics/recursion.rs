@@ -282,7 +282,12 @@ impl Recursion {
     }
 
     /// The forces along the speeds that these accelerations take, while the ground rises.
-    fn taken(&self, algebra: &mut Algebra, accelerations: &[Expr], kind: &'static str) -> Vec<Expr> {
+    fn taken(
+        &self,
+        algebra: &mut Algebra,
+        accelerations: &[Expr],
+        kind: &'static str,
+    ) -> Vec<Expr> {
         let driven = Driven {
             ground: self.rise,
             accelerations: Some(accelerations),

@@ -21,7 +21,7 @@ from ._model import Derivation, Model, Quantity
 from ._motion import Motion
 from ._notebook import Page, Picture
 from ._recordings import Diagnosis, Identification, Recordings, diagnose, identify, sample_rig
-from ._results import Appell, Design, Energies, Jacobians, Linear, OutputJacobians, SteadyMotion
+from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._values import Vector, labelled
 
 __version__ = _version("appell")

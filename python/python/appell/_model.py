@@ -18,7 +18,7 @@ from . import _appell
 from ._errors import EndsEarly, Unstable
 from ._motion import Motion
 from ._notebook import Page, Picture
-from ._results import Appell, Design, Energies, Jacobians, Linear, OutputJacobians, SteadyMotion
+from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._values import Vector, labelled, many, text, texts
 
 Values = Mapping[str, Any]
@@ -206,6 +206,23 @@ class Model(_appell.Model):
     def forces(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> np.ndarray:
         """The pseudo-forces Π of Appell's equations M ω̇ + b = Π, (s,) or (N, s)."""
         return self._evaluate("appell", x, u, p, t, None)[2]
+
+    def inverse_dynamics(self, accelerations: Any = None, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: np.ndarray | None = None) -> np.ndarray:
+        """The pseudo-forces M ω̇ + b − Π that pseudo-accelerations ω̇ take beyond the loads, (s,) or (N, s).
+
+        With inputs of zero they are what drives along the pseudo-velocities have to bring.
+
+        >>> import appell
+        >>> m = appell.load("pendulum")
+        >>> bool(abs(m.inverse_dynamics(m.rates()[:1])[0]) < 1e-12)
+        True
+        """
+        return self._evaluate("inverse_dynamics", x, u, p, t, None if out is None else [out], accelerations)[0]
+
+    def inverse_dynamics_jacobians(self, accelerations: Any = None, x: Any = None, u: Any = None, p: Any = None, t: Any = None, *, out: Sequence[np.ndarray] | None = None) -> InverseDynamics:
+        """The same with its Jacobians."""
+        results = None if out is None else list(out)
+        return InverseDynamics(*self._evaluate("inverse_dynamics_jacobians", x, u, p, t, results, accelerations))
 
     def energies(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Energies:
         """Kinetic, potential and acceleration energy, and the power of what has no potential; numbers or (N,)."""

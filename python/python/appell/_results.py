@@ -34,6 +34,16 @@ class Appell(NamedTuple):
     forces: np.ndarray
 
 
+class InverseDynamics(NamedTuple):
+    """M ω̇ + b − Π, its derivatives with respect to state and inputs, and M, that with respect to ω̇: (s,), (s, n),
+    (s, m), (s, s), or N of them."""
+
+    demand: np.ndarray
+    by_state: np.ndarray
+    by_inputs: np.ndarray
+    M: np.ndarray
+
+
 class Energies(NamedTuple):
     """Kinetic and potential energy in J, power in W of what changes their sum, acceleration energy in W/s."""
 

@@ -5,7 +5,7 @@ use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use appell_codegen::schedule::{Schedule, interpret, pi, schedule};
-use appell_codegen::symbolic::{Expr, Graph};
+use appell_codegen::symbolic::{Derivatives, Expr, Graph};
 use appell_runtime::Signal;
 use appell_runtime::model::{At, ModelInfo};
 use appell_runtime::series::{Cubic, differentiated};
@@ -38,6 +38,22 @@ impl Workbench {
             rates: &self.symbols.rates,
         };
         lowering.lower(&mut self.graph, expr).ok()
+    }
+
+    /// The rate of a function of time and signals.
+    pub(crate) fn rate(&mut self, expr: Expr) -> Expr {
+        let time = (self.symbols.time, Graph::ONE);
+        let signals = self.symbols.signals.iter();
+        let signals = signals.flat_map(|&[value, first, second]| [(value, first), (first, second)]);
+        let variables: Vec<(Expr, Expr)> = std::iter::once(time).chain(signals).collect();
+        let mut rate = Graph::ZERO;
+        for (variable, by_time) in variables {
+            let symbol = ids(&self.graph, &[variable])[0];
+            let slope = Derivatives::with_respect_to(symbol).of(&mut self.graph, expr);
+            let part = self.graph.mul(slope, by_time);
+            rate = self.graph.add(rate, part);
+        }
+        rate
     }
 
     /// Values of expressions in the parameters.

@@ -2,6 +2,7 @@
 
 pub use appell_runtime::inputs::InputSource;
 
+mod by_model;
 pub(crate) mod closed_loop;
 pub mod controller;
 pub mod feedback;

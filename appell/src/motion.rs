@@ -219,7 +219,7 @@ impl Motion {
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
         let wiring = plan.wiring(&setup, self.t_end)?;
-        let mut controller = wiring.controller(setup.parameters.clone(), self.t_end);
+        let mut controller = wiring.controller(model, setup.parameters.clone(), self.t_end);
         if self.method == Method::Taylor {
             controller.expand(rates()?, model.info());
         }

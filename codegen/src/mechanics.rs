@@ -42,6 +42,7 @@ mod reacting_loads;
 pub mod reactions;
 pub mod recursion;
 pub mod redundancy;
+mod regressor;
 pub mod relations;
 pub mod responses;
 mod right_angles;
@@ -74,6 +75,7 @@ use symbols::Symbols;
 
 pub use algebra::seed;
 pub use ranges::{declared_ranges, parameter_ranges};
+pub use regressor::regressor;
 
 /// The derivation of one mechanism, every stage kept for reading.
 #[derive(Clone)]

@@ -261,6 +261,9 @@ pub enum FunctionKind {
     OutputJacobians,
     /// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩: results `x`, `u`, `p`.
     OutputAdjoint,
+    /// M ω̇ + b − Π = Y π + r: results `regressor`, `rest`, `parameters`. It stands in a program of its own,
+    /// [`regressor`](crate::mechanics::regressor), and so not among [`Self::ALL`].
+    Regressor,
 }
 
 /// What a function takes beside time, parameters, state and inputs.
@@ -285,7 +288,7 @@ impl Own {
 }
 
 impl FunctionKind {
-    /// All of them, in the order of emitted code.
+    /// All of them that the program of a model can have, in the order of emitted code.
     pub const ALL: [Self; 22] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
@@ -356,7 +359,9 @@ impl FunctionKind {
         match self {
             Self::Adjoint => Some(Own::Weights),
             Self::OutputAdjoint => Some(Own::OutputWeights),
-            Self::InverseDynamics | Self::InverseDynamicsJacobians => Some(Own::Accelerations),
+            Self::InverseDynamics | Self::InverseDynamicsJacobians | Self::Regressor => {
+                Some(Own::Accelerations)
+            }
             _ => None,
         }
     }
@@ -474,6 +479,13 @@ impl FunctionKind {
                 "output_jacobians",
                 "OutputJacobians",
                 "Outputs of the spec and their Jacobians with respect to state and inputs.",
+            ),
+            Self::Regressor => (
+                "regressor",
+                "Regressor",
+                "Inverse dynamics as a linear function of inertial parameters π and parameters of loads: \
+                 M ω̇ + b − Π = Y π + r. First moments and inertia of a body are about the point from which its \
+                 centre is placed, if both are fixed in the body, and about its centre else.",
             ),
             Self::OutputAdjoint => (
                 "output_adjoint",

@@ -1,5 +1,7 @@
 //! Inverse dynamics of all mechanisms, in every execution: against the rates and against differences.
 
+use appell_codegen::mechanics::regressor;
+use appell_codegen::schedule::{interpret_weighted, schedule};
 use appell_runtime::inverse_dynamics;
 use appell_test_kit::Random;
 use appell_tests::engine::{assert_close, engines, some_accelerations};
@@ -55,5 +57,33 @@ fn its_jacobians_are_its_slopes() {
         let mut by_mass = vec![f64::NAN; s];
         inverse_dynamics::demand(model, point.at(), &given, &mut by_mass);
         assert_close(&name, &got[0], &by_mass, 1e-12, 1.0);
+    }
+}
+
+/// Y π + r against M ω̇ + b − Π.
+#[test]
+fn the_regressor_is_inverse_dynamics_as_a_linear_function() {
+    for name in shipped::names() {
+        let program = regressor(shipped::mechanism(&name)).expect(&name);
+        let schedule = schedule(&program, &program.functions[0]);
+        let mut random = Random::of(&name);
+        let (model, info) = (shipped::model(&name), &program.info);
+        for _ in 0..3 {
+            let point = Point::random(info, &mut random);
+            let given = some_accelerations(&point.x, info.speeds);
+            let results = interpret_weighted(&schedule, point.at(), &given);
+            let [y, rest, values] = results.as_slice() else {
+                panic!("{name}: {} results", results.len());
+            };
+            assert!(!values.is_empty(), "{name}");
+            let rows = y.chunks(values.len()).zip(rest);
+            let rows = rows.map(|(row, rest)| {
+                let terms = row.iter().zip(values).map(|(y, value)| y * value);
+                terms.sum::<f64>() + rest
+            });
+            let mut demand = vec![f64::NAN; info.speeds];
+            model.inverse_dynamics(point.at(), &given, &mut demand);
+            assert_close(&name, &rows.collect::<Vec<_>>(), &demand, 1e-11, 1.0);
+        }
     }
 }

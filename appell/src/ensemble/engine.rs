@@ -265,9 +265,11 @@ impl Ensemble {
     fn source<'v>(&self, variant: &'v Variant, ride: &Ride<'v>) -> Noisy<'v> {
         let until = self.study.motion.t_end;
         Noisy {
-            controller: variant
-                .wiring
-                .controller(ride.start.parameters.clone(), until),
+            controller: variant.wiring.controller(
+                variant.model.equations(),
+                ride.start.parameters.clone(),
+                until,
+            ),
             noises: &variant.noises,
             draws: ride.draws,
             drawn: self.design.drawn().count(),

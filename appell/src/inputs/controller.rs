@@ -10,7 +10,7 @@ use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
 use appell_codegen::taylor::{Lengths, expand_under};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
-use appell_runtime::model::ModelInfo;
+use appell_runtime::model::{At, Model, ModelInfo};
 use appell_runtime::series::{Cubic, Series};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;
@@ -18,8 +18,9 @@ use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench, switching_times};
+use crate::inputs::by_model::ModelLaw;
 use crate::inputs::closed_loop::{ClosedLoop, Kind, Onto, Outside};
-use crate::inputs::feedback::{Feedback, Gains, Sampled};
+use crate::inputs::feedback::{self, Aim, Feedback, Gains, Sampled};
 use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
 use crate::inputs::tabulated::Table;
 use crate::motion::Driven;
@@ -29,6 +30,7 @@ use crate::{Error, Field};
 /// The sum of expressions, feedback laws and recordings in one motion.
 pub struct Controller<'w> {
     wiring: &'w Wiring,
+    model: &'w dyn Model,
     parameters: Vec<f64>,
     /// Measurements of the discrete-time laws.
     samplers: Vec<Sampler>,
@@ -48,6 +50,7 @@ pub struct Wiring {
     driven: Vec<DrivenInputs>,
     sampled: Vec<SampledLaw>,
     scheduled: Vec<ScheduledLaw>,
+    by_model: Vec<ModelLaw>,
     switching_times: Vec<f64>,
     /// Expressions that may switch at times which depend on parameters.
     switching: Vec<Expr>,
@@ -72,6 +75,7 @@ pub struct Plan {
     zero: Vec<Term>,
     sampled: Vec<(Sampled, Vec<usize>)>,
     scheduled: Vec<ScheduledLaw>,
+    by_model: Vec<ModelLaw>,
     recorded: Option<Table>,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
@@ -90,6 +94,7 @@ impl Plan {
             zero: Vec::new(),
             sampled: Vec::new(),
             scheduled: Vec::new(),
+            by_model: Vec::new(),
             recorded: None,
             driven: Vec::new(),
             switching_times: Vec::new(),
@@ -100,7 +105,7 @@ impl Plan {
 
     /// Whether there is no source.
     pub fn is_empty(&self) -> bool {
-        let laws = self.zero.is_empty() && self.scheduled.is_empty();
+        let laws = self.zero.is_empty() && self.scheduled.is_empty() && self.by_model.is_empty();
         let given = self.recorded.is_some() || !self.driven.is_empty();
         self.slots.is_empty() && laws && !given
     }
@@ -189,6 +194,7 @@ impl Plan {
         self.switching_times.extend(&feedback.switching_times);
         let gains = match feedback.gains {
             Gains::Fixed(gains) => gains,
+            Gains::ByModel(law) => return self.by_model(law, feedback.inputs).map_err(told),
             Gains::Scheduled(over, schedule) => {
                 let (states, desired): (Vec<_>, Vec<_>) = feedback.states.into_iter().unzip();
                 let law = self.scheduled.len();
@@ -227,6 +233,33 @@ impl Plan {
         Ok(())
     }
 
+    /// Adds a law that computes inputs from the equations of motion.
+    fn by_model(
+        &mut self,
+        law: feedback::ModelLaw,
+        inputs: Vec<usize>,
+    ) -> Result<(), &'static str> {
+        let place = self.by_model.len();
+        if let Aim::ComputedTorque { followed, .. } = &law.aim {
+            for (which, followed) in followed.iter().enumerate() {
+                let mut value = self.bench.lower(&followed.desired);
+                for order in 0..3 {
+                    let lowered = value.ok_or("an expression divides by the number zero")?;
+                    self.exprs.push(lowered);
+                    self.slots.push(Slot::Followed(place, which, order));
+                    value = Some(self.bench.rate(lowered));
+                }
+                self.switching.push(followed.desired.clone());
+            }
+        }
+        self.by_model.push(ModelLaw {
+            inputs,
+            aim: law.aim,
+            believed: law.believed,
+        });
+        Ok(())
+    }
+
     /// The inputs as functions of time and state, for motions of at most `until` in s.
     pub fn wiring(self, setup: &Setup<'_>, until: f64) -> Result<Wiring, Error> {
         let function = self.bench.function(setup.info, self.exprs)?;
@@ -256,6 +289,7 @@ impl Plan {
             driven: self.driven,
             sampled,
             scheduled: self.scheduled,
+            by_model: self.by_model,
             switching_times: self.switching_times,
             switching: self.switching,
         })
@@ -266,8 +300,13 @@ impl Plan {
 const MOST_MEASUREMENTS: f64 = 1e6;
 
 impl Wiring {
-    /// The inputs of a motion from 0 to `until` in s.
-    pub fn controller(&self, parameters: Vec<f64>, until: f64) -> Controller<'_> {
+    /// The inputs of a motion of a model from 0 to `until` in s.
+    pub fn controller<'w>(
+        &'w self,
+        model: &'w dyn Model,
+        parameters: Vec<f64>,
+        until: f64,
+    ) -> Controller<'w> {
         let mut times = self.switching_times.clone();
         for expr in &self.switching {
             switching_times(expr, &parameters, &mut times);
@@ -277,6 +316,7 @@ impl Wiring {
         times.extend(samplers.iter().flat_map(Sampler::switching_times));
         Controller {
             wiring: self,
+            model,
             parameters,
             samplers,
             switching_times: times,
@@ -299,7 +339,11 @@ impl Wiring {
         seen: &[Onto],
         kind: Kind,
     ) -> Result<ClosedLoop, Error> {
-        let given = self.recorded.is_some() || !self.driven.is_empty();
+        if kind == Kind::Series && !self.by_model.is_empty() {
+            let message = "laws that compute inputs from the equations of motion have no Taylor series; choose dop853";
+            return Err(Error::request(Field::Method, message));
+        }
+        let given = self.recorded.is_some() || !self.driven.is_empty() || !self.by_model.is_empty();
         let outside = Outside {
             inputs: self.function.inputs(),
             is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
@@ -361,6 +405,31 @@ impl Controller<'_> {
         }
     }
 
+    /// Adds what laws compute from the equations of motion to the declared inputs.
+    fn add_by_model(&self, p: &[f64], t: f64, x: &[f64], values: &[f64], u: &mut [f64]) {
+        let wiring = self.wiring;
+        if wiring.by_model.is_empty() {
+            return;
+        }
+        let mut all = vec![0.0; self.model.info().input_len()];
+        let (declared, signals) = all.split_at_mut(u.len());
+        wiring.function.fill_signals(t, signals);
+        declared.copy_from_slice(u);
+        for (law, by_model) in wiring.by_model.iter().enumerate() {
+            let mut desired = vec![[0.0; 3]; by_model.inputs.len()];
+            for (slot, value) in wiring.slots.iter().zip(values) {
+                if let Slot::Followed(of, which, order) = *slot
+                    && of == law
+                {
+                    desired[which][order] = *value;
+                }
+            }
+            let at = At { t, x, u: &[], p };
+            by_model.add(self.model, at, &desired, &mut all);
+        }
+        u.copy_from_slice(&all[..u.len()]);
+    }
+
     /// What recordings and programs give.
     fn fill_given(&self, t: f64, x: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
@@ -385,11 +454,12 @@ impl Controller<'_> {
         let wiring = self.wiring;
         let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
         self.fill_given(t, x, declared);
-        if !wiring.sampled.is_empty() {
+        if !wiring.sampled.is_empty() || !wiring.by_model.is_empty() {
             let mut values = vec![0.0; wiring.slots.len()];
             wiring.function.values(t, x, p, &mut values);
             let count = declared.len();
             self.add_held(t, x, &values, count, |input, held| declared[input] += held);
+            self.add_by_model(p, t, x, &values, declared);
         }
         wiring.function.fill_signals(t, signals);
     }
@@ -421,6 +491,7 @@ impl Controller<'_> {
         }
         let count = u.len();
         self.add_held(t, x, &values, count, |input, held| u[input] += held);
+        self.add_by_model(p, t, x, &values, u);
         self.values.set(values);
     }
 
@@ -453,6 +524,9 @@ impl Controller<'_> {
     /// state that laws see; false where they are none.
     pub(crate) fn polynomials_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
         let wiring = self.wiring;
+        if !wiring.by_model.is_empty() {
+            return false;
+        }
         let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
         wiring.function.polynomials(t, signals);
         match &wiring.recorded {

@@ -12,6 +12,8 @@
 //! initial = { theta = "5deg" }             # unless the request sets it
 //! ```
 //!
+//! A law with the key `law` computes its inputs by inverse dynamics ([`Aim`]).
+//!
 //! A gain-scheduled law has, instead of `gains` and `offset`, the scheduling variable `over`, a state or
 //! parameter, and a table `[[at]]` for each of its values.
 
@@ -30,8 +32,10 @@ use toml::de::{DeTable, DeValue};
 use crate::setup::{Setup, bracketed, instead};
 use crate::{Error, files};
 
+mod by_model;
 mod schedule;
 
+pub use by_model::{Aim, Followed, ModelLaw};
 pub use schedule::SchedulingVariable;
 
 /// A law for one input or several.
@@ -79,6 +83,8 @@ pub enum Gains {
     Fixed(Vec<Vec<f64>>),
     /// Gains that depend on a scheduling variable.
     Scheduled(SchedulingVariable, GainSchedule),
+    /// None: the inputs follow from the equations of motion.
+    ByModel(ModelLaw),
 }
 
 /// A discrete-time controller.
@@ -96,6 +102,7 @@ const KEYS: &[&str] = &[
     "mechanism",
     "input",
     "inputs",
+    "law",
     "offset",
     "over",
     "states",
@@ -165,6 +172,9 @@ impl Reader<'_> {
 
     /// Parses the file; an invalid entry is reported and skipped, so that all errors are found.
     fn feedback(&mut self, table: &DeTable<'_>) -> Option<Feedback> {
+        if let Some(law) = table.get("law") {
+            return by_model::read(self, table, law);
+        }
         self.keys(table);
         let inputs = self.inputs(table);
         let states = self.list(table, "states", Self::state);
@@ -229,13 +239,7 @@ impl Reader<'_> {
 
     /// Reports unknown and missing keys, and a law for another mechanism.
     fn keys(&mut self, table: &DeTable<'_>) {
-        for key in table.keys() {
-            if !KEYS.contains(&key.get_ref().as_ref()) {
-                let message = format!("unknown key `{}`", key.get_ref());
-                let help = format!("the keys are {}", KEYS.join(", "));
-                self.tell(Code::UnknownKey, message, key.span(), &help);
-            }
-        }
+        self.known_keys(table, KEYS);
         let needs = "a law needs `input` or `inputs`, `states`, and `gains` or a schedule";
         let replaced = |key: &str| match key {
             "input" => table.get("inputs").is_some(),
@@ -248,6 +252,20 @@ impl Reader<'_> {
                 self.tell(Code::MissingKey, message, 0..0, needs);
             }
         }
+        self.right_mechanism(table);
+    }
+
+    fn known_keys(&mut self, table: &DeTable<'_>, known: &[&str]) {
+        for key in table.keys() {
+            if !known.contains(&key.get_ref().as_ref()) {
+                let message = format!("unknown key `{}`", key.get_ref());
+                let help = format!("the keys are {}", known.join(", "));
+                self.tell(Code::UnknownKey, message, key.span(), &help);
+            }
+        }
+    }
+
+    fn right_mechanism(&mut self, table: &DeTable<'_>) {
         let ours = &self.setup.mechanism.name;
         if let Some((name, at)) = table.get("mechanism").and_then(|value| self.string(value))
             && name != *ours

@@ -16,6 +16,8 @@ pub(super) enum Slot {
     Desired(Term),
     /// Desired deviation from the steady motions of a scheduled law: index of the law, index of the state.
     Beside(usize, usize),
+    /// A desired coordinate or its derivative: index of the law, index of the coordinate, order.
+    Followed(usize, usize, usize),
 }
 
 /// Proportional feedback of the deviation of one state to one input.

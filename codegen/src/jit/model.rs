@@ -98,6 +98,7 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
                 ("mass_matrix", s * s),
             ]
         }
+        FunctionKind::Regressor => vec![],
         FunctionKind::OutputJacobians => {
             let l = info.output_len();
             vec![("outputs", l), ("c", l * n), ("d", l * m)]
@@ -406,7 +407,7 @@ mod tests {
             Kind::InverseDynamicsJacobians => Kind::Adjoint,
             Kind::Adjoint => Kind::OutputJacobians,
             Kind::OutputJacobians => Kind::OutputAdjoint,
-            Kind::OutputAdjoint => return None,
+            Kind::OutputAdjoint | Kind::Regressor => return None,
         })
     }
 

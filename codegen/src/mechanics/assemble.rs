@@ -48,6 +48,7 @@ pub fn program(
                 | FunctionKind::Systems
                 | FunctionKind::OutputJacobians
                 | FunctionKind::OutputAdjoint
+                | FunctionKind::Regressor
         );
         if !may_lack || results.iter().any(|array| !array.entries.is_empty()) {
             functions.push(derivation.staged(mechanism, Function::new(kind, results)));
@@ -60,21 +61,7 @@ pub fn program(
             function.equations.clone_from(&equations);
         }
     }
-    let symbols = &derivation.symbols;
-    let graph = &derivation.algebra.graph;
-    let arguments = Arguments {
-        time: ids(graph, &[symbols.time])[0],
-        states: ids(
-            graph,
-            &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
-        ),
-        inputs: ids(graph, &input_symbols(symbols, &info)),
-        parameters: ids(graph, &symbols.parameters),
-        weights: ids(graph, &symbols.weights),
-        output_weights: ids(graph, &symbols.output_weights),
-        accelerations: ids(graph, &symbols.accelerations),
-        pi: graph.as_symbol(symbols.pi),
-    };
+    let arguments = function_arguments(&derivation, &info);
     let (hints, meanings) = derivation.hints(mechanism, &arguments);
     for function in &mut functions {
         function.glossary.extend(meanings.iter().cloned());
@@ -96,6 +83,25 @@ pub fn program(
         hints,
         functions,
     })
+}
+
+/// The symbols that functions take.
+pub(super) fn function_arguments(derivation: &Derivation, info: &ModelInfo) -> Arguments {
+    let symbols = &derivation.symbols;
+    let graph = &derivation.algebra.graph;
+    Arguments {
+        time: ids(graph, &[symbols.time])[0],
+        states: ids(
+            graph,
+            &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
+        ),
+        inputs: ids(graph, &input_symbols(symbols, info)),
+        parameters: ids(graph, &symbols.parameters),
+        weights: ids(graph, &symbols.weights),
+        output_weights: ids(graph, &symbols.output_weights),
+        accelerations: ids(graph, &symbols.accelerations),
+        pi: graph.as_symbol(symbols.pi),
+    }
 }
 
 impl Derivation {
@@ -198,6 +204,8 @@ impl Derivation {
                 self.inverse_dynamics_jacobians(mechanism, info)?
             }
             FunctionKind::Adjoint => self.adjoint(info)?,
+            // Its bodies are others: `regressor.rs` makes it.
+            FunctionKind::Regressor => Vec::new(),
             FunctionKind::OutputJacobians => self.output_jacobians(mechanism, info)?,
             FunctionKind::OutputAdjoint => self.output_adjoint(mechanism, info)?,
         })
@@ -271,6 +279,7 @@ impl Derivation {
                     .explaining(glossary::of_multipliers(mechanism, &self.constraints))
             }
             F::Kinematics
+            | F::Regressor
             | F::MassMatrix
             | F::GeneralizedForces
             | F::Switches
@@ -291,7 +300,7 @@ impl Derivation {
     }
 
     /// A function with the meaning of the names that it may use.
-    fn explained(
+    pub(super) fn explained(
         &self,
         mechanism: &Mechanism,
         function: Function,

@@ -60,7 +60,7 @@ impl Derivation {
         ])
     }
 
-    fn demand(&mut self) -> Vec<Expr> {
+    pub(super) fn demand(&mut self) -> Vec<Expr> {
         let accelerations = &self.symbols.accelerations;
         if let Some(tree) = &self.recursion {
             return tree.demand(&mut self.algebra, accelerations);

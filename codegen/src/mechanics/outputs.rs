@@ -150,7 +150,7 @@ impl Derivation {
     }
 
     /// Derivatives of values with respect to variables, row by row.
-    fn slopes(&mut self, values: &[Expr], variables: &[Expr]) -> Vec<Expr> {
+    pub(super) fn slopes(&mut self, values: &[Expr], variables: &[Expr]) -> Vec<Expr> {
         let mut slopes = Vec::with_capacity(values.len() * variables.len());
         for &value in values {
             for &variable in variables {

@@ -1,0 +1,322 @@
+//! The regressor: inverse dynamics as a linear function of the inertial parameters, M ω̇ + b − Π = Y π + r.
+//!
+//! A body moves as one with mass m, first moments m c and inertia J about a point P that is fixed in it. The
+//! forces that its motion takes are linear in these ten numbers (W. Khalil, E. Dombre, 2002, section 9.2). So
+//! the equations are derived with a symbol for each of m, c and J, and Y is what they change: by m and J at
+//! c = 0, and by the first moments ∂²/∂m ∂c there. Parameters of loads follow that enter linearly beside
+//! these, such as coefficients of friction; r is what is left.
+
+use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
+use appell_spec::mechanism::{
+    Body, BodyId, Label, Mechanism, Parameter, ParameterId, Point, PointId,
+};
+use appell_spec::units::{Dimension, Unit};
+
+use super::assemble::{by_speed, function_arguments};
+use super::expressions::Lowering;
+use super::finding::{Item, Outcome, division_by_zero};
+use super::info::{info, tabulated_inputs};
+use super::symbols::ids;
+use super::{Derivation, derive};
+use crate::program::{Array, Function, FunctionKind, Layout, Program};
+use crate::symbolic::{Expr, Graph, Substitution, vector};
+
+/// The pairs of axes of the six moments and products of inertia.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// A program with one function, [`FunctionKind::Regressor`].
+pub fn regressor(mechanism: &Mechanism) -> Outcome<Program> {
+    let (general, bodies) = with_general_bodies(mechanism);
+    let mut derivation = derive(&general)?;
+    let columns = derivation.columns(mechanism, &bodies)?;
+    let info = info(&derivation, mechanism, &tabulated_inputs(mechanism));
+    let speeds = &info.states[..info.speeds];
+    let layout = Layout::Matrix(speeds.len(), columns.names.len());
+    let entries = (0..speeds.len()).flat_map(|row| columns.entries.iter().map(move |c| c[row]));
+    let labels = speeds.iter().flat_map(|speed| {
+        let names = columns.names.iter();
+        names.map(move |name| format!("Y_{}_{name}", speed.name))
+    });
+    let rows = speeds.iter().map(|speed| speed.name.to_string()).collect();
+    let count = Layout::List(columns.names.len());
+    let results = vec![
+        Array::new("regressor", "Y.", layout, entries.collect())
+            .labelled(labels)
+            .with_names(rows, columns.names.clone()),
+        by_speed("rest", "rest", "r.", speeds, columns.rest),
+        Array::new("parameters", "π.", count, columns.values)
+            .labelled(columns.names.iter().map(|name| format!("pi_{name}")))
+            .with_names(columns.names, Vec::new()),
+    ];
+    let function = Function::new(FunctionKind::Regressor, results);
+    let bodies = derivation.bodies.clone();
+    let function = derivation.explained(mechanism, function, &bodies);
+    let mut arguments = function_arguments(&derivation, &info);
+    arguments.parameters.truncate(info.parameter_len());
+    Ok(Program {
+        info,
+        systems: Vec::new(),
+        file: mechanism.file.clone(),
+        graph: derivation.algebra.graph,
+        arguments,
+        dependent: derivation.positions.dependent,
+        hints: Vec::new(),
+        functions: vec![function],
+    })
+}
+
+/// The inertial parameters of a body as parameters of a mechanism.
+struct GeneralBody {
+    body: BodyId,
+    /// The point about which they are.
+    about: PointId,
+    mass: ParameterId,
+    /// Centre of mass from that point; none for what turns only, or has no inertia.
+    centre: Option<[ParameterId; 3]>,
+    /// By [`PAIRS`].
+    inertia: Option<[ParameterId; 6]>,
+}
+
+/// The mechanism with a parameter for each inertial parameter.
+fn with_general_bodies(mechanism: &Mechanism) -> (Mechanism, Vec<GeneralBody>) {
+    let mut general = mechanism.clone();
+    let mut bodies = Vec::with_capacity(mechanism.bodies.len());
+    for (id, body) in mechanism.bodies.entries() {
+        let mut parameter = |symbol: &str| {
+            // No name of a spec has parentheses.
+            let name = format!("{symbol}({})", body.name);
+            general.parameters.push(unknown(name))
+        };
+        let mass = parameter("m");
+        let inertia = body.inertia.as_ref();
+        let inertia =
+            inertia.map(|_| PAIRS.map(|(i, j)| parameter(&format!("I{}{}", AXES[i], AXES[j]))));
+        let has_centre = inertia.is_some() && body.has_place();
+        let centre = has_centre.then(|| AXES.map(|axis| parameter(&format!("c{axis}"))));
+        let about = point_in(mechanism, body);
+        let made = &mut general.bodies[id];
+        made.mass = quantity(mass);
+        if let (Some(inertia), Some(all)) = (&mut made.inertia, inertia) {
+            // What spins with the body is no longer symmetric about its axis.
+            inertia.frame = body.frame.unwrap_or(inertia.frame);
+            for (&parameter, (i, j)) in all.iter().zip(PAIRS) {
+                inertia.matrix[i][j] = quantity(parameter);
+                inertia.matrix[j][i] = quantity(parameter);
+            }
+            if let Some(centre) = centre {
+                let frame = inertia.frame;
+                made.centre = general.points.push(Point {
+                    name: format!("c({})", body.name),
+                    about: String::new(),
+                    from: Some(about),
+                    frame,
+                    at: centre.map(quantity),
+                    line: body.line,
+                    span: body.span.clone(),
+                });
+            }
+        }
+        bodies.push(GeneralBody {
+            body: id,
+            about,
+            mass,
+            centre,
+            inertia,
+        });
+    }
+    (general, bodies)
+}
+
+/// The point of a body about which its inertial parameters are: that from which its centre is placed, where
+/// both are fixed in it, as the joint of a link; else its centre.
+fn point_in(mechanism: &Mechanism, body: &Body) -> PointId {
+    let centre = &mechanism.points[body.centre];
+    let is_fixed = || {
+        let mut fixed = body.frame == Some(centre.frame);
+        for expr in &centre.at {
+            expr.visit(&mut |quantity| {
+                fixed &= matches!(quantity, Quantity::Parameter(_) | Quantity::Pi);
+            });
+        }
+        fixed
+    };
+    match centre.from {
+        Some(from) if body.inertia.is_some() && is_fixed() => from,
+        _ => body.centre,
+    }
+}
+
+fn quantity(parameter: ParameterId) -> SpecExpr {
+    SpecExpr {
+        kind: ExprKind::Quantity(Quantity::Parameter(parameter)),
+        span: 0..0,
+    }
+}
+
+/// A parameter that is not known, not even its sign.
+fn unknown(name: String) -> Parameter {
+    Parameter {
+        label: Label {
+            name,
+            about: String::new(),
+            unit: Unit::si(Dimension::NONE),
+            line: 0,
+            span: 0..0,
+        },
+        value: 1.0,
+        at_least: None,
+        at_most: None,
+    }
+}
+
+/// Columns of Y, with what they belong to.
+struct Columns {
+    names: Vec<String>,
+    entries: Vec<Vec<Expr>>,
+    /// π by the parameters of the spec.
+    values: Vec<Expr>,
+    /// r.
+    rest: Vec<Expr>,
+}
+
+impl Columns {
+    fn push(&mut self, derivation: &mut Derivation, name: String, entries: Vec<Expr>, value: Expr) {
+        let algebra = &mut derivation.algebra;
+        let entries: Vec<Expr> = entries
+            .into_iter()
+            .map(|e| algebra.unless_zero(e))
+            .collect();
+        if entries.iter().any(|&entry| entry != Graph::ZERO) {
+            self.names.push(name);
+            self.entries.push(entries);
+            self.values.push(value);
+        }
+    }
+}
+
+impl Derivation {
+    /// Y, π and r of a mechanism whose bodies have been made general.
+    fn columns(&mut self, mechanism: &Mechanism, bodies: &[GeneralBody]) -> Outcome<Columns> {
+        let demand = self.demand();
+        let symbol = |derivation: &Self, id: ParameterId| derivation.symbols.parameters[id.index()];
+        let centres: Vec<Expr> = (bodies.iter())
+            .flat_map(|body| body.centre.into_iter().flatten())
+            .map(|id| symbol(self, id))
+            .collect();
+        let mut central = Substitution::by_zero(&self.algebra.graph, &centres);
+        let about_points = applied(&mut central, self, &demand)?;
+        let mut columns = Columns {
+            names: Vec::new(),
+            entries: Vec::new(),
+            values: Vec::new(),
+            rest: Vec::new(),
+        };
+        for body in bodies {
+            let name = &mechanism.bodies[body.body].name;
+            let [mass, moments, inertia] = self.inertial_values(mechanism, body)?;
+            let m = symbol(self, body.mass);
+            let entries = self.slopes(&about_points, &[m]);
+            columns.push(self, format!("m_{name}"), entries, mass[0]);
+            for (axis, id) in body.centre.into_iter().flatten().enumerate() {
+                let by_centre = self.slopes(&demand, &[symbol(self, id)]);
+                let by_centre = applied(&mut central, self, &by_centre)?;
+                let entries = self.slopes(&by_centre, &[m]);
+                let name = format!("m{}_{name}", AXES[axis]);
+                columns.push(self, name, entries, moments[axis]);
+            }
+            for (place, id) in body.inertia.into_iter().flatten().enumerate() {
+                let (i, j) = PAIRS[place];
+                let entries = self.slopes(&about_points, &[symbol(self, id)]);
+                let name = format!("I{}{}_{name}", AXES[i], AXES[j]);
+                columns.push(self, name, entries, inertia[place]);
+            }
+        }
+        let inertial: Vec<Expr> = self.symbols.parameters[mechanism.parameters.len()..].to_vec();
+        let mut massless = Substitution::by_zero(&self.algebra.graph, &inertial);
+        let loads = applied(&mut massless, self, &about_points)?;
+        let linear = self.linear_parameters(mechanism, &about_points, &inertial, &mut columns);
+        let mut without = Substitution::by_zero(&self.algebra.graph, &linear);
+        columns.rest = applied(&mut without, self, &loads)?;
+        Ok(columns)
+    }
+
+    /// Adds the parameters of loads that enter linearly beside inertia and beside those before them; which these
+    /// are.
+    fn linear_parameters(
+        &mut self,
+        mechanism: &Mechanism,
+        demand: &[Expr],
+        inertial: &[Expr],
+        columns: &mut Columns,
+    ) -> Vec<Expr> {
+        let mut linear: Vec<Expr> = Vec::new();
+        let mut slopes_of_linear: Vec<Expr> = Vec::new();
+        for (place, parameter) in mechanism.parameters.iter().enumerate() {
+            let theta = self.symbols.parameters[place];
+            let entries = self.slopes(demand, &[theta]);
+            let graph = &self.algebra.graph;
+            let others = [inertial, &linear, &[theta]].concat();
+            let mentioned = |exprs: &[Expr], symbols: &[Expr]| {
+                let symbols = ids(graph, symbols);
+                exprs.iter().any(|&entry| graph.mentions(entry, &symbols))
+            };
+            if mentioned(&entries, &others) || mentioned(&slopes_of_linear, &[theta]) {
+                continue;
+            }
+            let before = columns.names.len();
+            columns.push(self, parameter.label.name.clone(), entries.clone(), theta);
+            if columns.names.len() > before {
+                linear.push(theta);
+                slopes_of_linear.extend(entries);
+            }
+        }
+        linear
+    }
+
+    /// Mass, first moments, moments and products of inertia of a body by the parameters of the spec.
+    fn inertial_values(
+        &mut self,
+        mechanism: &Mechanism,
+        body: &GeneralBody,
+    ) -> Outcome<[Vec<Expr>; 3]> {
+        let failed = |_| vec![division_by_zero(Item::Body(body.body))];
+        let known = &mechanism.bodies[body.body];
+        let (symbols, graph) = (&self.symbols, &mut self.algebra.graph);
+        let lowering = Lowering {
+            symbols,
+            rates: &symbols.rates,
+        };
+        let mass = lowering.lower(graph, &known.mass).map_err(failed)?;
+        let c = if body.about == known.centre {
+            vector::ZERO
+        } else {
+            let at = &mechanism.points[known.centre].at;
+            lowering.lower_all(graph, at).map_err(failed)?
+        };
+        let moments = graph.scale3(mass, c);
+        let mut inertia = Vec::new();
+        if let Some(central) = &known.inertia {
+            let square = graph.dot(c, moments);
+            for (i, j) in PAIRS {
+                let own = lowering
+                    .lower(graph, &central.matrix[i][j])
+                    .map_err(failed)?;
+                let product = graph.mul(c[i], moments[j]);
+                let spread = if i == j { square } else { Graph::ZERO };
+                let steiner = graph.sub(spread, product);
+                inertia.push(graph.add(own, steiner));
+            }
+        }
+        Ok([vec![mass], moments.to_vec(), inertia])
+    }
+}
+
+fn applied(
+    substitution: &mut Substitution,
+    derivation: &mut Derivation,
+    exprs: &[Expr],
+) -> Outcome<Vec<Expr>> {
+    let applied = substitution.apply_all(&mut derivation.algebra.graph, exprs);
+    applied.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+}

@@ -1,7 +1,7 @@
 //! The derivation of a spec as a page, as emitted code and as a drawing.
 
 use appell_codegen::compile::report;
-use appell_codegen::emit::{Options, emit};
+use appell_codegen::emit::{Options, emit, emit_functions};
 use appell_codegen::linearisation::{Linearisation, SteadyMotion};
 use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Finding;
@@ -119,8 +119,25 @@ impl Source {
 
     /// C99: a header and a source without allocation.
     pub fn c(&self, options: &c::Options) -> Result<c::Emitted, Error> {
-        let program = appell_codegen::compile(&self.file, &self.text, &options.functions)?;
+        let program = if options.functions == [FunctionKind::Regressor] {
+            self.regressor()?.program
+        } else {
+            appell_codegen::compile(&self.file, &self.text, &options.functions)?
+        };
         Ok(c::emit(&program, options))
+    }
+
+    /// The [regressor](Self::regressor) as Rust, to be included in a module that allows `non_snake_case`.
+    pub fn regressor_in_rust(&self) -> Result<String, Error> {
+        let program = self.regressor()?.program;
+        let emitted = emit_functions(&program, &[FunctionKind::Regressor]);
+        Ok(emitted.map_err(Error::computation)?.source)
+    }
+
+    /// The [regressor](Self::regressor) as a function over an array namespace.
+    pub fn regressor_in_python(&self) -> Result<String, Error> {
+        let program = self.regressor()?.program;
+        Ok(python::module(&program, &[FunctionKind::Regressor]))
     }
 
     /// A module of Python functions over an array namespace: `numpy`, `jax.numpy`, `casadi` or `sympy`.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use appell_analysis::{BranchError, ChartError, StabilityError, SteadyError};
 use appell_estimate::EstimateError;
+use appell_gap::base::BaseError;
 use appell_gap::diagnose::DiagnoseError;
 use appell_gap::effects::{EffectError, ModelError};
 use appell_gap::identify::IdentifyError;
@@ -103,6 +104,9 @@ pub enum Error {
     /// Recorded motions do not determine inputs or parameters.
     #[error(transparent)]
     Inverse(#[from] RelationError),
+    /// Base parameters cannot be found.
+    #[error(transparent)]
+    Base(#[from] BaseError),
     /// No FMU can be made.
     #[error(transparent)]
     Fmu(Box<FmuError>),
@@ -233,6 +237,10 @@ impl Error {
             Self::Inverse(error) => match error {
                 RelationError::Inverse(_) => Class::Computation,
                 _ => Class::Request,
+            },
+            Self::Base(error) => match error {
+                BaseError::NoInput { .. } => Class::Data,
+                _ => Class::Computation,
             },
             Self::Several(all) => all.iter().map(Self::class).max().unwrap_or(Class::Request),
         }

@@ -27,6 +27,7 @@
 //! Types of the crates below that stand in signatures are re-exported. Pages are those of the crate
 //! `appell-report`.
 
+pub mod base;
 pub mod capture;
 pub mod cases;
 pub mod check;

@@ -1,6 +1,7 @@
 //! One file per command: parse flags, call, print.
 
 mod apply;
+mod base;
 mod check;
 mod completions;
 mod control;
@@ -60,6 +61,7 @@ pub(crate) enum Command {
     Recording(recording::Recording),
     Identify(identify::Identify),
     Inverse(inverse::Inverse),
+    Base(base::Base),
     Motion(motion::Motion),
     Diagnose(diagnose::Diagnose),
     Apply(apply::Apply),
@@ -92,6 +94,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Recording(command) => command.run(),
         Command::Identify(command) => command.run(),
         Command::Inverse(command) => command.run(),
+        Command::Base(command) => command.run(),
         Command::Motion(command) => command.run(),
         Command::Diagnose(command) => command.run(),
         Command::Apply(command) => command.run(),

@@ -5,7 +5,7 @@ use appell_spec::{Code, Diagnostic, Report, Severity};
 
 use crate::audit::{Audit, audit, counts_velocities, reasons};
 use crate::mechanics::finding::{Finding, Item};
-use crate::mechanics::{Derivation, assemble, derive};
+use crate::mechanics::{self, Derivation, Regressor, assemble, derive};
 use crate::program::{FunctionKind, Program};
 
 /// A mechanism whose equations of motion have been derived.
@@ -86,6 +86,13 @@ impl Derived {
 /// Reads a spec and makes the program with the functions `kinds`.
 pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
     derived(file, text)?.program(text, kinds)
+}
+
+/// Reads a spec and derives its [regressor](crate::mechanics::regressor).
+pub fn regressor(file: &str, text: &str) -> Result<Regressor, Report> {
+    let checked = appell_spec::load(file, text)?;
+    mechanics::regressor(&checked.mechanism)
+        .map_err(|findings| refused(&checked.mechanism, text, &findings))
 }
 
 /// Report on a refused mechanism: the errors, and possible causes as warnings.

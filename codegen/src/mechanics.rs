@@ -75,7 +75,7 @@ use symbols::Symbols;
 
 pub use algebra::seed;
 pub use ranges::{declared_ranges, parameter_ranges};
-pub use regressor::regressor;
+pub use regressor::{Linear, Regressor, regressor};
 
 /// The derivation of one mechanism, every stage kept for reading.
 #[derive(Clone)]

@@ -191,7 +191,7 @@ pub fn find(set: &DataSet, model: &dyn Model, options: &Options) -> Result<Answe
 }
 
 /// Columns that measure coordinates, with the coordinates.
-fn coordinates(set: &DataSet) -> Vec<(usize, usize)> {
+pub(crate) fn coordinates(set: &DataSet) -> Vec<(usize, usize)> {
     let columns = set.channels.iter().enumerate();
     columns
         .filter_map(|(column, channel)| match channel.role {

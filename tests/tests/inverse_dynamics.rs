@@ -64,7 +64,7 @@ fn its_jacobians_are_its_slopes() {
 #[test]
 fn the_regressor_is_inverse_dynamics_as_a_linear_function() {
     for name in shipped::names() {
-        let program = regressor(shipped::mechanism(&name)).expect(&name);
+        let program = regressor(shipped::mechanism(&name)).expect(&name).program;
         let schedule = schedule(&program, &program.functions[0]);
         let mut random = Random::of(&name);
         let (model, info) = (shipped::model(&name), &program.info);

@@ -341,7 +341,7 @@ impl Wiring {
     ) -> Result<ClosedLoop, Error> {
         if kind == Kind::Series && !self.by_model.is_empty() {
             let message = "laws that compute inputs from the equations of motion have no Taylor series; choose dop853";
-            return Err(Error::request(Field::Method, message));
+            return Err(Error::request(Field::Feedback, message));
         }
         let given = self.recorded.is_some() || !self.driven.is_empty() || !self.by_model.is_empty();
         let outside = Outside {

@@ -43,6 +43,9 @@ pub(crate) struct Derive {
     /// C: a step of the classical Runge-Kutta method as well
     #[arg(long)]
     integrator: bool,
+    /// Rust, C, Python: inverse dynamics as a linear function of inertial and load parameters instead
+    #[arg(long)]
+    regressor: bool,
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -148,8 +151,16 @@ impl Derive {
             let message = "--about needs --stage linear, as text, latex or html";
             return Err(Error::Usage(message.to_owned()));
         }
+        if self.regressor && self.integrator {
+            let message = "--integrator needs the rates, which are not beside a regressor";
+            return Err(Error::Usage(message.to_owned()));
+        }
         if format != Output::C && (self.float || self.integrator) {
             let message = "--float and --integrator need --format c";
+            return Err(Error::Usage(message.to_owned()));
+        }
+        if self.regressor && format.is_page() {
+            let message = "--regressor needs --format rust, c or python";
             return Err(Error::Usage(message.to_owned()));
         }
         let spinner = progress::spinner("deriving the equations of motion");
@@ -159,7 +170,9 @@ impl Derive {
                 spinner.finish_and_clear();
                 return self.write_c(&emitted?);
             }
+            (Output::Rust, _) if self.regressor => source.regressor_in_rust(),
             (Output::Rust, _) => source.rust(),
+            (Output::Python, _) if self.regressor => source.regressor_in_python(),
             (Output::Python, _) => source.python(),
             (Output::Page(format), Extent::Through(stage)) => source.derivation(stage, format),
             (Output::Page(format), Extent::Linear) => source.linear_equations(&self.about, format),
@@ -171,7 +184,11 @@ impl Derive {
 
     fn c_options(&self) -> c::Options {
         c::Options {
-            functions: FunctionKind::STANDARD.to_vec(),
+            functions: if self.regressor {
+                vec![FunctionKind::Regressor]
+            } else {
+                FunctionKind::STANDARD.to_vec()
+            },
             real: if self.float {
                 c::Real::Float
             } else {

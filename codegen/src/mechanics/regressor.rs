@@ -25,36 +25,57 @@ use crate::symbolic::{Expr, Graph, Substitution, vector};
 const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// A program with one function, [`FunctionKind::Regressor`].
-pub fn regressor(mechanism: &Mechanism) -> Outcome<Program> {
+/// The regressor of a mechanism.
+#[derive(Debug, Clone)]
+pub struct Regressor {
+    /// A program with one function, [`FunctionKind::Regressor`].
+    pub program: Program,
+    /// The parameters π, a column of Y each.
+    pub parameters: Vec<Linear>,
+    /// Inertial parameters that no motion notices.
+    pub without_effect: Vec<String>,
+}
+
+/// A parameter on which inverse dynamics depends linearly.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Linear {
+    /// `m`, `mx`, `Ixx` and so on with the name of the body, or the parameter of the spec.
+    pub name: String,
+    /// SI unit.
+    pub unit: String,
+}
+
+/// Derives the regressor.
+pub fn regressor(mechanism: &Mechanism) -> Outcome<Regressor> {
     let (general, bodies) = with_general_bodies(mechanism);
     let mut derivation = derive(&general)?;
     let columns = derivation.columns(mechanism, &bodies)?;
     let info = info(&derivation, mechanism, &tabulated_inputs(mechanism));
     let speeds = &info.states[..info.speeds];
-    let layout = Layout::Matrix(speeds.len(), columns.names.len());
+    let names: Vec<String> = columns.parameters.iter().map(|p| p.name.clone()).collect();
+    let layout = Layout::Matrix(speeds.len(), names.len());
     let entries = (0..speeds.len()).flat_map(|row| columns.entries.iter().map(move |c| c[row]));
     let labels = speeds.iter().flat_map(|speed| {
-        let names = columns.names.iter();
+        let names = names.iter();
         names.map(move |name| format!("Y_{}_{name}", speed.name))
     });
     let rows = speeds.iter().map(|speed| speed.name.to_string()).collect();
-    let count = Layout::List(columns.names.len());
+    let count = Layout::List(names.len());
     let results = vec![
         Array::new("regressor", "Y.", layout, entries.collect())
             .labelled(labels)
-            .with_names(rows, columns.names.clone()),
+            .with_names(rows, names.clone()),
         by_speed("rest", "rest", "r.", speeds, columns.rest),
         Array::new("parameters", "π.", count, columns.values)
-            .labelled(columns.names.iter().map(|name| format!("pi_{name}")))
-            .with_names(columns.names, Vec::new()),
+            .labelled(names.iter().map(|name| format!("pi_{name}")))
+            .with_names(names.clone(), Vec::new()),
     ];
     let function = Function::new(FunctionKind::Regressor, results);
     let bodies = derivation.bodies.clone();
     let function = derivation.explained(mechanism, function, &bodies);
     let mut arguments = function_arguments(&derivation, &info);
     arguments.parameters.truncate(info.parameter_len());
-    Ok(Program {
+    let program = Program {
         info,
         systems: Vec::new(),
         file: mechanism.file.clone(),
@@ -63,6 +84,11 @@ pub fn regressor(mechanism: &Mechanism) -> Outcome<Program> {
         dependent: derivation.positions.dependent,
         hints: Vec::new(),
         functions: vec![function],
+    };
+    Ok(Regressor {
+        program,
+        parameters: columns.parameters,
+        without_effect: columns.without_effect,
     })
 }
 
@@ -170,9 +196,19 @@ fn unknown(name: String) -> Parameter {
     }
 }
 
+impl Linear {
+    fn new(name: &str, dimension: Dimension) -> Self {
+        Self {
+            name: name.to_owned(),
+            unit: Unit::si(dimension).text,
+        }
+    }
+}
+
 /// Columns of Y, with what they belong to.
 struct Columns {
-    names: Vec<String>,
+    parameters: Vec<Linear>,
+    without_effect: Vec<String>,
     entries: Vec<Vec<Expr>>,
     /// π by the parameters of the spec.
     values: Vec<Expr>,
@@ -181,17 +217,27 @@ struct Columns {
 }
 
 impl Columns {
-    fn push(&mut self, derivation: &mut Derivation, name: String, entries: Vec<Expr>, value: Expr) {
+    /// Adds a column unless it is zero; whether it did.
+    fn push(
+        &mut self,
+        derivation: &mut Derivation,
+        parameter: Linear,
+        entries: Vec<Expr>,
+        value: Expr,
+    ) -> bool {
         let algebra = &mut derivation.algebra;
         let entries: Vec<Expr> = entries
             .into_iter()
             .map(|e| algebra.unless_zero(e))
             .collect();
         if entries.iter().any(|&entry| entry != Graph::ZERO) {
-            self.names.push(name);
+            self.parameters.push(parameter);
             self.entries.push(entries);
             self.values.push(value);
+            return true;
         }
+        self.without_effect.push(parameter.name);
+        false
     }
 }
 
@@ -207,7 +253,8 @@ impl Derivation {
         let mut central = Substitution::by_zero(&self.algebra.graph, &centres);
         let about_points = applied(&mut central, self, &demand)?;
         let mut columns = Columns {
-            names: Vec::new(),
+            parameters: Vec::new(),
+            without_effect: Vec::new(),
             entries: Vec::new(),
             values: Vec::new(),
             rest: Vec::new(),
@@ -217,19 +264,22 @@ impl Derivation {
             let [mass, moments, inertia] = self.inertial_values(mechanism, body)?;
             let m = symbol(self, body.mass);
             let entries = self.slopes(&about_points, &[m]);
-            columns.push(self, format!("m_{name}"), entries, mass[0]);
+            let linear = Linear::new(&format!("m_{name}"), Dimension::MASS);
+            columns.push(self, linear, entries, mass[0]);
             for (axis, id) in body.centre.into_iter().flatten().enumerate() {
                 let by_centre = self.slopes(&demand, &[symbol(self, id)]);
                 let by_centre = applied(&mut central, self, &by_centre)?;
                 let entries = self.slopes(&by_centre, &[m]);
                 let name = format!("m{}_{name}", AXES[axis]);
-                columns.push(self, name, entries, moments[axis]);
+                let linear = Linear::new(&name, Dimension::integers([1, 1, 0, 0, 0, 0, 0]));
+                columns.push(self, linear, entries, moments[axis]);
             }
             for (place, id) in body.inertia.into_iter().flatten().enumerate() {
                 let (i, j) = PAIRS[place];
                 let entries = self.slopes(&about_points, &[symbol(self, id)]);
                 let name = format!("I{}{}_{name}", AXES[i], AXES[j]);
-                columns.push(self, name, entries, inertia[place]);
+                let linear = Linear::new(&name, Dimension::INERTIA);
+                columns.push(self, linear, entries, inertia[place]);
             }
         }
         let inertial: Vec<Expr> = self.symbols.parameters[mechanism.parameters.len()..].to_vec();
@@ -264,9 +314,11 @@ impl Derivation {
             if mentioned(&entries, &others) || mentioned(&slopes_of_linear, &[theta]) {
                 continue;
             }
-            let before = columns.names.len();
-            columns.push(self, parameter.label.name.clone(), entries.clone(), theta);
-            if columns.names.len() > before {
+            let Label { name, unit, .. } = &parameter.label;
+            let own = Linear::new(name, unit.dimension);
+            // Whatever has no effect on the forces may have one elsewhere.
+            let is_felt = entries.iter().any(|&entry| entry != Graph::ZERO);
+            if is_felt && columns.push(self, own, entries.clone(), theta) {
                 linear.push(theta);
                 slopes_of_linear.extend(entries);
             }

@@ -177,32 +177,24 @@ pub struct BaseParameters {
 }
 
 impl BaseParameters {
-    /// Of regressors at many moments, with scaled columns. A column counts as dependent if its
-    /// remainder is less than the fraction `part` of it, such as 1e-8.
+    /// Of regressors at many moments. A column counts as dependent on those before it if its remainder is less
+    /// than the fraction `part` of it, such as 1e-8.
     pub fn of(regressors: &DMatrix<f64>, part: f64) -> Self {
-        let mut rest = regressors.clone();
-        let lengths: Vec<f64> = rest.column_iter().map(|column| column.norm()).collect();
-        let mut open: Vec<usize> = (0..rest.ncols()).collect();
-        let mut independent = Vec::new();
-        // Gram-Schmidt with column pivoting.
-        let kept = |rest: &DMatrix<f64>, column: usize| {
-            let length = lengths[column].max(f64::MIN_POSITIVE);
-            rest.column(column).norm() / length
-        };
-        while let Some(place) = (0..open.len())
-            .max_by(|&a, &b| kept(&rest, open[a]).total_cmp(&kept(&rest, open[b])))
-            .filter(|&place| kept(&rest, open[place]) > part)
-        {
-            let column = open.remove(place);
-            let direction = rest.column(column).normalize();
-            for &other in &open {
-                // Reorthogonalised once (Kahan: twice is enough).
-                for _ in 0..2 {
-                    let along = direction.dot(&rest.column(other));
-                    rest.column_mut(other).axpy(-along, &direction, 1.0);
-                }
+        let mut directions: Vec<DVector<f64>> = Vec::new();
+        let (mut independent, mut open) = (Vec::new(), Vec::new());
+        for (place, column) in regressors.column_iter().enumerate() {
+            let length = column.norm();
+            let mut rest = column.into_owned();
+            // Orthogonalised twice, which is enough (W. Kahan).
+            for direction in directions.iter().chain(&directions) {
+                rest.axpy(-direction.dot(&rest), direction, 1.0);
             }
-            independent.push(column);
+            if rest.norm() > part * length {
+                directions.push(rest.normalize());
+                independent.push(place);
+            } else {
+                open.push(place);
+            }
         }
         if independent.is_empty() {
             return Self {

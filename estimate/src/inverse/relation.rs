@@ -12,6 +12,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{InputEquations, InverseError, ZERO};
+use crate::fitting::regression::Moment;
 use appell_runtime::model::{At, Gradient, Model};
 use appell_spectra::singular::Singular;
 
@@ -140,6 +141,17 @@ impl<'a> Relations<'a> {
         let information = reach.tr_mul(&weights) * reach;
         let covariance = information.try_inverse().ok_or(InverseError::Singular)?;
         Ok((&covariance * reach.tr_mul(&weights) * e, covariance))
+    }
+
+    /// State and pseudo-accelerations of a motion; the inputs are those that it takes.
+    pub fn moment(&self, motion: &Motion, p: &[f64]) -> Result<Moment, InverseError> {
+        let place = self.place(motion, p)?;
+        Ok(Moment {
+            t: motion.t,
+            x: place.x,
+            accelerations: place.accelerations.as_slice().to_vec(),
+            u: place.u,
+        })
     }
 
     /// State, pseudo-accelerations and inputs of a motion.

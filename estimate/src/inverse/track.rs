@@ -126,11 +126,11 @@ impl Left {
         self.squares[(channel, channel)] / self.freedom as f64
     }
 
-    /// Whether closer knots reduce the residuals of a channel significantly.
-    fn is_worse_than(&self, closer: &Self) -> bool {
+    /// Whether closer knots reduce the residuals of a channel significantly; the last ones are `others`.
+    fn is_worse_than(&self, closer: &Self, others: usize) -> bool {
         let added = self.freedom.saturating_sub(closer.freedom).max(1) as f64;
         let chance = CHANCE * (2.0 / added).sqrt();
-        (0..self.squares.ncols()).any(|channel| {
+        (0..self.squares.ncols() - others).any(|channel| {
             let gained = self.squares[(channel, channel)] - closer.squares[(channel, channel)];
             gained > added * closer.variance(channel) * (1.0 + chance)
         })
@@ -140,8 +140,14 @@ impl Left {
 impl Track {
     /// Splines through records of the same coordinates.
     pub fn of(records: &[Record]) -> Result<Self, InverseError> {
+        Self::beside(records, 0)
+    }
+
+    /// The same where the last columns of the records are no coordinates: they have the same knots and do not
+    /// decide how close these are.
+    pub fn beside(records: &[Record], others: usize) -> Result<Self, InverseError> {
         let pieces: Vec<Piece> = records.iter().enumerate().flat_map(cut).collect();
-        let (spacing, left) = distance(&pieces).ok_or(InverseError::TooShort)?;
+        let (spacing, left) = distance(&pieces, others).ok_or(InverseError::TooShort)?;
         let mut track = Self {
             spacing,
             noise: left.squares / left.freedom as f64,
@@ -215,7 +221,7 @@ fn cut((run, record): (usize, &Record)) -> Vec<Piece> {
 }
 
 /// The knot spacing in s by the rule of this file, with the residuals.
-fn distance(pieces: &[Piece]) -> Option<(f64, Left)> {
+fn distance(pieces: &[Piece], others: usize) -> Option<(f64, Left)> {
     let shortest = pieces.iter().map(Piece::length).reduce(f64::min)?;
     let step = |piece: &Piece| piece.length() / (piece.times.len() - 1) as f64;
     let closest = FEWEST_SAMPLES * pieces.iter().map(step).fold(0.0, f64::max);
@@ -228,7 +234,7 @@ fn distance(pieces: &[Piece]) -> Option<(f64, Left)> {
         };
         let improved = found
             .as_ref()
-            .is_none_or(|(_, wide)| wide.is_worse_than(&left));
+            .is_none_or(|(_, wide)| wide.is_worse_than(&left, others));
         settled = if improved { 0 } else { settled + 1 };
         found = Some((spacing, left));
         // Two steps without a gain: the second may have been missed by chance.

@@ -97,7 +97,7 @@ impl Run {
         let mut plan = Plan::new(&setup);
         plan.feedback(law)?;
         let wiring = plan.wiring(&setup, 10.0)?;
-        let controller = wiring.controller(setup.parameters.clone(), 10.0);
+        let controller = wiring.controller(equations.model(), setup.parameters.clone(), 10.0);
         let simulation = Simulation {
             parameters: setup.parameters.clone(),
             initial_state: setup.initial.clone(),

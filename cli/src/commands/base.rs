@@ -1,0 +1,49 @@
+//! `appell base`
+
+use std::path::PathBuf;
+
+use appell::files;
+
+use crate::failure::Error;
+use crate::{engine, output, progress};
+
+/// Tells which combinations of masses, inertias and load parameters motions can tell, and estimates them.
+///
+/// Inverse dynamics is linear in these parameters. What depends on others at every motion is one
+/// combination with them, a base parameter; some parameters no motion notices at all. With recordings of a
+/// motion and of all inputs, weighted least squares give the values with intervals, and what is left of the
+/// forces in training and test runs.
+#[derive(Debug, clap::Args)]
+#[command(after_long_help = "\
+Examples:
+  appell base double_pendulum
+  appell base arm.toml --data recordings --json base.json
+  appell derive arm.toml --regressor --out regressor.py")]
+pub(crate) struct Base {
+    /// Name of a shipped mechanism or path of a spec
+    model: String,
+    /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
+    #[arg(long, num_args = 1.., value_name = "DIR")]
+    data: Vec<PathBuf>,
+    /// Write the results as JSON, in SI; `-` is standard output
+    #[arg(long, value_name = "FILE")]
+    json: Option<PathBuf>,
+}
+
+impl Base {
+    pub(super) fn run(&self) -> Result<(), Error> {
+        let set = match self.data.as_slice() {
+            [] => None,
+            data => Some(appell::recording::read(data, Some(&self.model))?),
+        };
+        let model = engine::model(&self.model, None)?;
+        let spinner = progress::spinner("finding combinations of parameters");
+        let found = model.base_parameters(set.as_ref());
+        spinner.finish_and_clear();
+        let found = found?;
+        if let Some(path) = &self.json {
+            files::write_json(path, &found.to_json())?;
+        }
+        output::print_beside(&found.to_text(), &[&self.json])
+    }
+}

@@ -1,0 +1,223 @@
+//! Base parameters: the combinations of inertial parameters and of load parameters on which the forces of a
+//! motion depend at all (M. Gautier, *Numerical calculation of the base inertial parameters of robots*, 1991), and
+//! their values from recorded motions with recorded inputs.
+//!
+//! Inverse dynamics is linear in these parameters, M ω̇ + b − Π = Y π + r, and vanishes for the true ones. Columns of
+//! Y that depend on others at all motions belong to the same combination. Recorded motions give equations
+//! Y_b β = −r: splines filter coordinates and inputs alike, every pseudo-velocity is weighted by its residuals, and
+//! stretches of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
+
+mod moments;
+mod regression;
+
+use appell_codegen::jit::{NativeFunction, Sizes};
+use appell_codegen::mechanics::{Linear, Regressor};
+use appell_codegen::schedule::{Schedule, interpret_weighted, schedule};
+use appell_estimate::BaseParameters;
+use appell_estimate::inverse::InverseError;
+use appell_recordings::DataSet;
+use appell_runtime::model::{At, Model};
+use nalgebra::{DMatrix, DVector};
+
+pub use regression::{Estimate, Fit, Speed};
+
+/// A column counts as dependent if less than this part of it is left.
+const DEPENDENT: f64 = 1e-8;
+/// A share in a combination below this part of the largest is rounding.
+const ROUNDING: f64 = 1e-9;
+/// Random motions per parameter.
+const MOTIONS: usize = 4;
+
+/// Why base parameters cannot be found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BaseError {
+    /// Nothing depends on the parameters.
+    #[error("no motion depends on an inertial parameter or on one of the loads")]
+    NoParameter,
+    /// An input was not recorded.
+    #[error(
+        "the input `{input}` is not recorded; forces of a motion are needed to estimate what it takes"
+    )]
+    NoInput {
+        /// Its name.
+        input: String,
+    },
+    /// The motions do not determine the base parameters.
+    #[error(
+        "the recorded motions determine {rank} of {count} base parameters; record motions that move every joint"
+    )]
+    TooLittle {
+        /// Combinations that are determined.
+        rank: usize,
+        /// Base parameters.
+        count: usize,
+    },
+    /// The motions could not be evaluated.
+    #[error(transparent)]
+    Inverse(#[from] InverseError),
+}
+
+/// A combination of parameters.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Combination {
+    /// The parameter that it is named after.
+    pub leading: usize,
+    /// Others with their factors, by their index.
+    pub others: Vec<(usize, f64)>,
+    /// Its value by the parameters of the spec, in SI.
+    pub nominal: f64,
+}
+
+/// What forces of motions depend on.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Structure {
+    /// All parameters on which they depend linearly.
+    pub parameters: Vec<Linear>,
+    /// Their values by the spec, in SI.
+    pub values: Vec<f64>,
+    /// The base parameters.
+    pub base: Vec<Combination>,
+    /// Inertial parameters that no motion notices.
+    pub without_effect: Vec<String>,
+}
+
+impl Structure {
+    /// A combination as a sum, such as `Izz_1 + 0.25 m_2`.
+    pub fn text(&self, combination: &Combination) -> String {
+        let mut text = self.parameters[combination.leading].name.clone();
+        for &(other, factor) in &combination.others {
+            let sign = if factor < 0.0 { '−' } else { '+' };
+            let name = &self.parameters[other].name;
+            let size = factor.abs();
+            if (size - 1.0).abs() < ROUNDING {
+                text.push_str(&format!(" {sign} {name}"));
+            } else {
+                text.push_str(&format!(" {sign} {} {name}", shortened(size)));
+            }
+        }
+        text
+    }
+}
+
+/// A number with at most six digits.
+fn shortened(value: f64) -> String {
+    let digits = 5 - value.abs().log10().floor().clamp(-12.0, 12.0) as i32;
+    let scale = 10_f64.powi(digits);
+    format!("{}", (value * scale).round() / scale)
+}
+
+/// Finds the base parameters with the parameters `p` of the spec, in SI.
+pub fn structure(
+    model: &dyn Model,
+    regressor: &Regressor,
+    p: &[f64],
+) -> Result<Structure, BaseError> {
+    let equations = Equations::new(regressor);
+    let count = regressor.parameters.len();
+    if count == 0 {
+        return Err(BaseError::NoParameter);
+    }
+    let mut rows = DMatrix::zeros(0, count);
+    let mut values = Vec::new();
+    for moment in moments::random(model, MOTIONS * count, p) {
+        let at = At {
+            t: moment.t,
+            x: &moment.x,
+            u: &moment.u,
+            p,
+        };
+        let linear = equations.at(at, &moment.accelerations);
+        if linear.regressor.iter().all(|entry| entry.is_finite()) {
+            let before = rows.nrows();
+            rows = rows.insert_rows(before, linear.regressor.nrows(), 0.0);
+            rows.rows_mut(before, linear.regressor.nrows())
+                .copy_from(&linear.regressor);
+            values = linear.values;
+        }
+    }
+    let found = BaseParameters::of(&rows, DEPENDENT);
+    let base = found.independent.iter().enumerate().map(|(row, &leading)| {
+        let factors = found.combinations.row(row);
+        let others = found.dependent.iter().copied().zip(factors.iter().copied());
+        let others: Vec<(usize, f64)> = others
+            .filter(|&(_, factor)| factor.abs() > ROUNDING * found.combinations.amax())
+            .collect();
+        let shares = others.iter().map(|&(other, factor)| factor * values[other]);
+        Combination {
+            leading,
+            nominal: values[leading] + shares.sum::<f64>(),
+            others,
+        }
+    });
+    let base = base.collect();
+    Ok(Structure {
+        parameters: regressor.parameters.clone(),
+        base,
+        values,
+        without_effect: regressor.without_effect.clone(),
+    })
+}
+
+/// Estimates base parameters from the recordings of a data set.
+pub fn fit(
+    set: &DataSet,
+    model: &dyn Model,
+    regressor: &Regressor,
+    structure: &Structure,
+) -> Result<Fit, BaseError> {
+    let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
+    let stretches = moments::recorded(set, model, &p)?;
+    regression::fit(&Equations::new(regressor), structure, &stretches, model, &p)
+}
+
+/// Y, r and π at a motion.
+struct LinearEquations {
+    regressor: DMatrix<f64>,
+    rest: DVector<f64>,
+    values: Vec<f64>,
+}
+
+/// The regressor, compiled where that is possible.
+struct Equations {
+    schedule: Schedule,
+    native: Option<NativeFunction>,
+    speeds: usize,
+    count: usize,
+}
+
+impl Equations {
+    fn new(regressor: &Regressor) -> Self {
+        let program = &regressor.program;
+        let schedule = schedule(program, &program.functions[0]);
+        Self {
+            native: NativeFunction::compile(&schedule, Sizes::from(&program.info)).ok(),
+            schedule,
+            speeds: program.info.speeds,
+            count: regressor.parameters.len(),
+        }
+    }
+
+    fn at(&self, at: At<'_>, accelerations: &[f64]) -> LinearEquations {
+        let (s, k) = (self.speeds, self.count);
+        let (mut regressor, mut rest, mut values) = (vec![0.0; s * k], vec![0.0; s], vec![0.0; k]);
+        let results = [
+            regressor.as_mut_slice(),
+            rest.as_mut_slice(),
+            values.as_mut_slice(),
+        ];
+        match &self.native {
+            Some(native) => native.call_weighted(at, accelerations, results),
+            None => {
+                let computed = interpret_weighted(&self.schedule, at, accelerations);
+                for (to, from) in results.into_iter().zip(&computed) {
+                    to.copy_from_slice(from);
+                }
+            }
+        }
+        LinearEquations {
+            regressor: DMatrix::from_row_slice(s, k, &regressor),
+            rest: DVector::from_vec(rest),
+            values,
+        }
+    }
+}

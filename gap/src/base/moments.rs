@@ -1,0 +1,135 @@
+//! Motions at which the equations are evaluated: random ones, and recorded ones as splines.
+
+use std::f64::consts::PI;
+
+use appell_estimate::Moment;
+use appell_estimate::inverse::{Motion, Record, Relations, Track};
+use appell_recordings::{DataSet, Part, Role, Run};
+use appell_runtime::model::{Model, Quantity};
+use appell_runtime::positions::{Moving, Positions};
+use nalgebra::{DMatrix, DVector};
+use rand_xoshiro::SplitMix64;
+use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
+
+use super::BaseError;
+use crate::inverse::coordinates;
+
+/// Largest pseudo-velocity of a random motion, in SI.
+const SPEED: f64 = 3.0;
+/// Largest pseudo-acceleration, in SI.
+const ACCELERATION: f64 = 10.0;
+/// Largest input, in SI.
+const INPUT: f64 = 5.0;
+
+/// Random motions within the ranges of the coordinates; whole turns where there are none.
+pub(super) fn random(model: &dyn Model, count: usize, p: &[f64]) -> Vec<Moment> {
+    let info = model.info();
+    let mut random = SplitMix64::seed_from_u64(1);
+    let mut between = move |low: f64, high: f64| {
+        let uniform = (random.next_u64() >> 11) as f64 / (1_u64 << 53) as f64;
+        low + (high - low) * uniform
+    };
+    let mut positions = Positions::of(model);
+    let mut moments = Vec::with_capacity(count);
+    for _ in 0..count {
+        let speeds = (0..info.speeds).map(|_| between(-SPEED, SPEED));
+        let mut x: Vec<f64> = speeds.collect();
+        let coordinate = |q: &Quantity| {
+            let [low, high] = q.range;
+            (low.max(q.value - PI), high.min(q.value + PI))
+        };
+        let ranges: Vec<_> = info
+            .coordinate_quantities()
+            .iter()
+            .map(coordinate)
+            .collect();
+        x.extend(ranges.iter().map(|&(low, high)| between(low, high)));
+        let accelerations = (0..info.speeds).map(|_| between(-ACCELERATION, ACCELERATION));
+        let accelerations: Vec<f64> = accelerations.collect();
+        let u: Vec<f64> = (0..info.input_len())
+            .map(|_| between(-INPUT, INPUT))
+            .collect();
+        if let Some(positions) = &mut positions
+            && positions
+                .restore(model, 0.0, &mut x, &u, p, Moving::All)
+                .is_err()
+        {
+            continue;
+        }
+        moments.push(Moment {
+            t: 0.0,
+            x,
+            accelerations,
+            u,
+        });
+    }
+    moments
+}
+
+/// Recorded motions whose errors do not depend on those of other stretches.
+pub(super) struct Stretch {
+    pub(super) part: Part,
+    pub(super) moments: Vec<Moment>,
+}
+
+/// The motions of all runs.
+pub(super) fn recorded(
+    set: &DataSet,
+    model: &dyn Model,
+    p: &[f64],
+) -> Result<Vec<Stretch>, BaseError> {
+    let info = model.info();
+    let columns = coordinates(set);
+    let mut inputs = Vec::with_capacity(info.declared_inputs);
+    for input in 0..info.declared_inputs {
+        let is_own = |role: Role| role == Role::Input(input);
+        let place = set.channels.iter().position(|channel| is_own(channel.role));
+        inputs.push(place.ok_or_else(|| BaseError::NoInput {
+            input: info.inputs[input].name.to_string(),
+        })?);
+    }
+    let measured: Vec<usize> = columns.iter().map(|(_, coordinate)| *coordinate).collect();
+    let mut stretches = Vec::new();
+    for part in [Part::Fit, Part::Test] {
+        let runs = set.runs.iter().filter(|run| run.part == part);
+        let record = |run: &Run| {
+            let columns = columns.iter().map(|(column, _)| column).chain(&inputs);
+            let values = columns.map(|&column| DVector::from_column_slice(&run.values[column]));
+            Record {
+                times: run.times.clone(),
+                values: DMatrix::from_columns(&values.collect::<Vec<_>>()),
+            }
+        };
+        let records: Vec<Record> = runs.map(record).collect();
+        if records.is_empty() {
+            continue;
+        }
+        let track = Track::beside(&records, inputs.len())?;
+        let first = coordinates_of(&track.stretches[0].motions[0], measured.len());
+        let relations = Relations::new(model, &measured, &first, p)?;
+        for stretch in &track.stretches {
+            let moments = stretch.motions.iter().map(|motion| {
+                let own = coordinates_of(motion, measured.len());
+                let mut moment = relations.moment(&own, p)?;
+                let given = motion.derivatives[0].iter().skip(measured.len());
+                for (u, given) in moment.u.iter_mut().zip(given) {
+                    *u = *given;
+                }
+                Ok(moment)
+            });
+            stretches.push(Stretch {
+                part,
+                moments: moments.collect::<Result<_, BaseError>>()?,
+            });
+        }
+    }
+    Ok(stretches)
+}
+
+/// A motion without the columns that are no coordinates.
+fn coordinates_of(motion: &Motion, count: usize) -> Motion {
+    Motion {
+        t: motion.t,
+        derivatives: (motion.derivatives.each_ref()).map(|all| all.rows(0, count).into_owned()),
+    }
+}

@@ -5,6 +5,7 @@
 mod control;
 mod ensemble;
 mod errors;
+mod model_laws;
 mod orientations;
 mod robots;
 mod spinning;

@@ -120,7 +120,8 @@ fn claims(
         return Ok(claims);
     }
 
-    let kane = kane::kane(algebra, &allowed, &motion.accelerations)?;
+    let given: Vec<(usize, Expr)> = derivation.given.rates().collect();
+    let kane = kane::kane(algebra, &allowed, &motion.accelerations, &given)?;
     let entries = speeds
         .iter()
         .flat_map(|row| speeds.iter().map(move |column| format!("{row}, {column}")));
@@ -152,7 +153,7 @@ fn claims(
         Inertial::new(algebra, mechanism, symbols, &symbols.rates, reactions)
     };
     let unconstrained = room(algebra, new)?;
-    let lagrange = lagrange::lagrange(algebra, &unconstrained, rates)?;
+    let lagrange = lagrange::lagrange(algebra, &unconstrained, rates, &given)?;
     let coordinates = mechanism.coordinates.iter();
     let coordinates: Vec<&str> = coordinates.map(|q| q.label.name.as_str()).collect();
     let accelerations = generalized_accelerations(algebra, &allowed, &motion.accelerations)?;
@@ -240,7 +241,9 @@ fn reaction_claims(
         quantity: BY_LAGRANGE[1],
         pairs: Some(pairs),
     }];
-    if !rows.is_empty() && rests_on_contacts(derivation, mechanism) {
+    // What drives bring has a reaction somewhere.
+    let is_driven = !derivation.given.is_empty();
+    if !rows.is_empty() && !is_driven && rests_on_contacts(derivation, mechanism) {
         let mut sum = [Graph::ZERO; 3];
         for &force in &forces {
             sum = algebra.graph.add3(sum, force);

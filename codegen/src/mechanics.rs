@@ -20,6 +20,7 @@ pub mod factorized;
 pub mod finding;
 pub mod frames;
 pub mod gibbs_appell;
+pub mod given;
 pub mod glossary;
 mod hints;
 mod info;
@@ -64,6 +65,7 @@ use dependent::DependentSpeeds;
 use elimination::{Elimination, GeneralizedVelocities};
 use finding::{Finding, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
+use given::Given;
 use initial::InitialState;
 use kinematics::{Effort, Kinematics, RollingContact};
 use loads::AppliedLoad;
@@ -110,6 +112,8 @@ pub struct Derivation {
     pub responses_in_outputs: Vec<(Expr, Expr)>,
     /// Π.
     pub forces: Vec<Expr>,
+    /// Rates that are given; M, b and Π have them in.
+    pub given: Given,
     /// Solved equations, with ω̇.
     pub motion: Motion,
     /// q̇, named.
@@ -157,6 +161,7 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
     let (mut derivation, all_loads) = without_reactions(mechanism)?;
     derivation.let_all_loads_act(mechanism, all_loads)?;
     if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
+        derivation.given.refuse_beside("contacts that creep")?;
         let algebra = &mut derivation.algebra;
         let (gibbs, forces) = (creeping.gibbs, creeping.forces);
         derivation.motion = motion::solve(algebra, mechanism, &gibbs, &forces, &[], Way::Shortest)?;
@@ -230,7 +235,16 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let bodies = dependent.reduced_bodies(&mut algebra, unbound.bodies.clone())?;
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
-    let forces = dependent.along_allowed(&mut algebra.graph, &forces);
+    let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
+    let mut given = Given::of(&mut algebra, mechanism, &symbols, &velocities.rates)?;
+    if !given.is_empty() {
+        if !dependent.values.is_empty() {
+            given.refuse_beside("velocities that a system with pivoting tells")?;
+        }
+        given.put_into(&mut algebra.graph, &mut gibbs);
+        given.put_into_forces(&mut forces);
+        recursion = None;
+    }
     let motion = if let Some(tree) = &mut recursion {
         tree.solve(&mut algebra, mechanism, &gibbs)?
     } else {
@@ -266,6 +280,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         reactions_in_loads: Vec::new(),
         responses_in_outputs: Vec::new(),
         forces,
+        given,
         motion,
         coordinate_rates: rolling_rates.clone(),
         rolling_rates,

@@ -390,6 +390,8 @@ pub struct PseudoVelocity {
     pub label: Label,
     /// Definition, linear in `dot(q)`.
     pub definition: Expr,
+    /// Its rate, where that is given; a drive then brings whatever force it takes.
+    pub rate: Option<Expr>,
     /// Initial value in SI.
     pub initial: f64,
 }

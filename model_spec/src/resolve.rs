@@ -48,7 +48,8 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     let frames = resolver.frames();
     let points = resolver.points();
     // They may be velocities of points and frames.
-    let pseudo_velocities = resolver.pseudo_velocities(&coordinates);
+    let mut pseudo_velocities = resolver.pseudo_velocities(&coordinates);
+    resolver.given_rates(&mut pseudo_velocities);
     let bodies = resolver.bodies();
     let mut constraints = resolver.constraints(&bodies);
     constraints.extend(orientations::norms(&frames, &constraints));

@@ -1,13 +1,15 @@
 //! What is prescribed does work: the energy grows by the power of the loads and of what keeps the motion up.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
-use appell_codegen::derived;
 use appell_codegen::jit::JitModel;
 use appell_codegen::mechanics::assemble::program;
 use appell_codegen::program::FunctionKind;
+use appell_codegen::{compile, derived};
 use appell_runtime::model::{At, Model};
 use appell_test_kit::Random;
-use appell_tests::engine::assert_close;
+use appell_tests::engine::{assert_close, in_process};
+use appell_tests::formulations::assert_one_answer;
+use appell_tests::shipped::read;
 
 /// A ball that rolls on a table that turns at a given rate: a constraint does work.
 const BALL: &str = r#"
@@ -107,6 +109,40 @@ weight = { kind = "gravity", down = "-z", acceleration = "g" }
 trucks = { kind = "spring", coordinate = "b", stiffness = "s" }
 "#;
 
+/// A pole on a cart whose acceleration is given, with a load on the cart that the drive has to bear.
+const CART: &str = r#"
+[mechanism]
+name = "driven_cart"
+title = "Pole on a cart with a given acceleration"
+[parameters]
+m = { value = 0.2, unit = "kg" }
+l = { value = 0.5, unit = "m" }
+I = { value = 0.01, unit = "kg*m^2" }
+c = { value = 0.3, unit = "N*s/m" }
+d = { value = 0.02, unit = "N*m*s/rad" }
+A = { value = 2, unit = "m/s^2" }
+k = { value = 0.5, unit = "1/s" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { unit = "m" }
+theta = { unit = "rad" }
+[frames]
+pole = { parent = "ground", about_axis = "y", by = "theta" }
+[points]
+C = { from = "O", in = "ground", at = ["x", 0, 0] }
+P = { from = "C", in = "pole", at = [0, 0, "l"] }
+[bodies]
+cart = { centre = "C", mass = "3*m" }
+bob = { frame = "pole", centre = "P", mass = "m", inertia = { in = "pole", diagonal = ["I", "I", "I"] } }
+[pseudo_velocities]
+v = { value = "dot(x)", rate = "A*cos(3 [1/s]*t) - k*v" }
+omega = "dot(theta)"
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "g" }
+drag = { kind = "damper", coordinate = "x", damping = "c" }
+joint = { kind = "damper", coordinate = "theta", damping = "d" }
+"#;
+
 /// Rounding of the differences below and their fifth-order error.
 const ENERGY: f64 = 1e-7;
 const STEP: f64 = 1e-3;
@@ -114,7 +150,12 @@ const POINTS: usize = 20;
 
 #[test]
 fn the_energy_grows_by_the_power_of_loads_and_prescribed_motion() {
-    for (name, text) in [("ball", BALL), ("bead", BEAD), ("board", BOARD)] {
+    for (name, text) in [
+        ("ball", BALL),
+        ("bead", BEAD),
+        ("board", BOARD),
+        ("cart", CART),
+    ] {
         let derived = derived(name, text).unwrap_or_else(|report| panic!("{}", report.plain()));
         let program = program(derived.derivation, &derived.mechanism, &FunctionKind::ALL).unwrap();
         let model = JitModel::new(&program).unwrap();
@@ -165,4 +206,106 @@ fn the_energy_grows_by_the_power_of_loads_and_prescribed_motion() {
         }
         assert!(works, "{name}: nothing does work");
     }
+}
+
+/// m l² θ̈ + I θ̈ = m l (g sin θ − v̇ cos θ) − d ω for whatever v̇.
+#[test]
+fn a_given_rate_moves_the_rest_and_bears_every_load() {
+    let program = compile("cart", CART, &FunctionKind::ALL).unwrap();
+    for engine in in_process(program) {
+        let (model, info) = (engine.model, engine.model.info());
+        let p = info.default_parameters();
+        let (t, x) = (0.3, [0.7, -1.1, 0.2, 0.9]);
+        let at = At {
+            t,
+            x: &x,
+            u: &[],
+            p: &p,
+        };
+        let mut rates = [0.0; 4];
+        model.rates(at, &mut rates);
+        let [m, l, inertia, _, d, a, k, g] = p[..] else {
+            panic!("{} parameters", p.len());
+        };
+        let given = a * (3.0 * t).cos() - k * x[0];
+        let torque = m * l * (g * x[3].sin() - given * x[3].cos()) - d * x[1];
+        let wanted = [given, torque / (m * l * l + inertia), x[0], x[1]];
+        assert_close(engine.name, &rates, &wanted, 1e-14, 1.0);
+        let [mut a, mut by_a] = [(); 2].map(|()| vec![0.0; 16]);
+        model.jacobians(at, &mut [0.0; 4], &mut a, &mut []);
+        for column in 0..4 {
+            let rates_at = |step: f64| {
+                let mut there = x;
+                there[column] += step;
+                let mut rates = [0.0; 4];
+                model.rates(At { x: &there, ..at }, &mut rates);
+                rates
+            };
+            let (above, below) = (rates_at(1e-6), rates_at(-1e-6));
+            for row in 0..4 {
+                by_a[4 * row + column] = (above[row] - below[row]) / 2e-6;
+            }
+        }
+        assert_close(engine.name, &a, &by_a, 1e-8, 1.0);
+    }
+}
+
+#[test]
+fn kane_and_lagrange_agree_with_given_rates() {
+    let mechanism = read("cart.toml", CART);
+    assert_one_answer(&mechanism);
+    // A chain of links that recursion derives where no rate is given.
+    let chain = chain(6);
+    assert_one_answer(&read("chain.toml", &chain));
+}
+
+/// Links in a row, the second at a given acceleration.
+fn chain(links: usize) -> String {
+    let each = |line: &dyn Fn(usize) -> String| -> String { (1..=links).map(line).collect() };
+    let before = |i: usize| match i {
+        1 => ("O".to_owned(), "ground".to_owned()),
+        i => (format!("P{}", i - 1), format!("f{}", i - 1)),
+    };
+    format!(
+        r#"
+[mechanism]
+name = "chain"
+title = "Chain with a driven joint"
+[parameters]
+m = {{ value = 0.5, unit = "kg" }}
+l = {{ value = 0.3, unit = "m" }}
+I = {{ value = 0.01, unit = "kg*m^2" }}
+[coordinates]
+{}
+[inputs]
+a = {{ unit = "rad/s^2" }}
+[frames]
+{}
+[points]
+{}
+[bodies]
+{}
+[pseudo_velocities]
+{}
+[loads]
+weight = {{ kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }}
+"#,
+        each(&|i| format!("q{i} = {{ unit = \"rad\" }}\n")),
+        each(&|i| format!(
+            "f{i} = {{ parent = \"{}\", about_axis = \"y\", by = \"q{i}\" }}\n",
+            before(i).1
+        )),
+        each(&|i| format!(
+            "P{i} = {{ from = \"{}\", in = \"f{i}\", at = [\"l\", 0, 0] }}\n",
+            before(i).0
+        )),
+        each(&|i| format!(
+            "b{i} = {{ frame = \"f{i}\", centre = \"P{i}\", mass = \"m\", \
+             inertia = {{ in = \"f{i}\", diagonal = [\"I\", \"I\", \"I\"] }} }}\n"
+        )),
+        each(&|i| match i {
+            2 => "w2 = { value = \"dot(q2)\", rate = \"a\" }\n".to_owned(),
+            i => format!("w{i} = \"dot(q{i})\"\n"),
+        }),
+    )
 }

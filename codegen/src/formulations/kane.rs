@@ -6,6 +6,7 @@ use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Outcome;
+use crate::mechanics::gibbs_appell::GibbsForm;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
@@ -37,11 +38,12 @@ struct Partial {
 }
 
 /// Kane's equations of velocities in terms of the pseudo-velocities; `actual` are the
-/// pseudo-accelerations of Newton's law.
+/// pseudo-accelerations of Newton's law, `given` those that take the place of an equation.
 pub(super) fn kane(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
     actual: &[Expr],
+    given: &[(usize, Expr)],
 ) -> Outcome<Kane> {
     let speeds = &inertial.symbols.speeds;
     let mut bodies = Vec::with_capacity(inertial.mechanism.bodies.len());
@@ -76,6 +78,12 @@ pub(super) fn kane(
         forces.push(room(algebra, force)?);
     }
     let graph = &mut algebra.graph;
+    let mut gibbs = GibbsForm { mass_matrix, bias };
+    gibbs.give(graph, given);
+    let GibbsForm { mass_matrix, bias } = gibbs;
+    for &(speed, rate) in given {
+        forces[speed] = rate;
+    }
     let right = forces.iter().zip(&bias).map(|(&f, &b)| graph.sub(f, b));
     let right = right.collect();
     let accelerations = graph.solve_numerically(mass_matrix.concat(), right);

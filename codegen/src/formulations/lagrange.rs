@@ -27,11 +27,13 @@ struct Equation {
     right: Expr,
 }
 
-/// Lagrange's equations of velocities with symbols for q̇, solved where q̇ = `rates`.
+/// Lagrange's equations of velocities with symbols for q̇, solved where q̇ = `rates`. A given pseudo-acceleration
+/// is a constraint on q̈.
 pub(super) fn lagrange(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
     rates: &[Expr],
+    given: &[(usize, Expr)],
 ) -> Outcome<Lagrange> {
     let n = rates.len();
     let dynamics = dynamics(algebra, inertial)?;
@@ -40,6 +42,15 @@ pub(super) fn lagrange(
     for row in &rows {
         let of_row = |algebra: &mut Algebra| Ok(differentiated(algebra, inertial, row.value));
         constraints.push(room(algebra, of_row)?);
+    }
+    let definitions = room(algebra, |algebra| inertial.definitions(algebra))?;
+    for &(speed, rate) in given {
+        let of_speed = |algebra: &mut Algebra| {
+            let mut row = differentiated(algebra, inertial, definitions[speed]);
+            row.right = algebra.graph.add(row.right, rate);
+            Ok(row)
+        };
+        constraints.push(room(algebra, of_speed)?);
     }
     let active = independent(algebra, &constraints);
     let moving = constraints.iter().filter(|row| row.moves(algebra)).count();
@@ -72,7 +83,9 @@ pub(super) fn lagrange(
     let solution = algebra.graph.solve_numerically(matrix, right);
     let mut multipliers = vec![None; rows.len()];
     for (place, &row) in (n..).zip(&active) {
-        multipliers[row] = Some(solution[place]);
+        if let Some(multiplier) = multipliers.get_mut(row) {
+            *multiplier = Some(solution[place]);
+        }
     }
     Ok(Lagrange {
         accelerations: solution[..n].to_vec(),

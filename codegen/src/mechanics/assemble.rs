@@ -537,13 +537,19 @@ impl Derivation {
     /// The power of what is prescribed, with these pseudo-accelerations.
     pub fn prescribed_power(&mut self, accelerations: &[Expr]) -> Outcome<Expr> {
         let (bodies, speeds) = (&self.bodies, &self.symbols.speeds);
-        prescribed::power(
+        let mut power = prescribed::power(
             &mut self.algebra,
             bodies,
             &self.loads,
             speeds,
             accelerations,
-        )
+        )?;
+        let graph = &mut self.algebra.graph;
+        for (speed, drive) in self.given.drives(graph, accelerations) {
+            let supplied = graph.mul(drive, speeds[speed]);
+            power = graph.add(power, supplied);
+        }
+        Ok(power)
     }
 
     /// ẋ: pseudo-accelerations, then generalised velocities.

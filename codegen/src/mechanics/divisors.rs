@@ -83,7 +83,9 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
         }
     }
     for (i, speed) in mechanism.pseudo_velocities.entries() {
-        all.push((Item::PseudoVelocity(i), &speed.definition));
+        let item = Item::PseudoVelocity(i);
+        all.extend([(item, &speed.definition)]);
+        all.extend(speed.rate.iter().map(|rate| (item, rate)));
     }
     for (i, load) in mechanism.loads.entries() {
         let item = Item::Load(i);

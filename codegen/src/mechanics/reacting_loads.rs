@@ -43,7 +43,8 @@ impl Derivation {
         let mut actual = dependent.actual(&algebra.graph);
         loads::replace(&mut all, &mut algebra.graph, &mut actual)?;
         let forces = dependent::apply(&mut actual, algebra, &unbound)?;
-        let forces = dependent.along_allowed(&mut algebra.graph, &forces);
+        let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
+        derivation.given.put_into_forces(&mut forces);
         let parts = named_parts(&mut algebra.graph, &derivation.bodies);
         let way = dependent.way();
         let gibbs = &derivation.gibbs;

@@ -331,6 +331,12 @@ pub static SECTIONS: &[Section] = &[
                 UNIT_CHECKED,
                 ABOUT,
                 key(
+                    "rate",
+                    Form::Expression,
+                    Need::Optional,
+                    "Its rate, where a drive gives it: an expression in inputs, `t`, signals and states.",
+                ),
+                key(
                     "initial",
                     Form::Number,
                     Need::Optional,

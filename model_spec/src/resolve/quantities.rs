@@ -245,10 +245,39 @@ impl<'a> Resolver<'a> {
             speeds.push(PseudoVelocity {
                 label: self.label(item, unit.as_ref()),
                 definition,
+                rate: None,
                 initial: 0.0,
             });
         }
         speeds
+    }
+
+    /// Given rates, which may name every pseudo-velocity.
+    pub(super) fn given_rates(&mut self, speeds: &mut [PseudoVelocity]) {
+        let ast = self.ast;
+        let place = Place::equation("the rate of a pseudo-velocity");
+        for (item, speed) in ast.items("pseudo_velocities").iter().zip(speeds) {
+            let Some(expression) = item.expression("rate") else {
+                continue;
+            };
+            let typed = self.elaborate(expression, &place);
+            if let (Dim::Known(found), Ok(wanted)) = (typed.dim, speed.label.unit.dimension.rate())
+                && found != wanted
+            {
+                let message = format!(
+                    "the rate of `{}` is {}, not {}",
+                    speed.label.name,
+                    crate::units::quantity_name(&wanted),
+                    crate::units::quantity_name(&found),
+                );
+                let diagnostic = Diagnostic::error(Code::UnitMismatch, message);
+                self.tell(diagnostic.at(typed.span(), "").help(format!(
+                    "write an expression in {}",
+                    crate::units::Unit::si(wanted).text
+                )));
+            }
+            speed.rate = Some(typed.expr);
+        }
     }
 
     pub(super) fn outputs(&mut self) -> Vec<Output> {

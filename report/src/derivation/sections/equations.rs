@@ -42,7 +42,13 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
         Math::Sign("="),
         Math::Letter(Letter::plain("Π").below("i")),
     ]);
-    let blocks = with(w, "", equations);
+    let lead = match w.derivation.given.is_empty() {
+        true => "",
+        false => {
+            "Given rates stand in place of the equations of their pseudo-velocities: drives bring whatever is left of these."
+        }
+    };
+    let blocks = with(w, lead, equations);
     Section {
         heading: vec![words("Appell's equations "), math(general)],
         blocks,

@@ -1,0 +1,132 @@
+//! Pseudo-velocities whose rates are given: a drive brings whatever force they take.
+//!
+//! The equation of such a speed p is ω̇ₚ = αₚ. In the equations of the others Mᵢₚ αₚ is known and counts as bias, so
+//! that the system stays symmetric: row and column p of M are those of the unit matrix. What the drive brings is
+//! what is left of Appell's equation of p, `M ω̇ + b − Π`.
+
+use appell_spec::Code;
+use appell_spec::mechanism::Mechanism;
+
+use super::algebra::Algebra;
+use super::expressions::Lowering;
+use super::finding::{Finding, Item, Outcome, division_by_zero};
+use super::gibbs_appell::GibbsForm;
+use super::symbols::Symbols;
+use crate::symbolic::{Expr, Graph};
+
+/// The given rates, and the equations that hold in their places.
+#[derive(Debug, Clone, Default)]
+pub struct Given {
+    speeds: Vec<GivenSpeed>,
+}
+
+/// A pseudo-velocity with a given rate.
+#[derive(Debug, Clone)]
+struct GivenSpeed {
+    speed: usize,
+    /// α.
+    rate: Expr,
+    /// Row of M, b and Π of Appell's equation, which the drive fulfils.
+    mass: Vec<Expr>,
+    bias: Expr,
+    force: Expr,
+}
+
+impl Given {
+    /// The given rates of a mechanism; `rates` are q̇.
+    pub fn of(
+        algebra: &mut Algebra,
+        mechanism: &Mechanism,
+        symbols: &Symbols,
+        rates: &[Expr],
+    ) -> Outcome<Self> {
+        let lowering = Lowering { symbols, rates };
+        let mut speeds = Vec::new();
+        for (id, speed) in mechanism.pseudo_velocities.entries() {
+            let Some(rate) = &speed.rate else { continue };
+            let rate = lowering.lower(&mut algebra.graph, rate);
+            speeds.push(GivenSpeed {
+                speed: id.index(),
+                rate: rate.map_err(|_| vec![division_by_zero(Item::PseudoVelocity(id))])?,
+                mass: Vec::new(),
+                bias: Graph::ZERO,
+                force: Graph::ZERO,
+            });
+        }
+        Ok(Self { speeds })
+    }
+
+    /// Whether no rate is given.
+    pub fn is_empty(&self) -> bool {
+        self.speeds.is_empty()
+    }
+
+    /// The speeds with their rates.
+    pub fn rates(&self) -> impl Iterator<Item = (usize, Expr)> {
+        self.speeds.iter().map(|given| (given.speed, given.rate))
+    }
+
+    /// Puts the given rates into M and b.
+    pub fn put_into(&mut self, graph: &mut Graph, gibbs: &mut GibbsForm) {
+        for given in &mut self.speeds {
+            given.mass.clone_from(&gibbs.mass_matrix[given.speed]);
+            given.bias = gibbs.bias[given.speed];
+        }
+        let rates: Vec<(usize, Expr)> = self.rates().collect();
+        gibbs.give(graph, &rates);
+    }
+
+    /// Puts the given rates into Π.
+    pub fn put_into_forces(&mut self, forces: &mut [Expr]) {
+        for given in &mut self.speeds {
+            given.force = std::mem::replace(&mut forces[given.speed], given.rate);
+        }
+    }
+
+    /// What the drives bring along their speeds in a motion with these rates.
+    pub fn drives(&self, graph: &mut Graph, accelerations: &[Expr]) -> Vec<(usize, Expr)> {
+        let drives = self.speeds.iter().map(|given| {
+            let inertial = given.mass.iter().zip(accelerations);
+            let mut terms: Vec<Expr> = inertial.map(|(&m, &w_dot)| graph.mul(m, w_dot)).collect();
+            terms.extend([given.bias, graph.neg(given.force)]);
+            (given.speed, graph.sum(&terms))
+        });
+        drives.collect()
+    }
+
+    /// Refuses given rates where the equations of motion are made otherwise; `what` is that.
+    pub fn refuse_beside(&self, what: &str) -> Outcome<()> {
+        let findings = self.speeds.iter().map(|given| Finding {
+            code: Code::NotAllowedHere,
+            message: format!("a pseudo-velocity cannot have a given rate beside {what}"),
+            item: Item::PseudoVelocity(appell_spec::mechanism::SpeedId::new(given.speed)),
+            help: "let a load drive it, such as a torque that an input sets".to_owned(),
+        });
+        match self.is_empty() {
+            true => Ok(()),
+            false => Err(findings.collect()),
+        }
+    }
+}
+
+impl GibbsForm {
+    /// Lets speeds have given rates: their rows and columns become those of the unit matrix.
+    pub fn give(&mut self, graph: &mut Graph, rates: &[(usize, Expr)]) {
+        let is_given = |speed: usize| rates.iter().any(|(given, _)| *given == speed);
+        for i in 0..self.bias.len() {
+            if is_given(i) {
+                continue;
+            }
+            for &(p, rate) in rates {
+                let known = graph.mul(self.mass_matrix[i][p], rate);
+                self.bias[i] = graph.add(self.bias[i], known);
+                self.mass_matrix[i][p] = Graph::ZERO;
+            }
+        }
+        for &(p, _) in rates {
+            self.mass_matrix[p].fill(Graph::ZERO);
+            self.mass_matrix[p][p] = Graph::ONE;
+            self.bias[p] = Graph::ZERO;
+        }
+    }
+}

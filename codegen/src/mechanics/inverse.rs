@@ -8,8 +8,11 @@ use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
+use super::algebra::Algebra;
 use super::assemble::{by_speed, input_symbols};
 use super::finding::Outcome;
+use super::linear_bound::BoundMotion;
+use super::motion::Motion;
 use crate::program::{Array, Layout, Space};
 use crate::symbolic::Expr;
 
@@ -31,8 +34,8 @@ impl Derivation {
         let states = [self.symbols.speeds.as_slice(), &self.symbols.coordinates].concat();
         let inputs = input_symbols(&self.symbols, info);
         let demand = self.inverse_dynamics(speeds);
-        let by_state = self.changes_of_demand(&demand.entries, &states);
-        let by_inputs = self.changes_of_demand(&demand.entries, &inputs);
+        let by_state = self.changes_of_demand(&demand.entries, &states)?;
+        let by_inputs = self.changes_of_demand(&demand.entries, &inputs)?;
         let jacobian = |name: &str, about: &str, by: Space, entries: Vec<Expr>| {
             let columns = by.quantities(info);
             let labels = speeds.iter().flat_map(|row| {
@@ -78,26 +81,41 @@ impl Derivation {
     }
 
     /// ∂(M ω̇ + b − Π)/∂z, row by row.
-    fn changes_of_demand(&mut self, demand: &[Expr], variables: &[Expr]) -> Vec<Expr> {
-        let (algebra, accelerations) = (&mut self.algebra, &self.symbols.accelerations);
-        let columns: Vec<Vec<Expr>> = if let Some(tree) = &self.recursion {
-            let at = tree.differentiable(algebra, accelerations);
-            let columns = variables.iter().map(|&z| {
-                let left = tree.partial(algebra, &at, accelerations, z);
-                left.iter().map(|&entry| algebra.graph.neg(entry)).collect()
-            });
-            columns.collect()
-        } else {
-            let columns = variables.iter().map(|&z| {
+    fn changes_of_demand(&mut self, demand: &[Expr], variables: &[Expr]) -> Outcome<Vec<Expr>> {
+        let (algebra, symbols) = (&mut self.algebra, &self.symbols);
+        let mut columns: Vec<Vec<Expr>> = Vec::with_capacity(variables.len());
+        if let Some(tree) = &self.recursion {
+            let at = tree.differentiable(algebra, &symbols.accelerations);
+            for &z in variables {
+                let left = tree.partial(algebra, &at, &symbols.accelerations, z);
+                columns.push(negated(algebra, &left));
+            }
+        } else if self.dependent.values.is_empty() {
+            for &z in variables {
                 let rows = demand.iter().map(|&row| {
                     let entry = algebra.derivative(row, z);
                     algebra.unless_zero(entry)
                 });
-                rows.collect()
-            });
-            columns.collect()
-        };
+                columns.push(rows.collect());
+            }
+        } else {
+            let motion = Motion {
+                accelerations: symbols.accelerations.clone(),
+                ..self.motion.clone()
+            };
+            let (unbound, dependent) = (&self.unbound, &self.dependent);
+            let mut bound = BoundMotion::new(algebra, symbols, unbound, dependent, &motion)?;
+            for &z in variables {
+                let [left, _] = bound.balance_column(algebra, z)?;
+                columns.push(negated(algebra, &left));
+            }
+        }
         let row = |row| columns.iter().map(move |column: &Vec<Expr>| column[row]);
-        (0..demand.len()).flat_map(row).collect()
+        Ok((0..demand.len()).flat_map(row).collect())
     }
+}
+
+fn negated(algebra: &mut Algebra, column: &[Expr]) -> Vec<Expr> {
+    let entries = column.iter();
+    entries.map(|&entry| algebra.graph.neg(entry)).collect()
 }

@@ -106,6 +106,28 @@ impl<'a> BoundMotion<'a> {
 
     /// Derivatives of all rates with respect to a variable: those of ω̇, then those of q̇.
     pub fn column(&mut self, algebra: &mut Algebra, variable: Expr) -> Outcome<Vec<Expr>> {
+        let [right, speeds] = self.balance_column(algebra, variable)?;
+        let mut column = self
+            .motion
+            .solved_for(algebra, self.symbols, variable, right);
+        let (dependent, actual) = (self.dependent, &mut self.held.actual);
+        let mut rates = Held::partials(actual, algebra, &dependent.rates, variable)?;
+        add_along(
+            &mut algebra.graph,
+            &mut rates,
+            &self.rates_by_speeds,
+            &speeds,
+        );
+        column.extend(rates);
+        Ok(column)
+    }
+
+    /// Derivatives of Π - b - M ω̇ with respect to a variable, ω̇ held; and those of the dependent speeds.
+    pub fn balance_column(
+        &mut self,
+        algebra: &mut Algebra,
+        variable: Expr,
+    ) -> Outcome<[Vec<Expr>; 2]> {
         let (dependent, system) = (self.dependent, &self.dependent.system);
         let Held {
             velocity,
@@ -144,15 +166,7 @@ impl<'a> BoundMotion<'a> {
         add_along(graph, &mut right, &self.balance_by_speeds, &speeds);
         let by_accelerations = &self.balance_by_accelerations;
         add_along(graph, &mut right, by_accelerations, &accelerations);
-        let mut column = self
-            .motion
-            .solved_for(algebra, self.symbols, variable, right);
-
-        let mut rates = partials(algebra, &dependent.rates)?;
-        let graph = &mut algebra.graph;
-        add_along(graph, &mut rates, &self.rates_by_speeds, &speeds);
-        column.extend(rates);
-        Ok(column)
+        Ok([right, speeds])
     }
 }
 

@@ -120,10 +120,10 @@ def recursions(build, folder, names):
     counts, kernels = {}, {}
     for name in names:
         joints = len(Tree(folder / f"{name}.toml").links)
-        differentiated = joints <= DIFFERENTIATED and (name in FAMILIES or name in TIMED)
+        differentiated = joints <= DIFFERENTIATED
         for function, made in with_casadi.functions(folder / f"{name}.toml", name in FAMILIES, differentiated).items():
             counts[name, function] = with_casadi.operations(made)
-            if name in TIMED and function != "mass_matrix_and_bias":
+            if name in TIMED and function in ("rates", "jacobians"):
                 kernels[name, function] = with_casadi.source(made, f"casadi_{name}_{function}", build)
         print(f"  {name}", flush=True)
     return counts, kernels

@@ -8,6 +8,8 @@ BEGIN = "<!-- scaling: written by benches/scaling/run.py -->"
 END = "<!-- end scaling -->"
 SIZES = {"arm": (3, 4, 5, 6, 7, 10, 14, 18, 24, 30), "chain": (6, 12, 20, 30)}
 FUNCTIONS = {"mass_matrix_and_bias": "M, bias", "rates": "rates", "jacobians": "rates, A, B"}
+INVERSE = {"inverse_dynamics": "forces", "inverse_dynamics_jacobians": "forces and Jacobians"}
+ARMS = ("ur5e_mjcf", "so101_urdf", "iiwa14_mjcf", "xarm7_mjcf", "xarm7_urdf", "panda_mjcf")
 # Exponents are fitted to mechanisms with at least so many joints.
 LARGE = 12
 # Bounds of the time of a function, relative to Pinocchio's.
@@ -30,6 +32,14 @@ CasADi {casadi}, Pinocchio {pinocchio}. C and C++ with `-O3 -march=native`, Rust
 - `armN` is a spatial arm of N joints, with symbols for ten inertial numbers and the offset of each link; `chainN` a planar
   chain, four symbols a link; `float4x3` a floating base with four limbs of three joints each, like those of arms
   (`benches/scaling/specs.py`).
+
+"""
+
+
+INVERSE_DYNAMICS = """### Inverse dynamics
+
+Forces of given motions; with their Jacobians with respect to coordinates and velocities by CasADi's automatic
+differentiation, for up to seven joints. Those of appell hold M, the Jacobian with respect to accelerations, as well.
 
 """
 
@@ -93,6 +103,18 @@ def operations(costs, counts, names):
     return rows(["", *FUNCTIONS.values(), *(f"CasADi: {title}" for title in FUNCTIONS.values()), "rates: appell / CasADi"], lines)
 
 
+def inverse_dynamics(costs, counts, names):
+    lines = []
+    for name in names:
+        cells = [name]
+        for function in INVERSE:
+            ours, theirs = costs[name, function]["operations"], counts.get((name, function), [None])[0]
+            cells += [number(ours), number(theirs), f"{ours / theirs:.2f}" if theirs else ""]
+        lines.append(cells)
+    titles = (f"{tool}{title}" for title in INVERSE.values() for tool in ("", "CasADi: ", "ratio: "))
+    return rows(["", *titles], lines)
+
+
 def derivation(costs, names):
     kinds = (*FUNCTIONS, "all")
     lines = [[name, *(seconds(costs[name, kind]["seconds"]) if (name, kind) in costs else "" for kind in kinds)] for name in names]
@@ -149,6 +171,10 @@ def targets(costs, counts, times, timed, compiled):
     files = {name: count(name, "rates") / counts[name, "rates"][0] for name, function in counts if function == "rates" and is_file(name)}
     worst = max(files, key=files.get)
     found.append(Target(f"robot files: rates / CasADi's, largest ({worst})", files[worst], 0.85, "{:.2f}"))
+    function = "inverse_dynamics_jacobians"
+    files = {name: count(name, function) / counts[name, function][0] for name in ARMS if (name, function) in counts}
+    worst = max(files, key=files.get)
+    found.append(Target(f"arms from robot files: inverse dynamics, Jacobians / CasADi's, largest ({worst})", files[worst], 0.6, "{:.2f}"))
     for name, bound in (("arm7", 0.2), ("float4x3", 2.0), ("go1_mjcf", 2.0), ("g1_mjcf", 10.0)):
         found.append(Target(f"{name}: derivation of all functions, s", costs[name, "all"]["seconds"], bound, "{:.2f}"))
     found.append(Target("arm7: rustc on its model, s", compiled, 20.0, "{:.1f}"))
@@ -172,6 +198,7 @@ def block(about, names, costs, counts, times, compiled, refused, worst):
     text = TEXT.format(**about) + "### Operations\n\n" + operations(costs, counts, families) + growth(costs)
     text += "### Robot files\n\nImported by `appell import`, numbers folded, the rigid tree alone.\n\n" + operations(costs, counts, robots)
     text += "".join(f"Left out: {name}, {reason}.\n\n" for name, reason in refused.items())
+    text += INVERSE_DYNAMICS + inverse_dynamics(costs, counts, [*families, *robots])
     text += DERIVATION.format(compiled=compiled) + derivation(costs, names)
     text += TIMING.format(worst=worst) + timing(times, about["timed"])
     text += "### Targets\n\n" + targets(costs, counts, times, about["timed"], compiled)

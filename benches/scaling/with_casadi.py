@@ -233,15 +233,21 @@ def functions(path, symbolic, jacobian):
     """By its name, each function with shared subexpressions."""
     model = Model(path, symbolic)
     q = ca.vertcat(*model.q)
-    arguments = [q, model.v, model.tau, model.parameters]
+    driven, moved = ([q, model.v, last, model.parameters] for last in (model.tau, model.a))
+    demand = model.inverse_dynamics(model.a)
     rates = model.forward_dynamics()
     wanted = {
         "mass_matrix_and_bias": [model.mass_matrix(), model.inverse_dynamics(SX(model.v.numel(), 1))],
         "rates": [rates],
+        "inverse_dynamics": [demand],
     }
     if jacobian:
+        wanted["inverse_dynamics_jacobians"] = [demand, ca.jacobian(demand, ca.vertcat(q, model.v))]
         wanted["jacobians"] = [rates, ca.jacobian(rates, ca.vertcat(q, model.v, model.tau))]
-    return {name: ca.Function(name, arguments, ca.cse(results)) for name, results in wanted.items()}
+    return {
+        name: ca.Function(name, moved if name.startswith("inverse") else driven, ca.cse(results))
+        for name, results in wanted.items()
+    }
 
 
 def operations(function):

@@ -44,6 +44,17 @@ impl Format {
 }
 
 impl Source {
+    /// The spec with items of other sections in place of its joints.
+    ///
+    /// ```
+    /// let pendulum = appell::Source::shipped("pendulum")?;
+    /// assert_eq!(pendulum.expanded()?, pendulum.text);
+    /// # Ok::<(), appell::Error>(())
+    /// ```
+    pub fn expanded(&self) -> Result<String, Error> {
+        Ok(appell_spec::expanded(&self.file, &self.text)?)
+    }
+
     /// The mechanism that the spec describes.
     pub fn mechanism(&self) -> Result<Mechanism, Error> {
         Ok(appell_spec::load(&self.file, &self.text)?.mechanism)

@@ -84,6 +84,8 @@ pub enum ValueAst {
     Pair([Spanned<String>; 2]),
     /// Four names.
     Four(Box<[Spanned<String>; 4]>),
+    /// Names that are made here.
+    Names(Vec<Spanned<String>>),
     /// A list of tables.
     Tables(Vec<ItemAst>),
     /// A table.

@@ -2,6 +2,7 @@
 //!
 //! The parser, the editor schema and the tests of the manual all read this one table.
 
+mod joints;
 mod kinds;
 mod sections;
 
@@ -19,7 +20,18 @@ pub struct Section {
     /// What it holds.
     pub shape: Shape,
     /// Whether a spec must have it.
-    pub required: bool,
+    pub presence: Presence,
+}
+
+/// Whether a spec must have a section.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Presence {
+    /// Always.
+    Required,
+    /// May be left out.
+    Optional,
+    /// Unless it has another section, which makes items of this one.
+    Unless(&'static str),
 }
 
 /// What a section holds.
@@ -56,6 +68,23 @@ pub enum ItemKind {
     Constraint(ConstraintWord),
     /// An item of `[loads]`.
     Load(LoadWord),
+    /// An item of `[joints]`.
+    Joint(JointWord),
+}
+
+/// The kinds of joints.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[expect(missing_docs, reason = "the table of kinds has a sentence for each")]
+pub enum JointWord {
+    Revolute,
+    Prismatic,
+    Cylindrical,
+    Screw,
+    Universal,
+    Planar,
+    Ball,
+    Free,
+    Fixed,
 }
 
 /// The kinds of constraints.
@@ -134,6 +163,10 @@ pub enum Form {
     Text,
     /// A name that is defined here.
     Name,
+    /// The name of a coordinate or pseudo-velocity that is made here.
+    NewName,
+    /// So many of them.
+    NewNames(usize),
     /// The name of a frame, point, body or coordinate.
     Reference(Target),
     /// A unit.
@@ -144,6 +177,8 @@ pub enum Form {
     Numbers,
     /// Lower and upper end, in the item's unit.
     Range,
+    /// So many numbers, each in the unit of its quantity.
+    Values(usize),
     /// An expression: a string, or a plain number.
     Expression,
     /// Three expressions.
@@ -154,6 +189,8 @@ pub enum Form {
     TwoPoints,
     /// Names of four coordinates.
     Quaternion,
+    /// One of the words for an axis, or three expressions.
+    Direction,
     /// One of these words.
     Word(&'static [Word]),
     /// `true` or `false`.

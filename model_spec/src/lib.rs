@@ -1,7 +1,7 @@
 //! The appell mechanism language: text to a checked mechanism.
 //!
 //! ```text
-//! text --parse--> SpecAst --resolve--> Mechanism
+//! text --parse--> SpecAst --expand--> SpecAst without joints --resolve--> Mechanism
 //! ```
 //!
 //! [`load`] does both. Every finding of a file is reported at once, each with its place in the
@@ -14,6 +14,7 @@ pub mod diagnostic;
 pub mod edit;
 pub mod expr;
 pub mod ids;
+pub mod joints;
 pub mod language;
 pub mod limits;
 pub mod mechanism;
@@ -49,6 +50,8 @@ pub struct Checked {
 pub struct Reading {
     /// The syntax tree.
     pub ast: ast::SpecAst,
+    /// The same with other items in place of joints; `None` where there are none.
+    without_joints: Option<ast::SpecAst>,
     /// The mechanism, with placeholders wherever an error is reported.
     pub mechanism: Mechanism,
     /// The errors; warnings and notes where there are none.
@@ -59,7 +62,14 @@ impl Reading {
     /// Reads and checks a spec; `file` is its name in messages and in emitted code.
     pub fn new(file: &str, text: &str) -> Self {
         let (ast, mut findings) = parse::parse(text);
-        let (mechanism, checks) = resolve::resolve(&ast, file, text);
+        let expansion = joints::expand(&ast, text);
+        let without_joints = expansion.map(|expansion| {
+            findings.extend(expansion.findings);
+            expansion.ast
+        });
+        let whole = without_joints.as_ref().unwrap_or(&ast);
+        let (mechanism, mut checks) = resolve::resolve(whole, file, text);
+        joints::explain(&ast, &mut checks);
         findings.extend(checks);
         let is_error = |finding: &Diagnostic| finding.severity == Severity::Error;
         if findings.iter().any(is_error) {
@@ -67,9 +77,15 @@ impl Reading {
         }
         Self {
             ast,
+            without_joints,
             mechanism,
             findings,
         }
+    }
+
+    /// The syntax tree with other items in place of joints; their places are those of the joints' keys.
+    pub fn expanded(&self) -> &ast::SpecAst {
+        self.without_joints.as_ref().unwrap_or(&self.ast)
     }
 
     /// Whether the mechanism passed every check.
@@ -87,5 +103,22 @@ pub fn load(file: &str, text: &str) -> Result<Checked, Report> {
     Ok(Checked {
         mechanism: reading.mechanism,
         warnings: reading.findings,
+    })
+}
+
+/// The text of a spec with items of other sections in place of its joints; the rest keeps its words and
+/// its comments, and a text without joints all of it. Errors of the spec come as a report.
+///
+/// ```
+/// # let text = appell_spec::starter("fresh").expect("a name");
+/// assert_eq!(appell_spec::expanded("fresh.toml", &text)?, text);
+/// # Ok::<(), appell_spec::Report>(())
+/// ```
+pub fn expanded(file: &str, text: &str) -> Result<String, Report> {
+    load(file, text)?;
+    let (ast, _) = parse::parse(text);
+    joints::replaced(&ast, text).map_err(|error| {
+        let finding = Diagnostic::error(Code::TomlSyntax, error.to_string());
+        Report::new(file, text, vec![finding])
     })
 }

@@ -162,6 +162,11 @@ impl Finder<'_> {
                 let path = self.within.clone();
                 self.item(&path, table);
             }
+            ValueAst::Names(names) => {
+                for name in names {
+                    self.see(Namespace::Quantity, &name.value, &name.span, true);
+                }
+            }
             ValueAst::Word(_)
             | ValueAst::Flag(_)
             | ValueAst::Number(_)

@@ -12,7 +12,7 @@ use toml::de::{DeTable, DeValue};
 use crate::ast::{ExprAst, SectionAst, SpecAst};
 use crate::diagnostic::{Code, Diagnostic, MAX_SHOWN};
 use crate::expr::Span;
-use crate::language::{SECTIONS, Section};
+use crate::language::{Presence, SECTIONS, Section};
 use crate::limits::MAX_FILE;
 use crate::suggest::{self, shown};
 
@@ -58,6 +58,21 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
         broken: reader.broken || reader.incomplete,
     };
     (ast, reader.findings)
+}
+
+/// Reads items that were made, sections and all.
+pub(crate) fn made(text: &str) -> (Vec<SectionAst>, Vec<Diagnostic>) {
+    let mut reader = Reader {
+        text,
+        findings: Vec::new(),
+        broken: false,
+        // Whatever else a spec needs is elsewhere.
+        incomplete: true,
+    };
+    let (table, errors) = DeTable::parse_recoverable(text);
+    reader.syntax_errors(&errors);
+    let sections = reader.sections(table.get_ref());
+    (sections, reader.findings)
 }
 
 /// Where a tag opens a text, such as a robot file: no line of it would be TOML.
@@ -187,7 +202,16 @@ impl Reader<'_> {
     }
 
     fn missing_sections(&mut self, found: &[SectionAst]) {
-        for section in SECTIONS.iter().filter(|s| s.required) {
+        for section in SECTIONS {
+            let is_there = |name: &str| {
+                let mut all = found.iter();
+                all.any(|s| s.section.name == name && !s.items.is_empty())
+            };
+            match section.presence {
+                Presence::Optional => continue,
+                Presence::Unless(other) if is_there(other) => continue,
+                Presence::Required | Presence::Unless(_) => {}
+            }
             let present = found.iter().find(|s| s.section.name == section.name);
             if present.is_none_or(|s| s.items.is_empty()) {
                 let at = present.map_or(0..0, |s| s.span.clone());

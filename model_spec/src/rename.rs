@@ -2,6 +2,7 @@
 
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::Span;
+use crate::joints;
 use crate::name;
 use crate::occurrences::{Namespace, Occurrence, occurrences};
 use crate::outline::Outline;
@@ -99,6 +100,10 @@ fn replaced(text: &str, places: &[Span], word: &str) -> String {
 
 fn errors(text: &str) -> Vec<Diagnostic> {
     let (ast, mut findings) = parse(text);
+    let ast = joints::expand(&ast, text).map_or(ast, |expansion| {
+        findings.extend(expansion.findings);
+        expansion.ast
+    });
     findings.extend(resolve(&ast, "", text).1);
     findings.retain(|finding| finding.severity == Severity::Error);
     findings

@@ -32,7 +32,7 @@ pub use names::is_reserved;
 
 use resolver::Resolver;
 
-/// Checks a spec. The mechanism holds placeholders wherever a diagnostic reports an error.
+/// Checks a spec without joints. The mechanism holds placeholders wherever a diagnostic reports an error.
 pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnostic>) {
     let mut resolver = Resolver::new(ast, text);
     let (name, title, source) = resolver.heading();

@@ -4,7 +4,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::language::{Form, Key, Kind, Need, SECTIONS, Shape};
+use crate::language::{Form, Key, Kind, Need, Presence, SECTIONS, Shape, Word, AXES};
 use crate::limits::{MAX_SENTENCE, MAX_TURNS};
 use crate::name;
 
@@ -33,8 +33,17 @@ pub fn json_schema() -> String {
     }
     let required: Vec<&str> = SECTIONS
         .iter()
-        .filter(|s| s.required)
+        .filter(|s| s.presence == Presence::Required)
         .map(|s| s.name)
+        .collect();
+    let either: Vec<Value> = SECTIONS
+        .iter()
+        .filter_map(|s| match s.presence {
+            Presence::Unless(other) => Some(json!({
+                "anyOf": [{ "required": [s.name] }, { "required": [other] }],
+            })),
+            Presence::Required | Presence::Optional => None,
+        })
         .collect();
     let schema = json!({
         "$schema": "http://json-schema.org/draft-07/schema#",
@@ -42,6 +51,7 @@ pub fn json_schema() -> String {
         "type": "object",
         "properties": properties,
         "required": required,
+        "allOf": either,
         "additionalProperties": false,
     });
     format!("{schema:#}\n")
@@ -97,10 +107,13 @@ fn table(keys: &[Key], kind: Option<&Kind>) -> Value {
 
 fn form(form: &Form) -> Value {
     let expression = || json!({ "type": ["string", "number"] });
+    let name = || json!({ "type": "string", "pattern": name::pattern() });
+    let words =
+        |all: &[Word]| json!({ "enum": all.iter().map(|word| word.text).collect::<Vec<_>>() });
     let list = |item: Value, length: usize| json!({ "type": "array", "items": item, "minItems": length, "maxItems": length });
     match form {
         Form::Text => json!({ "type": "string", "maxLength": MAX_SENTENCE }),
-        Form::Name | Form::Reference(_) => json!({ "type": "string", "pattern": name::pattern() }),
+        Form::Name | Form::NewName | Form::Reference(_) => json!({ "type": "string", "pattern": name::pattern() }),
         Form::Unit => json!({ "type": "string" }),
         Form::Number => json!({ "type": "number" }),
         Form::Numbers => json!({ "type": "array", "items": { "type": "number" } }),
@@ -108,11 +121,12 @@ fn form(form: &Form) -> Value {
         Form::Expression => expression(),
         Form::Components => list(expression(), 3),
         Form::Matrix => list(list(expression(), 3), 3),
-        Form::TwoPoints => list(json!({ "type": "string", "pattern": name::pattern() }), 2),
-        Form::Quaternion => list(json!({ "type": "string", "pattern": name::pattern() }), 4),
-        Form::Word(words) => {
-            json!({ "enum": words.iter().map(|word| word.text).collect::<Vec<_>>() })
-        }
+        Form::TwoPoints => list(name(), 2),
+        Form::Quaternion => list(name(), 4),
+        Form::NewNames(count) => list(name(), *count),
+        Form::Values(count) => list(json!({ "type": "number" }), *count),
+        Form::Direction => json!({ "anyOf": [words(AXES), list(expression(), 3)] }),
+        Form::Word(known) => words(known),
         Form::Flag => json!({ "type": "boolean" }),
         Form::Table(keys) => table(keys, None),
         Form::Tables(keys) => json!({

@@ -14,7 +14,8 @@ use crate::{output, progress};
 
 /// Writes the derivation, from frames to equations of motion.
 ///
-/// Readable from top to bottom as text, LaTeX or HTML; or emitted as Rust.
+/// Readable from top to bottom as text, LaTeX or HTML; or emitted as Rust; or the spec itself, with its
+/// joints written out.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
@@ -22,6 +23,7 @@ Examples:
   appell derive my_pendulum.toml --out derivation.html
   appell derive unicycle --out unicycle.c
   appell derive unicycle --out unicycle.py
+  appell derive my_arm.toml --format spec
   appell derive unicycle --stage linear --about \"theta=0, r=0, dot(psi)=0, u=0\"")]
 pub(crate) struct Derive {
     /// Name of a shipped mechanism or path of a spec
@@ -57,6 +59,7 @@ enum Output {
     Rust,
     C,
     Python,
+    Spec,
 }
 
 impl Output {
@@ -72,7 +75,7 @@ enum Extent {
     Linear,
 }
 
-const FORMATS: [Choice<Output>; 6] = [
+const FORMATS: [Choice<Output>; 7] = [
     (
         "text",
         "Unicode, for a terminal",
@@ -95,10 +98,15 @@ const FORMATS: [Choice<Output>; 6] = [
         "Functions for NumPy, JAX, CasADi and SymPy alike",
         Output::Python,
     ),
+    (
+        "spec",
+        "The spec with other sections in place of `[joints]`",
+        Output::Spec,
+    ),
 ];
 
 /// What a file holds by its extension.
-const ENDS: [(&str, Output); 8] = [
+const ENDS: [(&str, Output); 9] = [
     ("txt", Output::Page(Format::Text)),
     ("md", Output::Page(Format::Text)),
     ("tex", Output::Page(Format::Latex)),
@@ -107,6 +115,7 @@ const ENDS: [(&str, Output); 8] = [
     ("rs", Output::Rust),
     ("c", Output::C),
     ("py", Output::Python),
+    ("toml", Output::Spec),
 ];
 
 const EXTENTS: [Choice<Extent>; 6] = [
@@ -174,6 +183,7 @@ impl Derive {
             (Output::Rust, _) => source.rust(),
             (Output::Python, _) if self.regressor => source.regressor_in_python(),
             (Output::Python, _) => source.python(),
+            (Output::Spec, _) => source.expanded(),
             (Output::Page(format), Extent::Through(stage)) => source.derivation(stage, format),
             (Output::Page(format), Extent::Linear) => source.linear_equations(&self.about, format),
         };
@@ -233,7 +243,7 @@ impl Derive {
             // An extension of one's own promises nothing.
             (Some(format), Some(None)) => Ok(format),
             _ => Err(Error::Usage(format!(
-                "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html, .rs (Rust), .c or .py (Python), \
+                "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html, .rs (Rust), .c, .py (Python) or .toml (spec), \
                  without another `--format`",
                 extension.unwrap_or_default()
             ))),

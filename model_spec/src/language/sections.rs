@@ -1,7 +1,8 @@
 //! The sections and their keys.
 
+use super::joints::JOINTS;
 use super::kinds::{CONSTRAINTS, LOADS};
-use super::{Form, Key, Need, Section, Sense, Shape, Target, Word};
+use super::{Form, Key, Need, Presence, Section, Sense, Shape, Target, Word};
 use crate::mechanism::{Axis, Interpolation};
 
 pub(super) const fn key(name: &'static str, form: Form, need: Need, about: &'static str) -> Key {
@@ -70,7 +71,7 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "mechanism",
         about: "Name and origin of the mechanism.",
-        required: true,
+        presence: Presence::Required,
         shape: Shape::Table(&[
             key(
                 "name",
@@ -96,7 +97,7 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "parameters",
         about: "Constants of the mechanism.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key(
@@ -126,7 +127,7 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "coordinates",
         about: "Generalised coordinates.",
-        required: true,
+        presence: Presence::Unless("joints"),
         shape: Shape::Items(
             &[
                 UNIT,
@@ -150,13 +151,13 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "inputs",
         about: "Quantities that a controller or a recording supplies.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(&[UNIT, ABOUT], None),
     },
     Section {
         name: "signals",
         about: "Known functions of time, given as data.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key(
@@ -186,7 +187,7 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "definitions",
         about: "Named expressions, for use in others.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key("value", Form::Expression, Need::Always, "Value."),
@@ -199,7 +200,7 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "frames",
         about: "Frames, each rotated from its parent.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key(
@@ -222,20 +223,7 @@ pub static SECTIONS: &[Section] = &[
                 ),
                 key(
                     "turns",
-                    Form::Tables(&[
-                        key(
-                            "about_axis",
-                            Form::Word(AXES),
-                            Need::Always,
-                            "Axis of the rotation.",
-                        ),
-                        key(
-                            "by",
-                            Form::Expression,
-                            Need::Always,
-                            "Angle of the rotation.",
-                        ),
-                    ]),
+                    Form::Tables(TURNS),
                     Need::Way(1),
                     "Several rotations, starting from the parent.",
                 ),
@@ -253,7 +241,7 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "points",
         about: "Points, each placed from another.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key(
@@ -275,9 +263,15 @@ pub static SECTIONS: &[Section] = &[
         ),
     },
     Section {
+        name: "joints",
+        about: "Joints: each stands for a frame, a point, their coordinates and pseudo-velocities.",
+        presence: Presence::Optional,
+        shape: Shape::Kinds(JOINTS),
+    },
+    Section {
         name: "bodies",
         about: "Rigid bodies and point masses.",
-        required: true,
+        presence: Presence::Required,
         shape: Shape::Items(
             &[
                 key(
@@ -313,13 +307,13 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "constraints",
         about: "Constraints on velocities and positions.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Kinds(CONSTRAINTS),
     },
     Section {
         name: "pseudo_velocities",
         about: "The pseudo-velocities of Appell's equations.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key(
@@ -349,13 +343,13 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "loads",
         about: "Applied forces and torques.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Kinds(LOADS),
     },
     Section {
         name: "outputs",
         about: "Named quantities of interest.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::Items(
             &[
                 key("value", Form::Expression, Need::Always, "Value."),
@@ -368,9 +362,24 @@ pub static SECTIONS: &[Section] = &[
     Section {
         name: "initial",
         about: "Initial values of coordinates and pseudo-velocities, each in its unit.",
-        required: false,
+        presence: Presence::Optional,
         shape: Shape::States,
     },
+];
+
+pub(super) static TURNS: &[Key] = &[
+    key(
+        "about_axis",
+        Form::Word(AXES),
+        Need::Always,
+        "Axis of the rotation.",
+    ),
+    key(
+        "by",
+        Form::Expression,
+        Need::Always,
+        "Angle of the rotation.",
+    ),
 ];
 
 static INERTIA: &[Key] = &[

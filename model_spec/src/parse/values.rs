@@ -7,7 +7,7 @@ use toml::de::DeValue;
 
 use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::language::{Form, Key, Sense, Word};
+use crate::language::{AXES, Form, Key, Sense, Word};
 use crate::limits::{MAX_DIGITS, MAX_SAMPLES, MAX_SENTENCE, MAX_TURNS};
 use crate::number::{NumberError, exact};
 use crate::suggest::{self, did_you_mean, shown};
@@ -22,7 +22,7 @@ impl Reader<'_> {
     pub(super) fn value(&mut self, key: &'static Key, value: &TomlValue<'_>) -> Option<ValueAst> {
         match &key.form {
             Form::Text => self.sentence(value).map(ValueAst::Text),
-            Form::Name => {
+            Form::Name | Form::NewName => {
                 let name = self.string(value, "a name")?;
                 self.is_valid_name(name, value.span())
                     .then(|| ValueAst::Text(name.to_owned()))
@@ -33,7 +33,20 @@ impl Reader<'_> {
             Form::Unit => self.unit(value).map(ValueAst::Unit),
             Form::Number => self.number(value).map(ValueAst::Number),
             Form::Numbers => self.numbers(value, None).map(ValueAst::Numbers),
-            Form::Range => self.numbers(value, Some(2)).map(ValueAst::Numbers),
+            Form::Range => self
+                .numbers(value, Some((2, "the two ends, as a list of two numbers")))
+                .map(ValueAst::Numbers),
+            Form::Values(count) => self
+                .numbers(value, Some((*count, &format!("a list of {count} numbers"))))
+                .map(ValueAst::Numbers),
+            Form::NewNames(count) => self.new_names(value, *count).map(ValueAst::Names),
+            Form::Direction => match value.get_ref() {
+                DeValue::String(_) => self.word(key, AXES, value).map(ValueAst::Word),
+                _ => self
+                    .elements::<3>(value, "an axis such as `\"z\"`, or three components")
+                    .map(|elements| elements.map(|v| self.expression(v)))
+                    .map(|c| ValueAst::Components(Box::new(c))),
+            },
             Form::Expression => Some(ValueAst::Expression(self.expression(value))),
             Form::Components => self
                 .components(value)
@@ -110,6 +123,26 @@ impl Reader<'_> {
             value: name.to_owned(),
             span: value.span(),
         })
+    }
+
+    fn new_names(&mut self, value: &TomlValue<'_>, count: usize) -> Option<Vec<Spanned<String>>> {
+        let wanted = format!("a list of {count} names");
+        let DeValue::Array(array) = value.get_ref() else {
+            self.wrong_type(value, &wanted);
+            return None;
+        };
+        if array.len() != count {
+            self.wrong_length(value, &wanted, array.len());
+            return None;
+        }
+        let names: Vec<_> = array
+            .iter()
+            .map(|v| {
+                let name = self.named(v, "a name")?;
+                self.is_valid_name(&name.value, v.span()).then_some(name)
+            })
+            .collect();
+        names.into_iter().collect()
     }
 
     fn string<'v>(&mut self, value: &'v TomlValue<'_>, wanted: &str) -> Option<&'v str> {
@@ -195,18 +228,14 @@ impl Reader<'_> {
     fn numbers(
         &mut self,
         value: &TomlValue<'_>,
-        length: Option<usize>,
+        length: Option<(usize, &str)>,
     ) -> Option<Vec<Spanned<BigRational>>> {
-        let wanted = if length.is_some() {
-            "the two ends, as a list of two numbers"
-        } else {
-            "a list of numbers"
-        };
+        let wanted = length.map_or("a list of numbers", |(_, wanted)| wanted);
         let DeValue::Array(array) = value.get_ref() else {
             self.wrong_type(value, wanted);
             return None;
         };
-        if length.is_some_and(|n| array.len() != n) {
+        if length.is_some_and(|(n, _)| array.len() != n) {
             self.wrong_length(value, wanted, array.len());
             return None;
         }

@@ -5,6 +5,7 @@ use num_traits::{One, Zero};
 
 use crate::ast::{ExprAst, ExprAstKind};
 use crate::diagnostic::{Code, Diagnostic};
+use crate::joints;
 use crate::expr::{BinaryOp, Expr, Function, Span};
 use crate::parse;
 use crate::units::Unit;
@@ -70,6 +71,7 @@ pub fn formula(
     let ast = parse::expression_in(snippet.document, snippet.text, snippet.whole.clone())
         .map_err(|finding| vec![finding])?;
     let (tree, _) = parse::parse(spec);
+    let tree = joints::expand(&tree, spec).map_or(tree, |expansion| expansion.ast);
     let mut resolver = Resolver::new(&tree, spec);
     resolver.parameters();
     let coordinates = resolver.coordinates();

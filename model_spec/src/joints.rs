@@ -1,0 +1,277 @@
+//! Joints: each stands for items of other sections, which are put in its place before anything is looked up.
+//!
+//! A joint becomes text ([`made`]), which is read as any spec is; what was read gets the places of the
+//! joint's own keys. So the spec that [`crate::expanded`] writes is, word for word, the one that is checked.
+//!
+//! | file | holds |
+//! |---|---|
+//! | `made.rs` | what each kind stands for |
+//! | `quantities.rs` | names, units and meanings of its coordinates and pseudo-velocities |
+//! | `direction.rs` | axes: turns about them, displacements along them |
+//! | `written.rs`, `piece.rs` | expressions of the spec as parts of others, with their places |
+//! | `places.rs` | other places for everything in a syntax tree |
+//! | `document.rs` | the text of a spec with the items in place of the joints |
+
+mod direction;
+mod document;
+mod made;
+mod piece;
+mod places;
+mod quantities;
+mod written;
+
+use std::collections::BTreeSet;
+
+use crate::ast::{ItemAst, SectionAst, SpecAst};
+use crate::diagnostic::{Code, Diagnostic};
+use crate::edit::EditError;
+use crate::expr::Span;
+use crate::limits::MAX_ITEMS;
+use crate::occurrences::Namespace;
+use crate::parse;
+
+use made::{Made, Places};
+use piece::Piece;
+
+pub(crate) use quantities::{coordinates, speeds};
+
+/// The section of joints.
+pub(crate) const SECTION: &str = "joints";
+
+/// A spec without joints.
+#[derive(Debug, Clone)]
+pub struct Expansion {
+    /// The syntax tree, with items of other sections in place of the joints; their places are those of
+    /// the joints' keys.
+    pub ast: SpecAst,
+    /// What is wrong with the joints.
+    pub findings: Vec<Diagnostic>,
+    /// The items by joint.
+    made: Vec<(String, Vec<Made>)>,
+}
+
+/// Puts items of other sections in place of the joints of a spec; `None` where there are none. `ast` is
+/// what was read of `text`.
+pub fn expand(ast: &SpecAst, text: &str) -> Option<Expansion> {
+    let section = ast.sections.iter().find(|s| s.section.name == SECTION)?;
+    let mut rest = ast.clone();
+    rest.sections.retain(|s| s.section.name != SECTION);
+    let known = Known::new(ast);
+    let mut expansion = Expansion {
+        ast: rest,
+        findings: Vec::new(),
+        made: Vec::new(),
+    };
+    for joint in &section.items {
+        if !joint.intact {
+            // It may define names that are used.
+            expansion.ast.broken = true;
+            continue;
+        }
+        match made::made(text, joint, &known) {
+            Ok(made) => expansion.admit(joint, made),
+            Err(finding) => {
+                expansion.ast.broken = true;
+                expansion.findings.push(finding);
+            }
+        }
+    }
+    expansion.read(&section.span);
+    expansion.count(&section.span);
+    Some(expansion)
+}
+
+/// The text of a spec with items of other sections in place of its joints. `ast` is what was read of `text`.
+pub(crate) fn replaced(ast: &SpecAst, text: &str) -> Result<String, EditError> {
+    match expand(ast, text) {
+        Some(expansion) => document::replaced(text, SECTION, &expansion.made),
+        None => Ok(text.to_owned()),
+    }
+}
+
+/// Findings that lie on joints say how to see what they are about.
+pub(crate) fn explain(ast: &SpecAst, findings: &mut [Diagnostic]) {
+    let joints = ast.items(SECTION);
+    for finding in findings.iter_mut().filter(|finding| finding.help.is_none()) {
+        let Some((place, _)) = finding.labels.first() else {
+            continue;
+        };
+        let holds = |joint: &&ItemAst| {
+            let parts = joint.entries.iter().map(|entry| &entry.span);
+            let mut parts = parts.chain([&joint.name.span]);
+            parts.any(|part| part.start <= place.start && place.end <= part.end)
+        };
+        if let Some(joint) = joints.iter().find(holds) {
+            finding.help = Some(shows(&joint.name.value));
+        }
+    }
+}
+
+fn shows(joint: &str) -> String {
+    format!("`appell derive SPEC --format spec` shows what the joint `{joint}` stands for")
+}
+
+/// The names of frames and points.
+struct Known<'a> {
+    frames: BTreeSet<&'a str>,
+    points: BTreeSet<&'a str>,
+}
+
+impl<'a> Known<'a> {
+    fn new(ast: &'a SpecAst) -> Self {
+        let names = |section: &str| -> BTreeSet<&'a str> {
+            let own = ast.items(section).iter().chain(ast.items(SECTION));
+            own.map(|item| item.name.value.as_str()).collect()
+        };
+        Self {
+            frames: names("frames"),
+            points: names("points"),
+        }
+    }
+}
+
+impl Places for Known<'_> {
+    fn has_frame(&self, name: &str) -> bool {
+        self.frames.contains(name)
+    }
+
+    fn has_point(&self, name: &str) -> bool {
+        self.points.contains(name)
+    }
+}
+
+impl Expansion {
+    /// Takes the items of a joint whose names are free.
+    fn admit(&mut self, joint: &ItemAst, made: Vec<Made>) {
+        let mut free = Vec::new();
+        for one in made {
+            match self.clash(joint, &free, &one) {
+                Some(finding) => self.findings.push(finding),
+                None => free.push(one),
+            }
+        }
+        self.made.push((joint.name.value.clone(), free));
+    }
+
+    /// What else has the name of an item.
+    fn clash(&self, joint: &ItemAst, own: &[Made], one: &Made) -> Option<Diagnostic> {
+        let namespace = Namespace::of_section(one.section);
+        let is_same = |section: &str, name: &str| {
+            Namespace::of_section(section) == namespace && name == one.name
+        };
+        let written = self.ast.sections.iter().find_map(|section| {
+            let mut items = section.items.iter();
+            let other = items.find(|item| is_same(section.section.name, &item.name.value))?;
+            let whose = format!("in `[{}]`", section.section.name);
+            Some((whose, other.name.span.clone()))
+        });
+        let of_others = self.made.iter().flat_map(|(name, made)| {
+            let whose = format!("by the joint `{name}`");
+            made.iter().map(move |other| (whose.clone(), other))
+        });
+        let of_itself = own.iter().map(|other| ("by the joint itself".to_owned(), other));
+        let made = || {
+            let mut all = of_others.chain(of_itself);
+            let (whose, other) = all.find(|(_, other)| is_same(other.section, &other.name))?;
+            Some((whose, other.at.clone()))
+        };
+        let (whose, place) = written.or_else(made)?;
+        let (joint, name) = (&joint.name.value, &one.name);
+        let what = match one.section {
+            "coordinates" => "coordinate",
+            "pseudo_velocities" => "pseudo-velocity",
+            "frames" => "frame",
+            _ => "point",
+        };
+        let help = match one.key {
+            Some(key) => format!("choose another name with the key `{key}` of the joint"),
+            None if *name == *joint => format!(
+                "rename one of the two: a joint defines the frame and the point of its name, which `{SECTION}.{joint}` need not share with a written one"
+            ),
+            None => format!("rename the joint, or the {what} `{name}`"),
+        };
+        let mut finding = Diagnostic::error(
+            Code::DuplicateName,
+            format!("the joint `{joint}` makes the {what} `{name}`, but the name is also defined {whose}"),
+        )
+        .at(one.at.clone(), format!("makes the {what} `{name}`"));
+        if place != one.at {
+            finding = finding.at(place, "defined here");
+        }
+        Some(finding.help(help))
+    }
+
+    /// Reads what was made, and puts it at the end of its sections.
+    fn read(&mut self, joints: &Span) {
+        let all: Vec<&Made> = self.made.iter().flat_map(|(_, made)| made).collect();
+        let mut text = Piece::default();
+        for section in ["coordinates", "frames", "points", "pseudo_velocities"] {
+            let own: Vec<&&Made> = all.iter().filter(|made| made.section == section).collect();
+            if own.is_empty() {
+                continue;
+            }
+            text = text.word(&format!("[{section}]\n"));
+            for made in own {
+                let name = Piece::new(made.name.as_str()).from(&made.at);
+                text = text.then(&name).word(" = ").then(&made.table).word("\n");
+            }
+        }
+        let to = |span: &Span| text.place(span).unwrap_or_else(|| joints.clone());
+        let (sections, mut findings) = parse::made(&text.text);
+        for finding in &mut findings {
+            for (place, _) in &mut finding.labels {
+                *place = to(place);
+            }
+            if finding.code == Code::InvalidName {
+                finding.help = Some(
+                    "names are made of that of the joint: shorten it, or name its coordinates and speeds"
+                        .to_owned(),
+                );
+            }
+        }
+        self.findings.extend(findings);
+        for mut section in sections {
+            for item in &mut section.items {
+                places::relocate(item, &to);
+            }
+            section.span = joints.clone();
+            self.append(section);
+        }
+    }
+
+    fn append(&mut self, made: SectionAst) {
+        let mut sections = self.ast.sections.iter_mut();
+        match sections.find(|s| s.section.name == made.section.name) {
+            Some(section) => section.items.extend(made.items),
+            None => self.ast.sections.push(made),
+        }
+    }
+
+    /// Refuses what is too much or nothing.
+    fn count(&mut self, joints: &Span) {
+        for section in &self.ast.sections {
+            let is_made = self
+                .made
+                .iter()
+                .any(|(_, made)| made.iter().any(|one| one.section == section.section.name));
+            if is_made && section.items.len() > MAX_ITEMS {
+                let message = format!(
+                    "`[{}]` has at most {MAX_ITEMS} items, those of joints included",
+                    section.section.name
+                );
+                let count = format!("{} items", section.items.len());
+                self.findings.push(
+                    Diagnostic::error(Code::LimitExceeded, message).at(joints.clone(), count),
+                );
+            }
+        }
+        if self.ast.items("coordinates").is_empty() && !self.ast.broken {
+            let message = "no joint has a coordinate, and the section `[coordinates]` is missing";
+            self.findings.push(
+                Diagnostic::error(Code::MissingSection, message)
+                    .at(joints.clone(), "")
+                    .help("generalised coordinates"),
+            );
+        }
+    }
+}

@@ -151,7 +151,8 @@ fn diagnostic(
                 .find(|s| s.section.name == name)
                 .map(|s| s.span.clone())
         };
-        section("pseudo_velocities").or_else(|| section("mechanism"))
+        let sections = ["pseudo_velocities", "joints", "mechanism"];
+        sections.into_iter().find_map(section)
     });
     let diagnostic =
         Diagnostic::error(finding.code, finding.message.as_str()).help(finding.help.as_str());

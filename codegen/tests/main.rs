@@ -25,6 +25,7 @@ mod jit_safety;
 mod jit_shipped;
 #[cfg(feature = "jit")]
 mod jit_vector;
+mod joints;
 #[cfg(feature = "jit")]
 mod responses;
 mod schedule;

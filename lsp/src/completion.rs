@@ -35,8 +35,18 @@ pub(crate) fn completion(document: &Document, position: Position) -> Vec<Complet
             let before = document.text.part(&(string.span.start + 1..at));
             in_expression(document, string, before)
         }
+        // A word alone is no expression.
+        Form::Direction if is_in_list(text, string) => {
+            let before = document.text.part(&(string.span.start + 1..at));
+            in_expression(document, string, before)
+        }
         _ => Vec::new(),
     }
+}
+
+fn is_in_list(text: &str, string: &Part) -> bool {
+    let before = text.get(..string.span.start).unwrap_or_default();
+    before.trim_end().ends_with(['[', ','])
 }
 
 fn item(label: &str, kind: CompletionItemKind, detail: impl Into<String>) -> CompletionItem {
@@ -82,7 +92,7 @@ fn named(document: &Document, target: Target, from: Option<&[String]>) -> Vec<Co
         Target::Point => vec![item("O", CompletionItemKind::STRUCT, "point")],
         _ => Vec::new(),
     };
-    let own = from.filter(|path| path[0] == target.section());
+    let own = from.filter(|path| path[0] == target.section() || path[0] == "joints");
     let own = own.and_then(|path| path.get(1)).map(String::as_str);
     let mut all = defined(document, target.section(), target.word());
     all.retain(|item| Some(item.label.as_str()) != own);
@@ -95,7 +105,7 @@ fn defined(document: &Document, section: &str, word: &str) -> Vec<CompletionItem
         Some(Namespace::Quantity) => CompletionItemKind::VARIABLE,
         _ => CompletionItemKind::STRUCT,
     };
-    let items = document.reading.ast.items(section).iter();
+    let items = document.reading.expanded().items(section).iter();
     items
         .map(|defined| {
             let unit = defined.unit("unit").map(|unit| &unit.value.text);
@@ -144,7 +154,7 @@ fn in_expression(document: &Document, string: &Part, before: &str) -> Vec<Comple
             all.extend(items);
         }
     }
-    let coordinates = document.reading.ast.items("coordinates");
+    let coordinates = document.reading.expanded().items("coordinates");
     let rate = coordinates
         .first()
         .map(|q| format!("dot({})", q.name.value));

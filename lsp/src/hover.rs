@@ -1,7 +1,8 @@
 //! What a name means, where it is used, and which equations it is in.
 
-use appell_spec::ast::{Entry, ItemAst, ValueAst};
+use appell_spec::ast::{Entry, ItemAst, SpecAst, ValueAst};
 use appell_spec::expr::Span;
+use appell_spec::joints;
 use appell_spec::occurrences::{Namespace, Occurrence};
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind, Position};
 
@@ -15,9 +16,10 @@ const MOST_LETTERS: usize = 80;
 /// The words about the name at a place.
 pub(crate) fn hover(document: &Document, position: Position) -> Option<Hover> {
     let name = document.name_at(position)?;
-    let mut paragraphs = match definition(document, name) {
+    let written = definition(&document.reading.ast, name);
+    let mut paragraphs = match written {
         Some((section, item)) => described(document, section, item),
-        None => vec![supplied(name)?.to_owned()],
+        None => made(document, name).or_else(|| Some(vec![supplied(name)?.to_owned()]))?,
     };
     paragraphs.extend(uses(document, name));
     let contributions = document.contributions.as_ref();
@@ -33,17 +35,27 @@ pub(crate) fn hover(document: &Document, position: Position) -> Option<Hover> {
 }
 
 /// The section of a name and what stands there.
-fn definition<'a>(
-    document: &'a Document,
-    name: &Occurrence,
-) -> Option<(&'static str, &'a ItemAst)> {
-    document.reading.ast.sections.iter().find_map(|section| {
+fn definition<'a>(ast: &'a SpecAst, name: &Occurrence) -> Option<(&'static str, &'a ItemAst)> {
+    ast.sections.iter().find_map(|section| {
         let word = section.section.name;
         let mut items = section.items.iter();
         let is_here = Namespace::of_section(word) == Some(name.namespace);
         let item = items.find(|item| is_here && item.name.value == name.name)?;
         Some((word, item))
     })
+}
+
+/// What a joint makes: its title, and the joint.
+fn made(document: &Document, name: &Occurrence) -> Option<Vec<String>> {
+    let joint = joints::maker(&document.reading.ast, name.namespace, &name.name)?;
+    let mut all = described(document, "joints", joint);
+    if let Some((section, item)) = definition(document.reading.expanded(), name) {
+        let unit = item.unit("unit").map(|unit| unit.value.text.as_str());
+        let unit = unit.map_or_else(String::new, |unit| format!(", in {unit}"));
+        let title = format!("**{}** `{}`{unit}, made by the", singular(section), name.name);
+        all.insert(0, title);
+    }
+    Some(all)
 }
 
 /// One item of a section, in words.

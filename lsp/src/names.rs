@@ -60,8 +60,9 @@ pub(crate) fn renamed(
     };
     let text = document.text.as_str();
     let places = rename(text, name.namespace, &name.name, new)?;
-    let edit = |place| TextEdit::new(document.text.range(place), new.to_owned());
-    let edits = places.iter().map(|place| OneOf::Left(edit(place)));
+    let edits = places.into_iter().map(|(place, word)| {
+        OneOf::Left(TextEdit::new(document.text.range(&place), word))
+    });
     let document = TextDocumentEdit {
         text_document: OptionalVersionedTextDocumentIdentifier {
             uri: document.uri.clone(),

@@ -22,18 +22,17 @@ mod written;
 
 use std::collections::BTreeSet;
 
-use crate::ast::{ItemAst, SectionAst, SpecAst};
+use crate::ast::{Entry, ItemAst, SectionAst, SpecAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::edit::EditError;
 use crate::expr::Span;
+use crate::language::Form;
 use crate::limits::MAX_ITEMS;
 use crate::occurrences::Namespace;
 use crate::parse;
 
 use made::{Made, Places};
 use piece::Piece;
-
-pub(crate) use quantities::{coordinates, speeds};
 
 /// The section of joints.
 pub(crate) const SECTION: &str = "joints";
@@ -89,22 +88,77 @@ pub(crate) fn replaced(ast: &SpecAst, text: &str) -> Result<String, EditError> {
     }
 }
 
-/// Findings that lie on joints say how to see what they are about.
-pub(crate) fn explain(ast: &SpecAst, findings: &mut [Diagnostic]) {
-    let joints = ast.items(SECTION);
-    for finding in findings.iter_mut().filter(|finding| finding.help.is_none()) {
-        let Some((place, _)) = finding.labels.first() else {
-            continue;
-        };
-        let holds = |joint: &&ItemAst| {
-            let parts = joint.entries.iter().map(|entry| &entry.span);
-            let mut parts = parts.chain([&joint.name.span]);
-            parts.any(|part| part.start <= place.start && place.end <= part.end)
-        };
-        if let Some(joint) = joints.iter().find(holds) {
-            finding.help = Some(shows(&joint.name.value));
+/// The names that a joint gives to coordinates and pseudo-velocities after its own.
+pub(crate) fn named_after(joint: &ItemAst) -> Vec<String> {
+    let all = quantities::coordinates(joint).into_iter();
+    let all = all.chain(quantities::speeds(joint));
+    let all = all.filter(|quantity| quantity.written.is_none());
+    all.map(|quantity| quantity.name).collect()
+}
+
+/// The joint that makes an item.
+pub fn maker<'a>(ast: &'a SpecAst, namespace: Namespace, name: &str) -> Option<&'a ItemAst> {
+    let makes = |joint: &&ItemAst| match namespace {
+        Namespace::Frame | Namespace::Point => joint.name.value == name,
+        Namespace::Quantity => {
+            let all = quantities::coordinates(joint).into_iter();
+            let mut all = all.chain(quantities::speeds(joint));
+            all.any(|quantity| quantity.name == name)
         }
-    }
+        Namespace::Body | Namespace::Constraint | Namespace::Load => false,
+    };
+    ast.items(SECTION).iter().find(makes)
+}
+
+/// Findings on a joint, without what only follows from what is told of it. The others say how to see
+/// what they are about.
+pub(crate) fn explained(
+    ast: &SpecAst,
+    told: &[Diagnostic],
+    mut findings: Vec<Diagnostic>,
+) -> Vec<Diagnostic> {
+    let is_of_name = |finding: &&Diagnostic| finding.code == Code::ReservedName;
+    let of_names = findings.iter().filter(is_of_name);
+    let misnamed = told.iter().chain(of_names);
+    let misnamed: Vec<String> = misnamed
+        .filter_map(|finding| Some(at(ast, finding)?.0.name.value.clone()))
+        .collect();
+    let mut axes: Vec<(Code, Span)> = Vec::new();
+    findings.retain_mut(|finding| {
+        let Some((joint, entry)) = at(ast, finding) else {
+            return true;
+        };
+        let name = &joint.name.value;
+        if finding.code != Code::ReservedName && misnamed.contains(name) {
+            return false;
+        }
+        finding.help.get_or_insert_with(|| shows(name));
+        let mut places = Vec::new();
+        finding.labels.retain(|(place, _)| {
+            let is_new = !places.contains(place);
+            places.push(place.clone());
+            is_new
+        });
+        // The components of an axis stand in several expressions.
+        let Some(axis) = entry.filter(|entry| matches!(entry.key.form, Form::Direction)) else {
+            return true;
+        };
+        let seen = (finding.code, axis.span.clone());
+        let is_new = !axes.contains(&seen);
+        axes.push(seen);
+        is_new
+    });
+    findings
+}
+
+/// The joint on which a finding lies, and the key of it.
+fn at<'a>(ast: &'a SpecAst, finding: &Diagnostic) -> Option<(&'a ItemAst, Option<&'a Entry>)> {
+    let (place, _) = finding.labels.first()?;
+    let holds = |part: &Span| part.start <= place.start && place.end <= part.end;
+    ast.items(SECTION).iter().find_map(|joint| {
+        let entry = joint.entries.iter().find(|entry| holds(&entry.span));
+        (entry.is_some() || holds(&joint.name.span)).then_some((joint, entry))
+    })
 }
 
 fn shows(joint: &str) -> String {
@@ -185,10 +239,7 @@ impl Expansion {
         };
         let help = match one.key {
             Some(key) => format!("choose another name with the key `{key}` of the joint"),
-            None if *name == *joint => format!(
-                "rename one of the two: a joint defines the frame and the point of its name, which `{SECTION}.{joint}` need not share with a written one"
-            ),
-            None => format!("rename the joint, or the {what} `{name}`"),
+            None => format!("a joint makes its own {what}: omit the other `{name}`, or rename it or the joint"),
         };
         let mut finding = Diagnostic::error(
             Code::DuplicateName,
@@ -270,7 +321,7 @@ impl Expansion {
             self.findings.push(
                 Diagnostic::error(Code::MissingSection, message)
                     .at(joints.clone(), "")
-                    .help("generalised coordinates"),
+                    .help("a mechanism has a joint that moves, or coordinates of its own"),
             );
         }
     }

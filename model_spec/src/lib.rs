@@ -63,14 +63,16 @@ impl Reading {
     pub fn new(file: &str, text: &str) -> Self {
         let (ast, mut findings) = parse::parse(text);
         let expansion = joints::expand(&ast, text);
-        let without_joints = expansion.map(|expansion| {
+        let whole = expansion.as_ref().map_or(&ast, |expansion| &expansion.ast);
+        let (mechanism, checks) = resolve::resolve(whole, file, text);
+        let without_joints = if let Some(expansion) = expansion {
+            findings.extend(joints::explained(&ast, &expansion.findings, checks));
             findings.extend(expansion.findings);
-            expansion.ast
-        });
-        let whole = without_joints.as_ref().unwrap_or(&ast);
-        let (mechanism, mut checks) = resolve::resolve(whole, file, text);
-        joints::explain(&ast, &mut checks);
-        findings.extend(checks);
+            Some(expansion.ast)
+        } else {
+            findings.extend(checks);
+            None
+        };
         let is_error = |finding: &Diagnostic| finding.severity == Severity::Error;
         if findings.iter().any(is_error) {
             findings.retain(is_error);

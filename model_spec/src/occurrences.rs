@@ -2,6 +2,7 @@
 
 use crate::ast::{Entry, ExprAst, ExprAstKind, ItemAst, Spanned, SpecAst, ValueAst};
 use crate::expr::{Span, Word};
+use crate::joints;
 use crate::language::{Form, Target};
 use crate::outline::{Outline, unquoted};
 
@@ -25,7 +26,8 @@ pub struct Occurrence {
     pub namespace: Namespace,
     /// The name.
     pub name: String,
-    /// Where it stands, without quotes; the whole string where it is written with escapes.
+    /// Where it stands, without quotes; the whole string where it is written with escapes. The name of the
+    /// joint where what a joint makes is named after it.
     pub span: Span,
     /// Whether the name is defined there.
     pub defines: bool,
@@ -89,8 +91,18 @@ pub fn occurrences(text: &str, ast: &SpecAst, outline: &Outline) -> Vec<Occurren
                 None if section == "initial" => {
                     finder.see(Namespace::Quantity, name, &key.span, false);
                 }
+                None if section == joints::SECTION => {
+                    finder.see(Namespace::Frame, name, &key.span, true);
+                    finder.see(Namespace::Point, name, &key.span, true);
+                }
                 None => {}
             }
+        }
+    }
+    for joint in ast.items(joints::SECTION) {
+        finder.within = format!("{}.{}", joints::SECTION, joint.name.value);
+        for name in joints::named_after(joint) {
+            finder.see(Namespace::Quantity, &name, &joint.name.span, true);
         }
     }
     for section in &ast.sections {
@@ -135,8 +147,10 @@ impl Finder<'_> {
     fn entry(&mut self, entry: &Entry) {
         match &entry.value {
             ValueAst::Text(name) => {
-                if let Form::Reference(target) = entry.key.form {
-                    self.see(target.into(), name, &entry.span, false);
+                match entry.key.form {
+                    Form::Reference(target) => self.see(target.into(), name, &entry.span, false),
+                    Form::NewName => self.see(Namespace::Quantity, name, &entry.span, true),
+                    _ => {}
                 }
             }
             ValueAst::Pair(points) => {

@@ -1,5 +1,6 @@
 //! Another name for an item, at its definition and at every use.
 
+use crate::ast::ItemAst;
 use crate::diagnostic::{Diagnostic, Severity};
 use crate::expr::Span;
 use crate::joints;
@@ -25,6 +26,14 @@ pub enum RenameError {
     /// The language supplies it.
     #[error("`{0}` is defined by the language and keeps its name")]
     Supplied(String),
+    /// A joint gives the name.
+    #[error("`{name}` is named after the joint `{joint}`; rename the joint, or name it with a key of the joint")]
+    NamedAfter {
+        /// The name.
+        name: String,
+        /// The joint.
+        joint: String,
+    },
     /// Uses may stand in what cannot be read.
     #[error("the spec has a syntax error; correct it first: {0}")]
     Broken(String),
@@ -36,13 +45,16 @@ pub enum RenameError {
     Refused(String),
 }
 
-/// The places of a name that take another one. With all of them replaced the spec is as valid as before.
+/// The places of a name, each with its new word. With all of them replaced the spec is as valid as before.
+///
+/// The frame and the point of a joint have one name, and its coordinates and pseudo-velocities may be named
+/// after it.
 pub fn rename(
     text: &str,
     namespace: Namespace,
     old: &str,
     new: &str,
-) -> Result<Vec<Span>, RenameError> {
+) -> Result<Vec<(Span, String)>, RenameError> {
     if !name::is_valid(new) {
         return Err(RenameError::Invalid(new.to_owned()));
     }
@@ -54,28 +66,53 @@ pub fn rename(
         return Err(RenameError::Broken(finding.message.clone()));
     }
     let all = occurrences(text, &ast, &Outline::new(text));
-    let named = |name: &str| -> Vec<&Occurrence> {
+    let named = |namespace: Namespace, name: &str| -> Vec<&Occurrence> {
         let of = |o: &&Occurrence| o.namespace == namespace && o.name == name;
         all.iter().filter(of).collect()
     };
-    let places = named(old);
+    let places = named(namespace, old);
     if !places.iter().any(|place| place.defines) {
         return Err(RenameError::Supplied(old.to_owned()));
     }
-    if new != old && (!named(new).is_empty() || is_supplied(namespace, new)) {
+    if new != old && (!named(namespace, new).is_empty() || is_supplied(namespace, new)) {
         return Err(RenameError::Taken(new.to_owned()));
     }
-    let spans: Vec<Span> = places.iter().map(|place| place.span.clone()).collect();
-    if spans.iter().any(|span| text.get(span.clone()) != Some(old)) {
-        return Err(RenameError::Escaped(old.to_owned()));
+    let joint = joints::maker(&ast, namespace, old);
+    let words = match joint {
+        Some(joint) if namespace == Namespace::Quantity => {
+            if joints::named_after(joint).iter().any(|name| name == old) {
+                return Err(RenameError::NamedAfter {
+                    name: old.to_owned(),
+                    joint: joint.name.value.clone(),
+                });
+            }
+            vec![(namespace, old.to_owned(), new.to_owned())]
+        }
+        Some(joint) => of_joint(joint, new),
+        None => vec![(namespace, old.to_owned(), new.to_owned())],
+    };
+    let mut edits: Vec<(Span, String)> = Vec::new();
+    for (namespace, old, new) in &words {
+        for place in named(*namespace, old) {
+            // What is named after a joint does not stand at its definition.
+            if joint.is_some_and(|joint| place.defines && *old != joint.name.value && place.span.start == joint.name.span.start) {
+                continue;
+            }
+            if text.get(place.span.clone()) != Some(old) {
+                return Err(RenameError::Escaped(old.clone()));
+            }
+            edits.push((place.span.clone(), new.clone()));
+        }
     }
-    let renamed = replaced(text, &spans, new);
+    edits.sort_by_key(|(place, _)| place.start);
+    edits.dedup();
+    let renamed = replaced(text, &edits);
     let (before, after) = (errors(text), errors(&renamed));
     match after.first() {
         Some(error) if after.len() > before.len() => {
             Err(RenameError::Refused(error.message.clone()))
         }
-        _ => Ok(spans),
+        _ => Ok(edits),
     }
 }
 
@@ -86,11 +123,26 @@ fn is_supplied(namespace: Namespace, name: &str) -> bool {
     )
 }
 
-/// A text with another word at places that do not overlap.
-fn replaced(text: &str, places: &[Span], word: &str) -> String {
+/// The words that change with the name of a joint: those of its frame and point, and those named after it.
+fn of_joint(joint: &ItemAst, new: &str) -> Vec<(Namespace, String, String)> {
+    let mut renamed = joint.clone();
+    new.clone_into(&mut renamed.name.value);
+    let own = |namespace| (namespace, joint.name.value.clone(), new.to_owned());
+    let after = joints::named_after(joint).into_iter();
+    let after = after.zip(joints::named_after(&renamed));
+    let after = after.map(|(old, new)| (Namespace::Quantity, old, new));
+    [Namespace::Frame, Namespace::Point]
+        .map(own)
+        .into_iter()
+        .chain(after)
+        .collect()
+}
+
+/// A text with other words at places that do not overlap.
+fn replaced(text: &str, edits: &[(Span, String)]) -> String {
     let mut whole = String::with_capacity(text.len());
     let mut at = 0;
-    for place in places {
+    for (place, word) in edits {
         whole.push_str(text.get(at..place.start).unwrap_or_default());
         whole.push_str(word);
         at = place.end;

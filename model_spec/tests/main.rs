@@ -4,6 +4,7 @@ mod advice;
 mod bad_specs;
 mod expressions;
 mod fuzz;
+mod joints;
 mod language;
 mod manual;
 mod occurrences;

@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 use appell_spec::diagnostic::{CODES, Stage};
 use appell_spec::expr::Function;
-use appell_spec::language::{Form, Key, Need, SECTIONS, Shape};
+use appell_spec::language::{AXES, Form, Key, Need, SECTIONS, Shape};
 use appell_spec::units::{PREFIXES, UNITS};
 use appell_spec::{Code, Report, limits, load, parse};
 
@@ -24,7 +24,13 @@ fn manual() -> String {
 fn form_words(form: &Form) -> String {
     match form {
         Form::Text => "sentence".to_owned(),
-        Form::Name => "name".to_owned(),
+        Form::Name | Form::NewName => "name".to_owned(),
+        Form::NewNames(count) => format!("{count} names"),
+        Form::Values(count) => format!("{count} numbers"),
+        Form::Direction => {
+            let words = AXES.iter().map(|w| format!("`{}`, ", w.text));
+            words.collect::<String>() + "or three expressions"
+        }
         Form::Reference(target) => format!("name of a {}", target.word()),
         Form::Unit => "unit".to_owned(),
         Form::Number => "number".to_owned(),
@@ -68,22 +74,33 @@ fn key_table(keys: &[Key]) -> String {
     text
 }
 
+/// Tables of keys inside of keys, each only where it stands first.
+fn once(text: &str) -> String {
+    let mut parts: Vec<&str> = Vec::new();
+    for part in text.split("\n\n") {
+        let is_table = part.starts_with("| key");
+        let is_inner = is_table && parts.last().is_some_and(|last| last.starts_with("Keys of"));
+        let is_repeated = is_inner && parts[..parts.len() - 1].contains(&part.trim_end());
+        if is_repeated {
+            parts.pop();
+        } else {
+            parts.push(part.trim_end());
+        }
+    }
+    parts.join("\n\n") + "\n"
+}
+
 fn section_tables(name: &str) -> String {
     let section = SECTIONS.iter().find(|s| s.name == name).unwrap();
     match &section.shape {
         Shape::Table(keys) | Shape::Items(keys, _) => key_table(keys),
-        Shape::Kinds(kinds) => kinds
-            .iter()
-            .map(|k| {
-                format!(
-                    "`kind = \"{}\"`: {}\n\n{}",
-                    k.word,
-                    k.about,
-                    key_table(k.keys)
-                )
-            })
-            .collect::<Vec<_>>()
-            .join("\n"),
+        Shape::Kinds(kinds) => {
+            let kinds = kinds.iter().map(|k| {
+                let keys = key_table(k.keys);
+                format!("`kind = \"{}\"`: {}\n\n{keys}", k.word, k.about)
+            });
+            once(&kinds.collect::<Vec<_>>().join("\n"))
+        }
         Shape::States => String::new(),
     }
 }

@@ -13,8 +13,8 @@ fn found(text: &str) -> Vec<Occurrence> {
 /// The text with another name.
 fn renamed(text: &str, namespace: Namespace, old: &str, new: &str) -> Result<String, RenameError> {
     let mut whole = text.to_owned();
-    for place in rename(text, namespace, old, new)?.into_iter().rev() {
-        whole.replace_range(place, new);
+    for (place, word) in rename(text, namespace, old, new)?.into_iter().rev() {
+        whole.replace_range(place, &word);
     }
     Ok(whole)
 }
@@ -107,4 +107,40 @@ fn refusals_name_their_reason() {
     );
     let told = rename(&signal, Namespace::Quantity, "m", "s_dot");
     assert!(matches!(told, Err(RenameError::Refused(_))), "{told:?}");
+}
+
+const JOINTS: &str = r#"
+[mechanism]
+name = 'arm'
+title = 'two joints'
+[parameters]
+m = { value = 1, unit = 'kg' }
+[joints]
+slide = { kind = 'prismatic', axis = 'x', speed = 'v' }
+arm = { kind = 'revolute', parent = 'slide', axis = 'y' }
+[bodies]
+b = { frame = 'arm', centre = 'arm', mass = 'm', inertia = { in = 'arm', diagonal = ['m*1 [m^2]', 0, 0] } }
+[loads]
+s = { kind = 'damper', coordinate = 'q_arm', damping = '1 [N*m*s]*cos(q_arm)*v/(1 [m/s])' }
+"#;
+
+#[test]
+fn a_joint_is_renamed_with_all_that_is_named_after_it() {
+    assert!(load("arm.toml", JOINTS).is_ok());
+    for namespace in [Namespace::Frame, Namespace::Point] {
+        let text = renamed(JOINTS, namespace, "arm", "boom").expect("another name");
+        let expected = JOINTS
+            .replace("arm =", "boom =")
+            .replace("'arm', c", "'boom', c")
+            .replace("centre = 'arm'", "centre = 'boom'")
+            .replace("in = 'arm'", "in = 'boom'")
+            .replace("q_arm", "q_boom");
+        assert_eq!(text, expected);
+        assert!(load("arm.toml", &text).is_ok());
+    }
+    let text = renamed(JOINTS, Namespace::Quantity, "v", "v_x").expect("another name");
+    assert!(text.contains("speed = 'v_x'") && text.contains("*v_x/"), "{text}");
+    let told = rename(JOINTS, Namespace::Quantity, "q_arm", "theta").expect_err("a refusal");
+    let expected = "`q_arm` is named after the joint `arm`; rename the joint, or name it with a key of the joint";
+    assert_eq!(told.to_string(), expected);
 }

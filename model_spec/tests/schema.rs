@@ -166,7 +166,11 @@ fn every_key_of_the_schema_is_known_to_the_parser_and_no_other() {
             let mut text = match path.split_once(':') {
                 // The kind decides on the keys.
                 Some((table, kind)) => {
-                    format!("{} = {{ kind = \"{kind}\", {key} = 0 }}", &table[1..])
+                    let (kind, rest) = match kind.split_once('.') {
+                        Some((kind, inner)) => (kind, format!("{inner} = [{{ {key} = 0 }}]")),
+                        None => (kind, format!("{key} = 0")),
+                    };
+                    format!("{} = {{ kind = \"{kind}\", {rest} }}", &table[1..])
                 }
                 None if path.is_empty() => format!("{key} = 0"),
                 None if path.rsplit('.').next() == Some("turns") => {

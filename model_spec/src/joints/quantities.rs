@@ -11,11 +11,11 @@ type Known = (String, &'static str, &'static str);
 
 /// A coordinate or pseudo-velocity that a joint makes.
 #[derive(Debug, Clone)]
-pub(crate) struct JointQuantity {
+pub(super) struct JointQuantity {
     /// Its name.
-    pub(crate) name: String,
+    pub(super) name: String,
     /// Where the spec names it; `None` where it is named after the joint.
-    pub(crate) written: Option<Span>,
+    pub(super) written: Option<Span>,
     /// Its unit.
     pub(super) unit: &'static str,
     /// What it is.
@@ -31,7 +31,7 @@ pub(super) fn word(item: &ItemAst) -> Option<JointWord> {
 }
 
 /// The coordinates of a joint, in order.
-pub(crate) fn coordinates(item: &ItemAst) -> Vec<JointQuantity> {
+pub(super) fn coordinates(item: &ItemAst) -> Vec<JointQuantity> {
     let angle = |stem: &str| (stem.to_owned(), "rad", "angle");
     let way = |stem: &str| (stem.to_owned(), "m", "displacement");
     let quaternion = || {
@@ -58,7 +58,7 @@ pub(crate) fn coordinates(item: &ItemAst) -> Vec<JointQuantity> {
 }
 
 /// The pseudo-velocities of a joint, in order.
-pub(crate) fn speeds(item: &ItemAst) -> Vec<JointQuantity> {
+pub(super) fn speeds(item: &ItemAst) -> Vec<JointQuantity> {
     let turning = |stem: &str| (stem.to_owned(), "rad/s", "angular velocity");
     let moving = |stem: &str| (stem.to_owned(), "m/s", "velocity");
     let about_all = || AXES.map(|axis| turning(&format!("omega_{axis}")));

@@ -10,7 +10,7 @@
 //! | [`Model::steady`] with a [`steady::Question`] | `appell steady`, `appell stability` |
 //! | [`Model::control`], [`Model::schedule`] with a [`control::Request`], [`Model::law`], [`Model::attraction`] | `appell control` |
 //! | [`Source::check`] | `appell check` |
-//! | [`Source::derivation`], [`Source::linear_equations`], [`Source::rust`] | `appell derive` |
+//! | [`Source::derivation`], [`Source::linear_equations`], [`Source::rust`], [`Source::expanded`] | `appell derive` |
 //! | [`Source::drawing`] | `appell draw` |
 //! | [`Source::fmu`] | `appell export` |
 //! | [`Model::evaluate`] | `appell evaluate` |

@@ -279,6 +279,53 @@ fn derive_writes_the_linear_equations_about_a_steady_motion() {
 }
 
 #[test]
+fn joints_are_written_out() {
+    let folder = Folder::new();
+    let spec = "\
+[mechanism]
+name  = 'swing'
+title = 'a pendulum on a cart'
+[parameters]
+m = { value = 2, unit = 'kg' } # both
+l = { value = 0.5, unit = 'm' }
+g = { value = 9.81, unit = 'm/s^2' }
+[joints]
+# on the rail
+cart = { kind = 'prismatic', axis = 'x' }
+rod  = { kind = 'revolute', parent = 'cart', axis = [0, -1, 0], coordinate = 'theta' }
+[points]
+G = { from = 'rod', in = 'rod', at = [0, 0, '-l'] }
+[bodies]
+cart = { centre = 'cart', mass = 'm' }
+bob  = { centre = 'G', mass = 'm' }
+[loads]
+weight = { kind = 'gravity', down = '-z', acceleration = 'g' }
+";
+    folder.write("swing.toml", spec);
+    let shown = folder
+        .done(&["derive", "swing.toml", "--format", "spec"])
+        .stdout;
+    folder.done(&["derive", "swing.toml", "--out", "whole.toml"]);
+    assert_eq!(folder.read("whole.toml"), shown);
+    assert!(
+        shown.contains("# both") && shown.contains("# on the rail"),
+        "{shown}"
+    );
+    assert!(
+        !shown.contains("joints") && shown.contains("by = \"theta\""),
+        "{shown}"
+    );
+    let page = |file: &str| folder.done(&["derive", file, "--stage", "all"]).stdout;
+    assert_eq!(page("swing.toml"), page("whole.toml"));
+    folder.write("bad.toml", &spec.replace("'cart', axis", "'cat', axis"));
+    folder.fails(
+        3,
+        &["derive", "bad.toml", "--format", "spec"],
+        &["bad.toml:11:39"],
+    );
+}
+
+#[test]
 fn derived_rust_is_that_of_the_shipped_module() {
     let folder = Folder::new();
     let shipped = folder

@@ -33,7 +33,9 @@ Z = {{ from = 'link', in = 'link', at = [0, 0, 1] }}
     .replace("at = [0, 0, 1]", "at = [0, 0, '1 [m]']");
     for point in ["link", "X", "Y", "Z"] {
         for axis in ["x", "y", "z"] {
-            text += &format!("{point}_{axis} = {{ value = 'position({point}, {axis})', unit = 'm' }}\n");
+            text += &format!(
+                "{point}_{axis} = {{ value = 'position({point}, {axis})', unit = 'm' }}\n"
+            );
         }
     }
     text
@@ -42,12 +44,18 @@ Z = {{ from = 'link', in = 'link', at = [0, 0, 1] }}
 /// The place of the point and the columns of the rotation matrix where the coordinates have some values.
 fn placed(joint: &str, coordinates: &[f64]) -> [[f64; 3]; 4] {
     let program = compile("joint.toml", &spec(joint), &FunctionKind::ALL);
-    let model = InterpretedModel::new(program.unwrap_or_else(|report| panic!("{}", report.plain())));
+    let model =
+        InterpretedModel::new(program.unwrap_or_else(|report| panic!("{}", report.plain())));
     let info = model.info();
     let mut x = vec![0.0; info.state_len()];
     x[info.speeds..].copy_from_slice(coordinates);
     let p: Vec<f64> = info.parameters.iter().map(|p| p.value).collect();
-    let at = At { t: 0.0, x: &x, u: &[], p: &p };
+    let at = At {
+        t: 0.0,
+        x: &x,
+        u: &[],
+        p: &p,
+    };
     let mut all = vec![f64::NAN; info.output_len()];
     model.outputs(at, &mut all);
     let mut rows = [[0.0; 3]; 4];
@@ -74,9 +82,15 @@ fn turned(n: [f64; 3], angle: f64) -> [[f64; 3]; 3] {
     [0, 1, 2].map(|column| {
         let mut e = [0.0; 3];
         e[column] = 1.0;
-        let cross = [n[1] * e[2] - n[2] * e[1], n[2] * e[0] - n[0] * e[2], n[0] * e[1] - n[1] * e[0]];
+        let cross = [
+            n[1] * e[2] - n[2] * e[1],
+            n[2] * e[0] - n[0] * e[2],
+            n[0] * e[1] - n[1] * e[0],
+        ];
         let along = n[column];
-        [0, 1, 2].map(|i| e[i] * angle.cos() + cross[i] * angle.sin() + n[i] * along * (1.0 - angle.cos()))
+        [0, 1, 2].map(|i| {
+            e[i] * angle.cos() + cross[i] * angle.sin() + n[i] * along * (1.0 - angle.cos())
+        })
     })
 }
 
@@ -109,15 +123,24 @@ const AXES: &[(&str, [f64; 3])] = &[
 #[test]
 fn joints_turn_about_their_axes_and_move_along_them() {
     for (axis, n) in AXES {
-        let joint = format!("kind = 'revolute', at = [0, '2 [m]', 0], axis = {axis}, offset = '-0.3'");
+        let joint =
+            format!("kind = 'revolute', at = [0, '2 [m]', 0], axis = {axis}, offset = '-0.3'");
         assert_placed(&joint, &[0.7], [0.0, 2.0, 0.0], turned(*n, 0.4));
-        let joint = format!("kind = 'prismatic', at = ['3 [m]', 0, 0], axis = {axis}, offset = '-1 [m]'");
+        let joint =
+            format!("kind = 'prismatic', at = ['3 [m]', 0, 0], axis = {axis}, offset = '-1 [m]'");
         let moved = unit(*n).map(|x| x * -0.6);
-        assert_placed(&joint, &[0.4], [3.0 + moved[0], moved[1], moved[2]], turned(*n, 0.0));
+        assert_placed(
+            &joint,
+            &[0.4],
+            [3.0 + moved[0], moved[1], moved[2]],
+            turned(*n, 0.0),
+        );
         let joint = format!("kind = 'screw', axis = {axis}, pitch = '0.1 [m]'");
         let moved = unit(*n).map(|x| x * 0.1 * 2.5 / std::f64::consts::TAU);
         assert_placed(&joint, &[2.5], moved, turned(*n, 2.5));
-        let joint = format!("kind = 'cylindrical', axis = {axis}, turns = [{{ about_axis = 'y', by = 0.9 }}], at = [0, 0, '1 [m]']");
+        let joint = format!(
+            "kind = 'cylindrical', axis = {axis}, turns = [{{ about_axis = 'y', by = 0.9 }}], at = [0, 0, '1 [m]']"
+        );
         let before = turned([0.0, 1.0, 0.0], 0.9);
         let along = unit(*n).map(|x| x * 0.2);
         let moved = [0, 1, 2].map(|i| (0..3).map(|k| before[k][i] * along[k]).sum::<f64>());
@@ -132,7 +155,12 @@ fn joints_turn_about_their_axes_and_move_along_them() {
 #[test]
 fn planar_and_free_joints_move_as_they_say() {
     let joint = "kind = 'planar', axis = '-x', at = [0, 0, '1 [m]']";
-    assert_placed(joint, &[0.2, 0.3, 0.4], [0.0, 0.2, 1.3], turned([-1.0, 0.0, 0.0], 0.4));
+    assert_placed(
+        joint,
+        &[0.2, 0.3, 0.4],
+        [0.0, 0.2, 1.3],
+        turned([-1.0, 0.0, 0.0], 0.4),
+    );
     let joint = "kind = 'free', at = ['1 [m]', 0, 0]";
     let (s, c) = 0.35_f64.sin_cos();
     let n = unit([1.0, -1.0, 2.0]);

@@ -52,7 +52,11 @@ fn made(document: &Document, name: &Occurrence) -> Option<Vec<String>> {
     if let Some((section, item)) = definition(document.reading.expanded(), name) {
         let unit = item.unit("unit").map(|unit| unit.value.text.as_str());
         let unit = unit.map_or_else(String::new, |unit| format!(", in {unit}"));
-        let title = format!("**{}** `{}`{unit}, made by the", singular(section), name.name);
+        let title = format!(
+            "**{}** `{}`{unit}, made by the",
+            singular(section),
+            name.name
+        );
         all.insert(0, title);
     }
     Some(all)

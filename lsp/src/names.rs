@@ -60,9 +60,9 @@ pub(crate) fn renamed(
     };
     let text = document.text.as_str();
     let places = rename(text, name.namespace, &name.name, new)?;
-    let edits = places.into_iter().map(|(place, word)| {
-        OneOf::Left(TextEdit::new(document.text.range(&place), word))
-    });
+    let edits = places
+        .into_iter()
+        .map(|(place, word)| OneOf::Left(TextEdit::new(document.text.range(&place), word)));
     let document = TextDocumentEdit {
         text_document: OptionalVersionedTextDocumentIdentifier {
             uri: document.uri.clone(),

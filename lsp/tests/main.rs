@@ -5,5 +5,6 @@ mod editor;
 mod completion;
 mod damaged;
 mod findings;
+mod joints;
 mod names;
 mod told;

@@ -223,7 +223,9 @@ impl Expansion {
             let whose = format!("by the joint `{name}`");
             made.iter().map(move |other| (whose.clone(), other))
         });
-        let of_itself = own.iter().map(|other| ("by the joint itself".to_owned(), other));
+        let of_itself = own
+            .iter()
+            .map(|other| ("by the joint itself".to_owned(), other));
         let made = || {
             let mut all = of_others.chain(of_itself);
             let (whose, other) = all.find(|(_, other)| is_same(other.section, &other.name))?;
@@ -239,7 +241,9 @@ impl Expansion {
         };
         let help = match one.key {
             Some(key) => format!("choose another name with the key `{key}` of the joint"),
-            None => format!("a joint makes its own {what}: omit the other `{name}`, or rename it or the joint"),
+            None => format!(
+                "a joint makes its own {what}: omit the other `{name}`, or rename it or the joint"
+            ),
         };
         let mut finding = Diagnostic::error(
             Code::DuplicateName,

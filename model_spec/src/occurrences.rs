@@ -146,13 +146,11 @@ impl Finder<'_> {
 
     fn entry(&mut self, entry: &Entry) {
         match &entry.value {
-            ValueAst::Text(name) => {
-                match entry.key.form {
-                    Form::Reference(target) => self.see(target.into(), name, &entry.span, false),
-                    Form::NewName => self.see(Namespace::Quantity, name, &entry.span, true),
-                    _ => {}
-                }
-            }
+            ValueAst::Text(name) => match entry.key.form {
+                Form::Reference(target) => self.see(target.into(), name, &entry.span, false),
+                Form::NewName => self.see(Namespace::Quantity, name, &entry.span, true),
+                _ => {}
+            },
             ValueAst::Pair(points) => {
                 for point in points {
                     self.see(Namespace::Point, &point.value, &point.span, false);

@@ -27,7 +27,9 @@ pub enum RenameError {
     #[error("`{0}` is defined by the language and keeps its name")]
     Supplied(String),
     /// A joint gives the name.
-    #[error("`{name}` is named after the joint `{joint}`; rename the joint, or name it with a key of the joint")]
+    #[error(
+        "`{name}` is named after the joint `{joint}`; rename the joint, or name it with a key of the joint"
+    )]
     NamedAfter {
         /// The name.
         name: String,
@@ -95,7 +97,11 @@ pub fn rename(
     for (namespace, old, new) in &words {
         for place in named(*namespace, old) {
             // What is named after a joint does not stand at its definition.
-            if joint.is_some_and(|joint| place.defines && *old != joint.name.value && place.span.start == joint.name.span.start) {
+            if joint.is_some_and(|joint| {
+                place.defines
+                    && *old != joint.name.value
+                    && place.span.start == joint.name.span.start
+            }) {
                 continue;
             }
             if text.get(place.span.clone()) != Some(old) {

@@ -4,7 +4,7 @@
 
 use serde_json::{Map, Value, json};
 
-use crate::language::{Form, Key, Kind, Need, Presence, SECTIONS, Shape, Word, AXES};
+use crate::language::{AXES, Form, Key, Kind, Need, Presence, SECTIONS, Shape, Word};
 use crate::limits::{MAX_SENTENCE, MAX_TURNS};
 use crate::name;
 
@@ -113,7 +113,9 @@ fn form(form: &Form) -> Value {
     let list = |item: Value, length: usize| json!({ "type": "array", "items": item, "minItems": length, "maxItems": length });
     match form {
         Form::Text => json!({ "type": "string", "maxLength": MAX_SENTENCE }),
-        Form::Name | Form::NewName | Form::Reference(_) => json!({ "type": "string", "pattern": name::pattern() }),
+        Form::Name | Form::NewName | Form::Reference(_) => {
+            json!({ "type": "string", "pattern": name::pattern() })
+        }
         Form::Unit => json!({ "type": "string" }),
         Form::Number => json!({ "type": "number" }),
         Form::Numbers => json!({ "type": "array", "items": { "type": "number" } }),

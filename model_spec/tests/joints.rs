@@ -309,13 +309,19 @@ fn what_is_written_out_is_the_same_mechanism() {
 
 #[test]
 fn each_kind_is_among_them() {
-    let section = appell_spec::language::SECTIONS.iter().find(|s| s.name == "joints");
+    let section = appell_spec::language::SECTIONS
+        .iter()
+        .find(|s| s.name == "joints");
     let Some(appell_spec::language::Shape::Kinds(kinds)) = section.map(|s| &s.shape) else {
         panic!("there are no kinds of joints")
     };
     for kind in *kinds {
         let written = format!("kind = \"{}\"", kind.word);
-        assert!(PAIRS.iter().any(|(joints, _)| joints.contains(&written)), "{}", kind.word);
+        assert!(
+            PAIRS.iter().any(|(joints, _)| joints.contains(&written)),
+            "{}",
+            kind.word
+        );
     }
 }
 
@@ -324,14 +330,20 @@ fn comments_and_all_other_words_stay() {
     let text = include_str!("joints/crane.toml");
     let out = expanded("crane.toml", text).unwrap_or_else(|report| panic!("{report}"));
     insta::assert_snapshot!("written_out", out);
-    for (line, comment) in text.lines().enumerate().filter_map(|(i, l)| Some((i, l.split_once('#')?.1))) {
+    for (line, comment) in text
+        .lines()
+        .enumerate()
+        .filter_map(|(i, l)| Some((i, l.split_once('#')?.1)))
+    {
         assert!(out.contains(comment), "line {line}: {comment}");
     }
 }
 
 #[test]
 fn findings_of_what_is_made_point_at_the_joint() {
-    let text = whole("\n[joints]\narm = { kind = \"revolute\", axis = [\"c\", 0, 1], at = [0, \"l + a\", 0] }\n");
+    let text = whole(
+        "\n[joints]\narm = { kind = \"revolute\", axis = [\"c\", 0, 1], at = [0, \"l + a\", 0] }\n",
+    );
     let report = load("arm.toml", &text).expect_err("two errors");
     let places: Vec<&str> = report
         .diagnostics()
@@ -339,5 +351,11 @@ fn findings_of_what_is_made_point_at_the_joint() {
         .filter_map(|finding| text.get(finding.labels.first()?.0.clone()))
         .collect();
     assert_eq!(places, ["c", "a"], "{report}");
-    assert!(report.diagnostics().iter().all(|finding| finding.help.is_some()), "{report}");
+    assert!(
+        report
+            .diagnostics()
+            .iter()
+            .all(|finding| finding.help.is_some()),
+        "{report}"
+    );
 }

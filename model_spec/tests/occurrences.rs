@@ -109,7 +109,7 @@ fn refusals_name_their_reason() {
     assert!(matches!(told, Err(RenameError::Refused(_))), "{told:?}");
 }
 
-const JOINTS: &str = r#"
+const JOINTS: &str = r"
 [mechanism]
 name = 'arm'
 title = 'two joints'
@@ -122,7 +122,7 @@ arm = { kind = 'revolute', parent = 'slide', axis = 'y' }
 b = { frame = 'arm', centre = 'arm', mass = 'm', inertia = { in = 'arm', diagonal = ['m*1 [m^2]', 0, 0] } }
 [loads]
 s = { kind = 'damper', coordinate = 'q_arm', damping = '1 [N*m*s]*cos(q_arm)*v/(1 [m/s])' }
-"#;
+";
 
 #[test]
 fn a_joint_is_renamed_with_all_that_is_named_after_it() {
@@ -139,7 +139,10 @@ fn a_joint_is_renamed_with_all_that_is_named_after_it() {
         assert!(load("arm.toml", &text).is_ok());
     }
     let text = renamed(JOINTS, Namespace::Quantity, "v", "v_x").expect("another name");
-    assert!(text.contains("speed = 'v_x'") && text.contains("*v_x/"), "{text}");
+    assert!(
+        text.contains("speed = 'v_x'") && text.contains("*v_x/"),
+        "{text}"
+    );
     let told = rename(JOINTS, Namespace::Quantity, "q_arm", "theta").expect_err("a refusal");
     let expected = "`q_arm` is named after the joint `arm`; rename the joint, or name it with a key of the joint";
     assert_eq!(told.to_string(), expected);

@@ -27,7 +27,7 @@ pub(super) enum Direction {
         negative: bool,
     },
     /// Anywhere else.
-    Vector([Written; 3]),
+    Vector(Box<[Written; 3]>),
 }
 
 impl Direction {
@@ -64,7 +64,7 @@ impl Direction {
                 index: *index,
                 negative: literal(index).is_some_and(Signed::is_negative),
             },
-            _ => Self::Vector(components),
+            _ => Self::Vector(Box::new(components)),
         }))
     }
 
@@ -115,7 +115,7 @@ impl Direction {
             }
             Self::Vector(components) => {
                 let length = length(components);
-                for (component, part) in moved.iter_mut().zip(components) {
+                for (component, part) in moved.iter_mut().zip(components.iter()) {
                     if part.is_zero() {
                         continue;
                     }

@@ -7,7 +7,11 @@ use crate::edit::EditError;
 use super::made::Made;
 
 /// Writes the items at the end of their sections. Comments of a joint go with its frame.
-pub(super) fn replaced(text: &str, section: &str, made: &[(String, Vec<Made>)]) -> Result<String, EditError> {
+pub(super) fn replaced(
+    text: &str,
+    section: &str,
+    made: &[(String, Vec<Made>)],
+) -> Result<String, EditError> {
     let syntax = |error: toml_edit::TomlError| EditError::Syntax {
         message: error.message().to_owned(),
     };
@@ -57,10 +61,15 @@ fn insert(
         Item::Table(section)
     };
     let section = document.entry(made.section).or_insert_with(new);
-    let comments: String = comments.iter().map(|line| format!("{line}\n")).collect();
+    let mut comments = comments.join("\n");
+    if !comments.is_empty() {
+        comments.push('\n');
+    }
     if let Some(section) = section.as_table_mut()
         && !section.is_dotted()
-        && section.iter().any(|(_, item)| item.as_table().is_some_and(|table| !table.is_dotted()))
+        && section
+            .iter()
+            .any(|(_, item)| item.as_table().is_some_and(|table| !table.is_dotted()))
     {
         // After tables of their own, with headers, nothing else can stand.
         let mut own = table.into_table();
@@ -133,7 +142,9 @@ fn comments_in(decor: &toml_edit::Decor) -> Vec<String> {
 }
 
 fn comments(text: Option<&toml_edit::RawString>) -> Vec<String> {
-    let lines = text.and_then(toml_edit::RawString::as_str).unwrap_or_default();
+    let lines = text
+        .and_then(toml_edit::RawString::as_str)
+        .unwrap_or_default();
     let lines = lines.lines().map(str::trim);
     let lines = lines.filter(|line| line.starts_with('#'));
     lines.map(str::to_owned).collect()

@@ -315,7 +315,10 @@ impl Joint<'_> {
             self.add("points", name, &table);
         } else {
             let guide = format!("guide_{name}");
-            let (fixed, origin) = (point(from, carrier, &at), Piece::new(guide.as_str()).quoted());
+            let (fixed, origin) = (
+                point(from, carrier, &at),
+                Piece::new(guide.as_str()).quoted(),
+            );
             let nowhere = [(); 3].map(|()| Written::zero());
             let table = point(&origin, moving, &self.moved(&nowhere, axis));
             self.add("points", &guide, &fixed);
@@ -387,9 +390,8 @@ impl Joint<'_> {
 
     /// A frame by its turns.
     fn frame(&self, parent: &Piece, turns: &[Turn]) -> Table {
-        let turned = |table: Table, (axis, by): &Turn| {
-            table.key("about_axis", axis).key("by", &by.value())
-        };
+        let turned =
+            |table: Table, (axis, by): &Turn| table.key("about_axis", axis).key("by", &by.value());
         let table = Table::default().key("parent", parent);
         match turns {
             [] => turned(table, &(word(2, false), Written::zero())),

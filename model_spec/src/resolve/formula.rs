@@ -5,8 +5,8 @@ use num_traits::{One, Zero};
 
 use crate::ast::{ExprAst, ExprAstKind};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::joints;
 use crate::expr::{BinaryOp, Expr, Function, Span};
+use crate::joints;
 use crate::parse;
 use crate::units::Unit;
 

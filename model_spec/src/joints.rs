@@ -162,7 +162,9 @@ fn at<'a>(ast: &'a SpecAst, finding: &Diagnostic) -> Option<(&'a ItemAst, Option
 }
 
 fn shows(joint: &str) -> String {
-    format!("`appell derive SPEC --format spec` shows what the joint `{joint}` stands for")
+    format!(
+        "it is in what the joint `{joint}` stands for, which `appell derive` writes out as a spec"
+    )
 }
 
 /// The names of frames and points.

@@ -103,6 +103,24 @@ v_arm = { value = "dot(s_arm)", unit = "m/s" }
     (
         r#"
 [joints]
+arm = { kind = "revolute", axis = "x", dependent = true }
+[pseudo_velocities]
+twice = "2*dot(q_arm)"
+"#,
+        r#"
+[coordinates]
+q_arm = { unit = "rad", about = "angle of joint arm" }
+[frames]
+arm = { parent = "ground", about_axis = "x", by = "q_arm" }
+[points]
+arm = { from = "O", in = "ground", at = [0, 0, 0] }
+[pseudo_velocities]
+twice = "2*dot(q_arm)"
+"#,
+    ),
+    (
+        r#"
+[joints]
 arm = { kind = "screw", axis = "z", pitch = "l/10", range = [0, 9] }
 "#,
         r#"
@@ -358,4 +376,23 @@ fn findings_of_what_is_made_point_at_the_joint() {
             .all(|finding| finding.help.is_some()),
         "{report}"
     );
+}
+
+/// What is left of a spec is refused or read, and then its joints can be written out.
+#[test]
+fn damaged_joints_do_not_panic() {
+    for (joints, _) in PAIRS {
+        let text = whole(joints);
+        let start = text.find("joints").expect("the section");
+        let end = start + joints.len().min(text.len() - start);
+        for at in start..end {
+            let mut damaged = text.clone();
+            damaged.remove(at);
+            if load("arm.toml", &damaged).is_ok() {
+                let out = expanded("arm.toml", &damaged).expect("a spec");
+                assert!(load("arm.toml", &out).is_ok(), "{damaged}\n{out}");
+            }
+            assert!(load("arm.toml", &text[..at]).is_err());
+        }
+    }
 }

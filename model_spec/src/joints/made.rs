@@ -43,6 +43,15 @@ pub(super) fn made(
     let Some(word) = quantities::word(item) else {
         return Ok(Vec::new());
     };
+    let mut keys = ["speed", "speeds"].into_iter();
+    let named = keys.find_map(|key| item.entry(key));
+    if let Some(named) = named.filter(|_| item.flag("dependent")) {
+        let name = &item.name.value;
+        let message = format!("the joint `{name}` is dependent and names pseudo-velocities");
+        return Err(Diagnostic::error(Code::ConflictingKeys, message)
+            .at(named.span.clone(), "a dependent joint makes none")
+            .help(format!("keep either `dependent` or `{}`", named.key.name)));
+    }
     let mut joint = Joint {
         text,
         item,

@@ -57,8 +57,11 @@ pub(super) fn coordinates(item: &ItemAst) -> Vec<JointQuantity> {
     named(item, known, ["coordinate", "coordinates"])
 }
 
-/// The pseudo-velocities of a joint, in order.
+/// The pseudo-velocities of a joint, in order; none where its rates follow from constraints.
 pub(super) fn speeds(item: &ItemAst) -> Vec<JointQuantity> {
+    if item.flag("dependent") {
+        return Vec::new();
+    }
     let turning = |stem: &str| (stem.to_owned(), "rad/s", "angular velocity");
     let moving = |stem: &str| (stem.to_owned(), "m/s", "velocity");
     let about_all = || AXES.map(|axis| turning(&format!("omega_{axis}")));

@@ -58,6 +58,13 @@ const OMEGA: Key = key(
     "Name of the pseudo-velocity; `omega_NAME` by default.",
 );
 
+const DEPENDENT: Key = key(
+    "dependent",
+    Form::Flag,
+    Need::Optional,
+    "Whether the joint makes no pseudo-velocities: its rates follow from constraints and from those written elsewhere.",
+);
+
 const fn coordinates(count: usize, about: &'static str) -> Key {
     key("coordinates", Form::NewNames(count), Need::Optional, about)
 }
@@ -88,6 +95,7 @@ pub(super) static JOINTS: &[Kind] = &[
             AXIS,
             COORDINATE,
             OMEGA,
+            DEPENDENT,
             key(
                 "offset",
                 Form::Expression,
@@ -116,6 +124,7 @@ pub(super) static JOINTS: &[Kind] = &[
                 Need::Optional,
                 "Name of the pseudo-velocity; `v_NAME` by default.",
             ),
+            DEPENDENT,
             key(
                 "offset",
                 Form::Expression,
@@ -145,6 +154,7 @@ pub(super) static JOINTS: &[Kind] = &[
                 2,
                 "Names of their rates; `omega_NAME` and `v_NAME` by default.",
             ),
+            DEPENDENT,
             initial(2),
             ABOUT,
         ],
@@ -167,6 +177,7 @@ pub(super) static JOINTS: &[Kind] = &[
             ),
             COORDINATE,
             OMEGA,
+            DEPENDENT,
             RANGE,
             INITIAL,
             ABOUT,
@@ -196,6 +207,7 @@ pub(super) static JOINTS: &[Kind] = &[
                 2,
                 "Names of their rates; `omega1_NAME` and `omega2_NAME` by default.",
             ),
+            DEPENDENT,
             initial(2),
             ABOUT,
         ],
@@ -223,6 +235,7 @@ pub(super) static JOINTS: &[Kind] = &[
                 3,
                 "Names of their rates; for the axis z `v_x_NAME`, `v_y_NAME`, `omega_NAME` by default.",
             ),
+            DEPENDENT,
             initial(3),
             ABOUT,
         ],
@@ -243,6 +256,7 @@ pub(super) static JOINTS: &[Kind] = &[
                 3,
                 "Names of the components of the angular velocity relative to `parent`, in the frame of the joint; `omega_x_NAME`, `omega_y_NAME`, `omega_z_NAME` by default.",
             ),
+            DEPENDENT,
             initial(4),
             ABOUT,
         ],
@@ -263,6 +277,7 @@ pub(super) static JOINTS: &[Kind] = &[
                 6,
                 "Names of the rates of the displacements and of the components of the angular velocity, as of `ball`; `v_x_NAME` to `v_z_NAME`, `omega_x_NAME` to `omega_z_NAME` by default.",
             ),
+            DEPENDENT,
             initial(7),
             ABOUT,
         ],

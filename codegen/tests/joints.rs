@@ -103,7 +103,7 @@ fn assert_placed(joint: &str, coordinates: &[f64], origin: [f64; 3], frame: [[f6
     let got = placed(joint, coordinates);
     let wanted = [origin, frame[0], frame[1], frame[2]];
     for (got, wanted) in got.iter().flatten().zip(wanted.iter().flatten()) {
-        assert!((got - wanted).abs() < 1e-14, "{joint}: {got} and {wanted}");
+        assert!((got - wanted).abs() < 1e-13, "{joint}: {got} and {wanted}");
     }
 }
 
@@ -146,8 +146,8 @@ fn joints_turn_about_their_axes_and_move_along_them() {
         let moved = [0, 1, 2].map(|i| (0..3).map(|k| before[k][i] * along[k]).sum::<f64>());
         let place = [moved[0], moved[1], 1.0 + moved[2]];
         assert_placed(&joint, &[-1.1, 0.2], place, after(before, turned(*n, -1.1)));
-        let joint = format!("kind = 'universal', axis = 'y', second_axis = {axis}");
-        let frame = after(turned([0.0, 1.0, 0.0], 0.3), turned(*n, 0.5));
+        let joint = format!("kind = 'universal', axis = [1, 1, 5], second_axis = {axis}");
+        let frame = after(turned([1.0, 1.0, 5.0], 0.3), turned(*n, 0.5));
         assert_placed(&joint, &[0.3, 0.5], [0.0; 3], frame);
     }
 }

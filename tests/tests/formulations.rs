@@ -52,6 +52,78 @@ fn reactions_that_cannot_be_told_are_not_judged() {
     assert_one_answer(&shipped::read("beside.toml", &text));
 }
 
+/// A body on a ball joint with rotors about its axes, all by `quaternion` and angles.
+fn gyroscope(rotors: &[&str]) -> String {
+    let each =
+        |line: &dyn Fn(&str) -> String| -> String { rotors.iter().map(|k| line(k)).collect() };
+    let angles = each(&|k| format!("q_{k} = {{ unit = 'rad' }}\n"));
+    let frames =
+        each(&|k| format!("rotor_{k} = {{ parent = 'body', about_axis = '{k}', by = 'q_{k}' }}\n"));
+    let bodies = each(&|k| {
+        format!(
+            "[bodies.rotor_{k}]\nframe = 'rotor_{k}'\ncentre = 'G'\nmass = 'm'\ninertia = {{ in = 'rotor_{k}', diagonal = ['J', 'J', 'J'] }}\n"
+        )
+    });
+    let speeds = each(&|k| format!("s_{k} = {{ value = 'dot(q_{k})', unit = 'rad/s' }}\n"));
+    format!(
+        r#"
+[mechanism]
+name = "gyroscope"
+title = "Gyroscope on a ball joint"
+[parameters]
+m = {{ value = 2, unit = "kg" }}
+l = {{ value = 0.1, unit = "m" }}
+A = {{ value = 0.02, unit = "kg*m^2" }}
+B = {{ value = 0.03, unit = "kg*m^2" }}
+C = {{ value = 0.045, unit = "kg*m^2" }}
+J = {{ value = 0.004, unit = "kg*m^2" }}
+g = {{ value = 9.81, unit = "m/s^2" }}
+[coordinates]
+e0 = {{ unit = "1" }}
+e1 = {{ unit = "1" }}
+e2 = {{ unit = "1" }}
+e3 = {{ unit = "1" }}
+{angles}
+[frames]
+body = {{ parent = "ground", quaternion = ["e0", "e1", "e2", "e3"] }}
+{frames}
+[points]
+G = {{ from = "O", in = "body", at = [0, "0.2*l", "l"] }}
+[bodies.body]
+frame = "body"
+centre = "G"
+mass = "m"
+inertia = {{ in = "body", diagonal = ["A", "B", "C"] }}
+{bodies}
+[pseudo_velocities]
+w_x = {{ value = "angular_velocity(body, x, body)", unit = "rad/s" }}
+w_y = {{ value = "angular_velocity(body, y, body)", unit = "rad/s" }}
+w_z = {{ value = "angular_velocity(body, z, body)", unit = "rad/s" }}
+{speeds}
+[loads]
+weight = {{ kind = "gravity", down = "-z", acceleration = "g" }}
+"#
+    )
+}
+
+#[test]
+fn bodies_on_quaternions_have_one_answer() {
+    for rotors in [&[][..], &["z"], &["x", "y", "z"]] {
+        let text = gyroscope(rotors);
+        let verdict = assert_one_answer(&shipped::read("gyroscope.toml", &text));
+        assert!(verdict.comparisons.len() > 1, "{verdict:#?}");
+    }
+}
+
+#[test]
+fn a_frame_on_a_quaternion_with_a_position_constraint_has_one_answer() {
+    // The axis x of the body stays horizontal; its rotor spins.
+    let text = gyroscope(&["z"])
+        .replace("[pseudo_velocities]", "[constraints]\nlevel = { kind = 'position', zero = 'e1*e3 - e0*e2', dependent = 'e3' }\n[pseudo_velocities]")
+        .replace("w_z = { value = \"angular_velocity(body, z, body)\", unit = \"rad/s\" }\n", "");
+    assert_one_answer(&shipped::read("level.toml", &text));
+}
+
 /// What disagrees after a change to the derivation of the unicycle.
 fn planted(change: impl FnOnce(&mut Derivation)) -> Vec<(Against, &'static str)> {
     let mechanism = shipped::mechanism("unicycle");

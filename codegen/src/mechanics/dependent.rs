@@ -85,11 +85,7 @@ impl DependentSpeeds {
         let mut dependent = Self {
             driving: Vec::new(),
             change: Vec::new(),
-            values: system
-                .coordinates
-                .iter()
-                .map(|&q| velocities.rates[q])
-                .collect(),
+            values: velocities.solved.clone(),
             partial: vec![Vec::new(); system.unknowns.len()],
             bias: Vec::new(),
             rates: rates.clone(),

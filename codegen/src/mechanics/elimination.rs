@@ -25,6 +25,8 @@ pub struct GeneralizedVelocities {
     pub violating: Violation,
     /// Coordinates whose rates need a pivoted solve at run time.
     pub solved_numerically: Vec<usize>,
+    /// What that solve determines: these rates, or angular velocities in place of the rates of quaternions.
+    pub solved: Vec<Expr>,
 }
 
 /// Motions that violate the constraints, for their reactions.
@@ -56,7 +58,7 @@ pub struct Elimination {
 pub struct OpenSystem {
     /// Coordinates whose rates it determines.
     pub coordinates: Vec<usize>,
-    /// Symbols of these rates.
+    /// Symbols of these rates; at the vector part of a quaternion they stand for the angular velocity.
     pub unknowns: Vec<Expr>,
     /// The constraint row behind each equation; none behind the definition of a pseudo-velocity.
     pub rows: Vec<Option<usize>>,
@@ -215,14 +217,18 @@ impl Elimination {
             carried_rates,
         } = self;
         let mut values = open.solved_for(&mut algebra.graph, &open.right);
+        let in_quaternion: Vec<usize> = quaternions(mechanism).flatten().collect();
         for (value, &q) in values.iter_mut().zip(&open.coordinates) {
-            let name = format!(
-                "{}_dot",
-                mechanism.coordinates[CoordinateId::new(q)].label.name
-            );
+            let coordinate = &mechanism.coordinates[CoordinateId::new(q)].label.name;
+            let name = if in_quaternion.contains(&q) {
+                format!("omega_{coordinate}")
+            } else {
+                format!("{coordinate}_dot")
+            };
             *value = algebra.graph.name(&name, *value);
         }
         let rates = open.put_in(algebra, &values, &rates)?;
+        let solved = values;
         let values = open.solved_for(&mut algebra.graph, &violating.1);
         let coordinate_rates = open.put_in(algebra, &values, &violating.0)?;
         Ok(GeneralizedVelocities {
@@ -233,6 +239,7 @@ impl Elimination {
                 carried_rates,
             },
             solved_numerically: open.coordinates,
+            solved,
         })
     }
 }

@@ -1,5 +1,6 @@
 //! Filters, likelihoods and smoothers against formulas.
 
+mod attitude;
 mod likelihood;
 mod oscillator;
 mod regression;

@@ -56,15 +56,22 @@ impl Estimation<'_> {
             state: pass.z.clone(),
             root: pass.root.clone(),
         };
-        // Dependent coordinates carry no further information.
-        let independent: Vec<usize> = match &pass.closure {
-            Some(closure) => closure.independent().collect(),
-            None => (0..pass.sizes.n).collect(),
-        };
+        let mut scratch = pass.system.plant.scratch();
+        let mut closure = pass.closure.clone();
         let mut rows = Vec::with_capacity(self.recordings()[run].times().len());
         pass.walk_back(&mut tape, |record, tape| match record {
             Record::Advance { advance, tape: at } => {
                 let on = pass.sizes.step(&mut tape[*at..]);
+                // Dependent coordinates carry no further information.
+                let independent: Vec<usize> = match &mut closure {
+                    Some(closure) => {
+                        let t = advance.t + advance.h;
+                        let place = Place::new(self.layout(), values, (t, on.after, on.held));
+                        closure.choose(pass.system.plant, place, &mut scratch);
+                        closure.independent().collect()
+                    }
+                    None => (0..pass.sizes.n).collect(),
+                };
                 step_back(&pass, *advance, (&on, &independent), &mut last);
             }
             Record::Measure { row: Some(row), .. } => {
@@ -73,8 +80,7 @@ impl Estimation<'_> {
             }
             Record::Measure { row: None, .. } | Record::Close { .. } | Record::Parts { .. } => {}
         });
-        if let Some(mut closure) = pass.closure.clone() {
-            let mut scratch = pass.system.plant.scratch();
+        if let Some(closure) = &mut closure {
             for row in &mut rows {
                 let (t, open) = (row.t, row.state.clone());
                 let place = Place::new(self.layout(), values, (t, &open, &pass.held));

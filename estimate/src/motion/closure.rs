@@ -62,6 +62,14 @@ impl Closure {
         (0..self.n).filter(|state| !self.dependent.contains(state))
     }
 
+    /// Lets those coordinates follow that do so best at a place, as [`Closure::close`] does.
+    pub(crate) fn choose(&mut self, plant: &Plant<'_>, place: Place<'_>, scratch: &mut Scratch) {
+        plant.at(place, scratch, |at| {
+            let follow = self.positions.choose_dependent(plant.model, at);
+            self.dependent = follow.iter().map(|q| self.speeds + q).collect();
+        });
+    }
+
     /// Solves the constraints for the dependent coordinates of `z`, and computes their slopes
     /// there.
     pub(crate) fn close(
@@ -71,14 +79,13 @@ impl Closure {
         scratch: &mut Scratch,
         z: &mut [f64],
     ) -> Result<(), Inconsistent> {
+        self.choose(plant, Place { z, ..place }, scratch);
         self.z.copy_from_slice(z);
         let states = self.speeds + self.coordinates;
         let mut closed = Ok(());
         plant.at(Place { z, ..place }, scratch, |at| {
             let (model, x) = (plant.model, &mut self.z[..states]);
             let positions = &mut self.positions;
-            let follow = positions.choose_dependent(model, At { x, ..at });
-            self.dependent = follow.iter().map(|q| self.speeds + q).collect();
             closed = positions.restore(model, at.t, x, at.u, at.p, Moving::Dependent);
             if closed.is_ok() {
                 let at = At { x, ..at };

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `point.rs`, `term.rs` | state, inputs and parameters; quantities that can be prescribed, varied or left free |
 //! | `steady.rs` | steady motions under conditions, and the dimension of their family |
-//! | `steady/` | essential and ignorable states; the equations of steady motions, their solution, starting points; the paths of points |
+//! | `steady/` | essential and ignorable states; quaternions that turn; the equations of steady motions, their solution, starting points; the paths of points |
 //! | `stability.rs` | eigenvalues without the zeros of the family; the verdict |
 //! | `stability/` | smooth test functions for changes of stability; modes tracked through crossings |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
@@ -30,7 +30,7 @@
 //! ```
 //!
 //! This crate is independent of mechanisms. In a steady motion the essential states are constant;
-//! ignorable coordinates, such as the heading of a wheel, may advance.
+//! ignorable coordinates, such as the heading of a wheel, may advance, and quaternions of spinning bodies turn.
 
 mod branch;
 mod chart;

@@ -154,11 +154,56 @@ pub fn essential_matrix(
     let n = linear.states.len();
     let essential = |place: &usize| structure.is_essential(linear.states[*place]);
     let places: Vec<usize> = (0..n).filter(essential).collect();
-    let entry = |i, j| linear.a[places[i] * n + places[j]];
-    Ok((
-        places.iter().map(|&place| linear.states[place]).collect(),
-        DMatrix::from_fn(places.len(), places.len(), entry),
-    ))
+    let turn = structure.turning.turn(&point.x, &point.rates(model));
+    let still =
+        DMatrix::from_row_slice(n, n, &linear.a) - independent(&linear, model.info().speeds, &turn);
+    let mut matrix = still.select_rows(&places).select_columns(&places);
+    let mut states: Vec<usize> = places.iter().map(|&place| linear.states[place]).collect();
+    let mut turned = structure.turning.directions(&point.x).select_rows(&states);
+    while let Some(place) = without_largest(&mut matrix, &mut turned) {
+        states.remove(place);
+    }
+    Ok((states, matrix))
+}
+
+/// A matrix of all states, in the independent ones.
+pub(crate) fn independent(
+    linear: &Linearisation,
+    speeds: usize,
+    matrix: &DMatrix<f64>,
+) -> DMatrix<f64> {
+    let n = linear.states.len();
+    DMatrix::from_fn(n, n, |row, column| {
+        let of = |state: usize| matrix[(linear.states[row], state)];
+        let follows = linear
+            .dependent
+            .iter()
+            .zip(linear.dependence.chunks_exact(n));
+        let by_way_of = follows.map(|(&q, along)| of(speeds + q) * along[column]);
+        of(linear.states[column]) + by_way_of.sum::<f64>()
+    })
+}
+
+/// Departures along directions that change nothing are left out: of each direction, the state that it moves most.
+fn without_largest(matrix: &mut DMatrix<f64>, directions: &mut DMatrix<f64>) -> Option<usize> {
+    /// Directions that are shorter than this, where all that differ have a length of about 1, are rounding.
+    const SHORT: f64 = 1e-9;
+    if directions.is_empty() {
+        return None;
+    }
+    let (place, column) = directions.icamax_full();
+    let largest = directions[(place, column)];
+    if largest.abs() < SHORT {
+        return None;
+    }
+    let shares = directions.column(column) / largest;
+    for of in [&mut *matrix, &mut *directions] {
+        let row = of.row(place).clone_owned();
+        *of -= &shares * row;
+    }
+    *matrix = matrix.clone().remove_row(place).remove_column(place);
+    *directions = directions.clone().remove_row(place);
+    Some(place)
 }
 
 /// Algebraic multiplicity of the eigenvalue zero: trailing coefficients of the characteristic

@@ -6,6 +6,7 @@ pub(crate) mod equations;
 pub(crate) mod newton;
 pub(crate) mod path;
 pub(crate) mod starts;
+pub(crate) mod turning;
 
 use nalgebra::DVector;
 
@@ -26,7 +27,7 @@ pub struct Condition {
     pub value: f64,
 }
 
-/// A motion whose essential states are constant.
+/// A motion whose essential states are constant, or turn as quaternions do without an effect on the others.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SteadyMotion {
     /// State, inputs and parameters. Ignorable states keep the values at which the search began.
@@ -58,6 +59,17 @@ pub enum SteadyError {
         /// The state.
         name: String,
     },
+    /// A component of a quaternion that turns.
+    #[error(
+        "`{name}` is not constant in a steady motion, as its quaternion turns; prescribe {instead}, or declare an \
+         output that the turning does not change, such as a tilt"
+    )]
+    Turns {
+        /// The component.
+        name: String,
+        /// Quantities that can be prescribed.
+        instead: String,
+    },
     /// A rate or output that changes along the motion.
     #[error(
         "`{name}` is not constant in a steady motion, as it depends on ignorable states; prescribe {instead}"
@@ -84,8 +96,9 @@ pub enum SteadyError {
     },
     /// No steady motion was found.
     #[error(
-        "no steady motion satisfies the conditions: the best of {starts} starting points leaves {}; {}",
-        list(.left), if *.conditions { "release one of the conditions or free an input" } else { "free an input" }
+        "no steady motion satisfies the conditions: the best of {starts} starting points leaves {}; {}{}",
+        list(.left), if *.conditions { "release one of the conditions or free an input" } else { "free an input" },
+        if *.turning { PERIODIC } else { "" }
     )]
     None {
         /// Number of starting points.
@@ -94,6 +107,8 @@ pub enum SteadyError {
         left: Vec<(String, f64)>,
         /// Whether there are conditions that could be released.
         conditions: bool,
+        /// Whether there are quaternions.
+        turning: bool,
     },
     /// The conditions determine a family of motions.
     #[error(
@@ -107,6 +122,10 @@ pub enum SteadyError {
         open: Vec<String>,
     },
 }
+
+/// What may be the matter where attitudes are quaternions.
+const PERIODIC: &str = "; pseudo-velocities along a body that spins while its axis goes around are periodic, not \
+                        steady: take them along a frame that does not spin, with an angle for the spin";
 
 fn list(left: &[(String, f64)]) -> String {
     let residual = |(name, value): &(String, f64)| format!("{name} = {value:.3e}");
@@ -229,6 +248,10 @@ impl<'a> SteadyProblem<'a> {
         }
         let name = term.name(info);
         match term {
+            Term::State(state) | Term::Rate(state) if self.structure.turns(state) => {
+                let instead = self.others(|_| true);
+                Err(SteadyError::Turns { name, instead })
+            }
             Term::State(state) if !self.structure.is_essential(state) => {
                 Err(SteadyError::Ignorable { name })
             }
@@ -236,14 +259,18 @@ impl<'a> SteadyProblem<'a> {
                 Err(SteadyError::Zero { name })
             }
             Term::Rate(_) | Term::Output(_) if !self.is_constant(term) => {
-                let constant = self.constants();
-                let names = constant.iter().filter(|c| !matches!(c, Term::State(_)));
-                let names: Vec<String> = names.map(|term| term.name(info)).collect();
-                let instead = format!("one of {}", names.join(", "));
+                let instead = self.others(|term| !matches!(term, Term::State(_)));
                 Err(SteadyError::NotConstant { name, instead })
             }
             _ => Ok(()),
         }
+    }
+
+    /// Constant quantities, for people.
+    fn others(&self, asked: impl Fn(&Term) -> bool) -> String {
+        let names = self.constants().into_iter().filter(asked);
+        let names: Vec<String> = names.map(|term| term.name(self.model.info())).collect();
+        format!("one of {}", names.join(", "))
     }
 
     /// Whether a rate or output is constant along a steady motion.
@@ -259,6 +286,9 @@ impl<'a> SteadyProblem<'a> {
                     for (i, &state) in self.structure.ignorable.iter().enumerate() {
                         moved.x[state] += by / (1.0 + i as f64);
                     }
+                    let turning = &self.structure.turning;
+                    turning::normalise(&turning.quaternions, &mut moved.x);
+                    turning.rotate(*by, &mut moved.x);
                     let change = (term.value(self.model, &moved) - value).abs();
                     change <= 1e-12 * value.abs().max(1.0)
                 })
@@ -270,7 +300,9 @@ impl<'a> SteadyProblem<'a> {
     /// Quantities that are constant in a steady motion: essential states, rates of ignorable
     /// coordinates, outputs.
     pub fn constants(&self) -> Vec<Term> {
-        let states = self.structure.essential.iter().map(|&s| Term::State(s));
+        let states = self.structure.essential.iter();
+        let states = states.filter(|&&s| !self.structure.turns(s));
+        let states = states.map(|&s| Term::State(s));
         let rates = self.structure.uniform.iter().map(|&s| Term::Rate(s));
         let outputs = (0..self.model.info().output_len()).map(Term::Output);
         let constant = outputs.filter(|&output| self.is_constant(output));
@@ -305,7 +337,14 @@ impl<'a> SteadyProblem<'a> {
             } else {
                 self.start(&equations, &spread.next())
             };
-            match newton::solve(&equations, &z) {
+            let zero = newton::solve(&equations, &z).map(|mut zero| {
+                let mut point = equations.point(&zero.z);
+                let turning = &self.structure.turning;
+                turning.bring_near(&self.base.x, &mut point.x);
+                zero.z = equations.unknowns_of(&point);
+                zero
+            });
+            match zero {
                 Ok(zero) if self.in_range(&equations.point(&zero.z)) => {
                     let same = |other: &Zero| {
                         (&other.z - &zero.z).norm() <= SAME_MOTION * (1.0 + zero.z.norm())
@@ -412,6 +451,7 @@ impl<'a> SteadyProblem<'a> {
                 *place = value_at(&quantity, *place, part);
             }
         }
+        turning::normalise(&self.structure.turning.quaternions, &mut point.x);
         for condition in &self.conditions {
             if let Some(place) = condition.term.place(&mut point) {
                 *place = condition.value;
@@ -432,6 +472,7 @@ impl<'a> SteadyProblem<'a> {
     fn motion(&self, equations: &SteadyEquations<'_>, zero: &Zero) -> SteadyMotion {
         let point = equations.point(&zero.z);
         let rates = point.rates(self.model);
+        let rates = self.structure.turning.still(&point.x, &rates);
         let essential = self.structure.essential.iter();
         let residual = essential.map(|&s| rates[s].abs()).fold(0.0, f64::max);
         SteadyMotion {
@@ -456,6 +497,7 @@ impl<'a> SteadyProblem<'a> {
             starts,
             left,
             conditions: !self.conditions.is_empty(),
+            turning: !self.structure.turning.quaternions.is_empty(),
         }
     }
 
@@ -471,6 +513,8 @@ impl<'a> SteadyProblem<'a> {
         let rates = self.structure.essential.iter().map(rate);
         let constraints = self.model.dependent_coordinates().iter().map(constraint);
         let conditions = self.conditions.iter().map(condition);
+        let turned = vec!["turning".to_owned(); self.structure.turning.len()];
+        let constraints = constraints.chain(turned);
         rates.chain(constraints).chain(conditions).collect()
     }
 }

@@ -10,3 +10,4 @@ mod orientations;
 mod robots;
 mod spinning;
 mod taylor;
+mod turning;

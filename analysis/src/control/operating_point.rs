@@ -3,6 +3,9 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::LinearSystem;
+use crate::point::Point;
+use crate::stability::independent;
+use crate::steady::cyclic::Structure;
 use appell_runtime::inputs::{ModelInputs, ZeroInputs};
 use appell_runtime::linearise::{Linearisation, Undetermined};
 use appell_runtime::model::{At, Model};
@@ -43,7 +46,8 @@ pub struct OperatingPoint<'a> {
 /// ẋ, A and B of a model, row by row.
 type Jacobians = (Vec<f64>, Vec<f64>, Vec<f64>);
 
-/// δẋ = A δx + B δu about a steady motion.
+/// δẋ = A δx + B δu about a steady motion. Where quaternions turn in it, δx are departures after that turning was
+/// undone.
 #[derive(Debug, Clone, PartialEq)]
 pub struct MotionEquations {
     /// The independent states, by their index in the model: rows and columns of A.
@@ -55,6 +59,8 @@ pub struct MotionEquations {
     /// Rows that change along the motion, such as those of positions in the ground while the
     /// heading turns. States on which no other row depends may be left out.
     pub varying: Vec<usize>,
+    /// Rows of quaternions that turn: their departures are no differences of states.
+    pub turning: Vec<usize>,
 }
 
 /// Why a model has no linear equations with constant coefficients at this motion.
@@ -159,9 +165,10 @@ impl<'a> OperatingPoint<'a> {
         if let Some((state, &rate)) = fastest.filter(|(_, rate)| rate.abs() > STEADY) {
             return Err(OperatingPointError::Unsteady { state, rate });
         }
-        let (states, system) = self.linearise(0.0, &self.x, inputs)?;
+        let (turn, still) = self.turn(&rates)?;
+        let (states, system) = self.linearise(0.0, &self.x, inputs, &turn)?;
         let mut ahead = self.x.clone();
-        for (x, rate) in ahead.iter_mut().zip(&rates) {
+        for (x, rate) in ahead.iter_mut().zip(&still) {
             *x += AHEAD * rate;
         }
         if let Some(mut positions) = Positions::of(self.model) {
@@ -176,7 +183,7 @@ impl<'a> OperatingPoint<'a> {
                 Moving::Dependent,
             );
         }
-        let later = self.linearise(AHEAD, &ahead, inputs)?.1;
+        let later = self.linearise(AHEAD, &ahead, inputs, &turn)?.1;
         let size = system.a.amax().max(system.b.amax());
         let differs = |row: &usize| {
             let a = (system.a.row(*row) - later.a.row(*row)).amax();
@@ -185,10 +192,33 @@ impl<'a> OperatingPoint<'a> {
         };
         Ok(MotionEquations {
             varying: (0..states.len()).filter(differs).collect(),
+            turning: (0..states.len())
+                .filter(|&row| turn.row(states[row]).amax() > STEADY)
+                .collect(),
             inputs: inputs.to_vec(),
             states,
             system,
         })
+    }
+
+    /// The turning of quaternions, as a matrix of all states, and the rates without it.
+    fn turn(&self, rates: &[f64]) -> Result<(DMatrix<f64>, Vec<f64>), OperatingPointError> {
+        let n = rates.len();
+        let u = self.inputs_at(0.0)?;
+        let (x, p) = (self.x.clone(), self.p.clone());
+        let none = || (DMatrix::zeros(n, n), rates.to_vec());
+        if self.model.dependent_coordinates().is_empty() {
+            return Ok(none());
+        }
+        // What depends on time turns nothing.
+        let structure = Structure::of(self.model, &Point { x, u, p });
+        Ok(structure.map_or_else(
+            |_| none(),
+            |structure| {
+                let turning = structure.turning;
+                (turning.turn(&self.x, rates), turning.still(&self.x, rates))
+            },
+        ))
     }
 
     fn check(&self) -> Result<(), OperatingPointError> {
@@ -246,6 +276,7 @@ impl<'a> OperatingPoint<'a> {
         t: f64,
         x: &[f64],
         inputs: &[usize],
+        turn: &DMatrix<f64>,
     ) -> Result<(Vec<usize>, LinearSystem), OperatingPointError> {
         let u = self.inputs_at(t)?;
         let at = At {
@@ -257,8 +288,9 @@ impl<'a> OperatingPoint<'a> {
         let linear = Linearisation::about(self.model, at)?;
         let n = linear.states.len();
         let b = DMatrix::from_row_slice(n, u.len(), &linear.b);
+        let a = DMatrix::from_row_slice(n, n, &linear.a);
         let system = LinearSystem {
-            a: DMatrix::from_row_slice(n, n, &linear.a),
+            a: a - independent(&linear, self.model.info().speeds, turn),
             b: b.select_columns(inputs),
         };
         Ok((linear.states, system))

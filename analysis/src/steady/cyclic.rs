@@ -2,9 +2,11 @@
 //!
 //! The pseudo-velocities are essential, and so is every state on which their rates depend, directly
 //! or through other essential states. The other coordinates, such as position and heading of a wheel,
-//! are ignorable (cyclic).
+//! are ignorable (cyclic). Unit quaternions are essential or ignorable as a whole; essential ones may turn
+//! (`turning.rs`).
 
 use super::starts::{Spread, value_at};
+use super::turning::{Sample, Turning, normalise, quaternions};
 use crate::point::Point;
 use appell_runtime::model::{At, Model, ModelInfo};
 
@@ -15,7 +17,7 @@ const POINTS: usize = 8;
 const TRIES: usize = 200;
 
 /// Which states are essential and which are ignorable.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
     /// Essential states, by their index in the model.
     pub essential: Vec<usize>,
@@ -24,6 +26,8 @@ pub struct Structure {
     /// The ignorable states whose rates depend on essential states alone: constant rates in a steady
     /// motion.
     pub uniform: Vec<usize>,
+    /// How unit quaternions may turn in a steady motion.
+    pub(crate) turning: Turning,
 }
 
 /// Why a model has no steady motions.
@@ -46,7 +50,8 @@ impl Structure {
             return Err(StructureError::DependsOnTime);
         }
         let n = info.state_len();
-        let depends = dependence(model, point)?;
+        let samples = samples(model, point)?;
+        let depends = dependence(model, point, &samples.all);
         let mut essential: Vec<bool> = (0..n).map(|state| state < info.speeds).collect();
         while let Some(next) = (0..n).find(|&state| {
             let needed = |other: usize| essential[other] && depends[other * n + state];
@@ -54,13 +59,22 @@ impl Structure {
         }) {
             essential[next] = true;
         }
+        let quaternions = samples.quaternions.iter().flatten();
+        let felt: Vec<usize> = (0..n)
+            .filter(|state| essential[*state] || quaternions.clone().any(|e| e == state))
+            .collect();
+        let turning = Turning::of(samples.quaternions, &samples.all, &felt);
         let (essential, ignorable): (Vec<usize>, Vec<usize>) = (0..n).partition(|&s| essential[s]);
-        let alone = |&&state: &&usize| !ignorable.iter().any(|&other| depends[state * n + other]);
+        let alone = |&&state: &&usize| {
+            let free = !ignorable.iter().any(|&other| depends[state * n + other]);
+            free && turning.keeps(&samples.all, state)
+        };
         let uniform = ignorable.iter().filter(alone).copied().collect();
         Ok(Self {
             essential,
             ignorable,
             uniform,
+            turning,
         })
     }
 
@@ -68,38 +82,77 @@ impl Structure {
     pub fn is_essential(&self, state: usize) -> bool {
         self.essential.contains(&state)
     }
+
+    /// The rates of a state but for quaternions that turn as they may: zero for essential states in a steady motion.
+    pub fn still(&self, x: &[f64], rates: &[f64]) -> Vec<f64> {
+        self.turning.still(x, rates)
+    }
+
+    /// Whether a state is a component of a unit quaternion that may turn in a steady motion, so that it has no value.
+    pub fn turns(&self, state: usize) -> bool {
+        let of_quaternion = self
+            .turning
+            .quaternions
+            .iter()
+            .flatten()
+            .any(|&e| e == state);
+        self.turning.moves(state) || of_quaternion && !self.is_essential(state)
+    }
 }
 
-/// Whether the rate of the row's state depends on the column's; a coordinate that follows from
-/// others through a position constraint depends on them.
-fn dependence(model: &dyn Model, point: &Point) -> Result<Vec<bool>, StructureError> {
+/// The model at several states, and its quaternions.
+struct Samples {
+    all: Vec<Sample>,
+    quaternions: Vec<[usize; 4]>,
+}
+
+fn samples(model: &dyn Model, point: &Point) -> Result<Samples, StructureError> {
     let info = model.info();
-    let (n, m, coordinates) = (
-        info.state_len(),
-        info.input_len(),
-        info.coordinate_quantities().len(),
-    );
-    let dependent = model.dependent_coordinates();
-    let (mut rates, mut a, mut b) = (vec![0.0; n], vec![0.0; n * n], vec![0.0; n * m]);
-    let mut residual = vec![0.0; dependent.len()];
-    let mut slopes = vec![0.0; dependent.len() * coordinates];
-    let mut depends = vec![false; n * n];
+    let (n, m) = (info.state_len(), info.input_len());
+    let mut b = vec![0.0; n * m];
     let mut spread = Spread::new(n + m);
-    let mut found = 0;
+    let mut all = Vec::new();
+    let mut found = Vec::new();
     for _ in 0..TRIES {
-        let (x, u) = somewhere(info, point, &spread.next());
-        let at = At {
-            x: &x,
+        let (mut x, u) = somewhere(info, point, &spread.next());
+        let inputs = At {
             u: &u,
             ..point.at()
         };
-        model.jacobians(at, &mut rates, &mut a, &mut b);
-        if !a.iter().chain(&rates).all(|entry| entry.is_finite()) {
-            continue;
+        found = quaternions(model, At { x: &x, ..inputs });
+        normalise(&found, &mut x);
+        let (mut rates, mut a) = (vec![0.0; n], vec![0.0; n * n]);
+        model.jacobians(At { x: &x, ..inputs }, &mut rates, &mut a, &mut b);
+        if a.iter().chain(&rates).all(|entry| entry.is_finite()) {
+            all.push(Sample { x, u, rates, a });
+            if all.len() == POINTS {
+                break;
+            }
         }
-        for (depends, entry) in depends.iter_mut().zip(&a) {
+    }
+    if all.is_empty() {
+        return Err(StructureError::NotFinite);
+    }
+    Ok(Samples {
+        all,
+        quaternions: found,
+    })
+}
+
+/// Whether the rate of the row's state depends on the column's; a coordinate that follows from
+/// others through a position constraint depends on them, and the components of a quaternion on each other.
+fn dependence(model: &dyn Model, point: &Point, samples: &[Sample]) -> Vec<bool> {
+    let info = model.info();
+    let (n, coordinates) = (info.state_len(), info.coordinate_quantities().len());
+    let dependent = model.dependent_coordinates();
+    let mut residual = vec![0.0; dependent.len()];
+    let mut slopes = vec![0.0; dependent.len() * coordinates];
+    let mut depends = vec![false; n * n];
+    for Sample { x, u, a, .. } in samples {
+        for (depends, entry) in depends.iter_mut().zip(a) {
             *depends |= *entry != 0.0;
         }
+        let at = At { x, u, ..point.at() };
         if !dependent.is_empty() {
             model.position_constraints(at, &mut residual, &mut slopes);
             for row in slopes.chunks(coordinates) {
@@ -110,16 +163,15 @@ fn dependence(model: &dyn Model, point: &Point) -> Result<Vec<bool>, StructureEr
                 }
             }
         }
-        found += 1;
-        if found == POINTS {
-            return Ok(depends);
+        for quaternion in quaternions(model, at) {
+            for row in quaternion {
+                quaternion
+                    .iter()
+                    .for_each(|column| depends[row * n + column] = true);
+            }
         }
     }
-    if found > 0 {
-        Ok(depends)
-    } else {
-        Err(StructureError::NotFinite)
-    }
+    depends
 }
 
 /// A state and inputs within their ranges.

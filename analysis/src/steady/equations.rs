@@ -1,5 +1,5 @@
-//! The equations of steady motions: the rates of the essential states are zero, and the conditions
-//! hold.
+//! The equations of steady motions: the rates of the essential states are zero, but for quaternions that turn, and
+//! the conditions hold.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -95,7 +95,28 @@ impl<'a> SteadyEquations<'a> {
             d.p = vec![0.0; n * k];
             self.model.parameter_jacobian(point.at(), &mut d.p);
         }
+        self.hold(point, &mut d);
         d
+    }
+
+    /// Takes out of the rates that quaternions may turn. What this leaves out of the derivatives vanishes with the
+    /// rates.
+    fn hold(&self, point: &Point, d: &mut Derivatives) {
+        let turning = &self.structure.turning;
+        if turning.len() == 0 {
+            return;
+        }
+        let n = d.rates.len();
+        let turn = turning.turn(&point.x, &d.rates);
+        d.rates = turning.still(&point.x, &d.rates);
+        for (entry, turned) in d.a.iter_mut().zip(turn.transpose().iter()) {
+            *entry -= turned;
+        }
+        for matrix in [&mut d.a, &mut d.b, &mut d.p] {
+            let mut columns = DMatrix::from_row_slice(n, matrix.len() / n, matrix);
+            turning.across(&point.x, &mut columns);
+            matrix.copy_from_slice(columns.transpose().as_slice());
+        }
     }
 
     /// Gradient of the rate of a state.
@@ -159,7 +180,9 @@ impl Equations for SteadyEquations<'_> {
         let (info, len) = (self.model.info(), z.len());
         let constraints = self.model.dependent_coordinates().len();
         let essential = &self.structure.essential;
-        let rows = essential.len() + constraints + self.conditions.len();
+        // Steps do not turn what may be turned.
+        let turned = self.structure.turning.directions(&point.x);
+        let rows = essential.len() + constraints + turned.ncols() + self.conditions.len();
         let mut values = DVector::zeros(rows);
         let mut jacobian = DMatrix::zeros(rows, len);
         for (row, &state) in essential.iter().enumerate() {
@@ -186,8 +209,16 @@ impl Equations for SteadyEquations<'_> {
                 }
             }
         }
+        for (i, direction) in turned.column_iter().enumerate() {
+            for (column, term) in self.unknowns.iter().enumerate() {
+                if let Term::State(state) = *term {
+                    jacobian[(essential.len() + constraints + i, column)] =
+                        direction[state] * self.scales[column];
+                }
+            }
+        }
         for (i, condition) in self.conditions.iter().enumerate() {
-            let row = essential.len() + constraints + i;
+            let row = essential.len() + constraints + turned.ncols() + i;
             let (value, gradient) = self.term_at(condition.term, &point, &d);
             values[row] = value - condition.value;
             jacobian.row_mut(row).tr_copy_from(&gradient);

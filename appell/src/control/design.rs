@@ -141,6 +141,9 @@ pub fn design(
             advancing.map_or_else(|| varies(setup, &equations, varying, request), Error::from);
         return Err(error);
     }
+    if let Some(&turning) = outputs.iter().find(|at| equations.turning.contains(at)) {
+        return Err(turns(setup, &equations, turning));
+    }
     let subsystem = reduce(&equations.system, &outputs)
         .map_err(|error| remedies::reduction(error, &equations, setup))?;
     let law = law(&subsystem, request)?;
@@ -174,7 +177,8 @@ fn place(model: &dyn Model, point: &OperatingPoint<'_>) -> Point {
 /// A state on which accelerations depend and which advances: the motion is not steady.
 fn advancing(model: &dyn Model, at: &Point, rates: &[f64]) -> Option<OperatingPointError> {
     let structure = Structure::of(model, at).ok()?;
-    let mut essential = structure.essential.into_iter();
+    let mut essential = structure.essential.iter().copied();
+    let rates = structure.still(&at.x, rates);
     let state = essential.find(|&state| rates[state].abs() > RUNS)?;
     let rate = rates[state];
     Some(OperatingPointError::Unsteady { state, rate })
@@ -194,6 +198,16 @@ fn varies(setup: &Setup<'_>, equations: &MotionEquations, place: usize, request:
     }
 }
 
+/// A component of a quaternion that turns: its difference from the motion is no departure.
+fn turns(setup: &Setup<'_>, equations: &MotionEquations, place: usize) -> Error {
+    let name = &setup.info.states[equations.states[place]].name;
+    let message = format!(
+        "`{name}` turns along this motion, so that constant gains of it are no law; feed back pseudo-velocities, or \
+         write the attitude by angles of which those that matter are constant"
+    );
+    Error::request(Field::Outputs, message)
+}
+
 /// A controllable set of states with closed equations, by their places among those of the equations.
 fn closed_choice(
     setup: &Setup<'_>,
@@ -209,7 +223,8 @@ fn closed_choice(
         speeds.any(|row| a[(row, place)] != 0.0)
     };
     let mut candidates: Vec<usize> = (0..states.len()).collect();
-    candidates.retain(|place| !equations.varying.contains(place));
+    candidates
+        .retain(|place| !equations.varying.contains(place) && !equations.turning.contains(place));
     let runs = |place: usize| rates[states[place]].abs() > RUNS;
     candidates.sort_by_key(|&place| (runs(place), is_speed(place), !is_felt(place)));
     let mut chosen = independent_states(&equations.system, &candidates);

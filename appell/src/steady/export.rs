@@ -20,12 +20,15 @@ pub fn json(asked: &Resolved<'_>, answer: &Answer) -> Value {
             .collect()
     };
     let structure = asked.problem.structure();
+    let turning = (0..info.state_len()).filter(|&state| structure.turns(state));
+    let turning: Vec<usize> = turning.collect();
     let mut all = json!({
         "schema": "steady/1",
         "mechanism": info.name,
         "essential": names(&structure.essential),
         "ignorable": names(&structure.ignorable),
         "uniform": names(&structure.uniform),
+        "turning": names(&turning),
     });
     match answer {
         Answer::Motions(motions) => {

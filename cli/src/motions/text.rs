@@ -29,8 +29,15 @@ pub(crate) fn structure(asked: &Resolved<'_>) -> String {
         }
     };
     let structure = asked.problem.structure();
+    let turning: Vec<usize> = (0..info.state_len())
+        .filter(|&state| structure.turns(state))
+        .collect();
+    let turning = match &turning[..] {
+        [] => String::new(),
+        all => format!("  turning    {}\n", names(all)),
+    };
     format!(
-        "{}\n  essential  {}\n  ignorable  {}\n",
+        "{}\n  essential  {}\n  ignorable  {}\n{turning}",
         info.title,
         names(&structure.essential),
         names(&structure.ignorable),

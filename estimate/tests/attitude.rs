@@ -128,10 +128,9 @@ impl Model for Body {
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
         let e = &at.x[3..];
         residual[0] = e.iter().map(|e| e * e).sum::<f64>() - 1.0;
-        jacobian
-            .iter_mut()
-            .zip(e)
-            .for_each(|(slope, e)| *slope = 2.0 * e);
+        for (slope, e) in jacobian.iter_mut().zip(e) {
+            *slope = 2.0 * e;
+        }
     }
 }
 
@@ -169,7 +168,9 @@ fn values(estimation: &Estimation<'_>) -> Vec<f64> {
             SPREAD[usize::from(state > 2)],
         );
     }
-    (0..3).for_each(|k| set(Unknown::Disturbance(k), TORQUE));
+    for k in 0..3 {
+        set(Unknown::Disturbance(k), TORQUE);
+    }
     values
 }
 
@@ -227,7 +228,9 @@ fn record(body: &Body, seed: u64) -> (Recording, Vec<[f64; 7]>) {
                 x[k] += TORQUE / INERTIA[k] * (0.5 * STEP).sqrt() * random.normal();
             }
             if part == 0 {
-                (0..10).for_each(|_| advance(body, &mut x, 0.1 * STEP));
+                for _ in 0..10 {
+                    advance(body, &mut x, 0.1 * STEP);
+                }
             }
         }
     }

@@ -165,9 +165,9 @@ fn dependence(model: &dyn Model, point: &Point, samples: &[Sample]) -> Vec<bool>
         }
         for quaternion in quaternions(model, at) {
             for row in quaternion {
-                quaternion
-                    .iter()
-                    .for_each(|column| depends[row * n + column] = true);
+                for column in quaternion {
+                    depends[row * n + column] = true;
+                }
             }
         }
     }

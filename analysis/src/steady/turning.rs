@@ -58,7 +58,9 @@ pub(crate) fn normalise(quaternions: &[[usize; 4]], x: &mut [f64]) {
     for quaternion in quaternions {
         let norm = quaternion.iter().map(|&e| x[e] * x[e]).sum::<f64>().sqrt();
         if norm > 0.0 {
-            quaternion.iter().for_each(|&e| x[e] /= norm);
+            for &e in quaternion {
+                x[e] /= norm;
+            }
         }
     }
 }
@@ -216,7 +218,9 @@ impl Turning {
         const BESIDE: [f64; 4] = [0.3, 0.9, -0.5, 0.7];
         let mut wanted = DVector::zeros(x.len());
         for quaternion in &self.quaternions {
-            quaternion.iter().for_each(|&e| wanted[e] = reference[e]);
+            for &e in quaternion {
+                wanted[e] = reference[e];
+            }
         }
         if self.climb(&wanted, x) < FAR {
             for quaternion in &self.quaternions {
@@ -233,7 +237,9 @@ impl Turning {
         let product = |x: &[f64]| -> f64 { x.iter().zip(wanted.iter()).map(|(x, w)| x * w).sum() };
         for quaternion in &self.quaternions {
             if quaternion.iter().map(|&e| x[e] * wanted[e]).sum::<f64>() < 0.0 {
-                quaternion.iter().for_each(|&e| x[e] = -x[e]);
+                for &e in quaternion {
+                    x[e] = -x[e];
+                }
             }
         }
         for _ in 0..MOST_STEPS {

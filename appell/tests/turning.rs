@@ -2,7 +2,7 @@
 
 use appell::control::Request;
 use appell::setup::Assignment;
-use appell::steady::{Answer, Question, Stability, SteadyMotion, Verdict};
+use appell::steady::{Answer, Branch, Question, Stability, SteadyMotion, Verdict};
 use appell::{Method, Model, Motion};
 
 const ATTITUDE: &str = r#"
@@ -272,7 +272,7 @@ fn the_spin_from_which_a_top_sleeps_is_found_along_its_branch() {
     let Answer::Branches(branches) = model.steady(&question).unwrap() else {
         panic!()
     };
-    let changes = branches.iter().flat_map(|branch| branch.changes());
+    let changes = branches.iter().flat_map(Branch::changes);
     let values: Vec<f64> = changes.map(|special| special.motion.value).collect();
     let near = values
         .iter()

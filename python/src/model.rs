@@ -14,6 +14,7 @@ use pyo3::prelude::*;
 
 use crate::arrays::{Call, Defaults, Places};
 use crate::errors::Raise;
+use crate::recordings::DataSet;
 use crate::watched::watched;
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
@@ -341,6 +342,20 @@ impl Model {
             let compared = source.compare(&assignments(&equations))?;
             Ok(compared.json().to_string())
         })
+    }
+
+    /// Base parameters as JSON, estimated where there are recordings.
+    #[pyo3(signature = (recordings = None))]
+    fn _base(&self, py: Python<'_>, recordings: Option<&DataSet>) -> PyResult<String> {
+        let set = recordings.map(DataSet::shared);
+        let model = Arc::clone(&self.inner);
+        let found = watched(py, None, move |_| model.base_parameters(set.as_deref()))?;
+        Ok(found.raise(py)?.to_json().to_string())
+    }
+
+    /// The regressor as a Python module.
+    fn _regressor(&self, py: Python<'_>) -> PyResult<String> {
+        self.of_source(py, Source::regressor_in_python)
     }
 
     /// The equations as a Python module.

@@ -35,6 +35,13 @@ pub(crate) struct Gap {
     findings: Vec<String>,
 }
 
+impl DataSet {
+    /// The recordings, for a thread of their own.
+    pub(crate) fn shared(&self) -> Arc<appell::DataSet> {
+        Arc::clone(&self.0)
+    }
+}
+
 type Numbers<'py> = Bound<'py, PyArray1<f64>>;
 type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 

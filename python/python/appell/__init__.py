@@ -20,7 +20,7 @@ from ._errors import ComputationError, DataError, Diagnostic, EndsEarly, Error, 
 from ._model import Derivation, Model, Quantity
 from ._motion import Motion
 from ._notebook import Page, Picture
-from ._recordings import Diagnosis, Identification, Recordings, diagnose, identify, sample_rig
+from ._recordings import Diagnosis, Identification, Recordings, base_parameters, diagnose, identify, sample_rig
 from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._values import Vector, labelled
 
@@ -29,8 +29,8 @@ __version__ = _version("appell")
 __all__ = [
     "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "EndsEarly", "Energies",
     "Ensemble", "Error",
-    "Identification", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
-    "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "diagnose", "ensemble", "identify", "labelled", "load", "sample_rig",
+    "Identification", "InverseDynamics", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
+    "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "base_parameters", "diagnose", "ensemble", "identify", "labelled", "load", "sample_rig",
     "shipped", "spread",
 ]  # fmt: skip
 

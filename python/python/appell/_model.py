@@ -485,6 +485,12 @@ class Model(_appell.Model):
         """The text of a Python module with the equations as functions over an array namespace."""
         return self._module()
 
+    @cached_property
+    def regressor_module(self) -> str:
+        """The text of a Python module with one function, `regressor(xp, t, x, u, p, accelerations)`: Y, r and π of inverse
+        dynamics as a linear function of inertial and load parameters, M ω̇ + b − Π = Y π + r."""
+        return self._regressor()
+
     def functions(self, xp: Any) -> types.SimpleNamespace:
         """The equations as functions of (t, x, u, p) over a namespace of arrays: `numpy`, `jax.numpy`, `casadi` or
         `sympy`. They return lists, row by row.

@@ -177,6 +177,19 @@ def identify(
     return Identification(native)
 
 
+def base_parameters(model: Model | str | Path, data: Recordings | Paths | None = None) -> dict[str, Any]:
+    """The combinations of inertial and load parameters on which forces of motions depend at all, as
+    `appell base --json` writes them; with recordings of a motion and of all inputs, their values with intervals.
+
+    >>> import appell
+    >>> [base["text"] for base in appell.base_parameters("pendulum")["base"]]
+    ['mx_rod', 'mz_rod', 'Iyy_rod']
+    """
+    set_ = None if data is None else _read(data, model)
+    model = model if isinstance(model, Model) else Model(str(model))
+    return json.loads(model._base(set_))
+
+
 def diagnose(
     data: Recordings | Paths,
     model: Model | str | Path | None = None,

@@ -1,6 +1,8 @@
 //! Where joints put their frames and points, against rotations and displacements in closed form.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
+use std::fmt::Write as _;
+
 use appell_codegen::compile;
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::FunctionKind;
@@ -33,9 +35,8 @@ Z = {{ from = 'link', in = 'link', at = [0, 0, 1] }}
     .replace("at = [0, 0, 1]", "at = [0, 0, '1 [m]']");
     for point in ["link", "X", "Y", "Z"] {
         for axis in ["x", "y", "z"] {
-            text += &format!(
-                "{point}_{axis} = {{ value = 'position({point}, {axis})', unit = 'm' }}\n"
-            );
+            let output = format!("value = 'position({point}, {axis})', unit = 'm'");
+            writeln!(text, "{point}_{axis} = {{ {output} }}").unwrap();
         }
     }
     text

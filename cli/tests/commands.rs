@@ -326,7 +326,7 @@ weight = { kind = 'gravity', down = '-z', acceleration = 'g' }
     folder.fails(
         3,
         &["derive", "bad.toml", "--format", "spec"],
-        &["bad.toml:11:39"],
+        &["bad.toml:11:38"],
     );
 }
 

@@ -216,6 +216,8 @@ pub enum Target {
     Constraint,
     /// A load.
     Load,
+    /// A pseudo-velocity.
+    PseudoVelocity,
 }
 
 impl Target {
@@ -228,6 +230,7 @@ impl Target {
             Self::Coordinate => "coordinate",
             Self::Constraint => "constraint",
             Self::Load => "load",
+            Self::PseudoVelocity => "pseudo-velocity",
         }
     }
 
@@ -240,6 +243,7 @@ impl Target {
             Self::Coordinate => "coordinates",
             Self::Constraint => "constraints",
             Self::Load => "loads",
+            Self::PseudoVelocity => "pseudo_velocities",
         }
     }
 }

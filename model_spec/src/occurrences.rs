@@ -38,7 +38,7 @@ pub struct Occurrence {
 impl From<Target> for Namespace {
     fn from(target: Target) -> Self {
         match target {
-            Target::Coordinate => Self::Quantity,
+            Target::Coordinate | Target::PseudoVelocity => Self::Quantity,
             Target::Frame => Self::Frame,
             Target::Point => Self::Point,
             Target::Body => Self::Body,
@@ -71,6 +71,7 @@ pub fn named_by(word: Word) -> Target {
         Word::AngularVelocity | Word::AngularAcceleration => Target::Frame,
         Word::Reaction | Word::NormalForce => Target::Constraint,
         Word::Force => Target::Load,
+        Word::DriveForce => Target::PseudoVelocity,
     }
 }
 

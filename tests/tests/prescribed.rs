@@ -141,6 +141,8 @@ omega = "dot(theta)"
 weight = { kind = "gravity", down = "-z", acceleration = "g" }
 drag = { kind = "damper", coordinate = "x", damping = "c" }
 joint = { kind = "damper", coordinate = "theta", damping = "d" }
+[outputs]
+F = { value = "drive_force(v)", unit = "N" }
 "#;
 
 /// Rounding of the differences below and their fifth-order error.
@@ -224,13 +226,19 @@ fn a_given_rate_moves_the_rest_and_bears_every_load() {
         };
         let mut rates = [0.0; 4];
         model.rates(at, &mut rates);
-        let [m, l, inertia, _, d, a, k, g] = p[..] else {
+        let [m, l, inertia, drag, d, a, k, g] = p[..] else {
             panic!("{} parameters", p.len());
         };
         let given = a * (3.0 * t).cos() - k * x[0];
         let torque = m * l * (g * x[3].sin() - given * x[3].cos()) - d * x[1];
         let wanted = [given, torque / (m * l * l + inertia), x[0], x[1]];
         assert_close(engine.name, &rates, &wanted, 1e-14, 1.0);
+        // What moves cart and bob, and what the drag takes.
+        let swing = rates[1] * x[3].cos() - x[1] * x[1] * x[3].sin();
+        let force = 4.0 * m * given + m * l * swing + drag * x[0];
+        let mut outputs = [0.0];
+        model.outputs(at, &mut outputs);
+        assert_close(engine.name, &outputs, &[force], 1e-13, 1.0);
         let [mut a, mut by_a] = [(); 2].map(|()| vec![0.0; 16]);
         model.jacobians(at, &mut [0.0; 4], &mut a, &mut []);
         for column in 0..4 {

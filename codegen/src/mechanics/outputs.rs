@@ -100,6 +100,7 @@ impl Derivation {
             accelerations: &self.symbols.accelerations,
             loads: &self.loads,
             reactions_in_loads: &self.reactions_in_loads,
+            given: &self.given,
         };
         answering.values(&mut self.algebra, &wanted)
     }

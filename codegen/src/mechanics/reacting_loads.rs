@@ -81,6 +81,7 @@ fn reactions(derivation: &mut Derivation, mechanism: &Mechanism) -> Outcome<Vec<
         accelerations: &derivation.motion.accelerations,
         loads: &derivation.loads,
         reactions_in_loads: &[],
+        given: &derivation.given,
     };
     let mut values = answering.values(&mut derivation.algebra, &wanted)?;
     let graph = &mut derivation.algebra.graph;
@@ -103,8 +104,9 @@ fn named(mechanism: &Mechanism, response: Response) -> String {
         }
         Response::NormalForce(c) => format!("normal_force_{}", mechanism.constraints[c].name),
         // They are no reactions.
-        Response::Acceleration(..) | Response::AngularAcceleration(..) | Response::Force(..) => {
-            String::new()
-        }
+        Response::Acceleration(..)
+        | Response::AngularAcceleration(..)
+        | Response::Force(..)
+        | Response::DriveForce(_) => String::new(),
     }
 }

@@ -15,6 +15,7 @@ use super::elimination::Violation;
 use super::finding::{Finding, Item, Outcome};
 use super::frames::FrameVector;
 use super::gibbs_appell::BodyMotion;
+use super::given::Given;
 use super::kinematics::Kinematics;
 use super::loads::{AppliedLoad, forces};
 use super::reactions::reactions;
@@ -49,6 +50,8 @@ pub struct Answering<'a> {
     pub loads: &'a [AppliedLoad],
     /// Reactions that loads depend on.
     pub reactions_in_loads: &'a [(Expr, Expr)],
+    /// Given rates, with what drives bring.
+    pub given: &'a Given,
 }
 
 impl Answering<'_> {
@@ -84,6 +87,12 @@ impl Answering<'_> {
                     self.reaction(algebra, &reactions, constraint, along.unzip())
                 }
                 Response::NormalForce(constraint) => self.normal(algebra, &reactions, constraint),
+                Response::DriveForce(speed) => {
+                    let drives = self.given.drives(&mut algebra.graph, self.accelerations);
+                    let mut drives = drives.into_iter();
+                    let own = drives.find(|(driven, _)| *driven == speed.index());
+                    own.map(|(_, force)| force).ok_or(Untold::Undetermined)
+                }
             };
             match value {
                 Ok(value) => values.push((symbol, algebra.shortest(value))),

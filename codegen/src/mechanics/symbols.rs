@@ -184,6 +184,12 @@ pub(super) fn answer(mechanism: &Mechanism, response: Response) -> String {
             format!("reaction({name}{})", component(direction))
         }
         Response::NormalForce(c) => format!("normal_force({})", mechanism.constraints[c].name),
+        Response::DriveForce(speed) => {
+            format!(
+                "drive_force({})",
+                mechanism.pseudo_velocities[speed].label.name
+            )
+        }
         Response::Force(load, direction) => {
             let name = &mechanism.loads[load].name;
             format!("force({name}{})", component(direction))

@@ -1,7 +1,7 @@
 //! Kinematic quantities and forces by name, such as `velocity(P, x)` and `force(spring)`.
 
 use crate::axis::Axis;
-use crate::ids::{ConstraintId, FrameId, LoadId, PointId};
+use crate::ids::{ConstraintId, FrameId, LoadId, PointId, SpeedId};
 
 /// Position or velocity of a point, or angular velocity of a frame.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -30,6 +30,8 @@ pub enum Response {
     NormalForce(ConstraintId),
     /// Force or torque of a load.
     Force(LoadId, Option<(Axis, FrameId)>),
+    /// What a drive brings along a pseudo-velocity whose rate is given.
+    DriveForce(SpeedId),
 }
 
 /// The kinds of kinematic quantities and forces, as they are called in a spec.
@@ -53,6 +55,8 @@ pub enum Word {
     NormalForce,
     /// `force(load, x)`, `force(load, x, frame)`, `force(load)`
     Force,
+    /// `drive_force(omega)`
+    DriveForce,
 }
 
 impl Word {
@@ -75,6 +79,7 @@ impl Word {
         (Self::Reaction, "reaction", "reaction(rolling, x)"),
         (Self::NormalForce, "normal_force", "normal_force(rolling)"),
         (Self::Force, "force", "force(push, x)"),
+        (Self::DriveForce, "drive_force", "drive_force(omega)"),
     ];
 
     /// The kind of a name.

@@ -3,7 +3,7 @@
 use crate::ast::Spanned;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Motion, Quantity, Response, Span, Word};
-use crate::ids::{ConstraintId, FrameId, LoadId};
+use crate::ids::{ConstraintId, FrameId, LoadId, SpeedId};
 use crate::mechanism::{Axis, GROUND};
 use crate::suggest::shown;
 use crate::units::Dimension;
@@ -56,6 +56,7 @@ impl Resolver<'_> {
                     return self.response(Response::Force(id, along), acting, span, place);
                 }
             }
+            Word::DriveForce => return self.drive_force(names, span, place),
             Word::NormalForce => {
                 if let Some((id, acting)) = self.contact(names, &span) {
                     return self.response(Response::NormalForce(id), acting, span, place);
@@ -63,6 +64,33 @@ impl Resolver<'_> {
             }
         }
         Typed::poisoned(span)
+    }
+
+    /// What a drive brings along a pseudo-velocity whose rate is given.
+    fn drive_force(&mut self, names: Names<'_>, span: Span, place: &Place) -> Typed {
+        let [of] = names else {
+            self.wrong_names(Word::DriveForce, &span);
+            return Typed::poisoned(span);
+        };
+        let Some(id): Option<SpeedId> = self.find(&of.value, &of.span) else {
+            return Typed::poisoned(span);
+        };
+        let item = self.ast.items("pseudo_velocities").get(id.index());
+        if item.is_none_or(|item| item.entry("rate").is_none()) {
+            let name = shown(&of.value);
+            let message = format!("no drive gives the rate of `{name}`");
+            let diagnostic = Diagnostic::error(Code::NotAllowedHere, message);
+            let help =
+                format!("give `{name}` a `rate`, or name the force of a load: `force(load)`");
+            self.tell(diagnostic.at(of.span.clone(), "").help(help));
+            return Typed::poisoned(span);
+        }
+        let speed = self.names.get(of.value.as_str());
+        let dimension = speed.and_then(|named| named.dimension);
+        let dimension = dimension.and_then(|speed| Dimension::POWER.over(&speed).ok());
+        let quantity = Quantity::Response(Response::DriveForce(id));
+        let shown = as_written(Word::DriveForce, names);
+        self.quantity(quantity, dimension, &shown, span, place)
     }
 
     /// A kinematic quantity of a point or a frame.
@@ -244,7 +272,10 @@ impl Resolver<'_> {
 
     /// A place that no acceleration or force can enter.
     fn unanswered(&mut self, word: Word, span: &Span, place: &Place) {
-        let is_acceleration = matches!(word, Word::Acceleration | Word::AngularAcceleration);
+        let is_acceleration = matches!(
+            word,
+            Word::Acceleration | Word::AngularAcceleration | Word::DriveForce
+        );
         let what = if is_acceleration {
             "accelerations"
         } else {
@@ -289,7 +320,8 @@ impl Resolver<'_> {
     }
 
     fn wrong_names(&mut self, word: Word, span: &Span) {
-        let more = if matches!(word, Word::Speed | Word::NormalForce) {
+        let alone = [Word::Speed, Word::NormalForce, Word::DriveForce];
+        let more = if alone.contains(&word) {
             String::new()
         } else {
             let with_frame = word.example().replace(')', ", frame)");

@@ -38,6 +38,10 @@ impl Referred for ConstraintId {
     const TARGET: Target = Target::Constraint;
 }
 
+impl Referred for SpeedId {
+    const TARGET: Target = Target::PseudoVelocity;
+}
+
 impl Referred for LoadId {
     const TARGET: Target = Target::Load;
 }
@@ -45,6 +49,17 @@ impl Referred for LoadId {
 /// Names that the language keeps for itself.
 pub fn is_reserved(name: &str) -> bool {
     matches!(name, "t" | "pi" | "dot" | "if") || Function::from_name(name).is_some()
+}
+
+/// The index of a coordinate or a pseudo-velocity, where a name means one.
+fn state(target: Target, meaning: Meaning) -> Option<usize> {
+    match (target, meaning) {
+        (Target::Coordinate, Meaning::Quantity(Quantity::Coordinate(id))) => Some(id.index()),
+        (Target::PseudoVelocity, Meaning::Quantity(Quantity::PseudoVelocity(id))) => {
+            Some(id.index())
+        }
+        _ => None,
+    }
 }
 
 impl<'a> Resolver<'a> {
@@ -190,10 +205,10 @@ impl<'a> Resolver<'a> {
             Target::Body => self.bodies.get(name).copied(),
             Target::Constraint => self.constraints.get(name).copied(),
             Target::Load => self.loads.get(name).copied(),
-            Target::Coordinate => self.names.get(name).and_then(|named| match named.meaning {
-                Meaning::Quantity(Quantity::Coordinate(id)) => Some(id.index()),
-                _ => None,
-            }),
+            Target::Coordinate | Target::PseudoVelocity => {
+                let named = self.names.get(name);
+                named.and_then(|named| state(target, named.meaning))
+            }
         };
         if found.is_none() {
             self.unknown(target.word(), name, span, |this| {
@@ -220,10 +235,10 @@ impl<'a> Resolver<'a> {
             Target::Body => self.bodies.keys().copied().collect(),
             Target::Constraint => self.constraints.keys().copied().collect(),
             Target::Load => self.loads.keys().copied().collect(),
-            Target::Coordinate => self
+            Target::Coordinate | Target::PseudoVelocity => self
                 .names
                 .iter()
-                .filter(|(_, n)| matches!(n.meaning, Meaning::Quantity(Quantity::Coordinate(_))))
+                .filter(|(_, named)| state(target, named.meaning).is_some())
                 .map(|(name, _)| *name)
                 .collect(),
         };

@@ -135,9 +135,11 @@ impl Place {
             Quantity::Signal(_) | Quantity::Time => TIME,
             Quantity::Motion(Motion::Position(..)) => POSITIONS,
             Quantity::Motion(_) => MOTIONS,
-            Quantity::Response(Response::Acceleration(..) | Response::AngularAcceleration(..)) => {
-                ACCELERATIONS
-            }
+            Quantity::Response(
+                Response::Acceleration(..)
+                | Response::AngularAcceleration(..)
+                | Response::DriveForce(_),
+            ) => ACCELERATIONS,
             Quantity::Response(_) => FORCES,
         };
         self.allows & asked == asked
@@ -148,7 +150,7 @@ impl Place {
         let asked = match word {
             Word::Position => POSITIONS,
             Word::Velocity | Word::Speed | Word::AngularVelocity => MOTIONS,
-            Word::Acceleration | Word::AngularAcceleration => ACCELERATIONS,
+            Word::Acceleration | Word::AngularAcceleration | Word::DriveForce => ACCELERATIONS,
             Word::Reaction | Word::NormalForce | Word::Force => FORCES,
         };
         self.allows & asked == asked

@@ -141,7 +141,7 @@ impl<'a> Resolver<'a> {
             Target::Body => &mut self.bodies,
             Target::Constraint => &mut self.constraints,
             Target::Load => &mut self.loads,
-            Target::Point | Target::Coordinate => &mut self.points,
+            Target::Point | Target::Coordinate | Target::PseudoVelocity => &mut self.points,
         }
     }
 

@@ -5,13 +5,14 @@ use appell_codegen::emit::{Options, emit, emit_functions};
 use appell_codegen::linearisation::{Linearisation, SteadyMotion};
 use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Finding;
-use appell_codegen::program::FunctionKind;
+use appell_codegen::program::Program;
 use appell_codegen::{Derived, derived};
 use appell_codegen::{c, python};
 use appell_report::derivation::{self, Page};
 use appell_report::drawing::{Moment, drawing, drawing_at};
 use appell_spec::mechanism::Mechanism;
 
+pub use appell_codegen::program::FunctionKind;
 pub use appell_report::derivation::Stage;
 
 use crate::conditions::conditions;
@@ -117,44 +118,41 @@ impl Source {
         Ok(format.set(&page))
     }
 
-    /// The module that a build script includes.
-    pub fn rust(&self) -> Result<String, Error> {
-        let program = appell_codegen::compile(&self.file, &self.text, &FunctionKind::STANDARD)?;
-        let options = Options {
-            spec: Some(self.text.clone()),
-            ..Options::default()
+    /// The functions that are emitted unless others are asked for: derivatives by parameters only up to 64 of these.
+    pub fn functions(&self) -> Result<Vec<FunctionKind>, Error> {
+        Ok(FunctionKind::standard(self.mechanism()?.parameters.len()))
+    }
+
+    /// The module that a build script includes, with some functions; a regressor stands alone.
+    pub fn rust(&self, functions: &[FunctionKind]) -> Result<String, Error> {
+        let program = self.program(functions)?;
+        let emitted = if functions == [FunctionKind::Regressor] {
+            emit_functions(&program, functions)
+        } else {
+            let options = Options {
+                spec: Some(self.text.clone()),
+                ..Options::default()
+            };
+            emit(&program, &options)
         };
-        let emitted = emit(&program, &options).map_err(Error::computation)?;
-        Ok(emitted.source)
+        Ok(emitted.map_err(Error::computation)?.source)
     }
 
     /// C99: a header and a source without allocation.
     pub fn c(&self, options: &c::Options) -> Result<c::Emitted, Error> {
-        let program = if options.functions == [FunctionKind::Regressor] {
-            self.regressor()?.program
-        } else {
-            appell_codegen::compile(&self.file, &self.text, &options.functions)?
-        };
-        Ok(c::emit(&program, options))
-    }
-
-    /// The [regressor](Self::regressor) as Rust, to be included in a module that allows `non_snake_case`.
-    pub fn regressor_in_rust(&self) -> Result<String, Error> {
-        let program = self.regressor()?.program;
-        let emitted = emit_functions(&program, &[FunctionKind::Regressor]);
-        Ok(emitted.map_err(Error::computation)?.source)
-    }
-
-    /// The [regressor](Self::regressor) as a function over an array namespace.
-    pub fn regressor_in_python(&self) -> Result<String, Error> {
-        let program = self.regressor()?.program;
-        Ok(python::module(&program, &[FunctionKind::Regressor]))
+        Ok(c::emit(&self.program(&options.functions)?, options))
     }
 
     /// A module of Python functions over an array namespace: `numpy`, `jax.numpy`, `casadi` or `sympy`.
-    pub fn python(&self) -> Result<String, Error> {
-        let program = appell_codegen::compile(&self.file, &self.text, &FunctionKind::STANDARD)?;
-        Ok(python::module(&program, &FunctionKind::STANDARD))
+    pub fn python(&self, functions: &[FunctionKind]) -> Result<String, Error> {
+        Ok(python::module(&self.program(functions)?, functions))
+    }
+
+    fn program(&self, functions: &[FunctionKind]) -> Result<Program, Error> {
+        Ok(match functions {
+            [FunctionKind::Regressor] => self.regressor()?.program,
+            functions => appell_codegen::compile(&self.file, &self.text, functions)?,
+        })
     }
 
     /// The mechanism at its initial state, as SVG.

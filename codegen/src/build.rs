@@ -45,6 +45,7 @@ pub struct Build {
     out_dir: Option<PathBuf>,
     options: Options,
     adjoints: bool,
+    parameter_jacobians: bool,
     c: Option<c::Options>,
 }
 
@@ -145,6 +146,14 @@ impl Build {
         self
     }
 
+    /// Emits P = ∂ẋ/∂p of mechanisms with more than 64 parameters as well, which makes most of their code; without it
+    /// `Model::parameter_jacobian` takes differences.
+    #[must_use]
+    pub fn parameter_jacobians(mut self) -> Self {
+        self.parameter_jacobians = true;
+        self
+    }
+
     /// Emits code for blocks of eight places, which `Model::rates_lanes` and its like run; without it they go place by
     /// place. It takes seconds to compile.
     #[must_use]
@@ -190,7 +199,7 @@ impl Build {
             })?;
             // The same name in messages and comments on every system.
             let file = spec.to_string_lossy().replace('\\', "/");
-            match program(&file, &text, self.kinds()) {
+            match program(&file, &text, |parameters| self.kinds(parameters)) {
                 Ok(program) => compiled.push(self.emitted(spec, text, program)?),
                 Err(report) => reports.push(report.plain()),
             }
@@ -226,11 +235,11 @@ impl Build {
         Ok(compiled)
     }
 
-    fn kinds(&self) -> &'static [FunctionKind] {
-        if self.adjoints {
-            &FunctionKind::ALL
-        } else {
-            &FunctionKind::STANDARD
+    fn kinds(&self, parameters: usize) -> Vec<FunctionKind> {
+        match (self.adjoints, self.parameter_jacobians) {
+            (true, _) => FunctionKind::ALL.to_vec(),
+            (false, true) => FunctionKind::STANDARD.to_vec(),
+            (false, false) => FunctionKind::standard(parameters),
         }
     }
 
@@ -271,7 +280,11 @@ impl Build {
 }
 
 /// The program of a spec; what looks unintended in it is told as warnings of the build.
-fn program(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
+fn program(
+    file: &str,
+    text: &str,
+    kinds: impl Fn(usize) -> Vec<FunctionKind>,
+) -> Result<Program, Report> {
     let Derived {
         mechanism,
         derivation,
@@ -284,7 +297,8 @@ fn program(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Re
         let (line, column) = warnings.line_column(at);
         println!("cargo::warning={file}:{line}:{column}: {}", warning.message);
     }
-    assemble::program(derivation, &mechanism, kinds)
+    let kinds = kinds(mechanism.parameters.len());
+    assemble::program(derivation, &mechanism, &kinds)
         .map_err(|findings| report(&mechanism, text, &findings))
 }
 

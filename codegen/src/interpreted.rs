@@ -85,7 +85,10 @@ impl Model for InterpretedModel {
     }
 
     fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
-        self.evaluate(FunctionKind::ParameterJacobian, at, &mut [("p", p)]);
+        match self.program.function(FunctionKind::ParameterJacobian) {
+            Some(_) => self.evaluate(FunctionKind::ParameterJacobian, at, &mut [("p", p)]),
+            None => differences::parameter_jacobian(self, at, p),
+        }
     }
 
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]) {

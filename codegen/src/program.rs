@@ -338,6 +338,15 @@ impl FunctionKind {
         Self::InverseDynamicsJacobians,
     ];
 
+    /// [`Self::STANDARD`] for a mechanism of so many parameters: with more than 64, derivatives by them are only made
+    /// where they are asked for.
+    pub fn standard(parameters: usize) -> Vec<Self> {
+        const MOST_PARAMETERS: usize = 64;
+        let is_made =
+            |kind: &Self| parameters <= MOST_PARAMETERS || *kind != Self::ParameterJacobian;
+        Self::STANDARD.into_iter().filter(is_made).collect()
+    }
+
     /// Those that a motion needs: of [`Self::STANDARD`], all but derivatives and what other functions
     /// return too.
     pub const OF_MOTIONS: [Self; 11] = [

@@ -126,7 +126,7 @@ impl<'py> Call<'_, 'py> {
         shapes: [&[usize]; R],
         function: impl Fn(At<'_>, [&mut [f64]; R]) + Send,
     ) -> PyResult<Vec<Array<'py>>> {
-        self.evaluate_moving(shapes, |at, _, results| function(at, results))
+        self.evaluate_moving(shapes, move |at, _, results| function(at, results))
     }
 
     /// [`Self::evaluate`] for a function that takes pseudo-accelerations; those that are left out are zero.

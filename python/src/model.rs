@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use appell::control::Request;
-use appell::derivation::{Format, Stage};
+use appell::derivation::{Format, FunctionKind, Stage};
 use appell::setup::Assignment;
 use appell::steady::Question;
 use appell::{Field, ModelInputs, Quantity, Source};
@@ -355,12 +355,12 @@ impl Model {
 
     /// The regressor as a Python module.
     fn _regressor(&self, py: Python<'_>) -> PyResult<String> {
-        self.of_source(py, Source::regressor_in_python)
+        self.of_source(py, |source| source.python(&[FunctionKind::Regressor]))
     }
 
     /// The equations as a Python module.
     fn _module(&self, py: Python<'_>) -> PyResult<String> {
-        self.of_source(py, Source::python)
+        self.of_source(py, |source| source.python(&source.functions()?))
     }
 }
 

@@ -70,6 +70,13 @@ pub fn adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64], mut by
     }
 }
 
+/// What [`Model::parameter_jacobian`] writes, to about nine digits.
+pub fn parameter_jacobian<M: Model + ?Sized>(model: &M, at: At<'_>, p: &mut [f64]) {
+    columns(at.p, p, at.p.len(), |p, column| {
+        model.rates(At { p, ..at }, column);
+    });
+}
+
 /// What [`Model::output_jacobians`] writes, to about nine digits.
 pub fn output_jacobians<M: Model + ?Sized>(
     model: &M,

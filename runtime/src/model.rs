@@ -314,8 +314,11 @@ pub trait Model: Sync {
     fn rates(&self, at: At<'_>, rates: &mut [f64]);
     /// ẋ (`n`), A = ∂ẋ/∂x (`n·n`), B = ∂ẋ/∂u (`n·m`).
     fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]);
-    /// P = ∂ẋ/∂p (`n·k`).
-    fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]);
+    /// P = ∂ẋ/∂p (`n·k`). Models of many parameters may have no formulas for it: the answer of this trait is made of
+    /// differences, right to some nine digits.
+    fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
+        differences::parameter_jacobian(self, at, p);
+    }
     /// M, bias and pseudo-forces of Appell's equations M ω̇ + b = Π (`s·s`, `s`, `s`).
     fn appell(&self, at: At<'_>, mass: &mut [f64], bias: &mut [f64], forces: &mut [f64]);
     /// Energies and power.

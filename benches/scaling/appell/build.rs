@@ -46,10 +46,10 @@ fn main() {
             told += &counted(name, &text, &[kind]);
         }
         if wanted.contains("all") {
-            told += &counted(name, &text, &Kind::STANDARD);
+            told += &counted(name, &text, &standard(name, &text));
         }
         if wanted.contains("model") {
-            let model = emit(&program(name, &text, &Kind::STANDARD), &Options::default());
+            let model = emit(&program(name, &text, &standard(name, &text)), &Options::default());
             write(
                 &out.join(format!("{name}_model.rs")),
                 &model.expect("Rust").source,
@@ -61,6 +61,12 @@ fn main() {
     }
     write(&out.join("told.tsv"), &told);
     write(&out.join("modules.rs"), &modules);
+}
+
+/// What is emitted of a spec unless more is asked for.
+fn standard(name: &str, text: &str) -> Vec<Kind> {
+    let spec = appell_codegen::compile::derived(name, text).expect("a spec");
+    Kind::standard(spec.mechanism.parameters.len())
 }
 
 /// Derives some functions up to their schedules: name, function, seconds, operations, of them divisions, sine-cosine pairs.

@@ -87,7 +87,7 @@ fn lane_change(written: &mut Written<'_>) -> Result<String, Error> {
     let html = source.derivation(Stage::All, Format::Html)?;
     let about = "the derivation from frames to equations of motion";
     files::write(&written.place("unicycle.html", about), &html)?;
-    let rust = source.rust()?;
+    let rust = source.rust(&source.functions()?)?;
     let about = "the same equations as Rust, compiled into this program";
     files::write(&written.place("unicycle.rs", about), &rust)?;
     let about = "the motion in 3-D";

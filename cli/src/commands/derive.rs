@@ -48,6 +48,9 @@ pub(crate) struct Derive {
     /// Rust, C, Python: inverse dynamics as a linear function of inertial and load parameters instead
     #[arg(long)]
     regressor: bool,
+    /// Rust, C, Python: derivatives of the rates by the parameters as well where there are more than 64
+    #[arg(long)]
+    parameter_jacobian: bool,
     /// Write to a file instead of standard output
     #[arg(long, short, value_name = "FILE")]
     out: Option<PathBuf>,
@@ -173,16 +176,15 @@ impl Derive {
             return Err(Error::Usage(message.to_owned()));
         }
         let spinner = progress::spinner("deriving the equations of motion");
+        let functions = self.functions(&source);
         let text = match (format, self.stage) {
             (Output::C, _) => {
-                let emitted = source.c(&self.c_options());
+                let emitted = source.c(&self.c_options(functions?));
                 spinner.finish_and_clear();
                 return self.write_c(&emitted?);
             }
-            (Output::Rust, _) if self.regressor => source.regressor_in_rust(),
-            (Output::Rust, _) => source.rust(),
-            (Output::Python, _) if self.regressor => source.regressor_in_python(),
-            (Output::Python, _) => source.python(),
+            (Output::Rust, _) => functions.and_then(|functions| source.rust(&functions)),
+            (Output::Python, _) => functions.and_then(|functions| source.python(&functions)),
             (Output::Spec, _) => source.expanded(),
             (Output::Page(format), Extent::Through(stage)) => source.derivation(stage, format),
             (Output::Page(format), Extent::Linear) => source.linear_equations(&self.about, format),
@@ -192,13 +194,19 @@ impl Derive {
         Ok(())
     }
 
-    fn c_options(&self) -> c::Options {
+    fn functions(&self, source: &Source) -> Result<Vec<FunctionKind>, appell::Error> {
+        if self.regressor {
+            Ok(vec![FunctionKind::Regressor])
+        } else if self.parameter_jacobian {
+            Ok(FunctionKind::STANDARD.to_vec())
+        } else {
+            source.functions()
+        }
+    }
+
+    fn c_options(&self, functions: Vec<FunctionKind>) -> c::Options {
         c::Options {
-            functions: if self.regressor {
-                vec![FunctionKind::Regressor]
-            } else {
-                FunctionKind::STANDARD.to_vec()
-            },
+            functions,
             real: if self.float {
                 c::Real::Float
             } else {

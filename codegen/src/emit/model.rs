@@ -268,7 +268,7 @@ pub(super) fn implementation(
     let bodies = [
         method(types, FunctionKind::Rates, &["rates"])?,
         method(types, FunctionKind::Jacobians, &["rates", "a", "b"])?,
-        method(types, FunctionKind::ParameterJacobian, &["p"])?,
+        provided(types, FunctionKind::ParameterJacobian, &["p"])?,
         appell_method(types)?,
         energies_method(types)?,
         method_or_nothing(types, FunctionKind::ConstraintResidual, "residual")?,

@@ -3,6 +3,7 @@
 use appell_codegen::mechanics::regressor;
 use appell_codegen::schedule::{interpret_weighted, schedule};
 use appell_runtime::inverse_dynamics;
+use appell_runtime::model::Model;
 use appell_test_kit::Random;
 use appell_tests::engine::{assert_close, engines, some_accelerations};
 use appell_tests::point::Point;

@@ -10,8 +10,13 @@ use crate::data::setup::{Measured, Setup};
 use crate::data::unknown::Unknown;
 use crate::gradient::adjoint::adjoint;
 use crate::kalman::filter::{Innovation, Pass};
+use crate::matrix::add;
 use crate::motion::plant::{Plant, StateSpace};
 use crate::motion::timeline::{Action, timeline};
+use crate::parallel::in_parallel;
+
+/// Rows for which no thread is worth its start.
+const FEW_ROWS: usize = 200;
 
 /// A setup with recordings: functions of the values that [`Layout`] lists.
 pub struct Estimation<'a> {
@@ -98,9 +103,8 @@ impl<'a> Estimation<'a> {
     /// The log-likelihood of all recordings.
     pub fn log_likelihood(&self, values: &[f64]) -> Result<f64, EstimateError> {
         self.check(values)?;
-        let runs = 0..self.recordings.len();
-        runs.map(|run| Ok(self.pass(run, values, false)?.log_likelihood()))
-            .sum()
+        let runs = self.over_runs(|run| Ok(self.pass(run, values, false)?.log_likelihood()))?;
+        Ok(runs.into_iter().sum())
     }
 
     /// The log-likelihood of all recordings and its gradient with respect to all values.
@@ -123,15 +127,16 @@ impl<'a> Estimation<'a> {
         is_wanted: impl Fn(f64) -> bool,
     ) -> Result<(f64, Option<Vec<f64>>), EstimateError> {
         self.check(values)?;
-        let runs = 0..self.recordings.len();
-        let passes = runs.map(|run| self.pass(run, values, true));
-        let mut passes = passes.collect::<Result<Vec<Pass<'_>>, _>>()?;
+        let mut passes = self.over_runs(|run| self.pass(run, values, true))?;
         let sum = passes.iter().map(Pass::log_likelihood).sum();
         let gradient = is_wanted(sum).then(|| {
-            let mut gradient = vec![0.0; self.layout.len()];
-            for pass in &mut passes {
+            let slopes = in_parallel(passes.iter_mut(), |pass| {
+                let mut gradient = vec![0.0; self.layout.len()];
                 adjoint(pass, &(0..usize::MAX), &mut gradient);
-            }
+                gradient
+            });
+            let mut gradient = vec![0.0; self.layout.len()];
+            slopes.iter().for_each(|own| add(own, &mut gradient));
             gradient
         });
         let tapes = passes.into_iter().map(|pass| pass.tape);
@@ -169,7 +174,20 @@ impl<'a> Estimation<'a> {
                 .map(|sample| sample.innovation)
                 .collect())
         };
-        (0..self.recordings.len()).map(of_run).collect()
+        self.over_runs(of_run)
+    }
+
+    /// Something of each run, in their order.
+    pub(super) fn over_runs<T: Send>(
+        &self,
+        of: impl Fn(usize) -> Result<T, EstimateError> + Sync,
+    ) -> Result<Vec<T>, EstimateError> {
+        let runs = 0..self.recordings.len();
+        let rows = self.recordings.iter().map(|run| run.times().len());
+        if rows.sum::<usize>() < FEW_ROWS {
+            return runs.map(of).collect();
+        }
+        in_parallel(runs, of).into_iter().collect()
     }
 
     /// The filter along a run.

@@ -4,10 +4,12 @@
 //! |---|---|
 //! | `adjoint.rs` | the gradient with respect to all values, by one reverse sweep over the tape |
 //! | `information.rs` | Fisher information in few passes |
+//! | `levels.rs` | that of levels, in one pass |
 //! | `sensitivity.rs` | scores and Fisher information, value by value |
 //! | `tangent.rs` | directional derivatives of innovations, in one pass |
 
 pub(crate) mod adjoint;
 pub(crate) mod information;
+mod levels;
 pub(crate) mod sensitivity;
 pub(crate) mod tangent;

@@ -24,6 +24,7 @@
 //! | `statistics/` | intervals, identifiability, robust covariance; consistency of innovations |
 //! | `inverse/` | the inputs of a measured motion, and its input-free relations |
 //! | `smoothing/` | derivatives of noisy samples with their covariance |
+//! | `parallel.rs` | independent pieces of work on all processors |
 //! | `matrix.rs`, `error.rs` | products of dense matrices; errors |
 
 mod data;
@@ -35,6 +36,7 @@ pub mod inverse;
 mod kalman;
 mod matrix;
 mod motion;
+mod parallel;
 mod shooting;
 pub mod smoothing;
 mod statistics;
@@ -53,6 +55,7 @@ pub use gradient::tangent::{Along, Direction, Shapes, Tangent};
 pub use kalman::filter::Innovation;
 pub use kalman::prediction::Predicted;
 pub use kalman::smoother::Smoothed;
+pub use parallel::in_parallel;
 pub use shooting::{Shooting, Shot};
 pub use statistics::chi_squared::{HALF_WIDTH_95, chi_squared_probability, chi_squared_quantile};
 pub use statistics::consistency::Consistency;

@@ -5,7 +5,10 @@ pub(super) fn multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let columns = b.len() / inner;
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
         for (&factor, b) in a.iter().zip(b.chunks_exact(columns)) {
-            add_scaled(factor, b, c);
+            // Slopes of coordinates and of what is measured are zero but for one or two.
+            if factor != 0.0 {
+                add_scaled(factor, b, c);
+            }
         }
     }
 }
@@ -21,7 +24,9 @@ pub(super) fn transposed_multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mu
     let (rows, columns) = (a.len() / inner, b.len() / inner);
     for (a, b) in a.chunks_exact(rows).zip(b.chunks_exact(columns)) {
         for (&factor, c) in a.iter().zip(c.chunks_exact_mut(columns)) {
-            add_scaled(factor, b, c);
+            if factor != 0.0 {
+                add_scaled(factor, b, c);
+            }
         }
     }
 }
@@ -67,9 +72,23 @@ pub(super) fn scale(factor: f64, x: &mut [f64]) {
     }
 }
 
-/// `xᵀ y`, for matrices the sum over all entries.
+/// `xᵀ y`, for matrices the sum over all entries: four sums, none of which waits for another.
 pub(super) fn dot(x: &[f64], y: &[f64]) -> f64 {
-    x.iter().zip(y).map(|(x, y)| x * y).sum()
+    const SUMS: usize = 4;
+    let length = x.len().min(y.len());
+    let (x, y) = (
+        x[..length].chunks_exact(SUMS),
+        y[..length].chunks_exact(SUMS),
+    );
+    let rest = x.remainder().iter().zip(y.remainder());
+    let rest: f64 = rest.map(|(x, y)| x * y).sum();
+    let mut sums = [0.0; SUMS];
+    for (x, y) in x.zip(y) {
+        for (sum, (x, y)) in sums.iter_mut().zip(x.iter().zip(y)) {
+            *sum += x * y;
+        }
+    }
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }
 
 /// The unit matrix, n × n.

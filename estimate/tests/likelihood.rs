@@ -4,7 +4,9 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use crate::oscillator::{Oscillator, drive};
-use appell_estimate::{Disturbance, Estimation, Measured, Recording, Setup, Unknown};
+use appell_estimate::{
+    Disturbance, Estimation, Free, Measured, Recording, Sensitivity, Setup, Unknown,
+};
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
 /// Rounding of some hundred steps.
@@ -220,6 +222,27 @@ fn the_smoother_conditions_all_states_on_all_samples() {
                 );
             }
         }
+    }
+}
+
+#[test]
+fn the_information_of_levels_is_that_of_differences_of_the_filter() {
+    let (model, recordings) = (Oscillator::new(), [recording()]);
+    let setup = setup(&model);
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let values = values(&estimation);
+    let pairs = (0..2).flat_map(|i| {
+        let spread = Unknown::Spread { run: 0, state: i };
+        [Unknown::Disturbance(i), Unknown::Noise(i), spread]
+    });
+    let free: Vec<Free> = pairs.map(Free::of).collect();
+    let found = estimation.information(&values, &free).unwrap();
+    let sensitivity = Sensitivity::of(&estimation, &values, &free).unwrap();
+    let expected = sensitivity.information();
+    for (i, j) in (0..6).flat_map(|i| (0..6).map(move |j| (i, j))) {
+        let scale = (expected[(i, i)] * expected[(j, j)]).sqrt();
+        let error = (found[(i, j)] - expected[(i, j)]).abs();
+        assert!(error < 1e-6 * scale, "{i} {j}: {error} of {scale}");
     }
 }
 

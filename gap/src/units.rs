@@ -7,6 +7,7 @@ use appell_recordings::{Channel, DataSet, Role};
 use appell_runtime::model::Model;
 use appell_spec::units::{self, Unit};
 
+use appell_estimate::in_parallel;
 use balance::Balance;
 
 /// Units of loggers and sensors.
@@ -98,7 +99,8 @@ pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
         let score = score(&missed, &all);
         is_best.then_some(Rival { readings, score })
     };
-    let mut rivals: Vec<Rival> = readings(set).into_iter().filter_map(rival).collect();
+    let rivals = in_parallel(readings(set), rival);
+    let mut rivals: Vec<Rival> = rivals.into_iter().flatten().collect();
     rivals.sort_by(|a, b| a.score.total_cmp(&b.score));
     let Some(best) = rivals.first() else {
         return Vec::new();

@@ -97,7 +97,8 @@ impl Recording {
     }
 
     /// Some of its rows.
-    pub(crate) fn part(&self, rows: Range<usize>) -> Self {
+    #[must_use]
+    pub fn part(&self, rows: Range<usize>) -> Self {
         let [inputs, channels] = self.columns;
         Self {
             times: self.times[rows.clone()].to_vec(),

@@ -331,9 +331,10 @@ impl Backward<'_, '_> {
         transposed_multiply(root, by_a, n, projection);
         multiply(root, projection, n, product);
         add(product, by_c);
-        for i in 0..n {
-            for j in 0..n {
-                self.p[i * n + j] += 0.5 * (by_a[i] * c[j] + c[i] * by_a[j]);
+        for (i, &slope) in c.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
+            for (j, &by_a) in by_a.iter().enumerate() {
+                self.p[i * n + j] += 0.5 * slope * by_a;
+                self.p[j * n + i] += 0.5 * slope * by_a;
             }
         }
         // e = y − h − cᵀ(z − prior).

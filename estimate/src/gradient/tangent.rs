@@ -50,7 +50,7 @@ pub struct Shapes<'s> {
     /// Their number.
     pub count: usize,
     /// Writes the values of all shapes.
-    pub values: &'s dyn Fn(usize, At<'_>, &mut [f64]),
+    pub values: &'s (dyn Fn(usize, At<'_>, &mut [f64]) + Sync),
 }
 
 /// Derivatives of the whitened innovations.
@@ -87,18 +87,20 @@ impl Estimation<'_> {
                 }
         });
         let columns = directions.len() + candidates;
-        let mut samples: Vec<(usize, Innovation)> = Vec::new();
-        let mut rows: Vec<f64> = Vec::new();
-        for run in 0..self.recordings().len() {
+        let runs = self.over_runs(|run| {
             let actions = self.actions(run, values);
             let pass = self.fresh(run, values, &actions);
             let mut forward = Forward::new(self, pass, (directions, shapes), columns);
             for &action in &actions {
                 forward.act(action)?;
             }
-            let own = forward.pass.samples.iter();
-            samples.extend(own.map(|sample| (run, sample.innovation)));
-            rows.append(&mut forward.rows);
+            Ok((forward.pass.samples, forward.rows))
+        })?;
+        let mut samples: Vec<(usize, Innovation)> = Vec::new();
+        let mut rows: Vec<f64> = Vec::new();
+        for (run, (own, mut own_rows)) in runs.into_iter().enumerate() {
+            samples.extend(own.iter().map(|sample| (run, sample.innovation)));
+            rows.append(&mut own_rows);
         }
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by_key(|&place| {

@@ -175,7 +175,9 @@ pub(crate) fn is_uneven(k: &[f64], (n, own): (usize, usize)) -> bool {
 fn add_product(factor: f64, a: &[f64], b: &[f64], n: usize, c: &mut [f64]) {
     for (a, c) in a.chunks_exact(n).zip(c.chunks_exact_mut(n)) {
         for (&entry, b) in a.iter().zip(b.chunks_exact(n)) {
-            add_scaled(factor * entry, b, c);
+            if entry != 0.0 {
+                add_scaled(factor * entry, b, c);
+            }
         }
     }
 }

@@ -24,7 +24,7 @@ const STEP: f64 = 0.01;
 
 /// One function of the variable.
 struct Term {
-    of: Box<dyn Fn(f64) -> f64>,
+    of: Box<dyn Fn(f64) -> f64 + Sync>,
 }
 
 /// A form on trial: places of its terms, and how many of its kind there are.
@@ -128,7 +128,7 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
     let width = STEP * range;
     let mut terms: Vec<Term> = Vec::new();
     let mut trials: Vec<Trial> = Vec::new();
-    let mut add = |text: String, alike: usize, functions: Vec<Box<dyn Fn(f64) -> f64>>| {
+    let mut add = |text: String, alike: usize, functions: Vec<Box<dyn Fn(f64) -> f64 + Sync>>| {
         let first = terms.len();
         terms.extend(functions.into_iter().map(|of| Term { of }));
         let text = match &written {

@@ -14,7 +14,7 @@ mod series;
 mod swing;
 mod trace;
 
-use appell_estimate::{Along, Disturbance, Estimation, Shapes};
+use appell_estimate::{Along, Disturbance, Estimation, Shapes, in_parallel};
 use appell_runtime::model::At;
 
 use super::DiagnoseError;
@@ -200,15 +200,16 @@ pub(super) fn term_scores(
             .collect(),
         Along::Channels => (0..setup.channels.len()).map(Some).collect(),
     };
-    let places = places.into_iter().enumerate();
-    Ok(places
-        .filter_map(|(block, place)| {
-            let first = free.len() + block * count;
-            let columns: Vec<usize> = (first..first + count).collect();
-            let slopes = projected.slopes(&columns);
-            Some((place?, TermScores::new(&projected, &slopes)))
-        })
-        .collect())
+    let places: Vec<_> = places.into_iter().enumerate().collect();
+    let scores = in_parallel(places, |(block, place)| {
+        let first = free.len() + block * count;
+        let columns: Vec<usize> = (first..first + count).collect();
+        Some((
+            place?,
+            TermScores::new(&projected, &projected.slopes(&columns)),
+        ))
+    });
+    Ok(scores.into_iter().flatten().collect())
 }
 
 /// Laws of one kind.

@@ -27,6 +27,7 @@ mod share;
 mod signs;
 mod steps;
 mod tuning;
+mod without;
 
 pub use cost::OperationCount;
 pub use interpret::{interpret, interpret_weighted};

@@ -7,13 +7,29 @@ use cranelift_codegen::settings::{self, Configurable};
 
 use super::JitError;
 
-/// Steps beyond which a function is long.
-const LONG: usize = 6000;
+/// How long a function is used.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Use {
+    /// For as long as the program runs.
+    Lasting,
+    /// For some ten thousand evaluations, which take no longer than to choose its registers well.
+    Brief,
+}
+
+impl Use {
+    /// Steps beyond which a function is long.
+    const fn long(self) -> usize {
+        match self {
+            Self::Lasting => 6000,
+            Self::Brief => 600,
+        }
+    }
+}
 
 /// The instruction set of this processor, for a function of so many steps; found out once.
-pub(super) fn target(steps: usize) -> Result<OwnedTargetIsa, JitError> {
+pub(super) fn target(steps: usize, of: Use) -> Result<OwnedTargetIsa, JitError> {
     static TARGETS: [OnceLock<OwnedTargetIsa>; 2] = [OnceLock::new(), OnceLock::new()];
-    let is_long = steps > LONG;
+    let is_long = steps > of.long();
     let known = &TARGETS[usize::from(is_long)];
     if let Some(target) = known.get() {
         return Ok(target.clone());

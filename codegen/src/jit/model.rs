@@ -2,7 +2,7 @@
 
 use std::fmt;
 use std::slice::from_mut;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use appell_runtime::differences;
 use appell_runtime::inverse_dynamics;
@@ -10,10 +10,13 @@ use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 use appell_runtime::series::Series;
 
+use super::host::Use;
 use super::on_demand::OnDemand;
 use super::series::JitSeries;
 use super::{JitError, Sizes, Target};
 use crate::program::{FunctionKind, Program};
+use crate::schedule::{Schedule, Tree};
+use crate::symbolic::Rational;
 use crate::taylor::{Lengths, expand};
 
 /// A model compiled in this process.
@@ -26,8 +29,10 @@ use crate::taylor::{Lengths, expand};
 ///
 /// Eight places at once have code of their own, with the same bits in every lane; see
 /// [`VectorFunction`](super::VectorFunction).
+///
+/// [`Self::without`] makes a shorter one for parameters that are zero.
 pub struct JitModel {
-    program: Program,
+    program: Arc<Program>,
     sizes: Sizes,
     /// What lanes are compiled for.
     target: Target,
@@ -35,6 +40,42 @@ pub struct JitModel {
     parts: Vec<OnDemand>,
     /// Made when they are first asked for.
     series: OnceLock<JitSeries>,
+    /// What it is a part of.
+    whole: Option<Whole>,
+}
+
+/// A model with more in it.
+struct Whole {
+    model: Arc<JitModel>,
+    /// The parameters that are zero in the part.
+    zeros: Vec<usize>,
+}
+
+impl Whole {
+    fn is_needed(&self, p: &[f64]) -> bool {
+        self.zeros.iter().any(|&index| p[index] != 0.0)
+    }
+
+    /// The schedule of a function of the part.
+    fn schedule(&self, kind: FunctionKind) -> Schedule {
+        let Self { model, zeros } = self;
+        let is_zero = |index: usize| zeros.binary_search(&index).is_ok();
+        let mut schedule = model.part(kind).schedule(&model.program).clone();
+        let parameters = model.sizes.parameters.max(1);
+        let by_parameters = matches!(
+            kind,
+            FunctionKind::ParameterJacobian | FunctionKind::Adjoint | FunctionKind::OutputAdjoint
+        );
+        let slopes = schedule.results.iter_mut();
+        for result in slopes.filter(|result| by_parameters && result.name == "p") {
+            for (place, entry) in result.entries.iter_mut().enumerate() {
+                if is_zero(place % parameters) {
+                    *entry = Tree::Constant(Rational::from(0));
+                }
+            }
+        }
+        schedule.without(is_zero)
+    }
 }
 
 /// The results that the trait asks for, with their lengths.
@@ -112,18 +153,44 @@ impl JitModel {
         let sizes = Sizes::from(&program.info);
         let parts = FunctionKind::ALL
             .iter()
-            .map(|&kind| OnDemand::new(program, kind, results(kind, program)))
+            .map(|&kind| OnDemand::new(program, kind, results(kind, program), Use::Lasting))
             .collect::<Result<_, _>>()?;
         let model = Self {
-            program: program.clone(),
+            program: Arc::new(program.clone()),
             sizes,
             target: Target::default(),
             parts,
             series: OnceLock::new(),
+            whole: None,
         };
         // A processor without a compiler shows here and not in the middle of a simulation.
         model.part(FunctionKind::Rates).compile(program, sizes)?;
         Ok(model)
+    }
+
+    /// The same model, faster as long as some parameters are zero. Derivatives with respect to these are then zero
+    /// too: nobody asks for them. Where one of them is not zero, the whole model is evaluated.
+    pub fn without(self: &Arc<Self>, zeros: &[usize]) -> Result<Self, JitError> {
+        let parts = FunctionKind::ALL
+            .iter()
+            .map(|&kind| {
+                let wanted = results(kind, &self.program);
+                OnDemand::new(&self.program, kind, wanted, Use::Brief)
+            })
+            .collect::<Result<_, _>>()?;
+        let mut zeros = zeros.to_vec();
+        zeros.sort_unstable();
+        Ok(Self {
+            program: self.program.clone(),
+            sizes: self.sizes,
+            target: self.target,
+            parts,
+            series: OnceLock::new(),
+            whole: Some(Whole {
+                model: self.clone(),
+                zeros,
+            }),
+        })
     }
 
     /// The same with other vector instructions or elementary functions for lanes, and for the methods
@@ -149,7 +216,19 @@ impl JitModel {
     }
 
     fn part(&self, kind: FunctionKind) -> &OnDemand {
-        &self.parts[kind as usize]
+        let part = &self.parts[kind as usize];
+        if let Some(whole) = &self.whole {
+            part.follow(|| whole.schedule(kind));
+        }
+        part
+    }
+
+    /// The model that has to be evaluated at some parameters.
+    fn at(&self, p: &[f64]) -> &Self {
+        match &self.whole {
+            Some(whole) if whole.is_needed(p) => &whole.model,
+            _ => self,
+        }
     }
 
     fn evaluate<const N: usize>(&self, kind: FunctionKind, at: At<'_>, results: [&mut [f64]; N]) {
@@ -163,7 +242,7 @@ impl JitModel {
         weights: &[f64],
         results: [&mut [f64]; N],
     ) {
-        let part = self.part(kind);
+        let part = self.at(at.p).part(kind);
         part.call(&self.program, self.sizes, at, weights, results);
     }
 
@@ -173,6 +252,12 @@ impl JitModel {
         at: AtLanes<'_>,
         results: [&mut [[f64; LANES]]; N],
     ) {
+        let is_zero = |&index: &usize| at.p[index] == [0.0; LANES];
+        if let Some(whole) = &self.whole
+            && !whole.zeros.iter().all(is_zero)
+        {
+            return whole.model.evaluate_lanes(kind, at, results);
+        }
         let part = self.part(kind);
         part.call_lanes(&self.program, self.sizes, self.target, at, results);
     }
@@ -183,7 +268,7 @@ impl JitModel {
         at: At<'_>,
         results: [&mut [f64]; N],
     ) {
-        let part = self.part(kind);
+        let part = self.at(at.p).part(kind);
         part.call_own(&self.program, self.sizes, self.target, at, results);
     }
 }
@@ -342,6 +427,9 @@ impl Model for JitModel {
     }
 
     fn series(&self) -> Option<&dyn Series> {
+        if let Some(whole) = &self.whole {
+            return whole.model.series();
+        }
         let series = self.series.get_or_init(|| {
             let rates = self.part(FunctionKind::Rates).schedule(&self.program);
             JitSeries::new(expand(rates, Lengths::from(&self.program.info)))

@@ -4,11 +4,12 @@ use appell_runtime::model::At;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
+use super::JitError;
 use super::check::{Sizes, check, lengths};
 use super::elementary::Elementary;
+use super::host::{self, Use};
 use super::memory::Code;
 use super::translate::{signature, translate};
-use super::{JitError, host};
 use crate::schedule::Schedule;
 
 /// `t`, states, inputs, parameters, weights, addresses of the results.
@@ -41,8 +42,16 @@ impl NativeFunction {
         sizes: Sizes,
         elementary: Elementary,
     ) -> Result<Self, JitError> {
+        Self::compile_for(schedule, sizes, (elementary, Use::Lasting))
+    }
+
+    pub(super) fn compile_for(
+        schedule: &Schedule,
+        sizes: Sizes,
+        (elementary, of): (Elementary, Use),
+    ) -> Result<Self, JitError> {
         let checked = check(schedule, sizes)?;
-        let target = host::target(schedule.steps.len())?;
+        let target = host::target(schedule.steps.len(), of)?;
         let builder = JITBuilder::with_isa(target, default_libcall_names());
         let mut module = JITModule::new(builder);
         let config = module.target_config();

@@ -6,6 +6,7 @@ use appell_runtime::lanes::{AtLanes, LANES, place_by_place};
 use appell_runtime::model::At;
 
 use super::check::lengths;
+use super::host::Use;
 use super::native::check_lengths;
 use super::{Elementary, JitError, NativeFunction, Sizes, Target, VectorFunction};
 use crate::program::{Function, FunctionKind, Program};
@@ -18,6 +19,7 @@ pub(super) type Wanted = (&'static str, usize);
 pub(super) struct OnDemand {
     kind: FunctionKind,
     wanted: Vec<Wanted>,
+    of: Use,
     schedule: OnceLock<Schedule>,
     ready: OnceLock<Ready>,
     /// For eight places at once; `None` where that cannot be made.
@@ -49,6 +51,7 @@ impl OnDemand {
         program: &Program,
         kind: FunctionKind,
         wanted: Vec<Wanted>,
+        of: Use,
     ) -> Result<Self, JitError> {
         let function = find(program, kind);
         for &(result, expected) in wanted.iter().filter(|(_, len)| *len > 0) {
@@ -71,6 +74,7 @@ impl OnDemand {
         Ok(Self {
             kind,
             wanted,
+            of,
             schedule: OnceLock::new(),
             ready: OnceLock::new(),
             lanes: OnceLock::new(),
@@ -183,7 +187,13 @@ impl OnDemand {
 
     #[cold]
     fn make(&self, program: &Program, sizes: Sizes) -> Ready {
-        Ready::new(self.schedule(program).clone(), sizes)
+        Ready::of(self.schedule(program).clone(), sizes, self.of)
+    }
+
+    /// Follows another schedule, made when it is first asked for.
+    #[inline]
+    pub(super) fn follow(&self, make: impl FnOnce() -> Schedule) {
+        self.schedule.get_or_init(make);
     }
 
     pub(super) fn schedule(&self, program: &Program) -> &Schedule {
@@ -222,7 +232,11 @@ impl OnDemand {
 impl Ready {
     /// Compiles a schedule if that is possible.
     pub(super) fn new(schedule: Schedule, sizes: Sizes) -> Self {
-        match NativeFunction::compile(&schedule, sizes) {
+        Self::of(schedule, sizes, Use::Lasting)
+    }
+
+    fn of(schedule: Schedule, sizes: Sizes, of: Use) -> Self {
+        match NativeFunction::compile_for(&schedule, sizes, (Elementary::Standard, of)) {
             Ok(native) => Self::Native(native),
             Err(reason) => Self::Interpreted {
                 results: lengths(&schedule),

@@ -8,7 +8,7 @@
 //! is asked for. Its parameters stand in every model, so that they have the same places everywhere.
 
 use std::collections::BTreeMap;
-use std::sync::OnceLock;
+use std::sync::{Arc, OnceLock};
 
 use appell_codegen::compile::report;
 use appell_codegen::derived;
@@ -22,7 +22,7 @@ use appell_spec::{Mechanism, Report};
 
 use super::effect::{Effect, EffectError};
 use super::site::{Scales, Sites, number};
-use super::{Candidate, Drive};
+use super::{Candidate, Drive, Part};
 use appell_recordings::Spec;
 
 /// Sections whose expressions inputs act in.
@@ -57,14 +57,26 @@ pub struct EffectModel {
     pub mechanism: Mechanism,
     /// The spec with all of them.
     pub spec: Spec,
-    model: JitModel,
+    model: Arc<JitModel>,
     /// The model without contacts that creep, which is much shorter. Its parameters come first in the
     /// whole one.
-    rolling: Option<JitModel>,
+    rolling: Option<Arc<JitModel>>,
+    /// The equations of hypotheses that were asked for.
+    hypotheses: OnceLock<Box<Hypothesis>>,
     /// For each candidate that brings a coordinate, once it was asked for.
     augmented: Vec<OnceLock<Option<Augmented>>>,
     /// The spec that candidates are added to.
     plain: Spec,
+}
+
+/// The equations of some candidates, and those that were asked for after them.
+#[derive(Debug)]
+struct Hypothesis {
+    members: Vec<usize>,
+    /// The equations that also have all others.
+    whole: Arc<JitModel>,
+    own: Option<JitModel>,
+    next: OnceLock<Box<Hypothesis>>,
 }
 
 /// A model with a coordinate that a candidate brings.
@@ -72,7 +84,7 @@ pub struct EffectModel {
 struct Augmented {
     /// The candidate, all words of its items told.
     candidate: Candidate,
-    model: JitModel,
+    model: Arc<JitModel>,
     /// The longest step in s that it bears, where it is fast.
     longest_step: Option<f64>,
 }
@@ -149,6 +161,7 @@ impl EffectModel {
             },
             model,
             rolling: None,
+            hypotheses: OnceLock::new(),
             plain: spec.clone(),
         })
     }
@@ -217,8 +230,44 @@ impl EffectModel {
         own.into_iter().chain(augmented).reduce(f64::min)
     }
 
-    /// The shortest equations that have some candidates.
+    /// The shortest equations that have some candidates. Derivatives with respect to the parameters of others are
+    /// zero; at sizes of others that are not zero they have these too.
     pub fn with(&self, members: &[usize]) -> &dyn Model {
+        let whole = self.whole(members);
+        let mut place = &self.hypotheses;
+        loop {
+            let one = place.get_or_init(|| Box::new(self.hypothesis(members, whole)));
+            if one.members == members && Arc::ptr_eq(&one.whole, whole) {
+                return match &one.own {
+                    Some(own) => own,
+                    None => &**whole,
+                };
+            }
+            place = &one.next;
+        }
+    }
+
+    fn hypothesis(&self, members: &[usize], whole: &Arc<JitModel>) -> Hypothesis {
+        let info = whole.info();
+        let others = self.candidates.iter().enumerate();
+        let others = others.filter(|(index, _)| !members.contains(index));
+        let sizes = others.flat_map(|(_, candidate)| {
+            let own = candidate.parameters.iter();
+            own.filter(|(_, part)| *part != Part::Shape)
+        });
+        let zeros: Vec<usize> = sizes
+            .filter_map(|(name, _)| info.parameter_index(name))
+            .collect();
+        Hypothesis {
+            members: members.to_vec(),
+            own: whole.without(&zeros).ok(),
+            whole: whole.clone(),
+            next: OnceLock::new(),
+        }
+    }
+
+    /// Equations that have some candidates and others.
+    fn whole(&self, members: &[usize]) -> &Arc<JitModel> {
         if let Some(augmented) = self.augmented_with(members) {
             return &augmented.model;
         }
@@ -233,8 +282,8 @@ impl EffectModel {
 
     /// The equations of all candidates that can stand beside some members.
     pub fn beside(&self, members: &[usize]) -> &dyn Model {
-        self.augmented_with(members)
-            .map_or(&self.model, |augmented| &augmented.model)
+        let augmented = self.augmented_with(members);
+        &**augmented.map_or(&self.model, |augmented| &augmented.model)
     }
 
     /// Names and sizes of its equations.
@@ -257,13 +306,13 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
 }
 
 /// The mechanism of a spec, and machine code of its equations.
-fn derive(file: &str, text: &str) -> Result<(Mechanism, JitModel), ModelError> {
+fn derive(file: &str, text: &str) -> Result<(Mechanism, Arc<JitModel>), ModelError> {
     let wrong = |report: Report| ModelError::Spec(Box::new(report));
     let derived = derived(file, text).map_err(wrong)?;
     let mechanism = derived.mechanism;
     let program = assemble::program(derived.derivation, &mechanism, &FunctionKind::ALL)
         .map_err(|findings| wrong(report(&mechanism, text, &findings)))?;
-    Ok((mechanism, JitModel::new(&program)?))
+    Ok((mechanism, Arc::new(JitModel::new(&program)?)))
 }
 
 /// A spec with candidates.

@@ -4,10 +4,11 @@ use appell_runtime::lanes::AtLanes;
 use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
+use super::super::JitError;
 use super::super::check::Checked;
 use super::super::elementary::Elementary;
+use super::super::host::{self, Use};
 use super::super::memory::Code;
-use super::super::{JitError, host};
 use super::assemble::assemble;
 use super::encode::Width;
 use super::lower::lower;
@@ -110,7 +111,7 @@ impl Machine {
             return Ok(None);
         }
         let bytes = assemble(&allocated, width, target.elementary);
-        let isa = host::target(0)?;
+        let isa = host::target(0, Use::Lasting)?;
         let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
         let defined = define(&mut module, &bytes);
         // From here on the memory is freed, also where something failed.

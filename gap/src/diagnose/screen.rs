@@ -6,7 +6,9 @@
 
 use std::ops::Range;
 
-use appell_estimate::{Along, Coordinate, Direction, Estimation, Shapes, Tangent, Unknown};
+use appell_estimate::{
+    Along, Coordinate, Direction, Estimation, Shapes, Tangent, Unknown, in_parallel,
+};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
@@ -88,6 +90,16 @@ impl Screened {
 const LEFT: f64 = 1e-4;
 /// Disturbances that do not follow what the model lacks, as a part of those that do.
 pub(super) const QUIET: f64 = 0.1;
+
+/// Gains below this cannot outweigh that there are many candidates, whatever a fit adds to them.
+pub(super) const LEAST_GAIN: f64 = 4.0;
+/// Part of the greatest gain below which no fit catches up.
+const LEAST_PART: f64 = 0.25;
+
+/// The gain that makes a candidate worth a fit, where the best one gains so much.
+pub(super) fn least(best: f64) -> f64 {
+    LEAST_GAIN.max(LEAST_PART * best)
+}
 
 /// All candidates.
 #[derive(Debug, Clone)]
@@ -217,7 +229,8 @@ impl Screen {
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let (mut screen, for_kicks) = Self::first_order((bench, fitted), 1.0)?;
-        let augmented = augmented::screened(bench, fitted, for_kicks)?;
+        let best = screen.list.first().map_or(0.0, |best| best.gain);
+        let augmented = augmented::screened((bench, fitted), for_kicks, least(best))?;
         screen.list.extend(augmented);
         screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(screen)
@@ -254,18 +267,16 @@ impl Screen {
         let kicked = directions.len()..tangent.slopes.ncols();
         let for_kicks = projected.evidence(kicked.clone());
         let beyond = Projected::new((&tangent, bench.weight), fitted, free.len(), kicked);
-        let mut list: Vec<Screened> = own
-            .into_iter()
-            .filter_map(|(candidate, columns)| {
-                let positive = positive(bench, candidate);
-                let mut one = screened(&projected, candidate, &columns, &positive)?;
-                let beyond = screened(&beyond, candidate, &columns, &positive);
-                let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-                let told = (one.gain - beyond).clamp(0.0, for_kicks);
-                one.levels = levels;
-                Some(one.told(told))
-            })
-            .collect();
+        let all = in_parallel(own, |(candidate, columns)| {
+            let positive = positive(bench, candidate);
+            let mut one = screened(&projected, candidate, &columns, &positive)?;
+            let beyond = screened(&beyond, candidate, &columns, &positive);
+            let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
+            let told = (one.gain - beyond).clamp(0.0, for_kicks);
+            one.levels = levels;
+            Some(one.told(told))
+        });
+        let mut list: Vec<Screened> = all.into_iter().flatten().collect();
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok((Self { list }, for_kicks))
     }

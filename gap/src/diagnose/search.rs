@@ -12,7 +12,7 @@ use super::bench::{Bench, WRONG};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::prior::{effects, prior};
-use super::screen::{Screen, Screened, quieten};
+use super::screen::{LEAST_GAIN, Screen, Screened, least, quieten};
 use crate::effects::{Acts, Part};
 
 /// Candidates that are fitted alone.
@@ -25,10 +25,6 @@ const KEPT_BESIDE: usize = 4;
 const FOLLOWED: f64 = 3.0;
 /// Most effects of a hypothesis.
 const MOST_MEMBERS: usize = 4;
-/// Gains below this cannot outweigh that there are many candidates, whatever a fit adds to them.
-const LEAST_GAIN: f64 = 4.0;
-/// Part of the greatest gain below which no fit catches up.
-const LEAST_PART: f64 = 0.25;
 /// Part of the longest delay at which a search begins at most.
 const BELOW: f64 = 0.9;
 /// Why a fit does not count.
@@ -56,8 +52,7 @@ fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> V
         .iter()
         .find(is_plain)
         .map_or(0.0, |one| one.gain);
-    let least = LEAST_GAIN.max(LEAST_PART * best);
-    for screened in screen.list.iter().filter(|one| one.gain > least) {
+    for screened in (screen.list.iter()).filter(|one| one.gain > least(best)) {
         let candidate = bench.candidate(screened.candidate);
         let is_alike = |own: usize| bench.candidate(own).name() == candidate.name();
         let is_part = |own: usize| is_alike(own) && !candidate.is_component;

@@ -91,8 +91,9 @@ use screen::Screen;
 /// calibration tell which engine they are of.
 pub const ENGINE: u32 = 7;
 
-/// Rows that are fitted: with so many, sizes are known far better than laws are right.
+/// Rows that are fitted, and values in them: with so many, sizes are known far better than laws are right.
 const MOST_ROWS: usize = 4000;
+const MOST_VALUES: usize = 20_000;
 
 /// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
 pub fn diagnose(
@@ -113,7 +114,7 @@ fn diagnosed(
 ) -> Result<Report, DiagnoseError> {
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
-    let fitted = whole.stretches(MOST_ROWS);
+    let fitted = whole.stretches(most_rows(set));
     if fitted.runs.is_empty() {
         return Err(DiagnoseError::NothingToFit);
     }
@@ -209,6 +210,12 @@ fn diagnosed(
         experiment,
         ..report
     })
+}
+
+/// Rows that are fitted.
+fn most_rows(set: &DataSet) -> usize {
+    let measured = set.channels.iter().filter(|channel| channel.is_measured());
+    MOST_ROWS.min(MOST_VALUES / measured.count().max(1))
 }
 
 /// What people look at.

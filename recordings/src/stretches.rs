@@ -7,8 +7,10 @@ use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
 use crate::{DataSet, Run};
 
-/// Least number of rows of a stretch, as its initial state is unknown.
+/// Least number of rows of a stretch, as its initial state is unknown; fewer where these hold so many measured
+/// values, which soon tell it.
 const LENGTH: usize = 1000;
+const VALUES: usize = 4000;
 /// Least number of rows of a piece of an interrupted run.
 const SHORTEST: usize = 10;
 
@@ -26,9 +28,11 @@ impl DataSet {
         if all <= most {
             return self.clone();
         }
+        let measured = self.channels.iter().filter(|channel| channel.is_measured());
+        let length = LENGTH.min(VALUES / measured.count().max(1)).max(1);
         let runs = self.runs.iter().flat_map(|run| {
             let rows = run.times.len();
-            let pieces = pieces(rows, (rows * most / all).max(1));
+            let pieces = pieces(rows, (rows * most / all).max(1), length);
             pieces.into_iter().map(|piece| cut(run, piece))
         });
         Self {
@@ -138,9 +142,9 @@ pub(crate) fn uninterrupted(
     pieces
 }
 
-/// Stretches of `kept` rows together, each in the middle of its part of the run.
-fn pieces(rows: usize, kept: usize) -> Vec<Range<usize>> {
-    let count = (kept / LENGTH).max(1);
+/// Stretches of `kept` rows together and about `least` rows each at least, each in the middle of its part of the run.
+fn pieces(rows: usize, kept: usize, least: usize) -> Vec<Range<usize>> {
+    let count = (kept / least).max(1);
     let length = kept / count;
     let piece = |index: usize| {
         let [from, to] = [index, index + 1].map(|end| rows * end / count);
@@ -166,12 +170,13 @@ mod tests {
     #[test]
     fn stretches_lie_apart_within_their_run_and_have_the_rows_that_were_asked_for() {
         for (rows, kept) in [(10_000, 4000), (5001, 4999), (20_000, 1), (1500, 1400)] {
-            let pieces = pieces(rows, kept);
+            let pieces = pieces(rows, kept, LENGTH);
             let sum: usize = pieces.iter().map(ExactSizeIterator::len).sum();
             assert!(sum <= kept && sum + pieces.len() > kept, "{sum} of {kept}");
             assert!(pieces.windows(2).all(|pair| pair[0].end <= pair[1].start));
             assert!(pieces.iter().all(|piece| piece.end <= rows));
         }
-        assert_eq!(pieces(10_000, 2000), [2000..3000, 7000..8000]);
+        assert_eq!(pieces(10_000, 2000, LENGTH), [2000..3000, 7000..8000]);
+        assert_eq!(pieces(5000, 700, 333), [1075..1425, 3575..3925]);
     }
 }

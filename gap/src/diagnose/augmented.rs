@@ -13,7 +13,7 @@ use appell_estimate::{Estimation, Innovation, Recording, Setup, in_parallel};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::screen::{QUIET, Screened, directions, quieten};
+use super::screen::{LEAST_GAIN, QUIET, Screened, directions, least, quieten};
 use crate::effects::{Drive, Part};
 
 /// Sizes that are tried, as parts of the range of the coordinate: most gears have less play, and less
@@ -30,7 +30,8 @@ const STARTS: usize = 2;
 const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
 /// Standard deviations by which the mean innovation in one of these times stands out.
 const BIASED: f64 = 4.0;
-/// What such a coordinate gains at most, relative to what it would by taking the means out of these times.
+/// What such a coordinate gains at most, relative to what it would by taking the means out of these times. Where
+/// another candidate gains more, it is tried beside that one.
 const MOST: f64 = 2.0;
 /// Rows at the beginnings of the recordings on which sizes are compared, and the fewest of one of them.
 const SAMPLE: usize = 500;
@@ -40,12 +41,11 @@ const BEST: usize = 2;
 const PROMISING: f64 = 0.5;
 
 /// Those that gain at some size. An input that follows the motion biases the innovations after its reversals
-/// whatever the cause: it claims first what it can tell, `told_by_inputs` at most. No fit is worth it below a gain of
-/// `least`.
+/// whatever the cause: it claims first what it can tell, `told_by_inputs` at most. All others gain `best` at most.
 pub(super) fn screened(
     (bench, fitted): (&Bench<'_>, &Fitted),
     told_by_inputs: f64,
-    least: f64,
+    best: f64,
 ) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
     // A filter that feedback holds up, and that is lost, says nothing of reversals.
@@ -83,7 +83,7 @@ pub(super) fn screened(
             }
             let runs = innovations.as_deref().unwrap_or_default();
             let drive = Drive::of(effects.with(&[]), p, beside);
-            unknown.insert(drive.filter(|drive| is_biased(bench, runs, drive, least)));
+            unknown.insert(drive.filter(|drive| is_biased(bench, runs, drive, best)));
         }
         if let Some(drive) = &drives[&beside] {
             brought.push((index, drive.clone()));
@@ -97,16 +97,16 @@ pub(super) fn screened(
         if !effects.augment(index, &drive) {
             return Ok(None);
         }
-        let grid = Grid::of((bench, fitted), index, (sample.as_ref(), least));
+        let grid = Grid::of((bench, fitted), index, (sample.as_ref(), least(best)));
         Ok(best_size(&grid)?.map(|one| one.told(told_by_inputs)))
     });
     let list: Result<Vec<_>, DiagnoseError> = list.into_iter().collect();
     Ok(list?.into_iter().flatten().collect())
 }
 
-/// Whether innovations lean to one side after the drive has changed sign, so far that a gap may be worth a
-/// fit.
-fn is_biased(bench: &Bench<'_>, runs: &[Vec<Innovation>], drive: &Drive, least: f64) -> bool {
+/// Whether innovations lean to one side after the drive has changed sign, so far that nothing else gains more than
+/// a gap.
+fn is_biased(bench: &Bench<'_>, runs: &[Vec<Innovation>], drive: &Drive, best: f64) -> bool {
     let mut sums = vec![(0.0_f64, 0.0_f64); AFTER.len() * bench.measured.len()];
     for (recording, innovations) in bench.recordings.iter().zip(runs) {
         let times = recording.times();
@@ -133,7 +133,7 @@ fn is_biased(bench: &Bench<'_>, runs: &[Vec<Innovation>], drive: &Drive, least: 
     let stands_out = |(sum, count): &(f64, f64)| sum.abs() > BIASED * count.sqrt();
     let gains = (sums.iter()).map(|(sum, count)| 0.5 * sum * sum / count.max(1.0));
     let gain = bench.weight * gains.sum::<f64>();
-    sums.iter().any(stands_out) && MOST * gain >= least
+    sums.iter().any(stands_out) && MOST * gain >= best.max(LEAST_GAIN)
 }
 
 /// The beginnings of the recordings.

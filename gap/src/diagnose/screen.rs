@@ -230,7 +230,7 @@ impl Screen {
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let (mut screen, for_kicks) = Self::first_order((bench, fitted), 1.0)?;
         let best = screen.list.first().map_or(0.0, |best| best.gain);
-        let augmented = augmented::screened((bench, fitted), for_kicks, least(best))?;
+        let augmented = augmented::screened((bench, fitted), for_kicks, best)?;
         screen.list.extend(augmented);
         screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(screen)

@@ -294,7 +294,8 @@ impl Backward<'_, '_> {
     }
 
     /// One update: z⁺ = z + a e/s, P⁺ = P − a aᵀ/s with a = P c, s = cᵀa + r and e = y − h − cᵀ(z −
-    /// prior). Returns the derivative with respect to h and leaves that for c in `vector[0]`.
+    /// prior). Returns the derivative with respect to h and leaves that for c in `vector[0]`; of c of a state only its
+    /// own entry.
     fn scalar(
         &mut self,
         sample: &Sample,
@@ -326,11 +327,17 @@ impl Backward<'_, '_> {
         let noise = pass.system.layout.noise(sample.innovation.channel);
         gradient[noise] += 2.0 * pass.values[noise] * by_s;
         // a = P c with P = root rootᵀ.
-        let [projection, product, _] = &mut self.square;
-        let (projection, product) = (&mut projection[..n], &mut product[..n]);
-        transposed_multiply(root, by_a, n, projection);
-        multiply(root, projection, n, product);
-        add(product, by_c);
+        match pass.system.setup.reads(sample.innovation.channel) {
+            // c is along this state alone, as its slope stays: all that is asked for.
+            Measured::State(state) => by_c[state] += dot(a, by_a) / c[state],
+            Measured::Output(_) => {
+                let [projection, product, _] = &mut self.square;
+                let (projection, product) = (&mut projection[..n], &mut product[..n]);
+                transposed_multiply(root, by_a, n, projection);
+                multiply(root, projection, n, product);
+                add(product, by_c);
+            }
+        }
         for (i, &slope) in c.iter().enumerate().filter(|(_, slope)| **slope != 0.0) {
             for (j, &by_a) in by_a.iter().enumerate() {
                 self.p[i * n + j] += 0.5 * slope * by_a;

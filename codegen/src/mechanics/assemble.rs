@@ -17,7 +17,6 @@ use super::linear::ImplicitMotion;
 use super::linear_bound::BoundMotion;
 use super::motion::Motion;
 use super::positions::Positions;
-use super::prescribed;
 use super::reactions;
 use super::recursion::Recursion;
 use super::switches::switches;
@@ -532,24 +531,6 @@ impl Derivation {
             Array::scalar(name, about, graph.sum(&parts)).under(about, 0..1)
         });
         Ok(arrays.into())
-    }
-
-    /// The power of what is prescribed, with these pseudo-accelerations.
-    pub fn prescribed_power(&mut self, accelerations: &[Expr]) -> Outcome<Expr> {
-        let (bodies, speeds) = (&self.bodies, &self.symbols.speeds);
-        let mut power = prescribed::power(
-            &mut self.algebra,
-            bodies,
-            &self.loads,
-            speeds,
-            accelerations,
-        )?;
-        let graph = &mut self.algebra.graph;
-        for (speed, drive) in self.given.drives(graph, accelerations) {
-            let supplied = graph.mul(drive, speeds[speed]);
-            power = graph.add(power, supplied);
-        }
-        Ok(power)
     }
 
     /// ẋ: pseudo-accelerations, then generalised velocities.

@@ -1,9 +1,10 @@
-//! The power of what is prescribed: constraints and frames that move by themselves.
+//! The power of what is prescribed: constraints and frames that move by themselves, and drives.
 //!
 //! A velocity is `v = Σ (∂v/∂ω) ω + v₀`. The first part is a motion that the constraints allow, along which
 //! inertial forces and loads balance (d'Alembert). So what keeps up the prescribed motion supplies the power
 //! `Σ (m a·v₀ + ḣ·Ω₀) − Σ F·v₀` over all bodies and loads. It is zero where nothing is prescribed.
 
+use super::Derivation;
 use super::algebra::Algebra;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::{ActualMotion, BodyMotion};
@@ -11,8 +12,28 @@ use super::loads::AppliedLoad;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// The power, for the pseudo-velocities `speeds` and their rates `accelerations`.
-pub fn power(
+impl Derivation {
+    /// The power of what is prescribed, with these pseudo-accelerations.
+    pub fn prescribed_power(&mut self, accelerations: &[Expr]) -> Outcome<Expr> {
+        let (bodies, speeds) = (&self.bodies, &self.symbols.speeds);
+        let mut sum = power(
+            &mut self.algebra,
+            bodies,
+            &self.loads,
+            speeds,
+            accelerations,
+        )?;
+        let graph = &mut self.algebra.graph;
+        for (speed, drive) in self.given.drives(graph, accelerations) {
+            let supplied = graph.mul(drive, speeds[speed]);
+            sum = graph.add(sum, supplied);
+        }
+        Ok(sum)
+    }
+}
+
+/// The power of constraints and frames, for the pseudo-velocities `speeds` and their rates `accelerations`.
+fn power(
     algebra: &mut Algebra,
     bodies: &[BodyMotion],
     loads: &[AppliedLoad],

@@ -154,7 +154,7 @@ omega = "dot(theta)"
 [loads]
 weight = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
 drive = { kind = "generalized", coordinate = "x", force = "F" }
-gust = { kind = "force", at = "P", in = "ground", vector = ["wind", 0, 0] }
+gust = { kind = "force", on = "P", in = "ground", vector = ["wind", 0, 0] }
 "#;
     let law = r#"
 law = "computed torque"

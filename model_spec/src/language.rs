@@ -3,12 +3,14 @@
 //! The parser, the editor schema and the tests of the manual all read this one table.
 
 mod joints;
+mod keys;
 mod kinds;
 mod sections;
 
 use crate::mechanism::{Axis, Interpolation};
 
-pub use sections::{AXES, INTERPOLATIONS, SECTIONS};
+pub use keys::AXES;
+pub use sections::{INTERPOLATIONS, SECTIONS};
 
 /// A section of a spec.
 #[derive(Debug)]

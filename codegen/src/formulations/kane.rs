@@ -6,7 +6,6 @@ use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force};
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::finding::Outcome;
-use crate::mechanics::gibbs_appell::GibbsForm;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
@@ -78,10 +77,8 @@ pub(super) fn kane(
         forces.push(room(algebra, force)?);
     }
     let graph = &mut algebra.graph;
-    let mut gibbs = GibbsForm { mass_matrix, bias };
-    gibbs.give(graph, given);
-    let GibbsForm { mass_matrix, bias } = gibbs;
     for &(speed, rate) in given {
+        give(graph, (&mut mass_matrix, &mut bias), speed, rate);
         forces[speed] = rate;
     }
     let right = forces.iter().zip(&bias).map(|(&f, &b)| graph.sub(f, b));
@@ -107,6 +104,26 @@ pub(super) fn kane(
         accelerations,
         total_reaction,
     })
+}
+
+/// Lets a drive give the rate of a speed: what that takes of the others is known.
+fn give(
+    graph: &mut Graph,
+    (mass_matrix, bias): (&mut [Vec<Expr>], &mut [Expr]),
+    speed: usize,
+    rate: Expr,
+) {
+    for (row, (entries, bias)) in mass_matrix.iter_mut().zip(bias).enumerate() {
+        if row == speed {
+            entries.fill(Graph::ZERO);
+            entries[speed] = Graph::ONE;
+            *bias = Graph::ZERO;
+        } else {
+            let known = graph.mul(entries[speed], rate);
+            *bias = graph.add(*bias, known);
+            entries[speed] = Graph::ZERO;
+        }
+    }
 }
 
 fn partial(algebra: &mut Algebra, inertial: &Inertial<'_>, body: BodyId) -> Lowered<Partial> {

@@ -184,6 +184,19 @@ pub struct Contacts<T> {
     pub friction: [T; 1],
 }
 
+/// Result of [`inverse_dynamics_jacobians`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InverseDynamicsJacobians<T> {
+    /// M ω̇ + b − Π.
+    pub demand: GeneralizedForces<T>,
+    /// ∂(M ω̇ + b − Π)/∂x, ω̇ held.
+    pub by_state: GeneralizedForces<State<T>>,
+    /// −∂Π/∂u.
+    pub by_inputs: GeneralizedForces<Inputs<T>>,
+    /// M.
+    pub mass_matrix: [[T; 1]; 1],
+}
+
 /// Result of [`adjoint`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adjoint<T> {
@@ -714,6 +727,88 @@ pub fn contacts<T: Real>(
     }
 }
 
+/// Inverse dynamics: the pseudo-forces M ω̇ + b − Π that a motion takes beyond the loads. With inputs of zero they are what drives along the pseudo-velocities have to bring.
+///
+/// From `block.toml`.
+/// Operations: 15 (5 +, 9 ×, 1 ÷), sine or cosine of 1 angle, 1 function.
+#[must_use]
+#[inline]
+pub fn inverse_dynamics<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+    accelerations: &Accelerations<T>,
+) -> GeneralizedForces<T> {
+    let &Parameters { m, beta, mu, eps, g, k } = parameters;
+    let &State { v, s } = state;
+    let &Inputs { F } = inputs;
+    let v_dot = accelerations.v_dot;
+
+    // Sines and cosines.
+    let (sin_beta, cos_beta) = beta.sin_cos();
+
+    // Combinations of parameters.
+    let m_g = m * g;
+
+    // M ω̇ + b − Π.
+    let normal_force_ground = sin_beta * F + cos_beta * m_g;
+    let demand_v = m * v_dot + mu * normal_force_ground * (v / eps).tanh() + k * s
+        + sin_beta * m_g - cos_beta * F;
+
+    GeneralizedForces { v: demand_v }
+}
+
+/// Inverse dynamics with its Jacobians with respect to state, inputs and pseudo-accelerations; the last is the mass matrix M.
+///
+/// From `block.toml`.
+/// Operations: 23 (7 +, 15 ×, 1 ÷), sine or cosine of 1 angle, 1 function.
+#[must_use]
+#[inline]
+pub fn inverse_dynamics_jacobians<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+    accelerations: &Accelerations<T>,
+) -> InverseDynamicsJacobians<T> {
+    let &Parameters { m, beta, mu, eps, g, k } = parameters;
+    let &State { v, s } = state;
+    let &Inputs { F } = inputs;
+    let v_dot = accelerations.v_dot;
+    let one = T::constant(1.0);
+
+    // Sines and cosines.
+    let (sin_beta, cos_beta) = beta.sin_cos();
+
+    // Combinations of parameters.
+    let inv_eps = one / eps;
+    let m_g = m * g;
+
+    // M ω̇ + b − Π.
+    let tanh_v_over_eps = (inv_eps * v).tanh();
+    let normal_force_ground = sin_beta * F + cos_beta * m_g;
+    let mu_normal_force_ground = mu * normal_force_ground;
+    let demand_v = m * v_dot + tanh_v_over_eps * mu_normal_force_ground + k * s
+        + sin_beta * m_g - cos_beta * F;
+
+    // Row `v` of `by_state`.
+    let d_v_d_v = inv_eps * mu_normal_force_ground
+        * (one - tanh_v_over_eps * tanh_v_over_eps);
+
+    // Row `v` of `by_inputs`.
+    let d_v_d_F = mu * sin_beta * tanh_v_over_eps - cos_beta;
+
+    InverseDynamicsJacobians {
+        demand: GeneralizedForces { v: demand_v },
+        by_state: GeneralizedForces {
+            v: State { v: d_v_d_v, s: k },
+        },
+        by_inputs: GeneralizedForces {
+            v: Inputs { F: d_v_d_F },
+        },
+        mass_matrix: [[m]],
+    }
+}
+
 /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩; the weights are λ, Λ, Γ, K, row by row.
 ///
 /// - `adjoint`: a derivative of the weighted sum with respect to an intermediate value.
@@ -1208,12 +1303,56 @@ const _: () = {
             write(friction, &all.friction);
         }
 
+        fn inverse_dynamics(
+            &self,
+            at: At<'_>,
+            accelerations: &[f64],
+            demand: &mut [f64],
+        ) {
+            let accelerations = Accelerations::from(first(accelerations));
+            write(
+                demand,
+                &self::inverse_dynamics(
+                        &parameters(&at),
+                        &state(&at),
+                        &inputs(&at),
+                        &accelerations,
+                    )
+                    .to_array(),
+            );
+        }
+
+        fn inverse_dynamics_jacobians(
+            &self,
+            at: At<'_>,
+            accelerations: &[f64],
+            demand: &mut [f64],
+            by_state: &mut [f64],
+            by_inputs: &mut [f64],
+            mass: &mut [f64],
+        ) {
+            let accelerations = Accelerations::from(first(accelerations));
+            let all = self::inverse_dynamics_jacobians(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+                &accelerations,
+            );
+            write(demand, &all.demand.to_array());
+            write(by_state, all.by_state.map(State::to_array).to_array().as_flattened());
+            write(
+                by_inputs,
+                all.by_inputs.map(Inputs::to_array).to_array().as_flattened(),
+            );
+            write(mass, all.mass_matrix.as_flattened());
+        }
+
         fn has_adjoint(&self) -> bool {
             true
         }
 
         fn adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
-            let weights = first::<9>(weights);
+            let weights = first(weights);
             let all = self::adjoint(
                 &parameters(&at),
                 &state(&at),
@@ -1243,7 +1382,7 @@ const _: () = {
         }
 
         fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
-            let weights = first::<24>(weights);
+            let weights = first(weights);
             let all = self::output_adjoint(
                 &parameters(&at),
                 &state(&at),

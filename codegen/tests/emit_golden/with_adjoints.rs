@@ -162,6 +162,19 @@ pub struct Energies<T> {
     pub power: T,
 }
 
+/// Result of [`inverse_dynamics_jacobians`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct InverseDynamicsJacobians<T> {
+    /// M ω̇ + b − Π.
+    pub demand: GeneralizedForces<T>,
+    /// ∂(M ω̇ + b − Π)/∂x, ω̇ held.
+    pub by_state: GeneralizedForces<State<T>>,
+    /// −∂Π/∂u.
+    pub by_inputs: GeneralizedForces<Inputs<T>>,
+    /// M.
+    pub mass_matrix: [[T; 1]; 1],
+}
+
 /// Result of [`adjoint`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Adjoint<T> {
@@ -627,6 +640,84 @@ pub fn outputs<T: Real>(
     Outputs { x_G, z_G, energy }
 }
 
+/// Inverse dynamics: the pseudo-forces M ω̇ + b − Π that a motion takes beyond the loads. With inputs of zero they are what drives along the pseudo-velocities have to bring.
+///
+/// From `pendulum.toml`.
+/// Operations: 8 (3 +, 5 ×), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn inverse_dynamics<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+    accelerations: &Accelerations<T>,
+) -> GeneralizedForces<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { theta, .. } = state;
+    let &Inputs { tau } = inputs;
+    let omega_dot = accelerations.omega_dot;
+
+    // Combinations of parameters.
+    let m_l = m * l;
+
+    // M ω̇ + b − Π.
+    let demand_omega = omega_dot * (l * m_l + I) + g * m_l * theta.sin() - tau;
+
+    GeneralizedForces {
+        omega: demand_omega,
+    }
+}
+
+/// Inverse dynamics with its Jacobians with respect to state, inputs and pseudo-accelerations; the last is the mass matrix M.
+///
+/// From `pendulum.toml`.
+/// Operations: 9 (3 +, 6 ×), sine or cosine of 1 angle.
+#[must_use]
+#[inline]
+pub fn inverse_dynamics_jacobians<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    inputs: &Inputs<T>,
+    accelerations: &Accelerations<T>,
+) -> InverseDynamicsJacobians<T> {
+    let &Parameters { m, l, I, g } = parameters;
+    let &State { theta, .. } = state;
+    let &Inputs { tau } = inputs;
+    let omega_dot = accelerations.omega_dot;
+    let zero = T::constant(0.0);
+    let one = T::constant(1.0);
+
+    // Sines and cosines.
+    let (sin_theta, cos_theta) = theta.sin_cos();
+
+    // Combinations of parameters.
+    let m_l = m * l;
+    let M_omega_omega = l * m_l + I;
+    let m_l_g = g * m_l;
+
+    // M ω̇ + b − Π.
+    let demand_omega = M_omega_omega * omega_dot + sin_theta * m_l_g - tau;
+
+    // Row `omega` of `by_state`.
+    let d_omega_d_theta = cos_theta * m_l_g;
+
+    InverseDynamicsJacobians {
+        demand: GeneralizedForces {
+            omega: demand_omega,
+        },
+        by_state: GeneralizedForces {
+            omega: State {
+                omega: zero,
+                theta: d_omega_d_theta,
+            },
+        },
+        by_inputs: GeneralizedForces {
+            omega: Inputs { tau: -one },
+        },
+        mass_matrix: [[M_omega_omega]],
+    }
+}
+
 /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩; the weights are λ, Λ, Γ, K, row by row.
 ///
 /// - `adjoint`: a derivative of the weighted sum with respect to an intermediate value.
@@ -998,12 +1089,56 @@ const _: () = {
             );
         }
 
+        fn inverse_dynamics(
+            &self,
+            at: At<'_>,
+            accelerations: &[f64],
+            demand: &mut [f64],
+        ) {
+            let accelerations = Accelerations::from(first(accelerations));
+            write(
+                demand,
+                &self::inverse_dynamics(
+                        &parameters(&at),
+                        &state(&at),
+                        &inputs(&at),
+                        &accelerations,
+                    )
+                    .to_array(),
+            );
+        }
+
+        fn inverse_dynamics_jacobians(
+            &self,
+            at: At<'_>,
+            accelerations: &[f64],
+            demand: &mut [f64],
+            by_state: &mut [f64],
+            by_inputs: &mut [f64],
+            mass: &mut [f64],
+        ) {
+            let accelerations = Accelerations::from(first(accelerations));
+            let all = self::inverse_dynamics_jacobians(
+                &parameters(&at),
+                &state(&at),
+                &inputs(&at),
+                &accelerations,
+            );
+            write(demand, &all.demand.to_array());
+            write(by_state, all.by_state.map(State::to_array).to_array().as_flattened());
+            write(
+                by_inputs,
+                all.by_inputs.map(Inputs::to_array).to_array().as_flattened(),
+            );
+            write(mass, all.mass_matrix.as_flattened());
+        }
+
         fn has_adjoint(&self) -> bool {
             true
         }
 
         fn adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
-            let weights = first::<9>(weights);
+            let weights = first(weights);
             let all = self::adjoint(
                 &parameters(&at),
                 &state(&at),
@@ -1033,7 +1168,7 @@ const _: () = {
         }
 
         fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: model::Gradient<'_>) {
-            let weights = first::<12>(weights);
+            let weights = first(weights);
             let all = self::output_adjoint(
                 &parameters(&at),
                 &state(&at),

@@ -1,6 +1,6 @@
 //! The kinds of joints and their keys.
 
-use super::sections::{ABOUT, AXES, TURNS as TURN, key};
+use super::keys::{ABOUT, AXES, TURNS as TURN, key};
 use super::{Form, ItemKind, JointWord, Key, Kind, Need, Target};
 
 const PARENT: Key = key(

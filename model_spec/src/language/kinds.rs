@@ -1,6 +1,6 @@
 //! The kinds of constraints and loads, and their keys.
 
-use super::sections::{ABOUT, AXES, IN, key};
+use super::keys::{ABOUT, AXES, IN, key};
 use super::{ConstraintWord, Form, ItemKind, Kind, LoadWord, Need, Target};
 
 pub(super) static CONSTRAINTS: &[Kind] = &[

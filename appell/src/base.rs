@@ -156,15 +156,17 @@ impl BaseParameters {
 
     fn structure_table(&self) -> String {
         let mut rows = vec![
-            ["combination", "by the spec", "unit"]
+            ["parameter", "by the spec", "unit", "with"]
                 .map(str::to_owned)
                 .to_vec(),
         ];
         for combination in &self.structure.base {
+            let leading = &self.structure.parameters[combination.leading];
             rows.push(vec![
-                self.structure.text(combination),
+                leading.name.clone(),
                 number(combination.nominal),
-                self.structure.parameters[combination.leading].unit.clone(),
+                leading.unit.clone(),
+                self.structure.others(combination),
             ]);
         }
         table(&rows, 1..2)
@@ -172,13 +174,14 @@ impl BaseParameters {
 
     fn fit_table(&self, fit: &Fit) -> String {
         let heading = [
-            "combination",
+            "parameter",
             "by the spec",
             "found",
             "from",
             "to",
             "unit",
             "",
+            "with",
         ];
         let mut rows = vec![heading.map(str::to_owned).to_vec()];
         for (combination, estimate) in self.structure.base.iter().zip(&fit.estimates) {
@@ -188,14 +191,16 @@ impl BaseParameters {
                 nominal if nominal < low || nominal > high => "differs from the spec",
                 _ => "",
             };
+            let leading = &self.structure.parameters[combination.leading];
             rows.push(vec![
-                self.structure.text(combination),
+                leading.name.clone(),
                 number(combination.nominal),
                 number(estimate.value),
                 number(low),
                 number(high),
-                self.structure.parameters[combination.leading].unit.clone(),
+                leading.unit.clone(),
                 remark.to_owned(),
+                self.structure.others(combination),
             ]);
         }
         table(&rows, 1..5)

@@ -84,18 +84,25 @@ pub struct Structure {
 impl Structure {
     /// A combination as a sum, such as `Izz_1 + 0.25 m_2`.
     pub fn text(&self, combination: &Combination) -> String {
-        let mut text = self.parameters[combination.leading].name.clone();
-        for &(other, factor) in &combination.others {
-            let sign = if factor < 0.0 { '−' } else { '+' };
-            let name = &self.parameters[other].name;
-            let size = factor.abs();
-            if (size - 1.0).abs() < ROUNDING {
-                text.push_str(&format!(" {sign} {name}"));
-            } else {
-                text.push_str(&format!(" {sign} {} {name}", shortened(size)));
-            }
+        let leading = &self.parameters[combination.leading].name;
+        match self.others(combination).as_str() {
+            "" => leading.clone(),
+            others => format!("{leading} {others}"),
         }
-        text
+    }
+
+    /// What a combination adds to the parameter that it is named after, such as `+ 0.25 m_2`.
+    pub fn others(&self, combination: &Combination) -> String {
+        let others = combination.others.iter().map(|&(other, factor)| {
+            let sign = if factor < 0.0 { '−' } else { '+' };
+            let (name, size) = (&self.parameters[other].name, factor.abs());
+            if (size - 1.0).abs() < ROUNDING {
+                format!("{sign} {name}")
+            } else {
+                format!("{sign} {} {name}", shortened(size))
+            }
+        });
+        others.collect::<Vec<_>>().join(" ")
     }
 }
 

@@ -136,7 +136,9 @@ impl<'a> Estimation<'a> {
                 gradient
             });
             let mut gradient = vec![0.0; self.layout.len()];
-            slopes.iter().for_each(|own| add(own, &mut gradient));
+            for own in &slopes {
+                add(own, &mut gradient);
+            }
             gradient
         });
         let tapes = passes.into_iter().map(|pass| pass.tape);

@@ -236,15 +236,14 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let mut given = Given::of(&mut algebra, mechanism, &symbols, &velocities.rates)?;
-    if !given.is_empty() {
-        if !dependent.values.is_empty() {
-            given.refuse_beside("velocities that a system with pivoting tells")?;
-        }
-        given.put_into(&mut algebra.graph, &mut gibbs);
-        given.put_into_forces(&mut forces);
-        recursion = None;
-    }
+    let given = with_given_rates(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        (&velocities.rates, &dependent),
+        (&mut gibbs, &mut forces),
+    )?;
+    recursion = recursion.filter(|_| given.is_empty());
     let motion = if let Some(tree) = &mut recursion {
         tree.solve(&mut algebra, mechanism, &gibbs)?
     } else {
@@ -288,6 +287,23 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         warnings,
     };
     Ok((derivation, all_loads))
+}
+
+/// Puts the rates that drives give into M, b and Π.
+fn with_given_rates(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    symbols: &Symbols,
+    (rates, dependent): (&[Expr], &DependentSpeeds),
+    (gibbs, forces): (&mut GibbsForm, &mut [Expr]),
+) -> Outcome<Given> {
+    let mut given = Given::of(algebra, mechanism, symbols, rates)?;
+    if !dependent.values.is_empty() {
+        given.refuse_beside("velocities that a system with pivoting tells")?;
+    }
+    given.put_into(&mut algebra.graph, gibbs);
+    given.put_into_forces(forces);
+    Ok(given)
 }
 
 /// Velocities with symbols for q̇.

@@ -391,6 +391,7 @@ impl FunctionKind {
     }
 
     /// Name of the function, name of its result, sentence.
+    #[expect(clippy::too_many_lines, reason = "a row for each kind")]
     fn words(self) -> (&'static str, &'static str, &'static str) {
         match self {
             Self::Kinematics => (

@@ -65,7 +65,7 @@ mod tests {
     fn results_keep_the_order_of_the_items() {
         let squares = in_parallel(0..100_u32, |i| {
             // The first pieces take longest.
-            let slow = (0..(100 - i) * 1000).fold(i, |sum, one| sum.wrapping_add(one));
+            let slow = (0..(100 - i) * 1000).fold(i, u32::wrapping_add);
             let inner = in_parallel(0..3_u32, |j| j * i);
             (i * i, slow, inner)
         });

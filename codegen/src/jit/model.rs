@@ -252,7 +252,7 @@ impl JitModel {
         at: AtLanes<'_>,
         results: [&mut [[f64; LANES]]; N],
     ) {
-        let is_zero = |&index: &usize| at.p[index] == [0.0; LANES];
+        let is_zero = |&index: &usize| at.p[index].iter().all(|p| *p == 0.0);
         if let Some(whole) = &self.whole
             && !whole.zeros.iter().all(is_zero)
         {

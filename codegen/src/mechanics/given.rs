@@ -102,9 +102,10 @@ impl Given {
             item: Item::PseudoVelocity(appell_spec::mechanism::SpeedId::new(given.speed)),
             help: "let a load drive it, such as a torque that an input sets".to_owned(),
         });
-        match self.is_empty() {
-            true => Ok(()),
-            false => Err(findings.collect()),
+        if self.is_empty() {
+            Ok(())
+        } else {
+            Err(findings.collect())
         }
     }
 }

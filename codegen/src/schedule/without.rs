@@ -81,7 +81,9 @@ impl<F: Fn(usize) -> bool> Fold<F> {
             } => {
                 let right = self.all(right);
                 if right.iter().all(|entry| is_number(entry, 0)) {
-                    values.iter().for_each(|value| self.know(*value, number(0)));
+                    for value in values {
+                        self.know(*value, number(0));
+                    }
                     return None;
                 }
                 Some(Step::Solve {
@@ -210,7 +212,9 @@ fn keep_used(steps: &mut Vec<Step>, results: &[ResultArray], values: usize) {
         values: vec![false; values],
         factorisations: Vec::new(),
     };
-    results.iter().for_each(|result| used.all(&result.entries));
+    for result in results {
+        used.all(&result.entries);
+    }
     let mut kept = Vec::with_capacity(steps.len());
     for step in steps.drain(..).rev() {
         if used.needs(&step) {
@@ -259,7 +263,9 @@ impl Used {
     }
 
     fn all(&mut self, trees: &[Tree]) {
-        trees.iter().for_each(|tree| self.tree(tree));
+        for tree in trees {
+            self.tree(tree);
+        }
     }
 
     fn tree(&mut self, tree: &Tree) {

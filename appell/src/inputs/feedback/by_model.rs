@@ -74,18 +74,17 @@ pub(super) fn read(
     law: &Value<'_>,
 ) -> Option<Feedback> {
     let (name, at) = reader.string(law)?;
-    let follows = match LAWS.iter().position(|law| *law == name) {
-        Some(place) => place == 0,
-        None => {
-            let message = format!("there is no law `{name}`");
-            let help = format!("the laws are {}", LAWS.join(", "));
-            reader.tell(Code::UnknownWord, message, at, &help);
-            return None;
-        }
+    let Some(place) = LAWS.iter().position(|law| *law == name) else {
+        let message = format!("there is no law `{name}`");
+        let help = format!("the laws are {}", LAWS.join(", "));
+        reader.tell(Code::UnknownWord, message, at, &help);
+        return None;
     };
-    let known: Vec<&str> = match follows {
-        true => [KEYS, KEYS_OF_FOLLOWING].concat(),
-        false => KEYS.to_vec(),
+    let follows = place == 0;
+    let known: Vec<&str> = if follows {
+        [KEYS, KEYS_OF_FOLLOWING].concat()
+    } else {
+        KEYS.to_vec()
     };
     reader.known_keys(table, &known);
     reader.right_mechanism(table);
@@ -102,9 +101,10 @@ pub(super) fn read(
     let switching_times = reader.list(table, "switching_times_s", Reader::number);
     let initial = reader.by_state(table, "initial", Scope::Constant, "the initial value");
     let believed = believed(reader, table);
-    let aim = match follows {
-        true => computed_torque(reader, table, inputs.as_ref()?.len())?,
-        false => Aim::GravityCompensation,
+    let aim = if follows {
+        computed_torque(reader, table, inputs.as_ref()?.len())?
+    } else {
+        Aim::GravityCompensation
     };
     let inputs = inputs?;
     Some(Feedback {

@@ -42,9 +42,10 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
         Math::Sign("="),
         Math::Letter(Letter::plain("Π").below("i")),
     ]);
-    let lead = match w.derivation.given.is_empty() {
-        true => "",
-        false => {
+    let lead = if w.derivation.given.is_empty() {
+        ""
+    } else {
+        {
             "Given rates stand in place of the equations of their pseudo-velocities: drives bring whatever is left of these."
         }
     };

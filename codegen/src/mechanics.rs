@@ -180,22 +180,13 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
-    let mut intervals = declared_ranges(&algebra.graph, mechanism, &symbols);
-
-    let unknown = with_unknown_rates(&mut algebra, mechanism, &symbols)?;
-    let constraints =
-        constraints::constraints(&mut algebra, mechanism, &symbols, &unknown, &mut intervals)?;
-    let (contacts, not_judged) =
-        contacts::contacts(&mut algebra, mechanism, &symbols, &constraints)?;
-    let positions = Positions::new(&mut algebra, mechanism, &symbols, &unknown, &mut intervals)?;
-    algebra.check_size()?;
-    let elimination = elimination::eliminate(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &constraints,
-        &mut intervals,
-    )?;
+    let Bound {
+        constraints,
+        contacts,
+        not_judged,
+        positions,
+        elimination,
+    } = bound(&mut algebra, mechanism, &symbols)?;
     let rates = &elimination.rates;
     let directions = [symbols.speeds.as_slice(), &elimination.open.unknowns].concat();
     let Moving {
@@ -287,6 +278,37 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         warnings,
     };
     Ok((derivation, all_loads))
+}
+
+/// What binds the motion.
+struct Bound {
+    constraints: Constraints,
+    contacts: Vec<Contact>,
+    /// Contacts whose normal is not known.
+    not_judged: Vec<Finding>,
+    positions: Positions,
+    elimination: Elimination,
+}
+
+/// Constraints, and the generalised velocities that they leave.
+fn bound(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Outcome<Bound> {
+    let mut intervals = declared_ranges(&algebra.graph, mechanism, symbols);
+
+    let unknown = with_unknown_rates(algebra, mechanism, symbols)?;
+    let constraints =
+        constraints::constraints(algebra, mechanism, symbols, &unknown, &mut intervals)?;
+    let (contacts, not_judged) = contacts::contacts(algebra, mechanism, symbols, &constraints)?;
+    let positions = Positions::new(algebra, mechanism, symbols, &unknown, &mut intervals)?;
+    algebra.check_size()?;
+    let elimination =
+        elimination::eliminate(algebra, mechanism, symbols, &constraints, &mut intervals)?;
+    Ok(Bound {
+        constraints,
+        contacts,
+        not_judged,
+        positions,
+        elimination,
+    })
 }
 
 /// Puts the rates that drives give into M, b and Π.

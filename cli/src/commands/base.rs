@@ -17,8 +17,8 @@ use crate::{engine, output, progress};
 #[command(after_long_help = "\
 Examples:
   appell base double_pendulum
-  appell base arm.toml --data recordings --json base.json
-  appell derive arm.toml --regressor --out regressor.py")]
+  appell base rig/my_rig.toml --data rig --json base.json
+  appell derive double_pendulum --regressor --out regressor.py")]
 pub(crate) struct Base {
     /// Name of a shipped mechanism or path of a spec
     model: String,

@@ -240,12 +240,18 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     } else {
         let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
         gibbs.write_out_what_cancels(&mut algebra, &parts);
-        let way = dependent.way();
-        motion::solve(&mut algebra, mechanism, &gibbs, &forces, &parts, way)?
+        motion::solve(
+            &mut algebra,
+            mechanism,
+            &gibbs,
+            &forces,
+            &parts,
+            dependent.way(),
+        )?
     };
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
-    let repeated = positions.warnings.clone();
-    let mut warnings = [constraints.warnings.clone(), repeated, not_judged].concat();
+    let told = [constraints.warnings.clone(), positions.warnings.clone()];
+    let mut warnings = [told.concat(), not_judged].concat();
     warnings.extend(initially_singular(
         &mut algebra,
         mechanism,

@@ -235,20 +235,15 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         (&mut gibbs, &mut forces),
     )?;
     recursion = recursion.filter(|_| given.is_empty());
-    let motion = if let Some(tree) = &mut recursion {
-        tree.solve(&mut algebra, mechanism, &gibbs)?
-    } else {
-        let parts = gibbs_appell::named_parts(&mut algebra.graph, &bodies);
-        gibbs.write_out_what_cancels(&mut algebra, &parts);
-        motion::solve(
-            &mut algebra,
-            mechanism,
-            &gibbs,
-            &forces,
-            &parts,
-            dependent.way(),
-        )?
-    };
+    let equations = (&mut gibbs, forces.as_slice());
+    let tree = recursion.as_mut();
+    let motion = solved(
+        &mut algebra,
+        mechanism,
+        tree,
+        equations,
+        (&bodies, &dependent),
+    )?;
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
     let told = [constraints.warnings.clone(), positions.warnings.clone()];
     let mut warnings = [told.concat(), not_judged].concat();
@@ -315,6 +310,22 @@ fn bound(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Out
         positions,
         elimination,
     })
+}
+
+/// ω̇ by recursion where there is a tree of links, else from M, b and Π.
+fn solved(
+    algebra: &mut Algebra,
+    mechanism: &Mechanism,
+    tree: Option<&mut Recursion>,
+    (gibbs, forces): (&mut GibbsForm, &[Expr]),
+    (bodies, dependent): (&[BodyMotion], &DependentSpeeds),
+) -> Outcome<Motion> {
+    if let Some(tree) = tree {
+        return tree.solve(algebra, mechanism, gibbs);
+    }
+    let parts = gibbs_appell::named_parts(&mut algebra.graph, bodies);
+    gibbs.write_out_what_cancels(algebra, &parts);
+    motion::solve(algebra, mechanism, gibbs, forces, &parts, dependent.way())
 }
 
 /// Puts the rates that drives give into M, b and Π.

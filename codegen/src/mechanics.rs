@@ -227,13 +227,9 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let given = with_given_rates(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        (&velocities.rates, &dependent),
-        (&mut gibbs, &mut forces),
-    )?;
+    let motions = (velocities.rates.as_slice(), &dependent);
+    let equations = (&mut gibbs, forces.as_mut_slice());
+    let given = with_given_rates(&mut algebra, mechanism, &symbols, motions, equations)?;
     recursion = recursion.filter(|_| given.is_empty());
     let equations = (&mut gibbs, forces.as_slice());
     let tree = recursion.as_mut();

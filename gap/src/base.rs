@@ -4,7 +4,7 @@
 //!
 //! Inverse dynamics is linear in these parameters, M ω̇ + b − Π = Y π + r, and vanishes for the true ones. Columns of
 //! Y that depend on others at all motions belong to the same combination. Recorded motions give equations
-//! Y_b β = −r: splines filter coordinates and inputs alike, every pseudo-velocity is weighted by its residuals, and
+//! `Y_b β = −r`: splines filter coordinates and inputs alike, every pseudo-velocity is weighted by its residuals, and
 //! stretches of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
 
 mod moments;
@@ -108,8 +108,8 @@ impl Structure {
 
 /// A number with at most six digits.
 fn shortened(value: f64) -> String {
-    let digits = 5 - value.abs().log10().floor().clamp(-12.0, 12.0) as i32;
-    let scale = 10_f64.powi(digits);
+    let digits = 5.0 - value.abs().log10().floor().clamp(-12.0, 12.0);
+    let scale = 10_f64.powf(digits);
     format!("{}", (value * scale).round() / scale)
 }
 
@@ -212,13 +212,12 @@ impl Equations {
             rest.as_mut_slice(),
             values.as_mut_slice(),
         ];
-        match &self.native {
-            Some(native) => native.call_weighted(at, accelerations, results),
-            None => {
-                let computed = interpret_weighted(&self.schedule, at, accelerations);
-                for (to, from) in results.into_iter().zip(&computed) {
-                    to.copy_from_slice(from);
-                }
+        if let Some(native) = &self.native {
+            native.call_weighted(at, accelerations, results);
+        } else {
+            let computed = interpret_weighted(&self.schedule, at, accelerations);
+            for (to, from) in results.into_iter().zip(&computed) {
+                to.copy_from_slice(from);
             }
         }
         LinearEquations {

@@ -59,7 +59,7 @@ pub struct Fit {
     pub condition: f64,
 }
 
-/// The equations Y_b β = −r of a stretch, a row for each pseudo-velocity of each motion.
+/// The equations `Y_b β = −r` of a stretch, a row for each pseudo-velocity of each motion.
 struct Rows {
     part: Part,
     base: DMatrix<f64>,

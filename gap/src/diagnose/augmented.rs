@@ -268,7 +268,9 @@ impl<'g, 'b> Grid<'g, 'b> {
         };
         let beginnings = (sample.recordings.as_slice(), sample.log_likelihood);
         let mut rough = self.gains(all, levels, beginnings)?;
-        rough.iter_mut().for_each(|one| one.gain *= sample.scale);
+        for one in &mut rough {
+            one.gain *= sample.scale;
+        }
         if rough
             .first()
             .is_none_or(|best| best.gain < PROMISING * self.least)

@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
 use std::thread;
 
 use appell_codegen::jit::{Instructions, JitError, JitModel, Target};
@@ -224,6 +225,35 @@ fn every_method_agrees_with_the_interpreter() {
         interpreted(&program, FunctionKind::Outputs)
     );
     assert_eq!(model.interpreted().count(), 0);
+}
+
+#[test]
+fn a_part_agrees_with_the_whole_where_its_parameters_are_zero_and_elsewhere() {
+    let whole = Arc::new(JitModel::new(&pendulum()).unwrap());
+    let part = whole.without(&[1]).unwrap();
+    let (x, u) = ([0.7, -0.4], [1.3]);
+    for c in [0.0, 0.25] {
+        let at = At {
+            t: 0.0,
+            x: &x,
+            u: &u,
+            p: &[0.9, c],
+        };
+        let [mut own, mut all] = [[0.0; 12]; 2];
+        for (model, to) in [(&part, &mut own), (&*whole, &mut all)] {
+            let (rates, rest) = to.split_at_mut(2);
+            let (a, rest) = rest.split_at_mut(4);
+            let (b, p) = rest.split_at_mut(2);
+            model.jacobians(at, rates, a, b);
+            model.parameter_jacobian(at, p);
+        }
+        if c == 0.0 {
+            // Nobody asks for the slope by what is zero; the whole has one.
+            assert!(own[9] == 0.0 && all[9] != 0.0);
+            all[9] = 0.0;
+        }
+        assert_eq!(own, all);
+    }
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! The statements of a gap report.
 
-use appell_gap::diagnose::{Change, GapVerdict, Hint, Hypothesis, Report, Share};
+use appell_gap::diagnose::{Change, GapVerdict, Hint, HowFar, Hypothesis, Report, Share};
 
 use super::numbers::{measured, part_of_all, percent};
 use crate::text::with_unit;
@@ -255,7 +255,19 @@ fn shares(report: &Report) -> Option<String> {
         law.or_else(|| part.is_rest().then(|| format!("; {} stays", rest(part))))
     });
     text.extend(tail);
+    text.extend(report.how_far.as_ref().and_then(far_from_floor));
     Some(text)
+}
+
+/// A small part of a gap may still be a large error, where a model without the effects is lost at once.
+fn far_from_floor(far: &HowFar) -> Option<String> {
+    /// Part of the gap that is told as nothing, and times of the floor that are too many.
+    const SMALL: f64 = 5e-4;
+    const MANY: f64 = 2.0;
+    let rest = far.budget.iter().find(|part| part.is_rest())?;
+    let times = far.with_effect / far.noise_floor;
+    let is_far = rest.closed < SMALL && times > MANY && times.is_finite();
+    is_far.then(|| format!(", yet errors are {times:.1} times the noise floor"))
 }
 
 /// What an interval that bounds a share hardly or not at all means.

@@ -1,5 +1,7 @@
 //! Base parameters: what the forces of motions depend on, and its values by recordings.
 
+use std::fmt::Write as _;
+
 use appell_codegen::mechanics::Regressor;
 use appell_gap::base;
 use appell_recordings::DataSet;
@@ -131,20 +133,23 @@ impl BaseParameters {
             Some(fit) => self.fit_table(fit),
         };
         if !structure.without_effect.is_empty() {
-            text += &format!(
+            let _ = write!(
+                text,
                 "\nno motion notices {}\n",
                 structure.without_effect.join(", ")
             );
         }
         if let Some(fit) = &self.fit {
-            text += &format!(
+            let _ = write!(
+                text,
                 "\n{} motions, condition number {}; 95 % intervals\n",
                 fit.motions,
                 number(fit.condition)
             );
             for (title, speeds) in [("training runs", &fit.training), ("test runs", &fit.test)] {
                 if !speeds.is_empty() {
-                    text += &format!(
+                    let _ = write!(
+                        text,
                         "\nforces in {title}, root mean squares in SI\n{}",
                         speed_table(speeds)
                     );

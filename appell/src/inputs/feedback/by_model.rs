@@ -31,7 +31,7 @@ pub struct ModelLaw {
 pub enum Aim {
     /// Inputs that would hold the mechanism at rest where it is.
     GravityCompensation,
-    /// Inputs that let coordinates follow desired motions: q̈ = q̈_d − 2ζω (q̇ − q̇_d) − ω² (q − q_d).
+    /// Inputs that let coordinates follow desired motions: `q̈ = q̈_d − 2ζω (q̇ − q̇_d) − ω² (q − q_d)`.
     ComputedTorque {
         /// The coordinates, with their desired motions.
         followed: Vec<Followed>,

@@ -5,9 +5,9 @@
 
 use std::sync::OnceLock;
 
+use appell_runtime::differences;
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 use appell_runtime::series::Series;
-use appell_runtime::{differences, inverse_dynamics};
 
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{Schedule, interpret_weighted, schedule};
@@ -136,7 +136,7 @@ impl Model for InterpretedModel {
             Some(_) => {
                 self.evaluate_weighted(kind, at, accelerations, &mut [("demand", demand)]);
             }
-            None => inverse_dynamics::demand(self, at, accelerations, demand),
+            None => differences::inverse_dynamics(self, at, accelerations, demand),
         }
     }
 
@@ -152,7 +152,7 @@ impl Model for InterpretedModel {
         let kind = FunctionKind::InverseDynamicsJacobians;
         if self.program.function(kind).is_none() {
             let results = [demand, by_state, by_inputs, mass];
-            inverse_dynamics::jacobians(self, at, accelerations, results);
+            differences::inverse_dynamics_jacobians(self, at, accelerations, results);
             return;
         }
         let wanted = &mut [

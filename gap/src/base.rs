@@ -7,6 +7,7 @@
 //! `Y_b β = −r`: splines filter coordinates and inputs alike, every pseudo-velocity is weighted by its residuals, and
 //! stretches of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
 
+mod error;
 mod moments;
 mod regression;
 
@@ -14,11 +15,11 @@ use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::{Linear, Regressor};
 use appell_codegen::schedule::{Schedule, interpret_weighted, schedule};
 use appell_estimate::BaseParameters;
-use appell_estimate::inverse::InverseError;
 use appell_recordings::DataSet;
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
+pub use error::BaseError;
 pub use regression::{Estimate, Fit, Speed};
 
 /// A column counts as dependent if less than this part of it is left.
@@ -27,35 +28,6 @@ const DEPENDENT: f64 = 1e-8;
 const ROUNDING: f64 = 1e-9;
 /// Random motions per parameter.
 const MOTIONS: usize = 4;
-
-/// Why base parameters cannot be found.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-pub enum BaseError {
-    /// Nothing depends on the parameters.
-    #[error("no motion depends on an inertial parameter or on one of the loads")]
-    NoParameter,
-    /// An input was not recorded.
-    #[error(
-        "the input `{input}` is not recorded; forces of a motion are needed to estimate what it takes"
-    )]
-    NoInput {
-        /// Its name.
-        input: String,
-    },
-    /// The motions do not determine the base parameters.
-    #[error(
-        "the recorded motions determine {rank} of {count} base parameters; record motions that move every joint"
-    )]
-    TooLittle {
-        /// Combinations that are determined.
-        rank: usize,
-        /// Base parameters.
-        count: usize,
-    },
-    /// The motions could not be evaluated.
-    #[error(transparent)]
-    Inverse(#[from] InverseError),
-}
 
 /// A combination of parameters.
 #[derive(Debug, Clone, PartialEq)]

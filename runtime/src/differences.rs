@@ -77,6 +77,40 @@ pub fn parameter_jacobian<M: Model + ?Sized>(model: &M, at: At<'_>, p: &mut [f64
     });
 }
 
+/// What [`Model::inverse_dynamics`] writes, from M, b and Π.
+pub fn inverse_dynamics<M: Model + ?Sized>(
+    model: &M,
+    at: At<'_>,
+    accelerations: &[f64],
+    demand: &mut [f64],
+) {
+    let s = demand.len();
+    let (mut mass, mut bias, mut forces) = (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
+    model.appell(at, &mut mass, &mut bias, &mut forces);
+    for (i, demand) in demand.iter_mut().enumerate() {
+        let inertial = mass[i * s..].iter().zip(accelerations);
+        *demand = inertial.map(|(m, a)| m * a).sum::<f64>() + bias[i] - forces[i];
+    }
+}
+
+/// What [`Model::inverse_dynamics_jacobians`] writes, by differences: to about nine digits.
+pub fn inverse_dynamics_jacobians<M: Model + ?Sized>(
+    model: &M,
+    at: At<'_>,
+    accelerations: &[f64],
+    [demand, by_state, by_inputs, mass]: [&mut [f64]; 4],
+) {
+    model.inverse_dynamics(at, accelerations, demand);
+    columns(at.x, by_state, at.x.len(), |x, column| {
+        model.inverse_dynamics(At { x, ..at }, accelerations, column);
+    });
+    columns(at.u, by_inputs, at.u.len(), |u, column| {
+        model.inverse_dynamics(At { u, ..at }, accelerations, column);
+    });
+    let s = demand.len();
+    model.appell(at, mass, &mut vec![0.0; s], &mut vec![0.0; s]);
+}
+
 /// What [`Model::output_jacobians`] writes, to about nine digits.
 pub fn output_jacobians<M: Model + ?Sized>(
     model: &M,
@@ -147,7 +181,7 @@ fn slopes(at: &[f64], by: &mut [f64], first: usize, mut scalar: impl FnMut(&[f64
 }
 
 /// Slopes of a vector, a column of `matrix` for each variable.
-pub(crate) fn columns(
+fn columns(
     at: &[f64],
     matrix: &mut [f64],
     width: usize,

@@ -9,7 +9,7 @@
 //! - [`linearise`]: A and B in the independent states;
 //! - [`positions`]: states consistent with position constraints;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
-//! - [`differences`]: derivatives that a model has no formulas for;
+//! - [`differences`]: derivatives, and inverse dynamics, that a model has no formulas for;
 //! - [`contact`] and [`condition`]: where a model stops being valid.
 //!
 //! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`], dual
@@ -37,7 +37,6 @@ pub mod elementary;
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
-pub mod inverse_dynamics;
 pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;

@@ -3,7 +3,6 @@
 use std::borrow::Cow;
 
 use crate::differences;
-use crate::inverse_dynamics;
 use crate::lanes::{AtLanes, LANES, place_by_place};
 use crate::series::Series;
 
@@ -390,7 +389,7 @@ pub trait Model: Sync {
     /// Inverse dynamics: the pseudo-forces M ω̇ + b − Π that given pseudo-accelerations take beyond the
     /// loads (`s`).
     fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
-        inverse_dynamics::demand(self, at, accelerations, demand);
+        differences::inverse_dynamics(self, at, accelerations, demand);
     }
     /// [`Model::inverse_dynamics`] with its Jacobians with respect to the state (`s·n`), the inputs
     /// (`s·m`) and the pseudo-accelerations, which is M (`s·s`). The answer of this trait is made of
@@ -405,7 +404,7 @@ pub trait Model: Sync {
         mass: &mut [f64],
     ) {
         let results = [demand, by_state, by_inputs, mass];
-        inverse_dynamics::jacobians(self, at, accelerations, results);
+        differences::inverse_dynamics_jacobians(self, at, accelerations, results);
     }
     /// Whether the derivatives below are formulas. The answers of this trait are differences of the
     /// functions above: slower, and right to some nine digits.

@@ -2,7 +2,7 @@
 
 use appell_codegen::mechanics::regressor;
 use appell_codegen::schedule::{interpret_weighted, schedule};
-use appell_runtime::inverse_dynamics;
+use appell_runtime::differences;
 use appell_runtime::model::Model;
 use appell_test_kit::Random;
 use appell_tests::engine::{assert_close, engines, some_accelerations};
@@ -51,12 +51,12 @@ fn its_jacobians_are_its_slopes() {
         let [demand, by_state, by_inputs, mass] = &mut got;
         model.inverse_dynamics_jacobians(point.at(), &given, demand, by_state, by_inputs, mass);
         let slices = wanted.each_mut().map(Vec::as_mut_slice);
-        inverse_dynamics::jacobians(model, point.at(), &given, slices);
+        differences::inverse_dynamics_jacobians(model, point.at(), &given, slices);
         for (got, wanted) in got.iter().zip(&wanted) {
             assert_close(&name, got, wanted, DIFFERENCES, 1.0);
         }
         let mut by_mass = vec![f64::NAN; s];
-        inverse_dynamics::demand(model, point.at(), &given, &mut by_mass);
+        differences::inverse_dynamics(model, point.at(), &given, &mut by_mass);
         assert_close(&name, &got[0], &by_mass, 1e-12, 1.0);
     }
 }

@@ -23,7 +23,7 @@ Examples:
   appell derive my_pendulum.toml --out derivation.html
   appell derive unicycle --out unicycle.c
   appell derive unicycle --out unicycle.py
-  appell derive my_arm.toml --format spec
+  appell derive my_pendulum.toml --format spec
   appell derive unicycle --stage linear --about \"theta=0, r=0, dot(psi)=0, u=0\"")]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct Derive {

@@ -5,7 +5,6 @@ use std::slice::from_mut;
 use std::sync::{Arc, OnceLock};
 
 use appell_runtime::differences;
-use appell_runtime::inverse_dynamics;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
 use appell_runtime::series::Series;
@@ -367,7 +366,7 @@ impl Model for JitModel {
         let kind = FunctionKind::InverseDynamics;
         match self.program.function(kind) {
             Some(_) => self.evaluate_weighted(kind, at, accelerations, [demand]),
-            None => inverse_dynamics::demand(self, at, accelerations, demand),
+            None => differences::inverse_dynamics(self, at, accelerations, demand),
         }
     }
 
@@ -384,7 +383,7 @@ impl Model for JitModel {
         let results = [demand, by_state, by_inputs, mass];
         match self.program.function(kind) {
             Some(_) => self.evaluate_weighted(kind, at, accelerations, results),
-            None => inverse_dynamics::jacobians(self, at, accelerations, results),
+            None => differences::inverse_dynamics_jacobians(self, at, accelerations, results),
         }
     }
 

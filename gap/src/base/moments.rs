@@ -11,7 +11,7 @@ use nalgebra::{DMatrix, DVector};
 use rand_xoshiro::SplitMix64;
 use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
-use super::BaseError;
+use super::error::BaseError;
 use crate::inverse::coordinates;
 
 /// Largest pseudo-velocity of a random motion, in SI.

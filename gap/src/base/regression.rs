@@ -5,8 +5,9 @@ use appell_recordings::Part;
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
+use super::error::BaseError;
 use super::moments::Stretch;
-use super::{BaseError, Equations, Structure};
+use super::{Equations, Structure};
 
 /// How often the weights are taken from the residuals.
 const PASSES: usize = 3;

@@ -1,0 +1,32 @@
+//! What goes wrong.
+
+use appell_estimate::inverse::InverseError;
+
+/// Why base parameters cannot be found.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub enum BaseError {
+    /// Nothing depends on the parameters.
+    #[error("no motion depends on an inertial parameter or on one of the loads")]
+    NoParameter,
+    /// An input was not recorded.
+    #[error(
+        "the input `{input}` is not recorded; forces of a motion are needed to estimate what it takes"
+    )]
+    NoInput {
+        /// Its name.
+        input: String,
+    },
+    /// The motions do not determine the base parameters.
+    #[error(
+        "the recorded motions determine {rank} of {count} base parameters; record motions that move every joint"
+    )]
+    TooLittle {
+        /// Combinations that are determined.
+        rank: usize,
+        /// Base parameters.
+        count: usize,
+    },
+    /// The motions could not be evaluated.
+    #[error(transparent)]
+    Inverse(#[from] InverseError),
+}

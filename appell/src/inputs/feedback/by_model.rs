@@ -15,7 +15,7 @@ use appell_spec::{Code, Scope};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Feedback, Gains, Reader, Value};
+use super::reading::{Reader, Value};
 
 /// A law that computes its inputs from the equations of motion.
 #[derive(Debug)]
@@ -72,7 +72,7 @@ pub(super) fn read(
     reader: &mut Reader<'_>,
     table: &DeTable<'_>,
     law: &Value<'_>,
-) -> Option<Feedback> {
+) -> Option<(Vec<usize>, ModelLaw)> {
     let (name, at) = reader.string(law)?;
     let Some(place) = LAWS.iter().position(|law| *law == name) else {
         let message = format!("there is no law `{name}`");
@@ -98,28 +98,13 @@ pub(super) fn read(
             "name the inputs that the law computes",
         );
     }
-    let switching_times = reader.list(table, "switching_times_s", Reader::number);
-    let initial = reader.by_state(table, "initial", Scope::Constant, "the initial value");
     let believed = believed(reader, table);
     let aim = if follows {
         computed_torque(reader, table, inputs.as_ref()?.len())?
     } else {
         Aim::GravityCompensation
     };
-    let inputs = inputs?;
-    Some(Feedback {
-        file: reader.file.to_owned(),
-        offsets: vec![None; inputs.len()],
-        states: Vec::new(),
-        gains: Gains::ByModel(ModelLaw { aim, believed }),
-        sampled: None,
-        inputs,
-        switching_times: switching_times.unwrap_or_default(),
-        initial: initial
-            .into_iter()
-            .map(|(state, expr, _)| (state, expr))
-            .collect(),
-    })
+    Some((inputs?, ModelLaw { aim, believed }))
 }
 
 fn computed_torque(reader: &mut Reader<'_>, table: &DeTable<'_>, inputs: usize) -> Option<Aim> {

@@ -16,7 +16,7 @@ use nalgebra::{DMatrix, DVector};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use super::{Gains, Reader};
+use super::reading::Reader;
 
 /// A scheduling variable.
 #[derive(Debug, Clone, Copy)]
@@ -45,7 +45,7 @@ pub(super) fn read(
     table: &DeTable<'_>,
     inputs: &[usize],
     states: &[usize],
-) -> Option<Gains> {
+) -> Option<(SchedulingVariable, GainSchedule)> {
     for key in ["gains", "offset", "sampled_ms"] {
         if let Some(value) = table.get(key) {
             let message = format!("a law with `over` has no `{key}` of its own");
@@ -74,7 +74,7 @@ pub(super) fn read(
         .collect();
     let laws = nodes.into_iter().collect::<Option<Vec<_>>>()?;
     match GainSchedule::new(laws) {
-        Ok(schedule) => Some(Gains::Scheduled(varied, schedule)),
+        Ok(schedule) => Some((varied, schedule)),
         Err(error) => {
             reader.tell(Code::WrongType, error.to_string(), at.span(), "");
             None

@@ -14,7 +14,7 @@ pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 /// What is read of a file, with what is wrong in it.
 pub(super) struct Reader<'r> {
     pub(super) file: &'r str,
-    text: &'r str,
+    pub(super) text: &'r str,
     pub(super) setup: &'r Setup<'r>,
     pub(super) findings: Vec<Diagnostic>,
 }

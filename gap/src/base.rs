@@ -20,6 +20,7 @@ use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
 pub use error::BaseError;
+pub(crate) use moments::recorded;
 pub use regression::{Estimate, Fit, Speed};
 
 /// A column counts as dependent if less than this part of it is left.

@@ -7,6 +7,7 @@
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --screen--> what each candidate would gain, to first order
 //!          --search, compare--> the best ones fitted, alone and together; evidence on equal terms
+//!          (robots: --by_forces--> the same by forces of recorded motions, and the report)
 //!          --horizon--> whether simulations over windows agree; if not, they decide instead
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> what no candidate explains, and what it depends on
@@ -31,6 +32,7 @@ mod assembly;
 mod augmented;
 mod bench;
 mod budget;
+mod by_forces;
 mod calibration;
 mod changes;
 mod compare;
@@ -121,6 +123,11 @@ fn diagnosed(
     let scales = scales::of(&fitted);
     let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
     all.retain(|one| !options.present.contains(&one.name()));
+    if before.is_none() && by_forces::applies(set, options) {
+        all.retain(|one| by_forces::acts(one));
+        let model = EffectModel::of_forces(&set.spec, all)?;
+        return by_forces::diagnose(set, &model, options, &mut stage);
+    }
     let model = EffectModel::new(&set.spec, all)?;
     let Judged {
         bench,

@@ -37,6 +37,7 @@ pub use library::shipped;
 pub(crate) use memory::Memory;
 pub(crate) use model::ACTING;
 pub use model::{EffectModel, ModelError, candidates, with_candidates};
+pub(crate) use site::driven;
 pub use site::{Scales, SiteKind};
 
 #[cfg(test)]

@@ -67,13 +67,15 @@ pub(super) fn random(model: &dyn Model, count: usize, p: &[f64]) -> Vec<Moment> 
 }
 
 /// Recorded motions whose errors do not depend on those of other stretches.
-pub(super) struct Stretch {
+pub(crate) struct Stretch {
     pub(super) part: Part,
-    pub(super) moments: Vec<Moment>,
+    /// Its run among those of the part.
+    pub(crate) run: usize,
+    pub(crate) moments: Vec<Moment>,
 }
 
 /// The motions of all runs.
-pub(super) fn recorded(
+pub(crate) fn recorded(
     set: &DataSet,
     model: &dyn Model,
     p: &[f64],
@@ -119,6 +121,7 @@ pub(super) fn recorded(
             });
             stretches.push(Stretch {
                 part,
+                run: stretch.run,
                 moments: moments.collect::<Result<_, BaseError>>()?,
             });
         }

@@ -15,11 +15,11 @@ use super::report::{
 use super::screen::Screen;
 use super::twins;
 use super::unknown;
-use crate::effects::{Acts, Candidate, Part};
+use crate::effects::{Acts, Candidate, EffectModel, Part};
 use appell_estimate::{Along, Unknown};
 
 /// Sizes in their standard deviations that are found with near certainty.
-const DETECTABLE: f64 = 5.0;
+pub(super) const DETECTABLE: f64 = 5.0;
 /// Fewer hypotheses than this are never cut from the report.
 const TOLD: usize = 10;
 /// Odds beyond this are certainty, and no number any more.
@@ -63,20 +63,8 @@ pub(super) fn assemble(
     beside_their_twins(&mut which);
     let tied = tied(&which);
     let top = &which[0];
-    let verdict = match top.effects.first().map(String::as_str) {
-        None => GapVerdict::NoGap,
-        Some(UNKNOWN) if tied.is_empty() => GapVerdict::Unexplained,
-        Some(_) if tied.is_empty() => GapVerdict::Explained,
-        Some(_) => GapVerdict::Ambiguous,
-    };
-    let cut = which.len().min(TOLD);
-    let rest: f64 = which[cut..].iter().map(|h| h.probability).sum();
-    let keep: Vec<Hypothesis> = which
-        .iter()
-        .enumerate()
-        .filter(|(i, h)| *i < cut || h.effects.is_empty() || h.is_unknown())
-        .map(|(_, h)| h.clone())
-        .collect();
+    let verdict = verdict(top, &tied);
+    let keep = shortened(&which);
     let best = comparison.best();
     let leading = rivals
         .iter()
@@ -87,26 +75,27 @@ pub(super) fn assemble(
             effect: rival.name.clone(),
             about: format!("the model `{}`", rival.bench.set.mechanism.name),
         }],
-        None => found(bench, best),
+        None => found(bench.effects, &best.members),
     };
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
         verdict,
         is_by_simulation: bench.is_over_windows(),
+        is_by_forces: false,
         rows: [0; 2],
         place: if verdict == GapVerdict::NoGap || leads {
             Where::nowhere()
         } else {
             place
         },
-        which: if rest < 1e-6 { keep } else { which },
+        which: keep.unwrap_or(which),
         tied,
         how_far: None,
         detectable: detectable(bench, screen),
         failed: comparison
             .failed
             .iter()
-            .map(|(members, reason)| (names(bench, members), reason.clone()))
+            .map(|(members, reason)| (names(bench.effects, members), reason.clone()))
             .collect(),
         imperfections: imperfections(bench, best),
         disturbances: disturbances(bench, comparison.nominal(), best),
@@ -122,6 +111,27 @@ pub(super) fn assemble(
     })
 }
 
+/// The result by the most probable hypothesis and those that are tied.
+pub(super) fn verdict(top: &Hypothesis, tied: &[Vec<Vec<String>>]) -> GapVerdict {
+    match top.effects.first().map(String::as_str) {
+        None => GapVerdict::NoGap,
+        Some(UNKNOWN) if tied.is_empty() => GapVerdict::Unexplained,
+        Some(_) if tied.is_empty() => GapVerdict::Explained,
+        Some(_) => GapVerdict::Ambiguous,
+    }
+}
+
+/// The hypotheses without those that have no probability; nothing where all count.
+pub(super) fn shortened(which: &[Hypothesis]) -> Option<Vec<Hypothesis>> {
+    let cut = which.len().min(TOLD);
+    let rest: f64 = which[cut..].iter().map(|h| h.probability).sum();
+    let told = which
+        .iter()
+        .enumerate()
+        .filter(|(i, h)| *i < cut || h.effects.is_empty() || h.is_unknown());
+    (rest < 1e-6).then(|| told.map(|(_, h)| h.clone()).collect())
+}
+
 /// The hypotheses of the library, and that it has none.
 fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, DiagnoseError> {
     // What cannot be compared is no twin.
@@ -130,7 +140,7 @@ fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, 
     let known = 1.0 - comparison.unknown;
     let mut which: Vec<Hypothesis> = Vec::new();
     for (place, (fitted, probability)) in comparison.fits.iter().enumerate() {
-        let effects = names(bench, &fitted.members);
+        let effects = names(bench.effects, &fitted.members);
         // Variants of one effect are one hypothesis.
         if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
             own.probability += probability * known;
@@ -165,9 +175,9 @@ fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, 
 }
 
 /// Names of effects; components of a vector are one.
-fn names(bench: &Bench<'_>, members: &[usize]) -> Vec<String> {
+pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    for name in members.iter().map(|&m| bench.candidate(m).name()) {
+    for name in members.iter().map(|&m| model.candidate(m).name()) {
         if !names.contains(&name) {
             names.push(name);
         }
@@ -176,8 +186,8 @@ fn names(bench: &Bench<'_>, members: &[usize]) -> Vec<String> {
 }
 
 /// The effects of a hypothesis in words.
-fn found(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Found> {
-    let members = fitted.members.iter().map(|&member| bench.candidate(member));
+pub(super) fn found(model: &EffectModel, members: &[usize]) -> Vec<Found> {
+    let members = members.iter().map(|&member| model.candidate(member));
     let mut found: Vec<Found> = members
         .map(|candidate| Found {
             effect: candidate.name(),
@@ -200,10 +210,11 @@ fn join(
     let left = comparison.left.as_ref();
     let left = left.map_or(0.0, |left| left.log_bayes_factor.max(0.0)) * comparison.independent;
     let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
-    let beside = best.evidence.log() + prior(bench, effects(bench, &best.members));
+    let beside = best.evidence.log() + prior(bench.effects, effects(bench, &best.members));
     let base = comparison.nominal().evidence.log();
     for rival in rivals {
-        let odds = tempered(comparison.independent * (rival.log + prior(bench, 1) - beside));
+        let odds =
+            tempered(comparison.independent * (rival.log + prior(bench.effects, 1) - beside));
         which.push(Hypothesis {
             effects: vec![rival.name.clone()],
             same_as: None,
@@ -236,7 +247,7 @@ fn beside_their_twins(which: &mut Vec<Hypothesis>) {
 }
 
 /// The leading hypothesis with those that cannot be told from it.
-fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
+pub(super) fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
     let is_named = |other: &&Hypothesis| !other.is_unknown();
     let Some(first) = which.iter().find(is_named) else {
         return Vec::new();

@@ -267,10 +267,7 @@ impl<'a> Bench<'a> {
 
     /// Places of the parameters of a candidate, with what each is.
     pub(super) fn own(&self, candidate: &Candidate) -> Vec<(usize, Role)> {
-        let info = self.effects.info();
-        let own = candidate.parameters.iter();
-        own.filter_map(|(name, role)| Some((info.parameter_index(name)?, *role)))
-            .collect()
+        self.effects.own(candidate)
     }
 
     /// What is looked for under a hypothesis: parameters of the mechanism, then what the members

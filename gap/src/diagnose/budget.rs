@@ -15,7 +15,7 @@ use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::prediction::{Errors, Paired};
 use super::report::{LAW, REFIT, REST, Share};
-use crate::effects::Acts;
+use crate::effects::{Acts, EffectModel};
 
 /// The errors between which the gap divides.
 pub(super) struct Ends<'e> {
@@ -33,23 +33,18 @@ pub(super) struct Ends<'e> {
     pub(super) tolerance: f64,
 }
 
-/// The parts of a hypothesis, and of the law that was measured beside it.
+/// The parts of the `effects` of a hypothesis, each with its members, and of the law that was measured beside it.
+/// `errors` are those with some members alone.
 pub(super) fn of(
-    (bench, comparison): (&Bench<'_>, &Comparison),
-    best: &Fitted,
+    effects: &[(String, Vec<usize>)],
     ends: &Ends<'_>,
-    errors: impl Fn(&Fitted) -> Result<Errors, DiagnoseError>,
+    errors: impl Fn(&[usize]) -> Result<Errors, DiagnoseError>,
 ) -> Result<Vec<Share>, DiagnoseError> {
-    let effects = effects(bench, best);
     let count = effects.len();
     let all = (1 << count) - 1;
     let mut between: Vec<Errors> = Vec::new();
     for set in 1..all {
-        between.push(errors(&with(
-            (bench, comparison),
-            best,
-            &subset(&effects, set),
-        )?)?);
+        between.push(errors(&subset(effects, set))?);
     }
     let floor = ends.floor;
     let mut models = vec![ends.stated, ends.base];
@@ -143,11 +138,11 @@ fn shapley(means: &[f64], place: usize, players: usize) -> f64 {
         / factorial(u32::try_from(players).unwrap_or(u32::MAX))
 }
 
-/// The effects of a hypothesis with their members: components of a vector are one.
-fn effects(bench: &Bench<'_>, best: &Fitted) -> Vec<(String, Vec<usize>)> {
+/// The effects of some members: components of a vector are one.
+pub(super) fn effects(model: &EffectModel, members: &[usize]) -> Vec<(String, Vec<usize>)> {
     let mut effects: Vec<(String, Vec<usize>)> = Vec::new();
-    for &member in &best.members {
-        let name = bench.candidate(member).name();
+    for &member in members {
+        let name = model.candidate(member).name();
         match effects.iter_mut().find(|(own, _)| *own == name) {
             Some((_, members)) => members.push(member),
             None => effects.push((name, vec![member])),

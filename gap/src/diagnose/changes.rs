@@ -12,7 +12,7 @@ use toml_edit::{DocumentMut, Item};
 use super::bench::Bench;
 use super::evidence::Fitted;
 use super::{ChangeError, DiagnoseError};
-use crate::effects::{ACTING, Acts, Candidate, ModelError, Part, with_candidates};
+use crate::effects::{ACTING, Acts, Candidate, EffectModel, ModelError, Part, with_candidates};
 
 /// Changes of a spec.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -111,16 +111,45 @@ impl Changes {
             })
         });
         let shown = members().flat_map(|candidate| shown(bench, candidate));
+        let parameters = 0..bench.effects.mechanism.parameters.len();
+        let of_equations = Equations {
+            effects: bench.effects,
+            members: members().collect(),
+            rig: &bench.set.parameters,
+            values: &fitted.fit.values,
+            deviations: parameters.map(|index| deviation(fitted, index)).collect(),
+        };
         Ok(Self {
-            items: items(bench, fitted)?,
-            inputs: members()
-                .flat_map(|candidate| candidate.added.clone())
-                .collect(),
-            brought: brought(bench, fitted),
-            parameters: parameters(bench, fitted),
             signal_effects: signal_effects.chain(shown).collect(),
+            ..Self::of_equations(&of_equations)?
         })
     }
+
+    /// What a hypothesis changes in the equations.
+    pub(super) fn of_equations(of: &Equations<'_>) -> Result<Self, DiagnoseError> {
+        let members = of.members.iter();
+        Ok(Self {
+            items: of.items()?,
+            inputs: members
+                .flat_map(|candidate| candidate.added.clone())
+                .collect(),
+            brought: of.brought(),
+            parameters: of.parameters(),
+            signal_effects: Vec::new(),
+        })
+    }
+}
+
+/// The equations of a hypothesis, with its values.
+pub(super) struct Equations<'e> {
+    pub(super) effects: &'e EffectModel,
+    pub(super) members: Vec<&'e Candidate>,
+    /// The parameters as the data set states them.
+    pub(super) rig: &'e [appell_recordings::Parameter],
+    /// Values of all parameters in SI.
+    pub(super) values: &'e [f64],
+    /// Standard deviation of each parameter that was free, in SI.
+    pub(super) deviations: Vec<Option<f64>>,
 }
 
 /// What channels show in place of what the spec has them show.
@@ -152,81 +181,76 @@ fn parameter_names(text: &str) -> Result<Vec<String>, EditError> {
     Ok(names.map(|(name, _)| name.to_owned()).collect())
 }
 
-/// The items of the members; their sizes and shapes stand at the values that were found.
-fn items(bench: &Bench<'_>, fitted: &Fitted) -> Result<String, DiagnoseError> {
-    let members: Vec<_> = (fitted.members.iter())
-        .map(|&member| bench.candidate(member).clone())
-        .collect();
-    let text = with_candidates("", &members).map_err(ModelError::from)?;
-    let info = bench.effects.info();
-    let mut values: Vec<(&str, f64)> = Vec::new();
-    for candidate in &members {
-        for (index, part) in bench.own(candidate) {
-            let parameter = &info.parameters[index];
-            let value = match part {
-                Part::Switch => 1.0,
-                Part::Size | Part::Shape | Part::Term(_) => {
-                    let parameter = &bench.effects.mechanism.parameters[ParameterId::new(index)];
-                    rounded(
-                        fitted.fit.values[index],
-                        deviation(fitted, index),
-                        parameter,
-                    )
-                }
-            };
-            values.push((&parameter.name, value));
-        }
-    }
-    Ok(set_parameters(&text, &values).map_err(ModelError::from)?)
-}
-
-/// Sizes and shapes of the members.
-fn brought(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
-    let members = fitted.members.iter().map(|&member| bench.candidate(member));
-    let own = members.flat_map(|candidate| bench.own(candidate));
-    own.filter(|(_, part)| *part != Part::Switch)
-        .map(|(index, _)| {
-            let label = &bench.effects.mechanism.parameters[ParameterId::new(index)].label;
-            let in_unit = |value: f64| label.unit.from_si(value);
-            Refitted {
-                name: label.name.clone(),
-                stated: 0.0,
-                value: in_unit(fitted.fit.values[index]),
-                std: deviation(fitted, index).map(in_unit),
-                unit: label.unit.text.clone(),
+impl Equations<'_> {
+    /// The items of the members; their sizes and shapes stand at the values that were found.
+    fn items(&self) -> Result<String, DiagnoseError> {
+        let members: Vec<Candidate> = self.members.iter().copied().cloned().collect();
+        let text = with_candidates("", &members).map_err(ModelError::from)?;
+        let info = self.effects.info();
+        let mut values: Vec<(&str, f64)> = Vec::new();
+        for candidate in &members {
+            for (index, part) in self.effects.own(candidate) {
+                let parameter = &info.parameters[index];
+                let value = match part {
+                    Part::Switch => 1.0,
+                    Part::Size | Part::Shape | Part::Term(_) => {
+                        let parameter = &self.effects.mechanism.parameters[ParameterId::new(index)];
+                        rounded(self.values[index], self.deviations[index], parameter)
+                    }
+                };
+                values.push((&parameter.name, value));
             }
-        })
-        .collect()
-}
-
-/// Parameters of the mechanism that were free, or that this rig has otherwise than the spec.
-fn parameters(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Refitted> {
-    let candidates = bench.effects.candidates.iter();
-    let brought: Vec<&String> = candidates
-        .flat_map(|candidate| candidate.parameters.iter().map(|(name, _)| name))
-        .collect();
-    let mut told = Vec::new();
-    for (index, parameter) in bench.effects.mechanism.parameters.iter().enumerate() {
-        let rig = bench.set.parameters[index];
-        let free = deviation(fitted, index);
-        let as_in_spec = free.is_none() && rig.value.total_cmp(&parameter.value).is_eq();
-        if as_in_spec || brought.contains(&&parameter.label.name) {
-            continue;
         }
-        let unit = &parameter.label.unit;
-        let value = match free {
-            Some(_) => rounded(fitted.fit.values[index], free, parameter),
-            None => rig.value,
-        };
-        told.push(Refitted {
-            name: parameter.label.name.clone(),
-            stated: unit.from_si(rig.value),
-            value: unit.from_si(value),
-            std: free.map(|std| unit.from_si(std)),
-            unit: unit.text.clone(),
-        });
+        Ok(set_parameters(&text, &values).map_err(ModelError::from)?)
     }
-    told
+
+    /// Sizes and shapes of the members.
+    fn brought(&self) -> Vec<Refitted> {
+        let own = (self.members.iter()).flat_map(|candidate| self.effects.own(candidate));
+        own.filter(|(_, part)| *part != Part::Switch)
+            .map(|(index, _)| {
+                let label = &self.effects.mechanism.parameters[ParameterId::new(index)].label;
+                let in_unit = |value: f64| label.unit.from_si(value);
+                Refitted {
+                    name: label.name.clone(),
+                    stated: 0.0,
+                    value: in_unit(self.values[index]),
+                    std: self.deviations[index].map(in_unit),
+                    unit: label.unit.text.clone(),
+                }
+            })
+            .collect()
+    }
+
+    /// Parameters of the mechanism that were free, or that this rig has otherwise than the spec.
+    fn parameters(&self) -> Vec<Refitted> {
+        let candidates = self.effects.candidates.iter();
+        let brought: Vec<&String> = candidates
+            .flat_map(|candidate| candidate.parameters.iter().map(|(name, _)| name))
+            .collect();
+        let mut told = Vec::new();
+        for (index, parameter) in self.effects.mechanism.parameters.iter().enumerate() {
+            let rig = self.rig[index];
+            let free = self.deviations[index];
+            let as_in_spec = free.is_none() && rig.value.total_cmp(&parameter.value).is_eq();
+            if as_in_spec || brought.contains(&&parameter.label.name) {
+                continue;
+            }
+            let unit = &parameter.label.unit;
+            let value = match free {
+                Some(_) => rounded(self.values[index], free, parameter),
+                None => rig.value,
+            };
+            told.push(Refitted {
+                name: parameter.label.name.clone(),
+                stated: unit.from_si(rig.value),
+                value: unit.from_si(value),
+                std: free.map(|std| unit.from_si(std)),
+                unit: unit.text.clone(),
+            });
+        }
+        told
+    }
 }
 
 /// Standard deviation of a parameter in SI, beforehand where it stands at a limit; nothing where it was not

@@ -121,7 +121,7 @@ impl Comparison {
     ) -> bool {
         let best = self.best();
         let gain = self.independent * (log_evidence - best.evidence.log());
-        let beforehand = prior(bench, effects(bench, &best.members)) - (1.0 - NO_GAP).ln();
+        let beforehand = prior(bench.effects, effects(bench, &best.members)) - (1.0 - NO_GAP).ln();
         let odds = unlisted_alone(gain - beforehand) * self.fits[0].1;
         if odds.ln() < TIED {
             return false;

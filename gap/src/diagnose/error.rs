@@ -44,6 +44,9 @@ pub enum DiagnoseError {
     /// A filter or a fit that failed.
     #[error(transparent)]
     Estimate(#[from] EstimateError),
+    /// Forces of motions that cannot be evaluated.
+    #[error(transparent)]
+    Forces(#[from] crate::base::BaseError),
     /// What was found before cannot be written into the spec.
     #[error(transparent)]
     Change(#[from] ChangeError),

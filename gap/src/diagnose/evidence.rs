@@ -16,7 +16,7 @@ use super::bench::Bench;
 
 /// ln 1000, the range of the logarithm of d′: effects as large as whole motions come to some thousand.
 /// Calibrated with these two digits.
-const LN_1000: f64 = 6.9;
+pub(super) const LN_1000: f64 = 6.9;
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
 
@@ -131,7 +131,7 @@ impl Evidence {
 }
 
 /// Logarithm of the volume of a normal distribution with this information, and its deviations.
-fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
+pub(super) fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
     let k = information.nrows();
     if k == 0 {
         return (0.0, Vec::new());

@@ -69,7 +69,7 @@ pub(super) fn force_history(
     let equations = sizes.into_iter().enumerate();
     let equations = equations.map(|(equation, parts)| MissingForce {
         name: info.states[equation].name.to_string(),
-        unit: force_unit(bench, equation),
+        unit: force_unit(&bench.effects.mechanism, equation),
         medians: parts.into_iter().map(median).collect(),
     });
     Ok(ForceHistory {

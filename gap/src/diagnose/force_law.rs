@@ -4,6 +4,7 @@
 //! missing force: what is drawn as data does not know the law.
 
 use appell_estimate::Estimation;
+use appell_runtime::model::ModelInfo;
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -11,7 +12,7 @@ use super::compare::Comparison;
 use super::force_history::{median, together};
 use super::forces::{Forces, mean_missing};
 use super::prediction::followed;
-use super::report::{ForceLaw, Where};
+use super::report::{ForceLaw, ShareOf, Where};
 
 /// Most steps that are looked at.
 const STEPS: usize = 6000;
@@ -23,15 +24,15 @@ const PARTS: usize = 60;
 const DEPENDS: f64 = 0.3;
 
 /// One step of a recording.
-struct Step {
+pub(super) struct Step {
     /// Whether it lies in the first half of its run.
-    is_early: bool,
+    pub(super) is_early: bool,
     /// States, then inputs.
-    variables: Vec<f64>,
+    pub(super) variables: Vec<f64>,
     /// What the data say.
-    force: f64,
+    pub(super) force: f64,
     /// What the law says.
-    law: f64,
+    pub(super) law: f64,
 }
 
 /// Of the equation with the greatest share.
@@ -49,6 +50,15 @@ pub(super) fn force_law(
         return Ok(None);
     };
     let steps = steps(bench, comparison, equation)?;
+    Ok(over_its_variable(info, first, &steps))
+}
+
+/// Over the variable on which the law depends most, or the force where there is no law.
+pub(super) fn over_its_variable(
+    info: &ModelInfo,
+    first: &ShareOf,
+    steps: &[Step],
+) -> Option<ForceLaw> {
     let variables = info.states.iter().chain(info.inputs.iter());
     let has_law = steps.iter().any(|step| step.law != 0.0);
     let target = |step: &Step| if has_law { step.law } else { step.force };
@@ -59,22 +69,22 @@ pub(super) fn force_law(
             .is_some_and(|first| values.any(|value| value != first))
     };
     let varying = (0..variables.clone().count()).filter(varies);
-    let explained = varying.map(|v| (v, explained(&steps, v, target)));
+    let explained = varying.map(|v| (v, explained(steps, v, target)));
     let best = explained.max_by(|a, b| a.1.total_cmp(&b.1));
     let Some((variable, part)) = best.filter(|(_, part)| part.is_finite()) else {
-        return Ok(None);
+        return None;
     };
     let Some(quantity) = variables.clone().nth(variable) else {
-        return Ok(None);
+        return None;
     };
     let stride = steps.len().div_ceil(POINTS).max(1);
     let in_unit = |[x, force]: [f64; 2]| [x / quantity.scale, force];
     let of = |step: &Step| in_unit([step.variables[variable], step.force]);
     let medians = |of: &dyn Fn(&Step) -> f64| {
-        let medians = medians(&steps, variable, of).into_iter();
+        let medians = medians(steps, variable, of).into_iter();
         medians.map(in_unit).collect()
     };
-    Ok(Some(ForceLaw {
+    Some(ForceLaw {
         equation: first.name.clone(),
         unit: first.unit.clone(),
         variable: quantity.name.to_string(),
@@ -86,7 +96,7 @@ pub(super) fn force_law(
         } else {
             Vec::new()
         },
-    }))
+    })
 }
 
 /// The steps of all runs.

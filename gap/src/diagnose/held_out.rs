@@ -133,7 +133,10 @@ impl HeldOut {
                 floor,
                 tolerance,
             };
-            budget::of((bench, comparison), best, &ends, errors)?
+            let parts = budget::effects(bench.effects, &best.members);
+            budget::of(&parts, &ends, |members| {
+                errors(&budget::with((bench, comparison), best, members)?)
+            })?
         };
         Ok(Some(HowFar {
             horizon_s: horizon,

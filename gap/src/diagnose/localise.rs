@@ -6,6 +6,7 @@
 
 use appell_estimate::{Estimation, Unknown, chi_squared_probability};
 use appell_runtime::model::At;
+use appell_spec::Mechanism;
 use appell_spec::mechanism::SpeedId;
 use appell_spec::units::Unit;
 
@@ -94,7 +95,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
             },
             p_value,
             rms: (added[i] / count.max(1.0)).sqrt(),
-            unit: force_unit(bench, i),
+            unit: force_unit(&bench.effects.mechanism, i),
         })
         .collect();
     equations.sort_by(|a, b| b.share.total_cmp(&a.share));
@@ -107,8 +108,8 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
 }
 
 /// SI unit of the force beside a pseudo-velocity: a watt for each of its units.
-pub(super) fn force_unit(bench: &Bench<'_>, equation: usize) -> String {
-    let speed = &bench.effects.mechanism.pseudo_velocities[SpeedId::new(equation)]
+pub(super) fn force_unit(mechanism: &Mechanism, equation: usize) -> String {
+    let speed = &mechanism.pseudo_velocities[SpeedId::new(equation)]
         .label
         .unit;
     let speed = Unit::si(speed.dimension).text;

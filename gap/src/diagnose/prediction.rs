@@ -32,6 +32,13 @@ const BLOCK_S: f64 = 2.0;
 pub(super) struct Errors(BTreeMap<(usize, usize), (f64, f64)>);
 
 impl Errors {
+    /// Adds a squared error of a block of a run.
+    pub(super) fn add(&mut self, run: usize, block: usize, square: f64) {
+        let (sum, count) = self.0.entry((run, block)).or_default();
+        *sum += square;
+        *count += 1.0;
+    }
+
     /// Mean square.
     pub(super) fn mean(&self) -> f64 {
         let (sum, count) = (self.0.values()).fold((0.0, 0.0), |(sum, count), (square, n)| {
@@ -141,9 +148,7 @@ pub(super) fn errors(
             // A count of blocks in memory.
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let block = block as usize;
-            let (sum, count) = errors.0.entry((run, block)).or_default();
-            *sum += (one.residual / noise[one.channel]).powi(2);
-            *count += 1.0;
+            errors.add(run, block, (one.residual / noise[one.channel]).powi(2));
         }
     }
     Ok(errors)

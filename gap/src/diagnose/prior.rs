@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use super::bench::Bench;
-use crate::effects::Candidate;
+use crate::effects::{Candidate, EffectModel};
 
 /// Probability beforehand that there is no gap.
 pub(super) const NO_GAP: f64 = 0.5;
@@ -17,8 +17,8 @@ pub(super) fn effects(bench: &Bench<'_>, members: &[usize]) -> usize {
 }
 
 /// Logarithm of the probability beforehand of a hypothesis with so many effects.
-pub(super) fn prior(bench: &Bench<'_>, effects: usize) -> f64 {
-    let candidates = bench.effects.candidates.iter();
+pub(super) fn prior(model: &EffectModel, effects: usize) -> f64 {
+    let candidates = model.candidates.iter();
     let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
     let each = (names.len().max(1) as f64).ln();
     match effects {

@@ -380,6 +380,9 @@ pub struct Report {
     pub verdict: GapVerdict,
     /// Whether simulations over windows rank the hypotheses: one-step predictions did not agree with them.
     pub is_by_simulation: bool,
+    /// Whether forces of the recorded motions rank them; then errors are those of forces, at no horizon, and
+    /// disturbances what is left of them.
+    pub is_by_forces: bool,
     /// Rows of the runs to fit: those that were fitted, and all.
     pub rows: [usize; 2],
     /// Where the gap lies.

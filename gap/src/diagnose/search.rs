@@ -481,7 +481,7 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Logarithm of the probability, up to a constant.
     pub(super) fn log_posterior(&self, fitted: &Fitted) -> f64 {
-        fitted.evidence.log() + prior(self.bench, effects(self.bench, &fitted.members))
+        fitted.evidence.log() + prior(self.bench.effects, effects(self.bench, &fitted.members))
     }
 }
 

@@ -7,6 +7,9 @@ use super::effect::{Effect, EffectError, Family, Filter};
 use super::place::Source;
 use super::site::{Site, Sites};
 
+/// Stands for the places of an effect that all drives have.
+const DRIVES: &str = "drives";
+
 /// How a candidate acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Acts {
@@ -224,7 +227,43 @@ impl Candidate {
                 candidates.push(Self::new(effect, &site, &id, variant)?);
             }
         }
+        if effect.is_together {
+            candidates.extend(Self::together(effect, mechanism, sites)?);
+        }
         Ok(candidates)
+    }
+
+    /// An effect at all drives: each has sizes of its own.
+    fn together(
+        effect: &Effect,
+        mechanism: &Mechanism,
+        sites: &Sites<'_>,
+    ) -> Result<Option<Self>, EffectError> {
+        let drives = sites.drives();
+        let mut places = sites.of(effect.site);
+        places.retain(|site| drives.contains(&site.name.as_str()));
+        let stem = unused(format!("{}_{DRIVES}", effect.name), mechanism);
+        let own = places.iter().map(|site| {
+            let id = format!("{stem}_{}", identifier(&site.name));
+            Self::new(effect, site, &id, &effect.variants[0])
+        });
+        let own = own.collect::<Result<Vec<Self>, _>>()?;
+        let [first, _, ..] = own.as_slice() else {
+            return Ok(None);
+        };
+        let parts = own.iter().map(|one| one.items.parse());
+        let mut items = DocumentMut::new();
+        for part in parts.filter_map(Result::<DocumentMut, _>::ok) {
+            merge(&mut items, &part);
+        }
+        Ok(Some(Self {
+            site: DRIVES.to_owned(),
+            about: effect.about.replace("{site}", "every drive"),
+            parameters: own.iter().flat_map(|one| one.parameters.clone()).collect(),
+            stem,
+            items: items.to_string(),
+            ..first.clone()
+        }))
     }
 
     fn new(
@@ -319,6 +358,21 @@ impl Candidate {
             shows,
             source: effect.file.is_some().then_some(source),
         })
+    }
+}
+
+/// Adds the sections of a part, which has other names.
+fn merge(items: &mut DocumentMut, part: &DocumentMut) {
+    for (section, own) in part.iter() {
+        let whole = items
+            .entry(section)
+            .or_insert(Item::Table(Table::new()))
+            .as_table_like_mut();
+        if let (Some(whole), Some(own)) = (whole, own.as_table_like()) {
+            for (name, item) in own.iter() {
+                whole.insert(name, item.clone());
+            }
+        }
     }
 }
 

@@ -8,6 +8,7 @@
 //! words    = { part = "0.5" }        # what further words in the text stand for
 //! variants = [{ axis = "x" }]        # each a hypothesis of its own, with words of its own
 //! vector   = true                    # the variants are components, which may come together
+//! together = true                    # where many coordinates are driven: at all of them, as one hypothesis more
 //! switch   = "{effect}_on"           # a parameter that is 1 where the effect is there
 //! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late, slow
 //!
@@ -119,6 +120,8 @@ pub struct Effect {
     pub(super) variants: Vec<Vec<(String, String)>>,
     /// Whether the variants are components of one vector.
     pub(super) is_vector: bool,
+    /// Whether drives have it together.
+    pub(super) is_together: bool,
     pub(super) switch: Option<String>,
     pub(super) filter: Option<Filter>,
     /// The whole file.
@@ -140,7 +143,8 @@ impl From<Report> for EffectError {
 
 /// Keys of the section `[effect]`.
 pub(super) const KEYS: &[&str] = &[
-    "name", "family", "site", "about", "words", "variants", "vector", "switch", "filter",
+    "name", "family", "site", "about", "words", "variants", "vector", "together", "switch",
+    "filter",
 ];
 /// What the first words of an effect stand for.
 const EVERYWHERE: &[&str] = &["effect", "site"];
@@ -210,13 +214,8 @@ impl Effect {
         let own = fields.string(header, "name");
         let switch = fields.string(header, "switch");
         let variants = variants(&mut fields, header);
-        let is_vector = header.get("vector").and_then(|value| {
-            let is_vector = value.get_ref().as_bool();
-            if is_vector.is_none() {
-                fields.wrong_type(value, "`true` or `false`");
-            }
-            is_vector
-        });
+        let is_vector = flag(&mut fields, header, "vector");
+        let is_together = flag(&mut fields, header, "together");
         if let Some(site) = site {
             let mut known = [EVERYWHERE, &site.words().concat()].concat();
             known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
@@ -233,7 +232,8 @@ impl Effect {
             site,
             about,
             variants,
-            is_vector: is_vector.unwrap_or(false),
+            is_vector,
+            is_together,
             switch: switch.map(|(switch, _)| switch),
             filter,
             text: text.to_owned(),
@@ -247,6 +247,18 @@ impl Effect {
 pub(super) fn choices() -> Vec<&'static str> {
     let families = Family::ALL.into_iter().map(Family::word);
     families.chain(Filter::ALL.map(|(word, _)| word)).collect()
+}
+
+/// `true` or `false`; `false` where it is absent.
+fn flag(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> bool {
+    let Some(value) = header.get(key) else {
+        return false;
+    };
+    let flag = value.get_ref().as_bool();
+    if flag.is_none() {
+        fields.wrong_type(value, "`true` or `false`");
+    }
+    flag.unwrap_or(false)
 }
 
 /// One of some words, which may be absent; another one is reported.

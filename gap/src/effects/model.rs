@@ -142,15 +142,35 @@ impl EffectModel {
         })
     }
 
+    /// The same for forces of motions alone, without candidates that bring coordinates or let contacts creep.
+    pub(crate) fn of_forces(
+        spec: &Spec,
+        mut candidates: Vec<Candidate>,
+    ) -> Result<Self, ModelError> {
+        candidates.retain(|one| !one.creeps() && one.brings.is_none());
+        // Recorded motions are found by Newton's method.
+        let own = [FunctionKind::Jacobians, FunctionKind::InverseDynamics];
+        let functions = [&FunctionKind::OF_MOTIONS[..], &own].concat();
+        Self::with_functions(spec, candidates, &functions)
+    }
+
     fn with_all(spec: &Spec, candidates: Vec<Candidate>) -> Result<Self, ModelError> {
+        Self::with_functions(spec, candidates, &FunctionKind::ALL)
+    }
+
+    fn with_functions(
+        spec: &Spec,
+        candidates: Vec<Candidate>,
+        functions: &[FunctionKind],
+    ) -> Result<Self, ModelError> {
         let declared = |one: &Candidate| match one.brings {
             Some(_) => one.declared(),
             None => one.clone(),
         };
         let declared: Vec<Candidate> = candidates.iter().map(declared).collect();
         let text = with_candidates(&spec.text, &declared)?;
-        let (mechanism, model) =
-            derive(&spec.file, &text).map_err(|error| blamed(spec, &declared, error))?;
+        let (mechanism, model) = derive((&spec.file, &text), functions)
+            .map_err(|error| blamed(spec, &declared, error))?;
         Ok(Self {
             augmented: candidates.iter().map(|_| OnceLock::new()).collect(),
             candidates,
@@ -193,7 +213,7 @@ impl EffectModel {
         });
         let beside: Vec<Candidate> = beside.collect();
         let text = with_candidates(&self.plain.text, &beside)?;
-        let (mechanism, model) = derive(&self.plain.file, &text)?;
+        let (mechanism, model) = derive((&self.plain.file, &text), &FunctionKind::ALL)?;
         Ok(Augmented {
             candidate,
             model,
@@ -286,6 +306,14 @@ impl EffectModel {
         &**augmented.map_or(&self.model, |augmented| &augmented.model)
     }
 
+    /// Places of the parameters of a candidate, with what each is.
+    pub(crate) fn own(&self, candidate: &Candidate) -> Vec<(usize, Part)> {
+        let info = self.info();
+        let own = candidate.parameters.iter();
+        own.filter_map(|(name, part)| Some((info.parameter_index(name)?, *part)))
+            .collect()
+    }
+
     /// Names and sizes of its equations.
     pub fn info(&self) -> &ModelInfo {
         self.model.info()
@@ -297,7 +325,7 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
     let alone = |candidate: &Candidate| {
         let source = candidate.source.as_ref()?;
         let text = with_candidates(&spec.text, std::slice::from_ref(candidate)).ok()?;
-        match derive(&spec.file, &text) {
+        match derive((&spec.file, &text), &FunctionKind::ALL) {
             Err(ModelError::Spec(report)) => Some(source.blamed(&report, &text).into()),
             _ => None,
         }
@@ -306,11 +334,14 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
 }
 
 /// The mechanism of a spec, and machine code of its equations.
-fn derive(file: &str, text: &str) -> Result<(Mechanism, Arc<JitModel>), ModelError> {
+fn derive(
+    (file, text): (&str, &str),
+    functions: &[FunctionKind],
+) -> Result<(Mechanism, Arc<JitModel>), ModelError> {
     let wrong = |report: Report| ModelError::Spec(Box::new(report));
     let derived = derived(file, text).map_err(wrong)?;
     let mechanism = derived.mechanism;
-    let program = assemble::program(derived.derivation, &mechanism, &FunctionKind::ALL)
+    let program = assemble::program(derived.derivation, &mechanism, functions)
         .map_err(|findings| wrong(report(&mechanism, text, &findings)))?;
     Ok((mechanism, Arc::new(JitModel::new(&program)?)))
 }

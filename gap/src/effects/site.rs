@@ -3,8 +3,8 @@
 
 use appell_spec::expr::{Expr, ExprKind, Quantity};
 use appell_spec::mechanism::{
-    BodyId, Constraint, ConstraintKind, CoordinateId, InputId, LoadKind, Mechanism, ParameterId,
-    PseudoVelocity,
+    BodyId, Constraint, ConstraintKind, CoordinateId, InputId, Load, LoadKind, Mechanism,
+    ParameterId, PseudoVelocity,
 };
 use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
@@ -136,6 +136,9 @@ pub struct Scales {
 
 /// Part of the largest input over which a corner is rounded.
 const NARROW: f64 = 0.005;
+
+/// As many drives are likely to be of one make.
+const MANY_DRIVES: usize = 3;
 
 /// A site.
 #[derive(Debug, Clone)]
@@ -275,6 +278,16 @@ impl<'m> Sites<'m> {
             return Vec::new();
         }
         speeds.iter().enumerate().filter_map(of).collect()
+    }
+
+    /// The names of driven coordinates, where there are many, as in a robot.
+    pub(super) fn drives(&self) -> Vec<&str> {
+        let driven = driven(self.mechanism);
+        if driven.len() < MANY_DRIVES {
+            return Vec::new();
+        }
+        let name = |q: &CoordinateId| self.mechanism.coordinates[*q].label.name.as_str();
+        driven.iter().map(name).collect()
     }
 
     fn coordinate(&self, index: CoordinateId) -> Site {
@@ -481,6 +494,24 @@ impl<'m> Sites<'m> {
 /// Digits that are enough for a scale, and give the same text everywhere.
 pub(super) fn number(value: f64) -> String {
     format!("{value:.3e}")
+}
+
+/// Coordinates with an input along their rate alone.
+pub(crate) fn driven(mechanism: &Mechanism) -> Vec<CoordinateId> {
+    let inputs = |load: &Load| {
+        let LoadKind::Generalized { velocity, force } = &load.kind else {
+            return None;
+        };
+        let ExprKind::Quantity(Quantity::Rate(q)) = velocity.kind else {
+            return None;
+        };
+        let mut inputs = mechanism.inputs.ids().map(Quantity::Input);
+        inputs.any(|input| mentions(force, input)).then_some(q)
+    };
+    let mut driven: Vec<CoordinateId> = mechanism.loads.iter().filter_map(inputs).collect();
+    driven.sort_unstable();
+    driven.dedup();
+    driven
 }
 
 fn mentions(expr: &Expr, quantity: Quantity) -> bool {

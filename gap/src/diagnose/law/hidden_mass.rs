@@ -48,7 +48,7 @@ pub(super) fn told(
     };
     Law {
         equation: main.effects.info().states[law.place].name.to_string(),
-        unit: match force_unit(main, law.place).as_str() {
+        unit: match force_unit(&main.effects.mechanism, law.place).as_str() {
             "N" => "kg".to_owned(),
             "N m" => "kg m^2".to_owned(),
             other => format!("{other} s^2"),

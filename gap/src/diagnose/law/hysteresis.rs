@@ -37,7 +37,7 @@ pub(super) fn told(
     };
     Law {
         equation: states[law.place].name.to_string(),
-        unit: force_unit(main, law.place),
+        unit: force_unit(&main.effects.mechanism, law.place),
         depends_on: law.variable.clone(),
         variable: format!("{coordinate} since it turned"),
         variable_unit: unit.to_owned(),

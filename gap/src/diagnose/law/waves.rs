@@ -25,7 +25,7 @@ pub(super) fn candidate(
     series: &Series,
 ) -> Option<Candidate> {
     let written = dependence.written(bench)?;
-    let mut unit = force_unit(bench, law.place).replace(' ', "*");
+    let mut unit = force_unit(&bench.effects.mechanism, law.place).replace(' ', "*");
     if let Some(of_factor) = &written.factor_unit {
         unit = format!("{unit}/({of_factor})");
     }
@@ -100,7 +100,7 @@ pub(super) fn told(
         [x / scale, force, deviation.along(&waves)]
     };
     let factor_unit = written.as_ref().and_then(|own| own.factor_unit.clone());
-    let force = force_unit(main, unnamed.place);
+    let force = force_unit(&main.effects.mechanism, unnamed.place);
     Ok(Law {
         equation: main.effects.info().states[unnamed.place].name.to_string(),
         unit: factor_unit.map_or(force.clone(), |factor| format!("{force}/({factor})")),

@@ -1,0 +1,84 @@
+//! Diagnosis by the forces of recorded motions, for robots: every pseudo-velocity is the rate of a driven
+//! coordinate, all coordinates are measured and all inputs recorded.
+//!
+//! M ω̇ + b − Π vanishes on a recorded motion where the model is right. It is linear in the sizes of effects, so that
+//! every hypothesis is a weighted least-squares problem, and no simulation has to follow a motion that friction and
+//! stiff gears decide (M. Gautier, W. Khalil, *Identification of the dynamic parameters of robots*, 1990). What acts
+//! on channels, or between an input and its force, is not looked for.
+//!
+//! | file | idea |
+//! |---|---|
+//! | `motions.rs` | residual forces of recorded motions, and what each size would add |
+//! | `hypothesis.rs` | some candidates fitted, with their evidence |
+//! | `search.rs` | the most probable hypotheses |
+//! | `told.rs` | the report |
+//! | `pictures.rs` | forces over time and over what they depend on |
+
+mod hypothesis;
+mod motions;
+mod pictures;
+mod search;
+mod told;
+
+use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
+
+use super::report::Report;
+use super::{DiagnoseError, Options};
+use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
+use motions::Motions;
+use search::Search;
+
+/// Whether motions tell all forces.
+pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
+    /// Fewer joints are simulated.
+    const FEWEST: usize = 3;
+    let mechanism = &set.mechanism;
+    let has = |role: Role| set.channels.iter().any(|channel| channel.role == role);
+    let measured = |q: usize| has(Role::Measures(Measured::Coordinate(q)));
+    let coordinates = mechanism.coordinates.len();
+    coordinates >= FEWEST
+        && driven(mechanism).len() == coordinates
+        && mechanism.pseudo_velocities.len() == coordinates
+        && mechanism.inputs.len() == coordinates
+        && mechanism.constraints.is_empty()
+        && (0..coordinates).all(measured)
+        && (0..mechanism.inputs.len()).all(|input| has(Role::Input(input)))
+        && options.alternatives.is_empty()
+}
+
+/// The diagnosis; the runs that were held out are read at its end.
+pub(super) fn diagnose(
+    set: &DataSet,
+    model: &EffectModel,
+    options: &Options,
+    stage: &mut impl FnMut(&'static str),
+) -> Result<Report, DiagnoseError> {
+    stage("evaluating the forces of the recorded motions");
+    let fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
+    let training = Motions::of(&fit, model)?;
+    stage("fitting the effects to the forces");
+    let found = Search::new(model, &fit, &training).found();
+    stage("predicting the forces of the runs that were held out");
+    let test = set.only(OfSet::Test).bound_to(&model.mechanism);
+    let test = if test.runs.is_empty() {
+        None
+    } else {
+        Some(Motions::of(&test, model)?)
+    };
+    told::report((model, &fit), &found, (&training, test.as_ref()), options)
+}
+
+/// Whether a candidate adds forces that are linear in its sizes, or is a parameter.
+pub(super) fn acts(candidate: &Candidate) -> bool {
+    let sizes = candidate.parameters.iter().map(|(_, part)| *part);
+    let mut others = sizes.clone().filter(|part| *part != Part::Size);
+    match candidate.acts {
+        Acts::Items => {
+            candidate.brings.is_none()
+                && sizes.clone().any(|part| part == Part::Size)
+                && others.all(|part| part == Part::Shape)
+        }
+        Acts::Parameter(_) => true,
+        _ => false,
+    }
+}

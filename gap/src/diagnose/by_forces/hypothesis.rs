@@ -1,0 +1,327 @@
+//! Some candidates fitted to residual forces, with their evidence.
+//!
+//! Each equation has the variance of what it leaves; motions that follow each other tell less than as many
+//! independent ones. What is likely are the measured inputs u, given the motion: p(u) = p(r) |det E| where the residual
+//! r has −E u. Without this factor an input without any force would explain whatever force is missing.
+
+use std::f64::consts::TAU;
+
+use nalgebra::{DMatrix, DVector};
+
+use super::super::evidence::{LN_1000, volume};
+use super::motions::Motions;
+
+/// How often the variances are taken from what is left.
+const PASSES: usize = 12;
+/// Shortest part of a step.
+const SHORTEST: f64 = 1e-3;
+/// Largest lag of correlations, in motions.
+const LAGS: usize = 50;
+/// A correlation below this is chance.
+const CHANCE: f64 = 0.05;
+
+/// A parameter that a hypothesis sets free.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Open {
+    /// Its column.
+    pub(super) column: usize,
+    /// Standard deviation about its value beforehand; nothing for sizes.
+    pub(super) std: Option<f64>,
+    /// Whether it cannot be negative.
+    pub(super) is_positive: bool,
+}
+
+/// A fitted hypothesis.
+#[derive(Debug, Clone)]
+pub(super) struct Hypothesis {
+    /// Indices of the candidates; none for the nominal model.
+    pub(super) members: Vec<usize>,
+    /// Difference of every parameter that varies.
+    pub(super) changes: DVector<f64>,
+    /// Standard deviation of each that is free and at no limit.
+    pub(super) deviations: Vec<Option<f64>>,
+    /// Variance that each equation leaves.
+    pub(super) variances: Vec<f64>,
+    pub(super) log_likelihood: f64,
+    /// Logarithm of the evidence.
+    pub(super) log: f64,
+}
+
+/// The most likely values.
+struct Solved {
+    values: DVector<f64>,
+    information: DMatrix<f64>,
+    variances: Vec<f64>,
+    /// What inputs whose forces change add to the log-likelihood.
+    log_levers: f64,
+}
+
+/// Sums of squares over the motions.
+pub(super) struct Squares {
+    /// For each equation, those of slopes and residual, the residual last.
+    equations: Vec<DMatrix<f64>>,
+    /// Number of motions.
+    count: f64,
+    levers: Vec<(usize, DMatrix<f64>)>,
+    /// Part of the motions that tell something of their own.
+    pub(super) independent: Vec<f64>,
+}
+
+impl Squares {
+    pub(super) fn of(motions: &Motions) -> Self {
+        let columns = motions.parameters.len();
+        let speeds = motions.all().next().map_or(0, |one| one.residual.len());
+        let mut equations = vec![DMatrix::zeros(columns + 1, columns + 1); speeds];
+        let mut count = 0.0;
+        let mut row = DVector::zeros(columns + 1);
+        for motion in motions.all() {
+            for (equation, squares) in equations.iter_mut().enumerate() {
+                row.rows_mut(0, columns)
+                    .copy_from(&motion.slopes.row(equation).transpose());
+                row[columns] = motion.residual[equation];
+                squares.ger(1.0, &row, &row, 1.0);
+            }
+            count += 1.0;
+        }
+        Self {
+            independent: vec![1.0; equations.len()],
+            equations,
+            count,
+            levers: motions.levers.clone(),
+        }
+    }
+
+    /// ln |det E⁻¹ E(p)| with its derivatives by what is open, minus the second ones; nothing where inputs lose
+    /// their forces.
+    fn levers(
+        &self,
+        open: &[Open],
+        values: &DVector<f64>,
+    ) -> Option<(f64, DVector<f64>, DMatrix<f64>)> {
+        let (mut slope, mut curvature) = (
+            DVector::zeros(open.len()),
+            DMatrix::zeros(open.len(), open.len()),
+        );
+        let own = |column: usize| open.iter().position(|one| one.column == column);
+        let levers = self.levers.iter();
+        let levers: Vec<(usize, &DMatrix<f64>)> = levers
+            .filter_map(|(column, lever)| Some((own(*column)?, lever)))
+            .collect();
+        let Some((_, first)) = levers.first() else {
+            return Some((0.0, slope, curvature));
+        };
+        let mut whole = DMatrix::identity(first.nrows(), first.ncols());
+        for (place, lever) in &levers {
+            whole += values[*place] * *lever;
+        }
+        let determinant = whole.determinant();
+        let inverse = whole.try_inverse().filter(|_| determinant > 0.0)?;
+        let turned: Vec<(usize, DMatrix<f64>)> = (levers.iter())
+            .map(|(place, lever)| (*place, &inverse * *lever))
+            .collect();
+        for (i, own) in &turned {
+            slope[*i] = own.trace();
+            for (j, other) in &turned {
+                curvature[(*i, *j)] = (own * other).trace();
+            }
+        }
+        Some((determinant.ln(), slope, curvature))
+    }
+
+    /// With the correlations of what a hypothesis leaves: n motions count as n / (1 + 2 Σ ρ).
+    pub(super) fn correlated(mut self, motions: &Motions, fitted: &Hypothesis) -> Self {
+        for (equation, independent) in self.independent.iter_mut().enumerate() {
+            let mut sums = [0.0; LAGS];
+            for (_, own) in &motions.stretches {
+                let left: Vec<f64> = own
+                    .iter()
+                    .map(|motion| motion.left(&fitted.changes)[equation])
+                    .collect();
+                for (lag, sum) in sums.iter_mut().enumerate() {
+                    let pairs = left.iter().zip(left.iter().skip(lag));
+                    *sum += pairs.map(|(a, b)| a * b).sum::<f64>();
+                }
+            }
+            let correlations = sums[1..].iter().map(|sum| sum / sums[0]);
+            let together: f64 = correlations.take_while(|own| *own > CHANCE).sum();
+            *independent = 1.0 / (1.0 + 2.0 * together);
+        }
+        self
+    }
+
+    /// The best values of what is open; nothing where they cannot be told from each other or where a member has no
+    /// size. `members` come with their parameters, `others` are those of the mechanism.
+    pub(super) fn fitted(
+        &self,
+        members: &[(usize, Vec<Open>)],
+        others: &[Open],
+    ) -> Option<Hypothesis> {
+        let mut open: Vec<Open> = others.to_vec();
+        open.extend(members.iter().flat_map(|(_, own)| own));
+        loop {
+            let solved = self.solved(&open)?;
+            let is_against = |&i: &usize| open[i].is_positive && solved.values[i] <= 0.0;
+            let against = (0..open.len()).find(is_against);
+            if let Some(against) = against {
+                open.remove(against);
+                continue;
+            }
+            let has_size = |(_, own): &(usize, Vec<Open>)| {
+                let mut columns = open.iter().map(|one| one.column);
+                columns.any(|column| own.iter().any(|one| one.column == column))
+            };
+            if !members.iter().all(has_size) {
+                return None;
+            }
+            return self.told(members, &open, solved);
+        }
+    }
+
+    fn told(
+        &self,
+        members: &[(usize, Vec<Open>)],
+        open: &[Open],
+        solved: Solved,
+    ) -> Option<Hypothesis> {
+        let Solved {
+            values,
+            information,
+            variances,
+            log_levers,
+        } = solved;
+        let columns = self.equations.first()?.nrows() - 1;
+        let (log_volume, deviations) = volume(&information);
+        let mut occam = log_volume;
+        let (mut changes, mut known) = (DVector::zeros(columns), vec![None; columns]);
+        for (place, one) in open.iter().enumerate() {
+            let (value, deviation) = (values[place], deviations[place]);
+            changes[one.column] = value;
+            known[one.column] = Some(deviation);
+            occam += if let Some(std) = one.std {
+                -0.5 * (value / std).powi(2) - std.ln() - 0.5 * TAU.ln()
+            } else {
+                let d = (value.abs() / deviation).max(1.0);
+                let sides = if one.is_positive { 1.0 } else { 2.0_f64 };
+                -(d * deviation * sides * LN_1000).ln()
+            };
+        }
+        // A member none of whose sizes is told from zero is not there.
+        let is_told = |(_, own): &(usize, Vec<Open>)| {
+            own.iter()
+                .any(|one| known[one.column].is_some_and(|std| changes[one.column].abs() > std))
+        };
+        if !members.iter().all(is_told) {
+            return None;
+        }
+        let logs = variances.iter().zip(&self.independent);
+        let log_likelihood = log_levers
+            + logs
+                .map(|(variance, independent)| -0.5 * independent * self.count * variance.ln())
+                .sum::<f64>();
+        let log = log_likelihood + occam;
+        log.is_finite().then(|| Hypothesis {
+            members: members.iter().map(|(member, _)| *member).collect(),
+            changes,
+            deviations: known,
+            variances,
+            log_likelihood,
+            log,
+        })
+    }
+
+    /// The most likely values by Newton's method, with variances that follow.
+    fn solved(&self, open: &[Open]) -> Option<Solved> {
+        let last = self.equations.first()?.nrows() - 1;
+        let count = open.len();
+        let independent: f64 = self.independent.iter().sum();
+        let motions = self.count * independent / self.independent.len() as f64;
+        let mut values = DVector::zeros(count);
+        let mut information = DMatrix::zeros(count, count);
+        let mut variances = self.variances(open, &values);
+        for _ in 0..PASSES {
+            let (_, slope, curvature) = self.levers(open, &values)?;
+            information = motions * curvature;
+            let mut right = motions * slope + &information * &values;
+            for (equation, squares) in self.equations.iter().enumerate() {
+                let weight = self.independent[equation] / variances[equation];
+                for (i, own) in open.iter().enumerate() {
+                    right[i] -= weight * squares[(own.column, last)];
+                    for (j, other) in open.iter().enumerate() {
+                        information[(i, j)] += weight * squares[(own.column, other.column)];
+                    }
+                }
+            }
+            for (i, own) in open.iter().enumerate() {
+                if let Some(std) = own.std {
+                    information[(i, i)] += 1.0 / (std * std);
+                }
+            }
+            let next = solve(&information, &right)?;
+            // A step after which inputs would have lost their forces is shortened.
+            let mut part = 1.0;
+            let near = |part: f64| &values + part * (&next - &values);
+            while part > SHORTEST && self.levers(open, &near(part)).is_none() {
+                part *= 0.5;
+            }
+            values = near(part);
+            variances = self.variances(open, &values);
+        }
+        let (log_levers, ..) = self.levers(open, &values)?;
+        Some(Solved {
+            values,
+            information,
+            variances,
+            log_levers: motions * log_levers,
+        })
+    }
+
+    /// Mean squares of what is left.
+    fn variances(&self, open: &[Open], values: &DVector<f64>) -> Vec<f64> {
+        let left = self.equations.iter().map(|squares| {
+            let last = squares.nrows() - 1;
+            let mut sum = squares[(last, last)];
+            for (i, own) in open.iter().enumerate() {
+                sum += 2.0 * values[i] * squares[(own.column, last)];
+                for (j, other) in open.iter().enumerate() {
+                    sum += values[i] * values[j] * squares[(own.column, other.column)];
+                }
+            }
+            self.variance(sum)
+        });
+        left.collect()
+    }
+
+    fn variance(&self, sum: f64) -> f64 {
+        (sum / self.count.max(1.0)).max(f64::MIN_POSITIVE)
+    }
+}
+
+/// Solves the normal equations, their unknowns scaled; nothing where they are singular.
+fn solve(information: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
+    /// Part of itself that a column has to have beyond the others, squared.
+    const NEW: f64 = 1e-8;
+    if right.is_empty() {
+        return Some(right.clone());
+    }
+    let scale = information.diagonal().map(f64::sqrt);
+    if scale
+        .iter()
+        .any(|scale| *scale <= 0.0 || !scale.is_finite())
+    {
+        return None;
+    }
+    let scaled = DMatrix::from_fn(right.len(), right.len(), |i, j| {
+        information[(i, j)] / (scale[i] * scale[j])
+    });
+    let factor = scaled.cholesky()?;
+    let is_singular = factor
+        .l_dirty()
+        .diagonal()
+        .iter()
+        .any(|pivot| pivot * pivot < NEW);
+    if is_singular {
+        return None;
+    }
+    let solved = factor.solve(&right.component_div(&scale));
+    Some(solved.component_div(&scale))
+}

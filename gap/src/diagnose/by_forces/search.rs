@@ -1,0 +1,252 @@
+//! The most probable hypotheses on residual forces.
+//!
+//! Every candidate is tried alone, then beside each of the best hypotheses, up to four effects.
+
+use std::collections::BTreeSet;
+
+use appell_recordings::DataSet;
+use nalgebra::DVector;
+
+use super::super::bench::WRONG;
+use super::super::calibration::{inexact, tempered, unlisted};
+use super::super::prior::prior;
+use super::hypothesis::{Hypothesis, Open, Squares};
+use super::motions::Motions;
+use crate::effects::{Acts, EffectModel, Part};
+
+/// Hypotheses that others join.
+const KEPT: usize = 6;
+/// Most effects of a hypothesis.
+const MOST_EFFECTS: usize = 4;
+/// Most candidates: components of a vector count as one effect.
+const MOST_MEMBERS: usize = 6;
+
+/// What was found.
+pub(super) struct Findings {
+    /// Hypotheses with their probabilities, the most probable first.
+    pub(super) fits: Vec<(Hypothesis, f64)>,
+    /// Place of the nominal model among them.
+    pub(super) nominal: usize,
+    /// Probability that nothing in the library explains the gap.
+    pub(super) unknown: f64,
+    /// Part of the motions that tell something of their own, the mean over the equations.
+    pub(super) independent: f64,
+    /// Noise of each equation's force.
+    pub(super) noise: DVector<f64>,
+    /// Every candidate alone.
+    pub(super) alone: Vec<Hypothesis>,
+}
+
+impl Findings {
+    pub(super) fn nominal(&self) -> &Hypothesis {
+        &self.fits[self.nominal].0
+    }
+
+    pub(super) fn best(&self) -> &Hypothesis {
+        &self.fits[0].0
+    }
+}
+
+/// A search for hypotheses.
+pub(super) struct Search<'s> {
+    effects: &'s EffectModel,
+    set: &'s DataSet,
+    motions: &'s Motions,
+}
+
+impl<'s> Search<'s> {
+    pub(super) const fn new(
+        effects: &'s EffectModel,
+        set: &'s DataSet,
+        motions: &'s Motions,
+    ) -> Self {
+        Self {
+            effects,
+            set,
+            motions,
+        }
+    }
+
+    /// Twice: what the best hypothesis leaves tells how much of their own the motions tell.
+    pub(super) fn found(&self) -> Findings {
+        let squares = Squares::of(self.motions);
+        let first = self.fits(&squares);
+        let best = first
+            .iter()
+            .max_by(|a, b| self.log_posterior(a).total_cmp(&self.log_posterior(b)));
+        let squares = match best {
+            Some(best) => squares.correlated(self.motions, best),
+            None => squares,
+        };
+        self.weighed(&squares, self.fits(&squares))
+    }
+
+    fn weighed(&self, squares: &Squares, all: Vec<Hypothesis>) -> Findings {
+        let alone = all.iter().filter(|own| own.members.len() == 1);
+        let alone = alone.cloned().collect();
+        let logs: Vec<f64> = all.iter().map(|own| self.log_posterior(own)).collect();
+        let best = (0..all.len())
+            .max_by(|&a, &b| logs[a].total_cmp(&logs[b]))
+            .unwrap_or(0);
+        let explained = |own: &Hypothesis| own.log - all[0].log;
+        let sizes = |own: &Hypothesis| own.deviations.iter().flatten().count();
+        let weight = |(log, own): (&f64, &Hypothesis)| {
+            let weight = tempered(log - logs[best]).exp();
+            if sizes(own) >= sizes(&all[best]) {
+                return weight;
+            }
+            // What has fewer sizes and explains nearly as much may be right, its law not exact.
+            weight.max(inexact(1.0 - explained(own) / explained(&all[best])))
+        };
+        let weights: Vec<f64> = logs.iter().zip(&all).map(weight).collect();
+        let sum: f64 = weights.iter().sum();
+        let noise = self.motions.noise(&all[best].changes);
+        let weighed = all.into_iter().zip(weights);
+        let mut fits: Vec<(Hypothesis, f64)> =
+            weighed.map(|(own, weight)| (own, weight / sum)).collect();
+        fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+        let nominal = fits.iter().position(|(own, _)| own.members.is_empty());
+        let nominal = nominal.unwrap_or(0);
+        let odds = if nominal == 0 {
+            0.0
+        } else {
+            let [whole, left] = [nominal, 0].map(|place| beyond(&fits[place].0, &noise));
+            unlisted(left / whole)
+        };
+        let count = squares.independent.len().max(1) as f64;
+        Findings {
+            unknown: odds / (1.0 + odds),
+            independent: squares.independent.iter().sum::<f64>() / count,
+            fits,
+            nominal,
+            noise,
+            alone,
+        }
+    }
+
+    /// The nominal model first.
+    fn fits(&self, squares: &Squares) -> Vec<Hypothesis> {
+        let mut all: Vec<Hypothesis> = self.fitted(squares, &[]).into_iter().collect();
+        let mut tried: BTreeSet<Vec<usize>> = BTreeSet::new();
+        let mut kept = all.clone();
+        for _ in 0..MOST_MEMBERS {
+            let mut more: Vec<Hypothesis> = Vec::new();
+            for base in &kept {
+                for candidate in 0..self.effects.candidates.len() {
+                    let mut members = base.members.clone();
+                    members.push(candidate);
+                    members.sort_unstable();
+                    if self.may_join(base, candidate) && tried.insert(members.clone()) {
+                        more.extend(self.fitted(squares, &members));
+                    }
+                }
+            }
+            more.sort_by(|a, b| self.log_posterior(b).total_cmp(&self.log_posterior(a)));
+            let best = |list: &[Hypothesis]| {
+                let logs = list.iter().map(|own| self.log_posterior(own));
+                logs.fold(f64::NEG_INFINITY, f64::max)
+            };
+            let is_better = best(&more) > best(&kept);
+            kept = more.iter().take(KEPT).cloned().collect();
+            all.extend(more);
+            if !is_better {
+                break;
+            }
+        }
+        all
+    }
+
+    /// Variants of an effect exclude each other, unless they are components.
+    fn may_join(&self, base: &Hypothesis, candidate: usize) -> bool {
+        let own = &self.effects.candidates[candidate];
+        let name = own.name();
+        let mut members = base.members.iter();
+        let is_there = members.any(|&member| {
+            member == candidate
+                || !own.is_component && self.effects.candidates[member].name() == name
+        });
+        let mut names = self.names(&base.members);
+        names.insert(name);
+        !is_there && names.len() <= MOST_EFFECTS
+    }
+
+    fn names(&self, members: &[usize]) -> BTreeSet<String> {
+        let candidates = members.iter().map(|&one| &self.effects.candidates[one]);
+        candidates.map(|own| own.name()).collect()
+    }
+
+    /// Logarithm of the probability, up to a constant.
+    fn log_posterior(&self, fitted: &Hypothesis) -> f64 {
+        fitted.log + prior(self.effects, self.names(&fitted.members).len())
+    }
+
+    /// The sizes of a candidate.
+    fn sizes(&self, candidate: usize) -> Vec<Open> {
+        let info = self.effects.info();
+        let own = &self.effects.candidates[candidate];
+        let sizes = own.parameters.iter();
+        let sizes = sizes.filter(|(_, part)| *part == Part::Size);
+        let open = sizes.filter_map(|(name, _)| {
+            let parameter = info.parameter_index(name)?;
+            Some(Open {
+                column: self.column(parameter)?,
+                std: None,
+                is_positive: info.parameters[parameter].range[0] >= 0.0,
+            })
+        });
+        open.collect()
+    }
+
+    fn column(&self, parameter: usize) -> Option<usize> {
+        let mut parameters = self.motions.parameters.iter();
+        parameters.position(|own| *own == parameter)
+    }
+
+    fn fitted(&self, squares: &Squares, members: &[usize]) -> Option<Hypothesis> {
+        let wrong = |parameter: usize| {
+            members.iter().any(|&member| {
+                matches!(self.effects.candidates[member].acts, Acts::Parameter(own) if own == parameter)
+            })
+        };
+        let tolerance = |parameter: usize| {
+            let own = self.set.parameters.get(parameter)?;
+            let std = own.std.filter(|std| *std > 0.0)?;
+            Some(Open {
+                column: self.column(parameter)?,
+                std: Some(if wrong(parameter) {
+                    (WRONG * own.value.abs()).max(std)
+                } else {
+                    std
+                }),
+                is_positive: false,
+            })
+        };
+        let all = 0..self.set.parameters.len();
+        let (of_members, others): (Vec<usize>, Vec<usize>) =
+            all.partition(|&parameter| wrong(parameter));
+        let others: Vec<Open> = others.into_iter().filter_map(tolerance).collect();
+        let own = members.iter().map(|&member| {
+            let open = match self.effects.candidates[member].acts {
+                Acts::Parameter(own) if of_members.contains(&own) => {
+                    tolerance(own).into_iter().collect()
+                }
+                _ => self.sizes(member),
+            };
+            (member, open)
+        });
+        squares.fitted(&own.collect::<Vec<_>>(), &others)
+    }
+
+    /// Some members, and nothing else than what they need.
+    pub(super) fn of(&self, members: &[usize]) -> Option<Hypothesis> {
+        self.fitted(&Squares::of(self.motions), members)
+    }
+}
+
+/// Mean square of what a hypothesis leaves beyond the noise, in units of the noise.
+fn beyond(fitted: &Hypothesis, noise: &DVector<f64>) -> f64 {
+    let squares = fitted.variances.iter().zip(noise.iter());
+    squares
+        .map(|(variance, noise)| (variance / (noise * noise) - 1.0).max(0.0))
+        .sum()
+}

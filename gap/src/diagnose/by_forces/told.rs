@@ -1,0 +1,341 @@
+//! The report of a diagnosis by forces.
+
+use appell_estimate::chi_squared_probability;
+use appell_recordings::DataSet;
+use nalgebra::DVector;
+
+use super::super::assembly::{DETECTABLE, found, names, shortened, tied, verdict};
+use super::super::budget::{self, Ends};
+use super::super::calibration::IMMATERIAL;
+use super::super::changes::{Changes, Equations};
+use super::super::localise::force_unit;
+use super::super::prediction::{Errors, Paired};
+use super::super::report::{
+    Detectable, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, UNKNOWN, Value, Where,
+};
+use super::super::{DiagnoseError, Options};
+use super::hypothesis::Hypothesis;
+use super::motions::{Motion, Motions};
+use super::pictures;
+use super::search::{Findings, Search};
+use crate::effects::{Acts, EffectModel, Part};
+
+/// Length of a block in s: errors in one depend on each other.
+const BLOCK_S: f64 = 2.0;
+
+/// The whole report; the motions are those of the runs to fit, and of those that were held out.
+pub(super) fn report(
+    (model, set): (&EffectModel, &DataSet),
+    found: &Findings,
+    (training, test): (&Motions, Option<&Motions>),
+    options: &Options,
+) -> Result<Report, DiagnoseError> {
+    let which = which((model, set), found, training)?;
+    let tied = tied(&which);
+    let (nominal, best) = (found.nominal(), found.best());
+    let place = place(model, found, training);
+    let far = test.map(|test| how_far((model, set), found, (training, test), options));
+    let far = far.transpose()?;
+    let first = verdict(&which[0], &tied);
+    let stayed = nominal.variances.iter().zip(&best.variances);
+    let names = model.info().speed_quantities().iter();
+    Ok(Report {
+        mechanism: set.mechanism.name.clone(),
+        verdict: first.after(&which, far.as_ref(), false),
+        is_by_simulation: false,
+        is_by_forces: true,
+        rows: [training.all().count(), set.rows()],
+        disturbances: (names.zip(stayed))
+            .map(|(speed, (before, after))| (speed.name.to_string(), before.sqrt(), after.sqrt()))
+            .collect(),
+        pictures: match options.pictures && first != GapVerdict::NoGap {
+            true => Some(pictures::of(model, found, (training, test), &place)),
+            false => None,
+        },
+        place: match first {
+            GapVerdict::NoGap => Where::nowhere(),
+            _ => place,
+        },
+        which: shortened(&which).unwrap_or(which),
+        tied,
+        how_far: far,
+        detectable: detectable(model, found, training),
+        failed: Vec::new(),
+        imperfections: Vec::new(),
+        left: None,
+        independent: found.independent,
+        law: None,
+        change: None,
+        hints: Vec::new(),
+        found: self::found(model, &best.members),
+        horizons: Vec::new(),
+        experiment: None,
+    })
+}
+
+/// The hypotheses of the library, and that it has none.
+fn which(
+    (model, set): (&EffectModel, &DataSet),
+    found: &Findings,
+    motions: &Motions,
+) -> Result<Vec<Told>, DiagnoseError> {
+    let base = found.nominal().log;
+    let mut which: Vec<Told> = Vec::new();
+    for (fitted, probability) in &found.fits {
+        let effects = names(model, &fitted.members);
+        let probability = probability * (1.0 - found.unknown);
+        // Variants of one effect are one hypothesis.
+        if let Some(own) = which.iter_mut().find(|own| own.effects == effects) {
+            own.probability += probability;
+            continue;
+        }
+        which.push(Told {
+            effects,
+            probability,
+            same_as: None,
+            log_bayes_factor: Some(fitted.log - base),
+            parameters: values((model, set), fitted, motions),
+            changes: Some(changes((model, set), fitted, motions)?),
+        });
+    }
+    which.push(Told {
+        effects: vec![UNKNOWN.to_owned()],
+        probability: found.unknown,
+        same_as: None,
+        log_bayes_factor: None,
+        parameters: Vec::new(),
+        changes: None,
+    });
+    which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    Ok(which)
+}
+
+/// Change and standard deviation of a parameter, where it was free.
+fn change(fitted: &Hypothesis, motions: &Motions, parameter: usize) -> (f64, Option<f64>) {
+    let mut parameters = motions.parameters.iter();
+    let column = parameters.position(|own| *own == parameter);
+    column.map_or((0.0, None), |column| {
+        (fitted.changes[column], fitted.deviations[column])
+    })
+}
+
+/// Values of the members of a hypothesis; a size at its limit has no deviation.
+fn values(
+    (model, set): (&EffectModel, &DataSet),
+    fitted: &Hypothesis,
+    motions: &Motions,
+) -> Vec<Value> {
+    let info = model.info();
+    let mut values = Vec::new();
+    for &member in &fitted.members {
+        let candidate = model.candidate(member);
+        let own = match candidate.acts {
+            Acts::Parameter(parameter) => vec![(parameter, "value")],
+            _ => (model.own(candidate).into_iter())
+                .filter(|(_, part)| *part == Part::Size)
+                .map(|(index, _)| (index, candidate.short(&info.parameters[index].name)))
+                .collect(),
+        };
+        for (index, short) in own {
+            let quantity = &info.parameters[index];
+            let (change, deviation) = change(fitted, motions, index);
+            values.push(Value {
+                name: format!("{}.{short}", candidate.name()),
+                value: (set.parameters[index].value + change) / quantity.scale,
+                std: deviation.unwrap_or(f64::NAN) / quantity.scale,
+                unit: quantity.unit.to_string(),
+            });
+        }
+    }
+    values
+}
+
+/// What a hypothesis changes in the spec.
+fn changes(
+    (model, set): (&EffectModel, &DataSet),
+    fitted: &Hypothesis,
+    motions: &Motions,
+) -> Result<Changes, DiagnoseError> {
+    let info = model.info();
+    let all = 0..info.parameter_len();
+    let changed = all.map(|index| {
+        let (change, deviation) = change(fitted, motions, index);
+        let shape = info.parameters[index].value;
+        let stated = set.parameters.get(index).map_or(shape, |own| own.value);
+        (stated + change, deviation)
+    });
+    let (values, deviations): (Vec<f64>, Vec<Option<f64>>) = changed.unzip();
+    let members = fitted.members.iter();
+    Changes::of_equations(&Equations {
+        effects: model,
+        members: members.map(|&member| model.candidate(member)).collect(),
+        rig: &set.parameters,
+        values: &values,
+        deviations,
+    })
+}
+
+/// Forces that the sizes of a hypothesis add.
+pub(super) fn added(
+    model: &EffectModel,
+    fitted: &Hypothesis,
+    motions: &Motions,
+    motion: &Motion,
+) -> DVector<f64> {
+    let mut sizes = DVector::zeros(motions.parameters.len());
+    for &member in &fitted.members {
+        let candidate = model.candidate(member);
+        let own = match candidate.acts {
+            Acts::Parameter(parameter) => vec![parameter],
+            _ => model
+                .own(candidate)
+                .iter()
+                .map(|(index, _)| *index)
+                .collect(),
+        };
+        for (column, parameter) in motions.parameters.iter().enumerate() {
+            if own.contains(parameter) {
+                sizes[column] = fitted.changes[column];
+            }
+        }
+    }
+    &motion.slopes * sizes
+}
+
+/// The equations of the best hypothesis, weighed by what they leave.
+fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
+    let (nominal, best) = (found.nominal(), found.best());
+    let Some(&first) = best.members.first() else {
+        return Where::nowhere();
+    };
+    let info = model.info();
+    let (mut squares, mut count) = (vec![0.0; info.speeds], 0.0_f64);
+    for motion in motions.all() {
+        let added = added(model, best, motions, motion);
+        for (square, force) in squares.iter_mut().zip(added.iter()) {
+            *square += force * force;
+        }
+        count += 1.0;
+    }
+    let gain = best.log_likelihood - nominal.log_likelihood;
+    let p_value = 1.0 - chi_squared_probability(2.0 * gain, 1.0);
+    let of_noise = squares.iter().zip(&best.variances);
+    let energies: Vec<f64> = of_noise
+        .map(|(square, variance)| square / variance)
+        .collect();
+    let whole: f64 = energies.iter().sum();
+    let equations = energies.iter().zip(&squares).enumerate();
+    let equations = equations.map(|(equation, (energy, square))| ShareOf {
+        name: info.states[equation].name.to_string(),
+        share: energy / whole.max(f64::MIN_POSITIVE),
+        p_value,
+        rms: (square / count.max(1.0)).sqrt(),
+        unit: force_unit(&model.mechanism, equation),
+    });
+    let mut equations: Vec<ShareOf> = equations.collect();
+    equations.sort_by(|a, b| b.share.total_cmp(&a.share));
+    Where {
+        domain: model.candidate(first).family.domain(),
+        equations,
+        windows: Vec::new(),
+        region: Vec::new(),
+    }
+}
+
+/// Forces that are left of the runs that were held out, in units of their noise.
+fn how_far(
+    (model, set): (&EffectModel, &DataSet),
+    found: &Findings,
+    (training, test): (&Motions, &Motions),
+    options: &Options,
+) -> Result<HowFar, DiagnoseError> {
+    let (refitted, best) = (found.nominal(), found.best());
+    let errors = |changes: &DVector<f64>| errors(test, changes, &found.noise);
+    let stated = errors(&DVector::zeros(training.parameters.len()));
+    let (refit, effect) = (errors(&refitted.changes), errors(&best.changes));
+    let floor = 1.0;
+    let paired = Paired::of(&[&stated, &refit, &effect]);
+    let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
+    let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
+    let means = paired.means();
+    let ends = Ends {
+        stated: &stated,
+        // Parameters that were fitted may predict worse than stated ones: then they are no base.
+        base: if means[1] < means[0] { &refit } else { &stated },
+        effects: &effect,
+        law: None,
+        floor,
+        tolerance: options.tolerance.unwrap_or(IMMATERIAL),
+    };
+    let search = Search::new(model, set, training);
+    let parts = budget::effects(model, &best.members);
+    let budget = budget::of(&parts, &ends, |members| {
+        let fitted = search.of(members);
+        Ok(errors(
+            fitted
+                .as_ref()
+                .map_or(&refitted.changes, |own| &own.changes),
+        ))
+    })?;
+    let mut runs: Vec<String> = test.stretches.iter().map(|(run, _)| run.clone()).collect();
+    runs.dedup();
+    Ok(HowFar {
+        horizon_s: 0.0,
+        nominal: means[0].sqrt(),
+        refitted: means[1].sqrt(),
+        with_effect: means[2].sqrt(),
+        noise_floor: floor,
+        closed: closed(means[0], means[2]),
+        closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
+        closed_vs_refitted: closed(means[1], means[2]),
+        budget,
+        before: None,
+        bettered_ci95: [0, 1].map(bettered),
+        is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
+        runs,
+    })
+}
+
+/// Mean squares of the forces that are left, by blocks of time.
+fn errors(motions: &Motions, changes: &DVector<f64>, noise: &DVector<f64>) -> Errors {
+    let mut errors = Errors::default();
+    for (stretch, (_, own)) in motions.stretches.iter().enumerate() {
+        let start = own.first().map_or(0.0, |first| first.t);
+        for motion in own {
+            // A count of blocks in memory.
+            #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+            let block = ((motion.t - start) / BLOCK_S) as usize;
+            let left = motion.left(changes).component_div(noise);
+            for force in left.iter() {
+                errors.add(stretch, block, force * force);
+            }
+        }
+    }
+    errors
+}
+
+/// What each effect would need to be seen.
+fn detectable(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<Detectable> {
+    let info = model.info();
+    let mut told: Vec<Detectable> = Vec::new();
+    for fitted in &found.alone {
+        let candidate = model.candidate(fitted.members[0]);
+        let parameter = match candidate.acts {
+            Acts::Parameter(parameter) => Some(parameter),
+            _ => model.own(candidate).first().map(|(index, _)| *index),
+        };
+        let Some(parameter) = parameter else { continue };
+        let (_, deviation) = change(fitted, motions, parameter);
+        let effect = candidate.name();
+        let is_told = told.iter().any(|own| own.effect == effect);
+        if let Some(deviation) = deviation.filter(|_| !is_told) {
+            let quantity = &info.parameters[parameter];
+            told.push(Detectable {
+                effect,
+                smallest: DETECTABLE * deviation / quantity.scale,
+                unit: quantity.unit.to_string(),
+            });
+        }
+    }
+    told
+}

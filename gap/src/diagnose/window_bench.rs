@@ -14,7 +14,7 @@ const LARGER: [f64; 3] = [30.0, 6.0, 1.0];
 /// The same for the largest one: errors of a model over a window may be any.
 const MOST_LARGER: f64 = 1e4;
 /// Part of the mean squared error over windows that is one unit of log-likelihood: smaller differences do not count.
-const TOLERANCE: f64 = 0.05;
+pub(super) const TOLERANCE: f64 = 0.05;
 
 impl Bench<'_> {
     /// For windows. `steps` is the bench on which `fitted` found the levels of the rig: with them the filter finds

@@ -1,7 +1,8 @@
 //! Some candidates fitted to residual forces, with their evidence.
 //!
 //! Each equation has the variance of what it leaves; motions that follow each other tell less than as many
-//! independent ones. What is likely are the measured inputs u, given the motion: p(u) = p(r) |det E| where the residual
+//! independent ones, and no law is exact: a twentieth of the mean square of an equation is one unit (J. W. Miller,
+//! D. B. Dunson, *Robust Bayesian inference via coarsening*, 2019). What is likely are the measured inputs u, given the motion: p(u) = p(r) |det E| where the residual
 //! r has −E u. Without this factor an input without any force would explain whatever force is missing.
 
 use std::f64::consts::TAU;
@@ -9,6 +10,7 @@ use std::f64::consts::TAU;
 use nalgebra::{DMatrix, DVector};
 
 use super::super::evidence::{LN_1000, volume};
+use super::super::window_bench::TOLERANCE;
 use super::motions::Motions;
 
 /// How often the variances are taken from what is left.
@@ -84,7 +86,7 @@ impl Squares {
             count += 1.0;
         }
         Self {
-            independent: vec![1.0; equations.len()],
+            independent: vec![coarse(count); equations.len()],
             equations,
             count,
             levers: motions.levers.clone(),
@@ -144,7 +146,7 @@ impl Squares {
             }
             let correlations = sums[1..].iter().map(|sum| sum / sums[0]);
             let together: f64 = correlations.take_while(|own| *own > CHANCE).sum();
-            *independent = 1.0 / (1.0 + 2.0 * together);
+            *independent = coarse(self.count).min(1.0 / (1.0 + 2.0 * together));
         }
         self
     }
@@ -294,6 +296,11 @@ impl Squares {
     fn variance(&self, sum: f64) -> f64 {
         (sum / self.count.max(1.0)).max(f64::MIN_POSITIVE)
     }
+}
+
+/// Part of so many motions that counts, where no law is exact.
+fn coarse(count: f64) -> f64 {
+    (2.0 / TOLERANCE / count.max(1.0)).min(1.0)
 }
 
 /// Solves the normal equations, their unknowns scaled; nothing where they are singular.

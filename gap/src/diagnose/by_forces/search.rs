@@ -89,13 +89,16 @@ impl<'s> Search<'s> {
             .max_by(|&a, &b| logs[a].total_cmp(&logs[b]))
             .unwrap_or(0);
         let explained = |own: &Hypothesis| own.log - all[0].log;
-        let sizes = |own: &Hypothesis| own.deviations.iter().flatten().count();
         let weight = |(log, own): (&f64, &Hypothesis)| {
             let weight = tempered(log - logs[best]).exp();
-            if sizes(own) >= sizes(&all[best]) {
+            let is_part = own
+                .members
+                .iter()
+                .all(|one| all[best].members.contains(one));
+            if !is_part || own.members.len() == all[best].members.len() {
                 return weight;
             }
-            // What has fewer sizes and explains nearly as much may be right, its law not exact.
+            // A part of it that explains nearly as much may be right, its law not exact.
             weight.max(inexact(1.0 - explained(own) / explained(&all[best])))
         };
         let weights: Vec<f64> = logs.iter().zip(&all).map(weight).collect();

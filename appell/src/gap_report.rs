@@ -80,6 +80,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "log_bayes_factor": hint.log_bayes_factor,
         })).collect::<Vec<_>>(),
         "by_simulation": report.is_by_simulation,
+        "by_forces": report.is_by_forces,
         "rows": { "fitted": report.rows[0], "all": report.rows[1] },
         "where": {
             "domain": report.place.domain,

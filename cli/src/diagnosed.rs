@@ -8,7 +8,7 @@ use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
     before_sentence, divided, doubts, hinted, imperfections, is_determined, joined, law_sentence,
-    left_out, percent, refit_sentence, said, sentence, short,
+    left_of_forces, left_out, percent, refit_sentence, said, sentence, short,
 };
 use appell_report::text::{number, with_unit};
 
@@ -108,9 +108,14 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
         .map(|(name, before, after)| format!("{name} {} -> {}", number(*before), number(*after)))
         .collect();
     if !levels.is_empty() {
+        let what = if report.is_by_forces {
+            "missing forces (rms)"
+        } else {
+            "process noise"
+        };
         let _ = writeln!(
             text,
-            "  process noise, nominal -> with the effect: {}",
+            "  {what}, nominal -> with the effect: {}",
             levels.join(", ")
         );
     }
@@ -216,15 +221,19 @@ fn how_far(report: &Report) -> String {
     let Some(far) = &report.how_far else {
         return "  how far   no run was held out\n".to_owned();
     };
-    let mut text = format!(
-        "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative to the \
-         noise)\n",
-        number(far.horizon_s),
-        number(far.nominal),
-        number(far.refitted),
-        number(far.with_effect),
-        number(far.noise_floor),
-    );
+    let mut text = if report.is_by_forces {
+        format!("  how far   {}\n", left_of_forces(far))
+    } else {
+        format!(
+            "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative to the \
+             noise)\n",
+            number(far.horizon_s),
+            number(far.nominal),
+            number(far.refitted),
+            number(far.with_effect),
+            number(far.noise_floor),
+        )
+    };
     let is_other = |ahead: &&Ahead| {
         let is_finite = ahead.horizon > 0.0 && ahead.horizon.is_finite();
         is_finite && (ahead.horizon - far.horizon_s).abs() > 1e-9

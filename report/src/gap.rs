@@ -1,11 +1,13 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`page()`] sets [`words`], [`plots`] and [`elements`]; [`budget`] divides the gap, [`law`] shows what was
+//! [`page()`] sets [`words`], [`plots`] and [`elements`]; [`budget`] divides the gap, [`forces`] tells it where
+//! forces judge, [`law`] shows what was
 //! measured of the rest, [`doubt`] suspects unit errors, [`numbers`] writes values with their uncertainty.
 
 mod budget;
 mod doubt;
 mod elements;
+mod forces;
 mod law;
 mod numbers;
 mod page;
@@ -14,6 +16,7 @@ mod words;
 
 pub use budget::divided;
 pub use doubt::doubts;
+pub use forces::left_of_forces;
 pub use law::law_sentence;
 pub use numbers::{is_determined, percent};
 pub use page::page;

@@ -72,6 +72,9 @@ pub(crate) struct Stretch {
     /// Its run among those of the part.
     pub(crate) run: usize,
     pub(crate) moments: Vec<Moment>,
+    /// Covariance at each of them: of every measured coordinate, then of every input, with its first and second
+    /// derivative.
+    pub(crate) spreads: Vec<DMatrix<f64>>,
 }
 
 /// The motions of all runs.
@@ -123,6 +126,9 @@ pub(crate) fn recorded(
                 part,
                 run: stretch.run,
                 moments: moments.collect::<Result<_, BaseError>>()?,
+                spreads: (0..stretch.motions.len())
+                    .map(|place| track.spread(stretch, place))
+                    .collect(),
             });
         }
     }

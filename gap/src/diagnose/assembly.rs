@@ -74,6 +74,7 @@ pub(super) fn assemble(
         Some(rival) => vec![Found {
             effect: rival.name.clone(),
             about: format!("the model `{}`", rival.bench.set.mechanism.name),
+            sites: Vec::new(),
         }],
         None => found(bench.effects, &best.members),
     };
@@ -192,6 +193,7 @@ pub(super) fn found(model: &EffectModel, members: &[usize]) -> Vec<Found> {
         .map(|candidate| Found {
             effect: candidate.name(),
             about: candidate.about.clone(),
+            sites: candidate.sites(),
         })
         .collect();
     found.dedup();

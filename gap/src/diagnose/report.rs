@@ -369,6 +369,8 @@ pub struct Found {
     pub effect: String,
     /// Sentence.
     pub about: String,
+    /// Its places in the mechanism.
+    pub sites: Vec<String>,
 }
 
 /// The whole report.

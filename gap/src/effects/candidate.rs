@@ -75,6 +75,8 @@ pub struct Candidate {
     pub kind: String,
     /// The place.
     pub site: String,
+    /// The drives, where it acts at all of them.
+    pub(super) drives: Vec<String>,
     /// Family of the effect.
     pub family: Family,
     /// One sentence.
@@ -141,6 +143,7 @@ impl Candidate {
         Self {
             kind: "law".to_owned(),
             site: speed.to_owned(),
+            drives: Vec::new(),
             family: Family::Force,
             about: format!("the measured force beside {speed}"),
             is_component: false,
@@ -154,6 +157,19 @@ impl Candidate {
             added: Vec::new(),
             shows: Vec::new(),
             source: None,
+        }
+    }
+
+    /// Whether it acts at all drives.
+    pub(crate) fn is_of_drives(&self) -> bool {
+        !self.drives.is_empty()
+    }
+
+    /// Its places in the mechanism.
+    pub(crate) fn sites(&self) -> Vec<String> {
+        match self.drives.as_slice() {
+            [] => vec![self.site.clone()],
+            drives => drives.to_vec(),
         }
     }
 
@@ -258,6 +274,7 @@ impl Candidate {
         }
         Ok(Some(Self {
             site: DRIVES.to_owned(),
+            drives: places.iter().map(|place| place.name.clone()).collect(),
             about: effect.about.replace("{site}", "every drive"),
             parameters: own.iter().flat_map(|one| one.parameters.clone()).collect(),
             stem,
@@ -342,6 +359,7 @@ impl Candidate {
         Ok(Self {
             kind: effect.name.clone(),
             site: site.name.clone(),
+            drives: Vec::new(),
             family: effect.family,
             about: effect.about.replace("{site}", &site.name),
             is_component: effect.is_vector,

@@ -46,7 +46,7 @@ fn name(part: &Share) -> &str {
 }
 
 /// The table, with a bar for each part.
-pub(super) fn budget(far: &HowFar) -> Markup {
+pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
     let rows = far.budget.iter().map(|part| {
         let [low, high] = part.interval.map(percent);
         let added = !(part.is_refit() || part.is_rest());
@@ -70,8 +70,10 @@ pub(super) fn budget(far: &HowFar) -> Markup {
         @if !far.budget.is_empty() {
             (table(["part", "of the gap", "share, with 95 % interval"], rows, 2))
             p class="faint" {
-                "Shares of the mean square prediction error " (far.horizon_s) " s ahead on the held-out runs, beyond \
-                 the noise. The share of an effect is the mean over all orders in which the effects can be added."
+                @if report.is_by_forces { "Shares of the mean square of the missing forces" } @else {
+                    "Shares of the mean square prediction error " (far.horizon_s) " s ahead"
+                }
+                " on the held-out runs, beyond the noise. The share of an effect is the mean over all orders in which the effects can be added."
                 @if far.budget.iter().any(is_against_others) {
                     " A share below zero: beside the others the effect makes predictions worse."
                 }

@@ -8,6 +8,7 @@ use maud::{Markup, html};
 use super::budget::budget;
 use super::doubt::doubts;
 use super::elements::{bar, capital, code, figure, separated, table};
+use super::forces;
 use super::law::{law, predicts};
 use super::numbers::{is_determined, measured, percent};
 use super::plots;
@@ -36,7 +37,7 @@ pub fn page(set: &DataSet, report: &Report) -> String {
             p class="verdict" { (capital(&statement(report))) "." }
             (reading(report))
             @if let Some(far) = &report.how_far {
-                (budget(far))
+                (budget(report, far))
             }
             (place(set, report))
             (which(report))
@@ -193,10 +194,7 @@ fn locus(report: &Report) -> Markup {
 
 /// The mechanism with the sites of the gap ringed; `None` if it cannot be drawn.
 fn drawing(set: &DataSet, report: &Report) -> Option<String> {
-    let sites = report
-        .found
-        .iter()
-        .filter_map(|found| found.effect.split_once('@'));
+    let sites = report.found.iter().flat_map(|found| &found.sites);
     // A channel is marked at the quantity that it measures.
     let name = |site: &str| {
         let channel = set.channels.iter().find(|channel| channel.column == site);
@@ -206,7 +204,7 @@ fn drawing(set: &DataSet, report: &Report) -> Option<String> {
     let mut names: Vec<String> = match report.verdict {
         GapVerdict::NoGap => Vec::new(),
         GapVerdict::Unexplained => report.left.iter().map(|left| name(&left.place)).collect(),
-        _ => sites.map(|(_, site)| name(site)).collect(),
+        _ => sites.map(|site| name(site)).collect(),
     };
     names.dedup();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
@@ -375,6 +373,9 @@ fn how_far(report: &Report) -> Markup {
             p { "No run was held out, so the closed part of the gap cannot be assessed." }
         };
     };
+    if report.is_by_forces {
+        return forces::how_far(report, far);
+    }
     let rows = report.horizons.iter().map(|ahead| {
         let floor = ahead.noise_floor.map_or_else(|| "–".to_owned(), short);
         [

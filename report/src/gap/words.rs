@@ -390,6 +390,11 @@ pub fn hinted(hint: &Hint) -> String {
 /// A note on unused training rows, if any.
 pub fn left_out(report: &Report) -> Option<String> {
     let [fitted, all] = report.rows;
+    if report.is_by_forces {
+        return Some(format!(
+            "the forces of {fitted} motions were fitted, spread over {all} training rows"
+        ));
+    }
     (fitted < all).then(|| {
         format!("{fitted} of {all} training rows were used, in segments spread over the runs")
     })

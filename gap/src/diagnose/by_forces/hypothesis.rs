@@ -33,6 +33,21 @@ pub(super) struct Open {
     pub(super) is_positive: bool,
 }
 
+/// A candidate with its sizes.
+pub(super) struct Member {
+    /// Its index.
+    pub(super) candidate: usize,
+    pub(super) open: Vec<Open>,
+    /// Whether it is not there without all of its sizes.
+    pub(super) is_whole: bool,
+}
+
+impl Member {
+    fn own(&self, column: usize) -> bool {
+        self.open.iter().any(|one| one.column == column)
+    }
+}
+
 /// A fitted hypothesis.
 #[derive(Debug, Clone)]
 pub(super) struct Hypothesis {
@@ -59,6 +74,7 @@ struct Solved {
 }
 
 /// Sums of squares over the motions.
+#[derive(Debug, Clone)]
 pub(super) struct Squares {
     /// For each equation, those of slopes and residual, the residual last.
     equations: Vec<DMatrix<f64>>,
@@ -131,8 +147,9 @@ impl Squares {
     }
 
     /// With the correlations of what a hypothesis leaves: n motions count as n / (1 + 2 Σ ρ).
-    pub(super) fn correlated(mut self, motions: &Motions, fitted: &Hypothesis) -> Self {
-        for (equation, independent) in self.independent.iter_mut().enumerate() {
+    pub(super) fn correlated(&self, motions: &Motions, fitted: &Hypothesis) -> Self {
+        let mut squares = self.clone();
+        for (equation, independent) in squares.independent.iter_mut().enumerate() {
             let mut sums = [0.0; LAGS];
             for (_, own) in &motions.stretches {
                 let left: Vec<f64> = own
@@ -148,43 +165,30 @@ impl Squares {
             let together: f64 = correlations.take_while(|own| *own > CHANCE).sum();
             *independent = coarse(self.count).min(1.0 / (1.0 + 2.0 * together));
         }
-        self
+        squares
     }
 
-    /// The best values of what is open; nothing where they cannot be told from each other or where a member has no
-    /// size. `members` come with their parameters, `others` are those of the mechanism.
-    pub(super) fn fitted(
-        &self,
-        members: &[(usize, Vec<Open>)],
-        others: &[Open],
-    ) -> Option<Hypothesis> {
+    /// The best values of what is open; nothing where they cannot be told from each other or where a member is not
+    /// there. `others` are parameters of the mechanism.
+    pub(super) fn fitted(&self, members: &[Member], others: &[Open]) -> Option<Hypothesis> {
         let mut open: Vec<Open> = others.to_vec();
-        open.extend(members.iter().flat_map(|(_, own)| own));
+        open.extend(members.iter().flat_map(|member| &member.open));
         loop {
             let solved = self.solved(&open)?;
             let is_against = |&i: &usize| open[i].is_positive && solved.values[i] <= 0.0;
             let against = (0..open.len()).find(is_against);
             if let Some(against) = against {
-                open.remove(against);
+                let gone = open.remove(against).column;
+                if members.iter().any(|one| one.is_whole && one.own(gone)) {
+                    return None;
+                }
                 continue;
-            }
-            let has_size = |(_, own): &(usize, Vec<Open>)| {
-                let mut columns = open.iter().map(|one| one.column);
-                columns.any(|column| own.iter().any(|one| one.column == column))
-            };
-            if !members.iter().all(has_size) {
-                return None;
             }
             return self.told(members, &open, solved);
         }
     }
 
-    fn told(
-        &self,
-        members: &[(usize, Vec<Open>)],
-        open: &[Open],
-        solved: Solved,
-    ) -> Option<Hypothesis> {
+    fn told(&self, members: &[Member], open: &[Open], solved: Solved) -> Option<Hypothesis> {
         let Solved {
             values,
             information,
@@ -207,10 +211,12 @@ impl Squares {
                 -(d * deviation * sides * LN_1000).ln()
             };
         }
-        // A member none of whose sizes is told from zero is not there.
-        let is_told = |(_, own): &(usize, Vec<Open>)| {
-            own.iter()
-                .any(|one| known[one.column].is_some_and(|std| changes[one.column].abs() > std))
+        // A member most of whose sizes are not told from zero is not there.
+        let is_told = |member: &Member| {
+            let is_told =
+                |column: usize| known[column].is_some_and(|std| changes[column].abs() > std);
+            let told = member.open.iter().filter(|one| is_told(one.column));
+            2 * told.count() > member.open.len()
         };
         if !members.iter().all(is_told) {
             return None;
@@ -222,7 +228,7 @@ impl Squares {
                 .sum::<f64>();
         let log = log_likelihood + occam;
         log.is_finite().then(|| Hypothesis {
-            members: members.iter().map(|(member, _)| *member).collect(),
+            members: members.iter().map(|member| member.candidate).collect(),
             changes,
             deviations: known,
             variances,
@@ -291,6 +297,18 @@ impl Squares {
             self.variance(sum)
         });
         left.collect()
+    }
+
+    /// What a hypothesis that leaves nothing but noise would gain.
+    pub(super) fn beyond(&self, fitted: &Hypothesis, noise: &DVector<f64>) -> f64 {
+        let equations = fitted.variances.iter().zip(noise.iter());
+        let gains = equations.zip(&self.independent);
+        gains
+            .map(|((variance, noise), independent)| {
+                let ratio = (variance / (noise * noise)).max(1.0);
+                0.5 * independent * self.count * ratio.ln()
+            })
+            .sum()
     }
 
     fn variance(&self, sum: f64) -> f64 {

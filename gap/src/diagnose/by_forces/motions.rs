@@ -6,8 +6,10 @@ use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
 use super::super::DiagnoseError;
+use super::speed_of;
 use crate::base::recorded;
 use crate::effects::{EffectModel, Part};
+use crate::inverse::coordinates;
 
 /// Most motions that are evaluated, spread over the recordings.
 const MOST: usize = 3000;
@@ -16,6 +18,8 @@ const STEP: f64 = 1e-2;
 /// The same of a parameter, as a part of its value.
 const PART: f64 = 1e-4;
 
+/// Step of coordinates, rates, accelerations and inputs in SI.
+const NEAR: f64 = 1e-5;
 /// A lever below this is rounding.
 const NO_LEVER: f64 = 1e-6;
 
@@ -33,23 +37,17 @@ pub(super) struct Motion {
     pub(super) residual: DVector<f64>,
     /// Its derivatives by the parameters that vary.
     pub(super) slopes: DMatrix<f64>,
+    /// Its variances by the noise of the channels.
+    pub(super) noise: DVector<f64>,
 }
 
 impl Motion {
     /// Of a model with the parameters `p`, some of which vary.
     fn of(model: &dyn Model, moment: Moment, p: &[f64], parameters: &[usize]) -> Self {
         let info = model.info();
-        let demand = |u: &[f64], p: &[f64]| {
-            let (t, x) = (moment.t, moment.x.as_slice());
-            let mut demand = DVector::zeros(info.speeds);
-            let at = At { t, x, u, p };
-            model.inverse_dynamics(at, &moment.accelerations, demand.as_mut_slice());
-            demand
-        };
-        let residual = demand(&moment.u, p);
-        let mut without = moment.u.clone();
-        without[..info.declared_inputs].fill(0.0);
-        let driven = demand(&without, p) - &residual;
+        let residual = demand(model, &moment, p);
+        let mut without = moment.clone();
+        without.u[..info.declared_inputs].fill(0.0);
         let mut slopes = DMatrix::zeros(info.speeds, parameters.len());
         let mut moved = p.to_vec();
         for (mut slope, &parameter) in slopes.column_iter_mut().zip(parameters) {
@@ -59,19 +57,52 @@ impl Motion {
             };
             let mut at = |side: f64| {
                 moved[parameter] = p[parameter] + side * step;
-                demand(&moment.u, &moved)
+                demand(model, &moment, &moved)
             };
             slope.copy_from(&((at(1.0) - at(-1.0)) / (2.0 * step)));
             moved[parameter] = p[parameter];
         }
         Self {
             t: moment.t,
-            driven,
+            driven: demand(model, &without, p) - &residual,
+            noise: DVector::zeros(info.speeds),
             residual,
             slopes,
             x: moment.x,
             u: moment.u,
         }
+    }
+
+    /// The same where channels have noise: `spread` is the covariance of the coordinates, each with the place of its
+    /// rate among the states, and of the inputs, all with their derivatives.
+    fn noisy(
+        self,
+        model: &dyn Model,
+        (moment, spread): (&Moment, &DMatrix<f64>),
+        p: &[f64],
+        coordinates: &[[usize; 2]],
+    ) -> Self {
+        let inputs = model.info().declared_inputs;
+        let mut slopes = DMatrix::zeros(self.residual.len(), spread.ncols());
+        let mut slope = |column: usize, of: fn(&mut Moment) -> &mut [f64], index: usize| {
+            let at = |side: f64| {
+                let mut moved = moment.clone();
+                of(&mut moved)[index] += side * NEAR;
+                demand(model, &moved, p)
+            };
+            slopes.set_column(column, &((at(1.0) - at(-1.0)) / (2.0 * NEAR)));
+        };
+        for (channel, &[coordinate, speed]) in coordinates.iter().enumerate() {
+            slope(3 * channel, |moment| &mut moment.x, coordinate);
+            slope(3 * channel + 1, |moment| &mut moment.x, speed);
+            slope(3 * channel + 2, |moment| &mut moment.accelerations, speed);
+        }
+        for input in 0..inputs {
+            let channel = coordinates.len() + input;
+            slope(3 * channel, |moment| &mut moment.u, input);
+        }
+        let noise = (&slopes * spread * slopes.transpose()).diagonal();
+        Self { noise, ..self }
     }
 
     /// The residual where parameters differ by so much from those of the data set.
@@ -94,17 +125,27 @@ impl Motions {
     /// Of all runs of a data set, which are of one part.
     pub(super) fn of(set: &DataSet, effects: &EffectModel) -> Result<Self, DiagnoseError> {
         let model = effects.beside(&[]);
+        let info = model.info();
         let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
         let parameters = varying(set, effects);
         let runs = set.all(OfSet::Fit);
         let stretches = recorded(&runs, model, &p)?;
+        let coordinates: Vec<[usize; 2]> = (coordinates(set).into_iter())
+            .filter_map(|(_, coordinate)| {
+                let speed = speed_of(&set.mechanism, coordinate)?;
+                Some([info.speeds + coordinate, speed])
+            })
+            .collect();
         let first = stretches.iter().find_map(|one| one.moments.first());
         let levers = first.map_or_else(Vec::new, |first| levers(model, first, &p, &parameters));
         let count: usize = stretches.iter().map(|one| one.moments.len()).sum();
         let stride = count.div_ceil(MOST).max(1);
         let stretches = stretches.into_iter().map(|stretch| {
-            let moments = stretch.moments.into_iter().step_by(stride);
-            let motions = moments.map(|moment| Motion::of(model, moment, &p, &parameters));
+            let moments = stretch.moments.into_iter().zip(&stretch.spreads);
+            let motions = moments.step_by(stride).map(|(moment, spread)| {
+                let motion = Motion::of(model, moment.clone(), &p, &parameters);
+                motion.noisy(model, (&moment, spread), &p, &coordinates)
+            });
             (set.runs[stretch.run].name.clone(), motions.collect())
         });
         Ok(Self {
@@ -118,20 +159,35 @@ impl Motions {
         self.stretches.iter().flat_map(|(_, motions)| motions)
     }
 
-    /// Noise of each equation's force: what changes from one motion to the next (J. von Neumann, *Distribution of
-    /// the ratio of the mean square successive difference to the variance*, 1941).
+    /// Noise of each equation's force, standard deviation: the smaller one of two bounds from above. One comes from the
+    /// noise of the channels about their splines, where inputs may vary faster; the other is what changes from one
+    /// motion to the next beside a hypothesis (J. von Neumann, *Distribution of the ratio of the mean square successive
+    /// difference to the variance*, 1941).
     pub(super) fn noise(&self, changes: &DVector<f64>) -> DVector<f64> {
-        let (mut sum, mut count) = (DVector::zeros(0), 0.0_f64);
-        for (_, motions) in &self.stretches {
-            let left: Vec<DVector<f64>> = motions.iter().map(|own| own.left(changes)).collect();
-            for pair in left.windows(2) {
-                let square = (&pair[1] - &pair[0]).map(|change| 0.5 * change * change);
-                sum = if count > 0.0 { sum + square } else { square };
-                count += 1.0;
-            }
-        }
-        sum.map(|sum: f64| (sum / count.max(1.0)).sqrt().max(f64::MIN_POSITIVE))
+        let of_channels = mean(self.all().map(|motion| motion.noise.clone()));
+        let pairs = self.stretches.iter().flat_map(|(_, own)| own.windows(2));
+        let successive = mean(pairs.map(|pair| {
+            let change = pair[1].left(changes) - pair[0].left(changes);
+            0.5 * change.component_mul(&change)
+        }));
+        let least = of_channels.zip_map(&successive, f64::min);
+        least.map(|variance| variance.sqrt().max(f64::MIN_POSITIVE))
     }
+}
+
+fn mean(all: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
+    let mut count = 0.0_f64;
+    let sum = all.inspect(|_| count += 1.0).reduce(|sum, own| sum + own);
+    sum.unwrap_or_else(|| DVector::zeros(0)) / count.max(1.0)
+}
+
+/// M ω̇ + b − Π.
+fn demand(model: &dyn Model, moment: &Moment, p: &[f64]) -> DVector<f64> {
+    let (t, x, u) = (moment.t, moment.x.as_slice(), moment.u.as_slice());
+    let mut demand = DVector::zeros(model.info().speeds);
+    let at = At { t, x, u, p };
+    model.inverse_dynamics(at, &moment.accelerations, demand.as_mut_slice());
+    demand
 }
 
 /// How parameters change the forces of unit inputs, in parts of these. Each input drives a coordinate, so that these

@@ -8,9 +8,9 @@ use appell_recordings::DataSet;
 use nalgebra::DVector;
 
 use super::super::bench::WRONG;
-use super::super::calibration::{inexact, tempered, unlisted};
+use super::super::calibration::{Rest, inexact, tempered, unlisted, unlisted_beside_nothing};
 use super::super::prior::prior;
-use super::hypothesis::{Hypothesis, Open, Squares};
+use super::hypothesis::{Hypothesis, Member, Open, Squares};
 use super::motions::Motions;
 use crate::effects::{Acts, EffectModel, Part};
 
@@ -52,31 +52,28 @@ pub(super) struct Search<'s> {
     effects: &'s EffectModel,
     set: &'s DataSet,
     motions: &'s Motions,
+    squares: Squares,
 }
 
 impl<'s> Search<'s> {
-    pub(super) const fn new(
-        effects: &'s EffectModel,
-        set: &'s DataSet,
-        motions: &'s Motions,
-    ) -> Self {
+    pub(super) fn new(effects: &'s EffectModel, set: &'s DataSet, motions: &'s Motions) -> Self {
         Self {
             effects,
             set,
             motions,
+            squares: Squares::of(motions),
         }
     }
 
     /// Twice: what the best hypothesis leaves tells how much of their own the motions tell.
     pub(super) fn found(&self) -> Findings {
-        let squares = Squares::of(self.motions);
-        let first = self.fits(&squares);
+        let first = self.fits(&self.squares);
         let best = first
             .iter()
             .max_by(|a, b| self.log_posterior(a).total_cmp(&self.log_posterior(b)));
         let squares = match best {
-            Some(best) => squares.correlated(self.motions, best),
-            None => squares,
+            Some(best) => self.squares.correlated(self.motions, best),
+            None => self.squares.clone(),
         };
         self.weighed(&squares, self.fits(&squares))
     }
@@ -111,7 +108,11 @@ impl<'s> Search<'s> {
         let nominal = fits.iter().position(|(own, _)| own.members.is_empty());
         let nominal = nominal.unwrap_or(0);
         let odds = if nominal == 0 {
-            0.0
+            let log_bayes_factor = squares.beyond(&fits[0].0, &noise);
+            unlisted_beside_nothing(Rest {
+                log_bayes_factor,
+                share: 1.0,
+            })
         } else {
             let [whole, left] = [nominal, 0].map(|place| beyond(&fits[place].0, &noise));
             unlisted(left / whole)
@@ -235,18 +236,22 @@ impl<'s> Search<'s> {
                 }
                 _ => self.sizes(member),
             };
-            (member, open)
+            Member {
+                candidate: member,
+                open,
+                is_whole: !self.effects.candidates[member].is_of_drives(),
+            }
         });
         squares.fitted(&own.collect::<Vec<_>>(), &others)
     }
 
     /// Some members, and nothing else than what they need.
     pub(super) fn of(&self, members: &[usize]) -> Option<Hypothesis> {
-        self.fitted(&Squares::of(self.motions), members)
+        self.fitted(&self.squares, members)
     }
 }
 
-/// Mean square of what a hypothesis leaves beyond the noise, in units of the noise.
+/// Sum over the equations of the mean squares that a hypothesis leaves beyond the noise, in units of the noise.
 fn beyond(fitted: &Hypothesis, noise: &DVector<f64>) -> f64 {
     let squares = fitted.variances.iter().zip(noise.iter());
     squares

@@ -1,0 +1,257 @@
+//! Robots are diagnosed by the forces of recorded motions.
+
+#![expect(clippy::unwrap_used, reason = "a test may stop here")]
+
+use std::fmt::Write as _;
+
+use crate::common::Folder;
+use appell_codegen::derived;
+use appell_codegen::jit::JitModel;
+use appell_codegen::mechanics::assemble;
+use appell_codegen::program::FunctionKind;
+use appell_gap::diagnose::{GapVerdict, Options, Report, diagnose};
+use appell_runtime::model::{At, Model};
+use appell_test_kit::Random;
+
+/// An arm with three joints and a load on its last link.
+const ARM: &str = r#"
+[mechanism]
+name = "arm"
+title = "arm with three joints"
+
+[parameters]
+m_1 = { value = 4, unit = "kg" }
+m_2 = { value = 2, unit = "kg" }
+
+[coordinates]
+q1 = { unit = "rad" }
+q2 = { unit = "rad" }
+q3 = { unit = "rad" }
+
+[inputs]
+tau1 = { unit = "N*m" }
+tau2 = { unit = "N*m" }
+tau3 = { unit = "N*m" }
+
+[frames]
+turret = { parent = "ground", about_axis = "z", by = "q1" }
+upper  = { parent = "turret", about_axis = "y", by = "q2" }
+fore   = { parent = "upper", about_axis = "y", by = "q3" }
+
+[points]
+elbow = { from = "O", in = "upper", at = ["0.5 [m]", 0, 0] }
+G_1   = { from = "O", in = "upper", at = ["0.2 [m]", 0, 0] }
+G_2   = { from = "elbow", in = "fore", at = ["0.2 [m]", 0, 0] }
+
+[bodies]
+turret = { frame = "turret", centre = "O", mass = "1 [kg]", inertia = { in = "turret", diagonal = ["0.1 [kg*m^2]", "0.1 [kg*m^2]", "0.2 [kg*m^2]"] } }
+upper  = { frame = "upper", centre = "G_1", mass = "m_1", inertia = { in = "upper", diagonal = ["0.02 [kg*m^2]", "0.1 [kg*m^2]", "0.1 [kg*m^2]"] } }
+fore   = { frame = "fore", centre = "G_2", mass = "m_2", inertia = { in = "fore", diagonal = ["0.01 [kg*m^2]", "0.05 [kg*m^2]", "0.05 [kg*m^2]"] } }
+
+[pseudo_velocities]
+w1 = { value = "dot(q1)", unit = "rad/s" }
+w2 = { value = "dot(q2)", unit = "rad/s" }
+w3 = { value = "dot(q3)", unit = "rad/s" }
+
+[loads]
+weight  = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
+drive_1 = { kind = "generalized", coordinate = "q1", force = "tau1" }
+drive_2 = { kind = "generalized", coordinate = "q2", force = "tau2" }
+drive_3 = { kind = "generalized", coordinate = "q3", force = "tau3" }
+"#;
+
+const RECORDED: &str = r#"
+mechanism = "arm.toml"
+[parameters]
+m_1 = { value = 4, unit = "kg", std = 0.2 }
+m_2 = { value = 2, unit = "kg", std = 0.1 }
+[channels]
+q1   = { measures = "q1", unit = "rad" }
+q2   = { measures = "q2", unit = "rad" }
+q3   = { measures = "q3", unit = "rad" }
+tau1 = { input = "tau1", unit = "N m" }
+tau2 = { input = "tau2", unit = "N m" }
+tau3 = { input = "tau3", unit = "N m" }
+[runs]
+fit  = ["a.csv", "b.csv"]
+test = ["c.csv"]
+"#;
+
+/// A frequency in rad/s of each joint's motion, and others that have no ratio to it.
+const FREQUENCIES: [f64; 3] = [1.1, 1.7, 2.3];
+
+/// Position, rate and acceleration of a joint.
+fn joint(t: f64, joint: usize, phase: f64) -> [f64; 3] {
+    let mut motion = [0.0; 3];
+    for (harmonic, size) in [(1.0, 0.6), (2.2, 0.25), (3.7, 0.08)] {
+        let frequency = FREQUENCIES[joint] * harmonic;
+        let (sin, cos) = (frequency * t + phase * harmonic).sin_cos();
+        motion[0] += size * sin;
+        motion[1] += size * frequency * cos;
+        motion[2] -= size * frequency * frequency * sin;
+    }
+    motion
+}
+
+/// The inputs of an arm whose spec has these items more.
+fn run(rig: &str, phase: f64) -> String {
+    let text = format!("{ARM}{rig}");
+    let derived = derived("rig.toml", &text).unwrap();
+    let kinds = [
+        &FunctionKind::OF_MOTIONS[..],
+        &[FunctionKind::InverseDynamics],
+    ]
+    .concat();
+    let program = assemble::program(derived.derivation, &derived.mechanism, &kinds).unwrap();
+    let model = JitModel::new(&program).unwrap();
+    let p: Vec<f64> = model
+        .info()
+        .parameters
+        .iter()
+        .map(|one| one.value)
+        .collect();
+    let mut dice = Random::new(u64::from(phase.to_bits() as u32) + 1);
+    let mut table = "t,q1,q2,q3,tau1,tau2,tau3\n".to_owned();
+    for row in 0..2000 {
+        let t = f64::from(row) * 0.01;
+        let joints = [0, 1, 2].map(|one| joint(t, one, phase));
+        let mut x = joints.map(|[_, rate, _]| rate).to_vec();
+        x.extend(joints.map(|[position, ..]| position));
+        let accelerations = joints.map(|[.., acceleration]| acceleration);
+        let mut tau = vec![0.0; 3];
+        let at = At {
+            t,
+            x: &x,
+            u: &[0.0; 3],
+            p: &p,
+        };
+        model.inverse_dynamics(at, &accelerations, &mut tau);
+        write!(table, "{t:.2}").unwrap();
+        for [position, ..] in joints {
+            write!(table, ",{:.7}", position + 5e-5 * dice.normal()).unwrap();
+        }
+        for tau in tau {
+            write!(table, ",{:.6}", tau + 0.05 * dice.normal()).unwrap();
+        }
+        table.push('\n');
+    }
+    table
+}
+
+fn report(rig: &str) -> Report {
+    let folder = Folder::new();
+    folder
+        .write("arm.toml", ARM)
+        .write("recording.toml", RECORDED);
+    for (name, phase) in [("a.csv", 0.3), ("b.csv", 1.9), ("c.csv", 4.1)] {
+        folder.write(name, run(rig, phase));
+    }
+    let effects = appell_gap::effects::shipped().unwrap();
+    let set = folder.read().unwrap();
+    diagnose(&set, &effects, &Options::default(), |_| ()).unwrap()
+}
+
+/// Effects that make up more than a fiftieth of the gap.
+fn material(report: &Report) -> Vec<&str> {
+    let far = report.how_far.as_ref().unwrap();
+    let effects = far
+        .budget
+        .iter()
+        .filter(|part| part.is_effect() && part.is_material);
+    effects.map(|part| part.name.as_str()).collect()
+}
+
+#[test]
+fn an_arm_as_its_spec_has_no_gap() {
+    let report = report("");
+    assert!(report.is_by_forces);
+    assert_eq!(report.verdict, GapVerdict::NoGap, "{:?}", report.which);
+}
+
+#[test]
+fn friction_of_every_drive_is_one_cause_with_a_size_for_each() {
+    let friction = |joint: usize, dry: f64, viscous: f64| {
+        format!(
+            "friction_{joint} = {{ kind = \"generalized\", coordinate = \"q{joint}\", force = \
+             \"-{dry} [N*m]*smooth_sign(dot(q{joint}), 0.01 [rad/s]) - {viscous} [N*m*s/rad]*dot(q{joint})\" }}\n"
+        )
+    };
+    let rig = [(1, 3.0, 1.5), (2, 4.0, 2.0), (3, 1.0, 0.5)]
+        .map(|(q, dry, viscous)| friction(q, dry, viscous));
+    let report = report(&rig.concat());
+    assert_eq!(report.verdict, GapVerdict::Explained);
+    let mut found = material(&report);
+    found.sort_unstable();
+    assert_eq!(
+        found,
+        ["coulomb_friction@drives", "viscous_friction@drives"]
+    );
+    let of = |name: &str| {
+        let mut values = report.which[0].parameters.iter();
+        values.find(|value| value.name == name).unwrap()
+    };
+    for (name, true_value) in [
+        ("coulomb_friction@drives.q1_force", 3.0),
+        ("coulomb_friction@drives.q2_force", 4.0),
+        ("coulomb_friction@drives.q3_force", 1.0),
+        ("viscous_friction@drives.q1_coefficient", 1.5),
+        ("viscous_friction@drives.q2_coefficient", 2.0),
+        ("viscous_friction@drives.q3_coefficient", 0.5),
+    ] {
+        let value = of(name);
+        let off = (value.value - true_value).abs();
+        assert!(
+            off < 3.0 * value.std && off < 0.2 * true_value,
+            "{name}: {value:?}"
+        );
+    }
+    let far = report.how_far.as_ref().unwrap();
+    assert!(far.closed > 0.98, "{far:?}");
+}
+
+#[test]
+fn friction_of_one_joint_is_not_that_of_all() {
+    let report = report(
+        "friction = { kind = \"generalized\", coordinate = \"q2\", force = \
+         \"-3 [N*m]*smooth_sign(dot(q2), 0.01 [rad/s])\" }\n",
+    );
+    assert_eq!(report.verdict, GapVerdict::Explained, "{:?}", report.which);
+    assert_eq!(material(&report), ["coulomb_friction@q2"]);
+}
+
+#[test]
+fn a_drive_that_is_too_weak_has_a_gain_and_no_friction() {
+    let rig = ARM.replace("force = \"tau2\"", "force = \"0.9*tau2\"");
+    assert_ne!(rig, ARM);
+    let folder = Folder::new();
+    folder
+        .write("arm.toml", &rig)
+        .write("recording.toml", RECORDED);
+    for (name, phase) in [("a.csv", 0.3), ("b.csv", 1.9), ("c.csv", 4.1)] {
+        folder.write(name, run("", phase));
+    }
+    let effects = appell_gap::effects::shipped().unwrap();
+    let set = folder.read().unwrap();
+    let report = diagnose(&set, &effects, &Options::default(), |_| ()).unwrap();
+    assert_eq!(
+        material(&report),
+        ["actuator_gain@tau2"],
+        "{:?}",
+        report.which
+    );
+    let gain = &report.which[0].parameters[0];
+    assert!((gain.value - 1.0 / 9.0).abs() < 0.01, "{gain:?}");
+}
+
+#[test]
+fn what_the_library_lacks_gets_no_name_of_it() {
+    let report = report(
+        "ripple = { kind = \"generalized\", coordinate = \"q2\", force = \"3 [N*m]*sin(25*q2)\" }\n",
+    );
+    assert_eq!(
+        report.verdict,
+        GapVerdict::Unexplained,
+        "{:?}",
+        report.which
+    );
+}

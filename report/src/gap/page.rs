@@ -1,5 +1,7 @@
 //! A gap report as a self-contained HTML page.
 
+use std::collections::BTreeSet;
+
 use appell_codegen::{Derived, derived};
 use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Value, Where};
 use appell_recordings::{DataSet, Part};
@@ -206,7 +208,8 @@ fn drawing(set: &DataSet, report: &Report) -> Option<String> {
         GapVerdict::Unexplained => report.left.iter().map(|left| name(&left.place)).collect(),
         _ => sites.map(|site| name(site)).collect(),
     };
-    names.dedup();
+    let mut known = BTreeSet::new();
+    names.retain(|name| known.insert(name.clone()));
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let Derived {
         mechanism,

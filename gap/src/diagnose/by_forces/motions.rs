@@ -159,6 +159,18 @@ impl Motions {
         self.stretches.iter().flat_map(|(_, motions)| motions)
     }
 
+    /// The motions of each run, whatever gaps it has.
+    pub(super) fn runs(&self) -> Vec<(&str, Vec<&Motion>)> {
+        let mut runs: Vec<(&str, Vec<&Motion>)> = Vec::new();
+        for (run, own) in &self.stretches {
+            match runs.last_mut() {
+                Some((last, all)) if last == run => all.extend(own),
+                _ => runs.push((run, own.iter().collect())),
+            }
+        }
+        runs
+    }
+
     /// Noise of each equation's force, standard deviation: the smaller one of two bounds from above. One comes from the
     /// noise of the channels about their splines, where inputs may vary faster; the other is what changes from one
     /// motion to the next beside a hypothesis (J. von Neumann, *Distribution of the ratio of the mean square successive

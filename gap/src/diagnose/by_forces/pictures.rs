@@ -37,7 +37,7 @@ pub(super) fn of(
 fn steps(model: &EffectModel, found: &Findings, motions: &Motions, equation: usize) -> Vec<Step> {
     let best = found.best();
     let mut steps = Vec::new();
-    for (_, own) in &motions.stretches {
+    for (_, own) in motions.runs() {
         for (place, motion) in own.iter().enumerate() {
             let law = -added(model, best, motions, motion)[equation];
             let left = motion.left(&best.changes)[equation];
@@ -54,16 +54,17 @@ fn steps(model: &EffectModel, found: &Findings, motions: &Motions, equation: usi
 
 fn force_history(model: &EffectModel, found: &Findings, motions: &Motions) -> ForceHistory {
     let info = model.info();
-    let ends = |own: &[Motion]| match own {
+    let ends = |own: &[&Motion]| match own {
         [first, .., last] => (first.t, last.t),
         _ => (0.0, 0.0),
     };
-    let lengths = motions.stretches.iter().map(|(_, own)| ends(own));
+    let all = motions.runs();
+    let lengths = all.iter().map(|(_, own)| ends(own));
     let length: f64 = lengths.map(|(from, to)| to - from).sum();
     let part = SHORTEST.max(length / PARTS);
     let mut runs = Vec::new();
     let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
-    for (run, own) in &motions.stretches {
+    for (run, own) in &all {
         let (from, to) = ends(own);
         // Parts are few.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -80,7 +81,7 @@ fn force_history(model: &EffectModel, found: &Findings, motions: &Motions) -> Fo
                 sizes[first + place].push(force.abs());
             }
         }
-        runs.push((run.clone(), from, parts));
+        runs.push(((*run).to_owned(), from, parts));
     }
     let equations = sizes.into_iter().enumerate();
     let equations = equations.map(|(equation, sizes)| MissingForce {
@@ -98,7 +99,8 @@ fn force_history(model: &EffectModel, found: &Findings, motions: &Motions) -> Fo
 /// The forces of the inputs in the first run, and what the model needs for its motion.
 fn traces(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<Trace> {
     let info = model.info();
-    let Some((run, own)) = motions.stretches.first() else {
+    let runs = motions.runs();
+    let Some((run, own)) = runs.first() else {
         return Vec::new();
     };
     let stated = found.nominal().changes.map(|_| 0.0);
@@ -111,7 +113,7 @@ fn traces(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<Trace
                 .collect()
         };
         Trace {
-            run: run.clone(),
+            run: (*run).to_owned(),
             column: info.states[equation].name.to_string(),
             unit: force_unit(&model.mechanism, equation),
             times: own.iter().map(|motion| motion.t).collect(),

@@ -18,6 +18,8 @@ use crate::effects::{Acts, EffectModel, Part};
 const KEPT: usize = 6;
 /// Most effects of a hypothesis.
 const MOST_EFFECTS: usize = 4;
+/// Hypotheses below this probability are not told.
+const IMPROBABLE: f64 = 1e-4;
 /// Most candidates: components of a vector count as one effect.
 const MOST_MEMBERS: usize = 6;
 
@@ -104,6 +106,7 @@ impl<'s> Search<'s> {
         let weighed = all.into_iter().zip(weights);
         let mut fits: Vec<(Hypothesis, f64)> =
             weighed.map(|(own, weight)| (own, weight / sum)).collect();
+        fits.retain(|(own, probability)| *probability > IMPROBABLE || own.members.is_empty());
         fits.sort_by(|a, b| b.1.total_cmp(&a.1));
         let nominal = fits.iter().position(|(own, _)| own.members.is_empty());
         let nominal = nominal.unwrap_or(0);

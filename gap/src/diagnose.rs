@@ -124,16 +124,27 @@ fn diagnosed(
     let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
     all.retain(|one| !options.present.contains(&one.name()));
     if before.is_none() && by_forces::applies(set, options) {
-        all.retain(|one| by_forces::acts(one));
+        all.retain(by_forces::acts);
         let model = EffectModel::of_forces(&set.spec, all)?;
         return by_forces::diagnose(set, &model, options, &mut stage);
     }
     let model = EffectModel::new(&set.spec, all)?;
+    by_filter((set, before), (&whole, &fitted), &model, options, stage)
+}
+
+/// The same by the innovations of a filter, and by simulations.
+fn by_filter(
+    (set, before): (&DataSet, Option<&DataSet>),
+    (whole, fitted): (&DataSet, &DataSet),
+    model: &EffectModel,
+    options: &Options,
+    mut stage: impl FnMut(&'static str),
+) -> Result<Report, DiagnoseError> {
     let Judged {
         bench,
         screen,
         mut comparison,
-    } = judged((&whole, &fitted), &model, &mut stage)?;
+    } = judged((whole, fitted), model, &mut stage)?;
     stage("measuring what is left");
     let test = set.only(Part::Test);
     // A law that cannot be written is a row, not the end.
@@ -142,9 +153,9 @@ fn diagnosed(
         Err(reason) => (Vec::new(), Some(Err(reason))),
     };
     let fitted_laws = law::fitted(&laws, &bench, &test);
-    let measured = law::measured(fitted_laws, &mut comparison, (&bench, &whole)).or(unwritten);
+    let measured = law::measured(fitted_laws, &mut comparison, (&bench, whole)).or(unwritten);
     stage("fitting the alternatives");
-    let alternatives = Alternative::all(&options.alternatives, &fitted)?;
+    let alternatives = Alternative::all(&options.alternatives, fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
     stage("localising the gap");
     let mut place = localise::place(&bench, &comparison)?;

@@ -71,12 +71,8 @@ pub(super) fn over_its_variable(
     let varying = (0..variables.clone().count()).filter(varies);
     let explained = varying.map(|v| (v, explained(steps, v, target)));
     let best = explained.max_by(|a, b| a.1.total_cmp(&b.1));
-    let Some((variable, part)) = best.filter(|(_, part)| part.is_finite()) else {
-        return None;
-    };
-    let Some(quantity) = variables.clone().nth(variable) else {
-        return None;
-    };
+    let (variable, part) = best.filter(|(_, part)| part.is_finite())?;
+    let quantity = variables.clone().nth(variable)?;
     let stride = steps.len().div_ceil(POINTS).max(1);
     let in_unit = |[x, force]: [f64; 2]| [x / quantity.scale, force];
     let of = |step: &Step| in_unit([step.variables[variable], step.force]);

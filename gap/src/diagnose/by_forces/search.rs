@@ -12,7 +12,7 @@ use super::super::calibration::{Rest, inexact, tempered, unlisted, unlisted_besi
 use super::super::prior::prior;
 use super::hypothesis::{Hypothesis, Member, Open, Squares};
 use super::motions::Motions;
-use crate::effects::{Acts, EffectModel, Part};
+use crate::effects::{Acts, Candidate, EffectModel, Part};
 
 /// Hypotheses that others join.
 const KEPT: usize = 6;
@@ -179,7 +179,7 @@ impl<'s> Search<'s> {
 
     fn names(&self, members: &[usize]) -> BTreeSet<String> {
         let candidates = members.iter().map(|&one| &self.effects.candidates[one]);
-        candidates.map(|own| own.name()).collect()
+        candidates.map(Candidate::name).collect()
     }
 
     /// Logarithm of the probability, up to a constant.

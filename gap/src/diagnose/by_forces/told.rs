@@ -48,10 +48,8 @@ pub(super) fn report(
         disturbances: (names.zip(stayed))
             .map(|(speed, (before, after))| (speed.name.to_string(), before.sqrt(), after.sqrt()))
             .collect(),
-        pictures: match options.pictures && first != GapVerdict::NoGap {
-            true => Some(pictures::of(model, found, (training, test), &place)),
-            false => None,
-        },
+        pictures: (options.pictures && first != GapVerdict::NoGap)
+            .then(|| pictures::of(model, found, (training, test), &place)),
         place: match first {
             GapVerdict::NoGap => Where::nowhere(),
             _ => place,

@@ -110,7 +110,7 @@ fn run(rig: &str, phase: f64) -> String {
         .iter()
         .map(|one| one.value)
         .collect();
-    let mut dice = Random::new(u64::from(phase.to_bits() as u32) + 1);
+    let mut dice = Random::new(phase.to_bits());
     let mut table = "t,q1,q2,q3,tau1,tau2,tau3\n".to_owned();
     for row in 0..2000 {
         let t = f64::from(row) * 0.01;

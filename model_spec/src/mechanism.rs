@@ -484,6 +484,16 @@ impl Mechanism {
         })
     }
 
+    /// The pseudo-velocity that is the rate of a coordinate, if one is.
+    pub fn speed_of(&self, coordinate: CoordinateId) -> Option<SpeedId> {
+        let rate = Quantity::Rate(coordinate);
+        let mut speeds = self.pseudo_velocities.entries();
+        let found = speeds.find(
+            |(_, speed)| matches!(&speed.definition.kind, ExprKind::Quantity(own) if *own == rate),
+        );
+        found.map(|(id, _)| id)
+    }
+
     /// The loads, each after those whose forces it names; they do not lead into circles.
     pub fn loads_after_what_they_name(&self) -> Vec<LoadId> {
         let mut waiting: Vec<(LoadId, Vec<LoadId>)> = Vec::new();

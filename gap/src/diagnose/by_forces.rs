@@ -21,9 +21,6 @@ mod search;
 mod told;
 
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
-use appell_spec::Mechanism;
-use appell_spec::expr::{ExprKind, Quantity};
-use appell_spec::mechanism::CoordinateId;
 
 use super::report::Report;
 use super::{DiagnoseError, Options};
@@ -42,20 +39,15 @@ pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
     coordinates >= FEWEST
         && driven(mechanism).len() == coordinates
         && mechanism.pseudo_velocities.len() == coordinates
-        && (0..coordinates).all(|q| speed_of(mechanism, q).is_some())
+        && mechanism
+            .coordinates
+            .ids()
+            .all(|q| mechanism.speed_of(q).is_some())
         && mechanism.inputs.len() == coordinates
         && mechanism.constraints.is_empty()
         && (0..coordinates).all(measured)
         && (0..mechanism.inputs.len()).all(|input| has(Role::Input(input)))
         && options.alternatives.is_empty()
-}
-
-/// The pseudo-velocity that is the rate of a coordinate.
-fn speed_of(mechanism: &Mechanism, coordinate: usize) -> Option<usize> {
-    let rate = Quantity::Rate(CoordinateId::new(coordinate));
-    let mut speeds = mechanism.pseudo_velocities.iter();
-    speeds
-        .position(|speed| matches!(&speed.definition.kind, ExprKind::Quantity(own) if *own == rate))
 }
 
 /// The diagnosis; the runs that were held out are read at its end.

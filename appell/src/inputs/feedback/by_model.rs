@@ -9,8 +9,8 @@
 //! believes = { m_load = "2kg" }            # parameters of the law's model; the others are those of the motion
 //! ```
 
-use appell_spec::expr::{Expr, ExprKind, Quantity};
-use appell_spec::mechanism::CoordinateId;
+use appell_spec::expr::Expr;
+use appell_spec::mechanism::{CoordinateId, SpeedId};
 use appell_spec::{Code, Scope};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
@@ -162,11 +162,8 @@ fn computed_torque(reader: &mut Reader<'_>, table: &DeTable<'_>, inputs: usize) 
 /// The pseudo-velocity that is the rate of a coordinate.
 fn speed_of(reader: &Reader<'_>, coordinate: usize) -> Option<usize> {
     let setup = reader.setup;
-    let id = CoordinateId::new(coordinate.checked_sub(setup.info.speeds)?);
-    let mut speeds = setup.mechanism.pseudo_velocities.iter();
-    speeds.position(|speed| {
-        matches!(&speed.definition.kind, ExprKind::Quantity(Quantity::Rate(rate)) if *rate == id)
-    })
+    let coordinate = CoordinateId::new(coordinate.checked_sub(setup.info.speeds)?);
+    setup.mechanism.speed_of(coordinate).map(SpeedId::index)
 }
 
 /// Values of parameters by name, in SI.

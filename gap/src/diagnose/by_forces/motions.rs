@@ -3,10 +3,10 @@
 use appell_estimate::Moment;
 use appell_recordings::{DataSet, Part as OfSet};
 use appell_runtime::model::{At, Model};
+use appell_spec::mechanism::CoordinateId;
 use nalgebra::{DMatrix, DVector};
 
 use super::super::DiagnoseError;
-use super::speed_of;
 use crate::base::recorded;
 use crate::effects::{EffectModel, Part};
 use crate::inverse::coordinates;
@@ -132,8 +132,8 @@ impl Motions {
         let stretches = recorded(&runs, model, &p)?;
         let coordinates: Vec<[usize; 2]> = (coordinates(set).into_iter())
             .filter_map(|(_, coordinate)| {
-                let speed = speed_of(&set.mechanism, coordinate)?;
-                Some([info.speeds + coordinate, speed])
+                let speed = set.mechanism.speed_of(CoordinateId::new(coordinate))?;
+                Some([info.speeds + coordinate, speed.index()])
             })
             .collect();
         let first = stretches.iter().find_map(|one| one.moments.first());

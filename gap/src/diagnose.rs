@@ -124,9 +124,13 @@ fn diagnosed(
     let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
     all.retain(|one| !options.present.contains(&one.name()));
     if before.is_none() && by_forces::applies(set, options) {
-        all.retain(by_forces::acts);
-        let model = EffectModel::of_forces(&set.spec, all)?;
-        return by_forces::diagnose(set, &model, options, &mut stage);
+        let forces = all.iter().filter(|one| by_forces::acts(one)).cloned();
+        let model = EffectModel::of_forces(&set.spec, forces.collect())?;
+        match by_forces::diagnose(set, &model, options, &mut stage) {
+            // Runs may be too short for splines.
+            Err(DiagnoseError::Forces(_)) => {}
+            told => return told,
+        }
     }
     let model = EffectModel::new(&set.spec, all)?;
     by_filter((set, before), (&whole, &fitted), &model, options, stage)

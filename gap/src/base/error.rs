@@ -26,6 +26,9 @@ pub enum BaseError {
         /// Base parameters.
         count: usize,
     },
+    /// The equations have no finite values on the recorded motions.
+    #[error("inverse dynamics has no finite values on the recorded motions")]
+    NotFinite,
     /// The motions could not be evaluated.
     #[error(transparent)]
     Inverse(#[from] InverseError),

@@ -24,6 +24,7 @@ use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
 
 use super::report::Report;
 use super::{DiagnoseError, Options};
+use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
 use motions::Motions;
 use search::Search;
@@ -62,6 +63,7 @@ pub(super) fn diagnose(
     let training = Motions::of(&fit, model)?;
     stage("fitting the effects to the forces");
     let found = Search::new(model, &fit, &training).found();
+    let found = found.ok_or(BaseError::NotFinite)?;
     stage("predicting the forces of the runs that were held out");
     let test = set.only(OfSet::Test).bound_to(&model.mechanism);
     let test = if test.runs.is_empty() {

@@ -67,8 +67,9 @@ impl<'s> Search<'s> {
         }
     }
 
-    /// Twice: what the best hypothesis leaves tells how much of their own the motions tell.
-    pub(super) fn found(&self) -> Findings {
+    /// Twice: what the best hypothesis leaves tells how much of their own the motions tell. Nothing where not even the
+    /// nominal model has finite forces.
+    pub(super) fn found(&self) -> Option<Findings> {
         let first = self.fits(&self.squares);
         let best = first
             .iter()
@@ -80,14 +81,15 @@ impl<'s> Search<'s> {
         self.weighed(&squares, self.fits(&squares))
     }
 
-    fn weighed(&self, squares: &Squares, all: Vec<Hypothesis>) -> Findings {
+    fn weighed(&self, squares: &Squares, all: Vec<Hypothesis>) -> Option<Findings> {
+        let base = all.first().filter(|first| first.members.is_empty())?.log;
         let alone = all.iter().filter(|own| own.members.len() == 1);
         let alone = alone.cloned().collect();
         let logs: Vec<f64> = all.iter().map(|own| self.log_posterior(own)).collect();
         let best = (0..all.len())
             .max_by(|&a, &b| logs[a].total_cmp(&logs[b]))
             .unwrap_or(0);
-        let explained = |own: &Hypothesis| own.log - all[0].log;
+        let explained = |own: &Hypothesis| own.log - base;
         let weight = |(log, own): (&f64, &Hypothesis)| {
             let weight = tempered(log - logs[best]).exp();
             let is_part = own
@@ -121,14 +123,14 @@ impl<'s> Search<'s> {
             unlisted(left / whole)
         };
         let count = squares.independent.len().max(1) as f64;
-        Findings {
+        Some(Findings {
             unknown: odds / (1.0 + odds),
             independent: squares.independent.iter().sum::<f64>() / count,
             fits,
             nominal,
             noise,
             alone,
-        }
+        })
     }
 
     /// The nominal model first.

@@ -2,8 +2,9 @@
 //!
 //! Each equation has the variance of what it leaves; motions that follow each other tell less than as many
 //! independent ones, and no law is exact: a twentieth of the mean square of an equation is one unit (J. W. Miller,
-//! D. B. Dunson, *Robust Bayesian inference via coarsening*, 2019). What is likely are the measured inputs u, given the motion: p(u) = p(r) |det E| where the residual
-//! r has −E u. Without this factor an input without any force would explain whatever force is missing.
+//! D. B. Dunson, *Robust Bayesian inference via coarsening*, 2019). What is likely are the measured inputs u, given
+//! the motion: p(u) = p(r) |det E| where the residual r has −E u. Without this factor an input without any force
+//! would explain whatever force is missing.
 
 use std::f64::consts::TAU;
 
@@ -43,7 +44,7 @@ pub(super) struct Member {
 }
 
 impl Member {
-    fn own(&self, column: usize) -> bool {
+    fn has(&self, column: usize) -> bool {
         self.open.iter().any(|one| one.column == column)
     }
 }
@@ -179,7 +180,7 @@ impl Squares {
             let against = (0..open.len()).find(is_against);
             if let Some(against) = against {
                 let gone = open.remove(against).column;
-                if members.iter().any(|one| one.is_whole && one.own(gone)) {
+                if members.iter().any(|one| one.is_whole && one.has(gone)) {
                     return None;
                 }
                 continue;

@@ -176,21 +176,24 @@ impl Motions {
     /// motion to the next beside a hypothesis (J. von Neumann, *Distribution of the ratio of the mean square successive
     /// difference to the variance*, 1941).
     pub(super) fn noise(&self, changes: &DVector<f64>) -> DVector<f64> {
-        let of_channels = mean(self.all().map(|motion| motion.noise.clone()));
+        let equations = self.all().next().map_or(0, |motion| motion.noise.len());
+        let of_channels = mean(equations, self.all().map(|motion| motion.noise.clone()));
         let pairs = self.stretches.iter().flat_map(|(_, own)| own.windows(2));
-        let successive = mean(pairs.map(|pair| {
+        let half_squares = pairs.map(|pair| {
             let change = pair[1].left(changes) - pair[0].left(changes);
             0.5 * change.component_mul(&change)
-        }));
+        });
+        let successive = mean(equations, half_squares);
         let least = of_channels.zip_map(&successive, f64::min);
         least.map(|variance| variance.sqrt().max(f64::MIN_POSITIVE))
     }
 }
 
-fn mean(all: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
-    let mut count = 0.0_f64;
-    let sum = all.inspect(|_| count += 1.0).reduce(|sum, own| sum + own);
-    sum.unwrap_or_else(|| DVector::zeros(0)) / count.max(1.0)
+fn mean(length: usize, all: impl Iterator<Item = DVector<f64>>) -> DVector<f64> {
+    let (sum, count) = all.fold((DVector::zeros(length), 0.0), |(sum, count), own| {
+        (sum + own, count + 1.0)
+    });
+    sum / f64::max(count, 1.0)
 }
 
 /// M ω̇ + b − Π.

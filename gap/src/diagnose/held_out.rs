@@ -14,7 +14,7 @@ use super::evidence::Fitted;
 use super::law::FittedLaw;
 use super::options::Options;
 use super::prediction::{self, Errors, Paired, noise, stated};
-use super::report::HowFar;
+use super::report::{HowFar, Share};
 use appell_recordings::{DataSet, Part};
 
 /// Horizon at which the gap is reported, in s and in steps at least, but no more than half of a run.
@@ -110,8 +110,6 @@ impl HeldOut {
         let stated = errors(&stated)?;
         let (refit, effect) = (errors(refitted)?, leader.errors(horizon)?);
         let paired = Paired::of(&[&stated, &refit, &effect]);
-        let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
-        let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
             budget::of_alternative(name, &paired, (floor, tolerance))
@@ -138,20 +136,10 @@ impl HeldOut {
                 errors(&budget::with((bench, comparison), best, members)?)
             })?
         };
+        let runs = self.names.clone();
         Ok(Some(HowFar {
-            horizon_s: horizon,
-            nominal: means[0].sqrt(),
-            refitted: means[1].sqrt(),
-            with_effect: means[2].sqrt(),
-            noise_floor: floor,
-            closed: closed(means[0], means[2]),
-            closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
-            closed_vs_refitted: closed(means[1], means[2]),
-            budget,
             before: before.transpose()?,
-            bettered_ci95: [0, 1].map(bettered),
-            is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
-            runs: self.names.clone(),
+            ..HowFar::of(&paired, (horizon, floor), budget, runs)
         }))
     }
 
@@ -163,6 +151,35 @@ impl HeldOut {
         horizon: f64,
     ) -> Result<Errors, DiagnoseError> {
         prediction::errors(&self.recordings, bench, fitted, noise, horizon, ORIGINS)
+    }
+}
+
+impl HowFar {
+    /// By the errors of the stated model, the re-fitted one and the leading hypothesis.
+    pub(super) fn of(
+        paired: &Paired,
+        (horizon_s, floor): (f64, f64),
+        budget: Vec<Share>,
+        runs: Vec<String>,
+    ) -> Self {
+        let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
+        let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
+        let means = paired.means();
+        Self {
+            horizon_s,
+            nominal: means[0].sqrt(),
+            refitted: means[1].sqrt(),
+            with_effect: means[2].sqrt(),
+            noise_floor: floor,
+            closed: closed(means[0], means[2]),
+            closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
+            closed_vs_refitted: closed(means[1], means[2]),
+            budget,
+            before: None,
+            bettered_ci95: [0, 1].map(bettered),
+            is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
+            runs,
+        }
     }
 }
 

@@ -253,8 +253,6 @@ fn how_far(
     let (refit, effect) = (errors(&refitted.changes), errors(&best.changes));
     let floor = 1.0;
     let paired = Paired::of(&[&stated, &refit, &effect]);
-    let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
-    let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
     let means = paired.means();
     let ends = Ends {
         stated: &stated,
@@ -277,21 +275,7 @@ fn how_far(
     })?;
     let mut runs: Vec<String> = test.stretches.iter().map(|(run, _)| run.clone()).collect();
     runs.dedup();
-    Ok(HowFar {
-        horizon_s: 0.0,
-        nominal: means[0].sqrt(),
-        refitted: means[1].sqrt(),
-        with_effect: means[2].sqrt(),
-        noise_floor: floor,
-        closed: closed(means[0], means[2]),
-        closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
-        closed_vs_refitted: closed(means[1], means[2]),
-        budget,
-        before: None,
-        bettered_ci95: [0, 1].map(bettered),
-        is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
-        runs,
-    })
+    Ok(HowFar::of(&paired, (0.0, floor), budget, runs))
 }
 
 /// Mean squares of the forces that are left, by blocks of time.

@@ -4,7 +4,7 @@ use appell_gap::diagnose::{HowFar, Report, Share};
 use maud::{Markup, html};
 
 use super::elements::{bare_bar, code, table};
-use super::numbers::percent;
+use super::numbers::{is_determined, percent};
 
 /// `coulomb_friction@theta 66 % [24 %, 77 %], ... ; 8 % [4 %, 9 %] stays`, the largest part first; `None` where no
 /// run was held out.
@@ -79,6 +79,21 @@ pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
                 }
             }
         }
+    }
+}
+
+/// How far the gap closes on the held-out runs.
+pub(super) fn closes(far: &HowFar) -> Markup {
+    let [low, high] = far.closed_ci95.map(percent);
+    html! {
+        @if is_determined(far.closed, far.closed_ci95) {
+            "The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (low) " and " (high)
+            "; against the model with re-fitted parameters by "
+            b { (percent(far.closed_vs_refitted)) } ". "
+        } @else {
+            "The held-out runs leave it open what closes: between " (low) " and " (high) ". "
+        }
+        "Runs: " (far.runs.join(", ")) "."
     }
 }
 

@@ -3,8 +3,8 @@
 use appell_gap::diagnose::{HowFar, Report};
 use maud::{Markup, html};
 
+use super::budget::closes;
 use super::elements::{code, figure, table};
-use super::numbers::{is_determined, percent};
 use super::plots;
 use super::short;
 
@@ -18,20 +18,12 @@ pub(super) fn how_far(report: &Report, far: &HowFar) -> Markup {
         ]
     });
     let traces = report.pictures.iter().flat_map(|pictures| &pictures.traces);
-    let [low, high] = far.closed_ci95.map(percent);
     html! {
         h2 { "How far" }
         p {
             "The RMS of the forces that the model misses on the held-out runs falls from "
             (short(far.nominal)) " to " (short(far.with_effect)) " times their noise. "
-            @if is_determined(far.closed, far.closed_ci95) {
-                "The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (low) " and " (high)
-                "; against the model with re-fitted parameters by "
-                b { (percent(far.closed_vs_refitted)) } ". "
-            } @else {
-                "The held-out runs leave it open what closes: between " (low) " and " (high) ". "
-            }
-            "Runs: " (far.runs.join(", ")) "."
+            (closes(far))
         }
         p class="faint" {
             "Forces that the recorded motions take by the model, M ω̇ + b − Π with splines through the coordinates, are \

@@ -7,7 +7,7 @@ use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Value, Where}
 use appell_recordings::{DataSet, Part};
 use maud::{Markup, html};
 
-use super::budget::budget;
+use super::budget::{budget, closes};
 use super::doubt::doubts;
 use super::elements::{bar, capital, code, figure, separated, table};
 use super::forces;
@@ -434,20 +434,12 @@ fn how_far(report: &Report) -> Markup {
 }
 
 fn closed(far: &HowFar) -> Markup {
-    let [low, high] = far.closed_ci95.map(percent);
     html! {
         p {
             (short(far.horizon_s)) " s ahead the RMS prediction error, in units of the noise, falls from "
             (short(far.nominal)) " to " (short(far.with_effect)) " (noise floor "
             (short(far.noise_floor)) "). "
-            @if is_determined(far.closed, far.closed_ci95) {
-                "The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (low) " and " (high)
-                "; against the model with re-fitted parameters by "
-                b { (percent(far.closed_vs_refitted)) } ". "
-            } @else {
-                "The held-out runs leave it open what closes: between " (low) " and " (high) ". "
-            }
-            "Runs: " (far.runs.join(", ")) "."
+            (closes(far))
         }
     }
 }

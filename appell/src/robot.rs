@@ -38,15 +38,16 @@ fn told(failure: Failure) -> Error {
     }
 }
 
-/// Reads a file, and the meshes beside it that give bodies their inertia, and turns it into a spec.
+/// Reads a file with those that it includes, and the meshes that give bodies their inertia, and turns it into a spec.
 pub fn read(path: &Path, options: &Options) -> Result<Imported, Error> {
     let text = files::read(path, MAX_FILE)?;
     let file = path.to_string_lossy().replace('\\', "/");
     let folder = path.parent().unwrap_or(Path::new(""));
     let others = |name: &str| {
         let named = folder.join(name);
-        let size = std::fs::metadata(&named).ok()?.len();
-        (size <= MAX_MESH).then(|| std::fs::read(&named).ok())?
+        let there = std::fs::metadata(&named).ok()?;
+        let can_be_read = there.is_file() && there.len() <= MAX_MESH;
+        can_be_read.then(|| std::fs::read(&named).ok())?
     };
     appell_robots::import_with(&file, &text, options, &others).map_err(told)
 }

@@ -8,6 +8,7 @@
 //!
 //! | file | does |
 //! |---|---|
+//! | `includes.rs` | a file with those that it includes, as one text |
 //! | `xml.rs` | elements and numbers with their places, and findings about them |
 //! | `urdf.rs`, `mjcf.rs` | the formats, each to a `Robot` |
 //! | `model.rs` | what a robot is: links in a tree, joints with their properties |
@@ -18,6 +19,7 @@
 //! | `options.rs`, `without.rs`, `snap.rs` | requests; what is left out; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
+mod includes;
 mod inertia;
 mod letters;
 mod loops;
@@ -35,6 +37,8 @@ mod without;
 mod xml;
 
 use appell_spec::{Code, Diagnostic, Report, did_you_mean};
+
+use includes::Whole;
 
 pub use letters::Letters;
 pub use options::Options;
@@ -55,8 +59,8 @@ pub struct Imported {
     pub joints: usize,
     /// Number of bodies: links that are fixed together count once.
     pub bodies: usize,
-    /// Warnings about the file.
-    pub warnings: Report,
+    /// Warnings, by the file that they are about.
+    pub warnings: Vec<Report>,
     /// What has no counterpart in the spec.
     pub left_out: Vec<LeftOut>,
     /// Orientations and axes that are nearly along the axes of their parents.
@@ -68,6 +72,8 @@ pub struct Imported {
 pub struct LeftOut {
     /// The element, such as `actuator/motor`.
     pub what: String,
+    /// The file that has them: that of the robot, or one that it includes.
+    pub file: String,
     /// Their lines, from 1.
     pub lines: Vec<usize>,
 }
@@ -75,7 +81,7 @@ pub struct LeftOut {
 /// Why a robot cannot be imported.
 #[derive(Debug)]
 pub enum Failure {
-    /// Its file is wrong, or has what cannot be imported.
+    /// Its file, or one that it includes, is wrong or has what cannot be imported; the report is about one file.
     File(Box<Report>),
     /// Names that are to become parameters but name nothing.
     Unknown {
@@ -115,17 +121,17 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Fai
     import_with(file, text, options, &|_| None)
 }
 
-/// [`import`] where meshes that the file names may be read: `others` gives the bytes of a file by its path from
-/// the folder of this one. Meshes are read where a body has no other inertia.
+/// [`import`] where files that this one names may be read: `others` gives the bytes of a file by its path from
+/// the folder of this one. An MJCF includes others, and meshes are read where a body has no other inertia.
 pub fn import_with(
     file: &str,
     text: &str,
     options: &Options,
     others: &dyn Fn(&str) -> Option<Vec<u8>>,
 ) -> Result<Imported, Failure> {
-    let fail =
-        |findings: Vec<Diagnostic>| Failure::File(Box::new(Report::new(file, text, findings)));
-    let document = xml::parse(text).map_err(|error| fail(vec![error]))?;
+    let whole = Whole::read(file, text, others).map_err(Failure::File)?;
+    let fail = |findings: Vec<Diagnostic>| Failure::File(Box::new(whole.first_error(findings)));
+    let document = xml::parse(&whole.text).map_err(|error| fail(vec![error]))?;
     let findings = xml::Findings::default();
     let root = document.root_element();
     let (kind, mut robot) = match root.tag_name().name() {
@@ -149,7 +155,7 @@ pub fn import_with(
     let nearly_right = snap::snap(&mut robot, options.snap);
     let tree = tree::merged(&robot.links, &findings);
     if tree.bodies.is_empty() && !findings.has_errors() {
-        let help = "joints are revolute, continuous, prismatic or floating (URDF), hinge, slide, ball or free (MJCF)";
+        let help = "joints are revolute, continuous, prismatic, planar or floating (URDF), hinge, slide, ball or free (MJCF)";
         findings.error(
             Code::MissingSection,
             xml::tag(root),
@@ -173,16 +179,21 @@ pub fn import_with(
             help,
         });
     }
-    let warnings = Report::new(file, text, findings);
-    let left_out = spec::grouped(&robot.left_out)
-        .into_iter()
-        .map(|(what, all)| LeftOut {
-            what: what.to_owned(),
-            lines: all
-                .iter()
-                .map(|one| warnings.line_column(one.place.start).0)
-                .collect(),
-        });
+    let mut left_out: Vec<LeftOut> = Vec::new();
+    for (what, all) in spec::grouped(&robot.left_out) {
+        let first = left_out.len();
+        for one in all {
+            let (file, line) = whole.line(&one.place);
+            match left_out[first..].iter_mut().find(|own| own.file == file) {
+                Some(own) => own.lines.push(line),
+                None => left_out.push(LeftOut {
+                    what: what.to_owned(),
+                    file: file.to_owned(),
+                    lines: vec![line],
+                }),
+            }
+        }
+    }
     Ok(Imported {
         spec: written.text,
         name: robot.name.clone(),
@@ -192,8 +203,8 @@ pub fn import_with(
             .iter()
             .filter(|body| !body.inertia.is_nothing())
             .count(),
-        left_out: left_out.collect(),
+        left_out,
         nearly_right,
-        warnings,
+        warnings: whole.reports(findings),
     })
 }

@@ -12,7 +12,7 @@ use appell_spec::{Code, did_you_mean};
 use crate::inertia::Inertia;
 use crate::model::{LeftOut, Link, Robot};
 use crate::rotation::{Pose, Rotation, Vector};
-use crate::xml::{Element, Findings, Span, child, children, elements, exactly, tag};
+use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
 
 use defaults::Defaults;
 use equality::Equality;
@@ -25,7 +25,7 @@ const ELSEWHERE: &[&str] = &["compiler", "option", "default", "worldbody", "equa
 /// What stands in a body beside those that are read.
 const READ: &[&str] = &["body", "joint", "geom", "inertial", "frame", "freejoint"];
 /// Elements that change the tree, and are not read.
-const NOT_YET: &[&str] = &["include", "replicate", "composite", "flexcomp", "attach"];
+const NOT_YET: &[&str] = &["replicate", "composite", "flexcomp", "attach"];
 
 /// How the file is to be read.
 pub(crate) struct Compiler {
@@ -238,10 +238,7 @@ impl<'x> Reader<'x, '_> {
 
     fn not_yet(&self, element: Element<'_>) {
         let name = element.tag_name().name();
-        let help = match name {
-            "include" => "put the included elements in its place",
-            _ => "write out the bodies that it makes; MuJoCo does so when it saves a model",
-        };
+        let help = "write out the bodies that it makes; MuJoCo does so when it saves a model";
         self.findings.error(
             Code::NotAllowedHere,
             tag(element),
@@ -340,23 +337,8 @@ impl<'x> Reader<'x, '_> {
         let inertia = self.inertia(element, &name, class, !joints.is_empty());
         let carried = element.attribute_node("gravcomp");
         let carried = carried.and_then(|given| exactly(self.findings, &given, "`gravcomp`"));
-        let mut parent = level.parent;
-        let mut pose = pose;
-        let count = joints.len();
-        for (index, joint) in joints.into_iter().enumerate() {
-            let last = index + 1 == count;
-            let step = if last {
-                name.clone()
-            } else {
-                format!("{name}_{}", index + 1)
-            };
-            self.push(step, parent, pose, Some(joint), last, tag(element));
-            (parent, pose) = (Some(self.links.len() - 1), Pose::IDENTITY);
-        }
-        if count == 0 {
-            self.push(name, parent, pose, None, true, tag(element));
-        }
-        let here = self.links.len() - 1;
+        let own = Link::fixed(name, level.parent, pose, tag(element));
+        let here = own.moved_by(joints, &mut self.links);
         self.links[here].inertia = inertia;
         self.links[here].carried = carried.map_or(0.0, |[share]: [f64; 1]| share);
         let inside = Level {
@@ -365,27 +347,6 @@ impl<'x> Reader<'x, '_> {
             class,
         };
         self.level(element, inside);
-    }
-
-    fn push(
-        &mut self,
-        name: String,
-        parent: Option<usize>,
-        pose: Pose,
-        joint: Option<crate::model::Joint>,
-        written: bool,
-        place: Span,
-    ) {
-        self.links.push(Link {
-            name,
-            parent,
-            pose,
-            joint,
-            inertia: Inertia::NONE,
-            carried: 0.0,
-            written,
-            place,
-        });
     }
 
     /// The inertia of a body in its frame.

@@ -36,6 +36,39 @@ pub(crate) struct Link {
     pub(crate) place: Span,
 }
 
+impl Link {
+    /// A link without inertia that does not move on its parent.
+    pub(crate) fn fixed(name: String, parent: Option<usize>, pose: Pose, place: Span) -> Self {
+        Self {
+            name,
+            parent,
+            pose,
+            joint: None,
+            inertia: Inertia::NONE,
+            carried: 0.0,
+            written: true,
+            place,
+        }
+    }
+
+    /// Appends it to `links`, moved by joints one after the other, with a step for each but the last. The result is its
+    /// index.
+    pub(crate) fn moved_by(mut self, mut joints: Vec<Joint>, links: &mut Vec<Self>) -> usize {
+        self.joint = joints.pop();
+        for (index, joint) in joints.into_iter().enumerate() {
+            let name = format!("{}_{}", self.name, index + 1);
+            links.push(Self {
+                joint: Some(joint),
+                written: false,
+                ..Self::fixed(name, self.parent, self.pose, self.place.clone())
+            });
+            (self.parent, self.pose) = (Some(links.len() - 1), Pose::IDENTITY);
+        }
+        links.push(self);
+        links.len() - 1
+    }
+}
+
 /// How a joint moves.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Motion {
@@ -83,10 +116,18 @@ impl Joint {
     /// A joint without an axis, and without anything that resists it.
     pub(crate) fn without_axis(name: String, motion: Motion, anchor: Vector) -> Self {
         Self {
+            anchor,
+            ..Self::along(name, motion, [1.0, 0.0, 0.0])
+        }
+    }
+
+    /// A joint about or along an axis through the origin, without anything that resists it.
+    pub(crate) fn along(name: String, motion: Motion, axis: Vector) -> Self {
+        Self {
             name,
             motion,
-            axis: [1.0, 0.0, 0.0],
-            anchor,
+            axis,
+            anchor: [0.0; 3],
             zero: 0.0,
             range: None,
             damping: 0.0,

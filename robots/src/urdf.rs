@@ -6,7 +6,7 @@ use appell_spec::{Code, did_you_mean};
 
 use crate::inertia::Inertia;
 use crate::model::{Coupling, Joint, LeftOut, Link, Motion, Robot};
-use crate::rotation::{Pose, Rotation, Vector, unit};
+use crate::rotation::{Axis, Pose, Rotation, Vector, unit};
 use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
@@ -18,7 +18,8 @@ struct Connection<'x> {
     parent: usize,
     child: usize,
     pose: Pose,
-    joint: Option<Joint>,
+    /// One after the other; fixed where there is none.
+    joints: Vec<Joint>,
 }
 
 /// Reads `<robot>`.
@@ -52,10 +53,7 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
     for element in elements(root) {
         match element.tag_name().name() {
             "joint" => {
-                let known = [
-                    "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",
-                ];
-                left_out.extend(unknown(element, "joint", &known));
+                left_out.extend(unknown(element, "joint", known_of(element)));
             }
             "link" => left_out.extend(unknown(element, "link", &["inertial"])),
             other => left_out.push(omitted(element, other.to_owned())),
@@ -70,6 +68,20 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
         driven: Vec::new(),
         left_out,
     }
+}
+
+/// What is read of a joint: what resists motion, limits and `mimic` where it has one coordinate, or none.
+fn known_of(joint: Element<'_>) -> &'static [&'static str] {
+    const ALL: &[&str] = &[
+        "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",
+    ];
+    if has_several(joint) { &ALL[..4] } else { ALL }
+}
+
+/// Whether a joint has several coordinates.
+fn has_several(joint: Element<'_>) -> bool {
+    let kind = joint.attribute("type");
+    kind.is_some_and(|kind| matches!(kind, "planar" | "floating" | "spherical" | "ball"))
 }
 
 /// The name of an element, which it must have.
@@ -212,7 +224,7 @@ fn joints<'x>(
             );
         }
         let ends = ["parent", "child"].map(|end| link_of(element, end, links, findings));
-        let joint = joint(element, name, findings);
+        let joints = moves(element, name, findings);
         if let [Some(parent), Some(child)] = ends {
             connections.push(Connection {
                 element,
@@ -220,7 +232,7 @@ fn joints<'x>(
                 parent,
                 child,
                 pose: origin(element, findings),
-                joint,
+                joints,
             });
         }
     }
@@ -264,9 +276,8 @@ fn link_of(
     link
 }
 
-/// What a joint does, unless it is fixed.
-fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint> {
-    let limit = child(element, "limit");
+/// The motions of a joint, one after the other; none where it is fixed.
+fn moves(element: Element<'_>, name: &str, findings: &Findings) -> Vec<Joint> {
     let Some(kind) = element.attribute_node("type") else {
         let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
         findings.error(
@@ -275,30 +286,26 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
             format!("joint `{name}` has no type"),
             help,
         );
-        return None;
+        return Vec::new();
     };
-    let motion = match kind.value() {
-        "fixed" => return None,
-        "revolute" | "continuous" => Motion::Turning,
-        "prismatic" => Motion::Sliding,
-        "floating" => return Some(Joint::without_axis(name.to_owned(), Motion::Free, [0.0; 3])),
-        "spherical" | "ball" => {
-            return Some(Joint::without_axis(name.to_owned(), Motion::Ball, [0.0; 3]));
-        }
-        "planar" => {
-            findings.error(
-                Code::NotAllowedHere,
-                kind.range_value(),
-                format!(
-                    "joint `{name}` is {}, which `import` does not do yet",
-                    kind.value()
-                ),
-                "joints are revolute, continuous, prismatic, spherical, floating or fixed so far",
-            );
-            return None;
-        }
+    let without_axis =
+        |motion: Motion| vec![Joint::without_axis(name.to_owned(), motion, [0.0; 3])];
+    match kind.value() {
+        "fixed" => Vec::new(),
+        "revolute" | "continuous" => vec![joint(element, name, Motion::Turning, findings)],
+        "prismatic" => vec![joint(element, name, Motion::Sliding, findings)],
+        "planar" => planar(name, axis(element, name, findings)),
+        "floating" => without_axis(Motion::Free),
+        "spherical" | "ball" => without_axis(Motion::Ball),
         other => {
-            let kinds = ["revolute", "continuous", "prismatic", "floating", "fixed"];
+            let kinds = [
+                "revolute",
+                "continuous",
+                "prismatic",
+                "planar",
+                "floating",
+                "fixed",
+            ];
             findings.error(
                 Code::UnknownWord,
                 kind.range_value(),
@@ -308,12 +315,16 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
                 ),
                 did_you_mean(other, kinds, || format!("types are {}", kinds.join(", "))),
             );
-            return None;
+            Vec::new()
         }
-    };
+    }
+}
+
+/// The direction of `<axis>`.
+fn axis(element: Element<'_>, name: &str, findings: &Findings) -> Vector {
     let given = child(element, "axis");
     let along = vector(given, "xyz", "a direction, x y z,", findings).unwrap_or([1.0, 0.0, 0.0]);
-    let axis = unit(along).unwrap_or_else(|| {
+    unit(along).unwrap_or_else(|| {
         findings.error(
             Code::VanishingLength,
             tag(given.unwrap_or(element)),
@@ -321,31 +332,40 @@ fn joint(element: Element<'_>, name: &str, findings: &Findings) -> Option<Joint>
             "give its direction, such as `0 0 1`",
         );
         [1.0, 0.0, 0.0]
-    });
-    let dynamics = child(element, "dynamics");
-    Some(Joint {
-        name: name.to_owned(),
-        motion,
-        axis,
-        anchor: [0.0; 3],
-        zero: 0.0,
-        range: range(element, kind.value(), limit, name, findings),
-        damping: number(dynamics, "damping", 0.0, findings),
-        armature: 0.0,
-        friction: number(dynamics, "friction", 0.0, findings),
-        stiffness: 0.0,
-        relaxed: 0.0,
     })
 }
 
+/// A joint that turns about its axis or slides along it.
+fn joint(element: Element<'_>, name: &str, motion: Motion, findings: &Findings) -> Joint {
+    let dynamics = child(element, "dynamics");
+    Joint {
+        range: range(element, name, findings),
+        damping: number(dynamics, "damping", 0.0, findings),
+        friction: number(dynamics, "friction", 0.0, findings),
+        ..Joint::along(name.to_owned(), motion, axis(element, name, findings))
+    }
+}
+
+/// Displacements along the two axes of a plane, then the turn about the axis across.
+fn planar(name: &str, across: Vector) -> Vec<Joint> {
+    let (nearest, turn) = Axis::nearest(across);
+    let slides = [1, 2].map(|step| {
+        let index = (nearest.index + step) % 3;
+        let along = Axis {
+            index,
+            backwards: false,
+        };
+        let name = format!("{name}_{}", ["x", "y", "z"][index]);
+        Joint::along(name, Motion::Sliding, turn.of(along.vector()))
+    });
+    let turns = Joint::along(format!("{name}_turn"), Motion::Turning, across);
+    slides.into_iter().chain([turns]).collect()
+}
+
 /// The limits of a joint; attributes that are not there are zero.
-fn range(
-    element: Element<'_>,
-    kind: &str,
-    limit: Option<Element<'_>>,
-    name: &str,
-    findings: &Findings,
-) -> Option<[f64; 2]> {
+fn range(element: Element<'_>, name: &str, findings: &Findings) -> Option<[f64; 2]> {
+    let kind = element.attribute("type").unwrap_or_default();
+    let limit = child(element, "limit");
     let range = ["lower", "upper"].map(|key| number(limit, key, 0.0, findings));
     match limit {
         _ if kind == "continuous" => None,
@@ -397,6 +417,17 @@ fn mimic<'x>(
             }),
         );
         return None;
+    }
+    if moves(name) && has_several(joints[other.value()]) {
+        findings.error(
+            Code::NotAllowedHere,
+            other.range_value(),
+            format!(
+                "joint `{name}` follows `{}`, which has several coordinates",
+                appell_spec::shown(other.value())
+            ),
+            "a joint follows one that turns or slides",
+        );
     }
     let offset = number(Some(mimic), "offset", 0.0, findings);
     let multiplier = number(Some(mimic), "multiplier", 1.0, findings);
@@ -472,18 +503,11 @@ fn tree(
         .collect();
     while let Some((link, parent, by)) = open.pop() {
         let connection = by.and_then(|by| connections[by].take());
-        let (pose, joint) = connection.map_or((Pose::IDENTITY, None), |by| (by.pose, by.joint));
-        let here = links.len();
-        links.push(Link {
-            name: name(link).to_owned(),
-            parent,
-            pose,
-            joint,
-            inertia: inertias[link],
-            carried: 0.0,
-            written: true,
-            place: tag(elements[link]),
-        });
+        let (pose, joints) =
+            connection.map_or((Pose::IDENTITY, Vec::new()), |by| (by.pose, by.joints));
+        let own = Link::fixed(name(link).to_owned(), parent, pose, tag(elements[link]));
+        let here = own.moved_by(joints, &mut links);
+        links[here].inertia = inertias[link];
         for next in below[link].iter().rev() {
             if let Some(connection) = &connections[*next] {
                 open.push((connection.child, Some(here), Some(*next)));

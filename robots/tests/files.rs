@@ -32,8 +32,9 @@ fn told(path: &Path, text: &str) -> Result<String, String> {
         Ok(robot) => {
             appell_spec::load("robot.toml", &robot.spec)
                 .unwrap_or_else(|report| panic!("{report}"));
-            let warnings = robot.warnings.plain();
-            Ok([robot.spec, warnings].join("\n").trim_end().to_owned())
+            let warnings = robot.warnings.iter().map(appell_spec::Report::plain);
+            let all: Vec<String> = [robot.spec].into_iter().chain(warnings).collect();
+            Ok(all.join("\n").trim_end().to_owned())
         }
         Err(Failure::File(report)) => Err(report.plain()),
         Err(Failure::Unknown { name, help }) => Err(format!("{name}: {help}")),

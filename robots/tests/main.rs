@@ -3,4 +3,5 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 mod files;
+mod includes;
 mod orientations;

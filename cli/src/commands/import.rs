@@ -102,15 +102,16 @@ impl Import {
 
     /// Warnings, what was left out, and angles that might be right ones.
     fn tell(&self, robot: &Imported) {
-        let findings = robot.warnings.diagnostics();
-        if findings
-            .iter()
-            .any(|finding| finding.severity != Severity::Note)
-        {
-            tell(&format!("{}\n\n", shown(&robot.warnings).trim_end()));
+        for warnings in &robot.warnings {
+            let mut findings = warnings.diagnostics().iter();
+            if findings.any(|finding| finding.severity != Severity::Note) {
+                tell(&format!("{}\n\n", shown(warnings).trim_end()));
+            }
         }
         if !robot.left_out.is_empty() {
-            let all: Vec<String> = robot.left_out.iter().map(left_out).collect();
+            let file = self.robot.to_string_lossy().replace('\\', "/");
+            let all = robot.left_out.iter().map(|one| left_out(one, &file));
+            let all: Vec<String> = all.collect();
             tell(&format!(
                 "left out, for want of a counterpart:\n{}\n",
                 all.join("\n")
@@ -131,7 +132,8 @@ impl Import {
     }
 }
 
-fn left_out(one: &LeftOut) -> String {
+/// `robot` is the file that does not need to be named.
+fn left_out(one: &LeftOut, robot: &str) -> String {
     let lines: Vec<String> = one
         .lines
         .iter()
@@ -145,5 +147,11 @@ fn left_out(one: &LeftOut) -> String {
         format!(" and {more} more")
     };
     let plural = if one.lines.len() == 1 { "" } else { "s" };
-    format!("  {}: line{plural} {}{more}", one.what, lines.join(", "))
+    let lines = lines.join(", ");
+    let of = if one.file == robot {
+        String::new()
+    } else {
+        format!(" of {}", one.file)
+    };
+    format!("  {}: line{plural} {lines}{more}{of}", one.what)
 }

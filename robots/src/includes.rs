@@ -1,0 +1,218 @@
+//! A file with those that it includes, as one text; every place in it is known in its file.
+//!
+//! As `MuJoCo` has it, what the root of an included file holds stands in the place of `<include file="…"/>`, each file
+//! at most once, and paths are those from the folder of the first file.
+
+use appell_spec::{Code, Diagnostic, Report, Severity, shown};
+
+use crate::MAX_FILE;
+use crate::xml::{Element, Span, parse, tag};
+
+/// Deepest nesting of files.
+const MOST_NESTED: usize = 16;
+
+/// Gives the bytes of a file by its path from the folder of the first one.
+pub(crate) type Others<'f> = &'f dyn Fn(&str) -> Option<Vec<u8>>;
+
+/// A file with those that it includes.
+#[derive(Debug, Default)]
+pub(crate) struct Whole {
+    /// The text of all.
+    pub(crate) text: String,
+    /// Name and text of each, the first one includes the others.
+    files: Vec<(String, String)>,
+    pieces: Vec<Piece>,
+}
+
+/// A part of a file that stands in the text as a whole.
+#[derive(Debug)]
+struct Piece {
+    /// Where it begins in the text of all.
+    start: usize,
+    file: usize,
+    /// Where it begins in its file.
+    from: usize,
+}
+
+/// `<include>`
+struct Include {
+    place: Span,
+    /// What it names, with the place of that.
+    named: Option<(String, Span)>,
+}
+
+impl Whole {
+    /// A file with all that it includes; what is wrong with the XML of one of them.
+    pub(crate) fn read(file: &str, text: &str, others: Others<'_>) -> Result<Self, Box<Report>> {
+        let mut whole = Self {
+            files: vec![(file.to_owned(), text.to_owned())],
+            ..Self::default()
+        };
+        let (_, includes) = whole.parsed(0)?;
+        whole.append((0, 0..text.len()), includes, others, 0)?;
+        Ok(whole)
+    }
+
+    /// A report on one file.
+    fn report(&self, file: usize, findings: Vec<Diagnostic>) -> Report {
+        let (name, text) = &self.files[file];
+        Report::new(name.as_str(), text.as_str(), findings)
+    }
+
+    /// What the root of a file holds, and what it includes.
+    fn parsed(&self, file: usize) -> Result<(Span, Vec<Include>), Box<Report>> {
+        let text = &self.files[file].1;
+        let document = parse(text).map_err(|error| self.report(file, vec![error]))?;
+        let root = document.root_element();
+        let named = |element: Element<'_>| {
+            let named = element.attribute_node("file")?;
+            Some((named.value().to_owned(), named.range_value()))
+        };
+        let all = root.descendants();
+        let is_mjcf = file > 0 || root.has_tag_name("mujoco");
+        let includes = all.filter(|element| is_mjcf && element.has_tag_name("include"));
+        let includes = includes.map(|element| Include {
+            place: element.range(),
+            named: named(element),
+        });
+        Ok((inside(root), includes.collect()))
+    }
+
+    /// Appends a part of a file with what it includes.
+    fn append(
+        &mut self,
+        (file, part): (usize, Span),
+        includes: Vec<Include>,
+        others: Others<'_>,
+        depth: usize,
+    ) -> Result<(), Box<Report>> {
+        let mut from = part.start;
+        for include in includes {
+            // Within another one.
+            if include.place.start < from {
+                continue;
+            }
+            self.push(file, from..include.place.start);
+            from = include.place.end;
+            let next = self.found(&include, others, depth);
+            let next = next.map_err(|finding| self.report(file, vec![finding]))?;
+            let (part, includes) = self.parsed(next)?;
+            self.append((next, part), includes, others, depth + 1)?;
+        }
+        self.push(file, from..part.end);
+        Ok(())
+    }
+
+    fn push(&mut self, file: usize, part: Span) {
+        self.pieces.push(Piece {
+            start: self.text.len(),
+            file,
+            from: part.start,
+        });
+        self.text.push_str(&self.files[file].1[part]);
+    }
+
+    /// Reads an included file; the result is its place.
+    fn found(
+        &mut self,
+        include: &Include,
+        others: Others<'_>,
+        depth: usize,
+    ) -> Result<usize, Diagnostic> {
+        let Some((named, place)) = &include.named else {
+            let error = Diagnostic::error(Code::MissingKey, "`include` names no file");
+            let help = "write `<include file=\"…\"/>`";
+            return Err(error.at(include.place.clone(), "").help(help));
+        };
+        let fail = |code: Code, message: String, help: &str| {
+            Err(Diagnostic::error(code, message)
+                .at(place.clone(), "")
+                .help(help))
+        };
+        let name = shown(named);
+        if self.files.iter().any(|(other, _)| other == named) {
+            let message = format!("`{name}` is included twice");
+            return fail(Code::DuplicateName, message, "remove one of the two");
+        }
+        if depth >= MOST_NESTED {
+            let message = format!("files include each other more than {MOST_NESTED} deep");
+            return fail(Code::LimitExceeded, message, "put them together");
+        }
+        let Some(bytes) = others(named) else {
+            let message = format!("the file `{name}` cannot be read");
+            let help = "paths are those from the folder of the file that is imported";
+            return fail(Code::UnknownReference, message, help);
+        };
+        let Ok(text) = String::from_utf8(bytes) else {
+            let message = format!("`{name}` is not UTF-8 text");
+            return fail(Code::WrongType, message, "save it as UTF-8");
+        };
+        let all: usize = self.files.iter().map(|(_, text)| text.len()).sum();
+        if (all + text.len()) as u64 > MAX_FILE {
+            let message = format!("all files have more than {} MiB together", MAX_FILE >> 20);
+            return fail(Code::LimitExceeded, message, "leave out what is not needed");
+        }
+        self.files.push((named.clone(), text));
+        Ok(self.files.len() - 1)
+    }
+
+    /// File and place of a place in the text of all.
+    fn origin(&self, place: &Span) -> (usize, Span) {
+        let next = self
+            .pieces
+            .partition_point(|piece| piece.start <= place.start);
+        let piece = &self.pieces[next.saturating_sub(1)];
+        let end = self
+            .pieces
+            .get(next)
+            .map_or(self.text.len(), |next| next.start);
+        let at = |byte: usize| piece.from + byte.min(end) - piece.start;
+        (piece.file, at(place.start)..at(place.end))
+    }
+
+    /// Name of the file of a place in the text of all, and the line.
+    pub(crate) fn line(&self, place: &Span) -> (&str, usize) {
+        let (file, place) = self.origin(place);
+        let (name, text) = &self.files[file];
+        (name, 1 + text[..place.start].matches('\n').count())
+    }
+
+    /// Findings as reports, one for each file that has any.
+    pub(crate) fn reports(&self, findings: Vec<Diagnostic>) -> Vec<Report> {
+        let mut all: Vec<Vec<Diagnostic>> = vec![Vec::new(); self.files.len()];
+        for mut finding in findings {
+            let labels = std::mem::take(&mut finding.labels).into_iter();
+            let labels = labels.map(|(place, words)| (self.origin(&place), words));
+            let labels: Vec<_> = labels.collect();
+            let file = labels.first().map_or(0, |((file, _), _)| *file);
+            let own = labels.into_iter().filter(|((of, _), _)| *of == file);
+            finding.labels = own.map(|((_, place), words)| (place, words)).collect();
+            all[file].push(finding);
+        }
+        let all = all.into_iter().enumerate();
+        let all = all.filter(|(_, findings)| !findings.is_empty());
+        all.map(|(file, findings)| self.report(file, findings))
+            .collect()
+    }
+
+    /// The report on the first file with an error.
+    pub(crate) fn first_error(&self, findings: Vec<Diagnostic>) -> Report {
+        let is_wrong = |report: &Report| {
+            let mut all = report.diagnostics().iter();
+            all.any(|finding| finding.severity == Severity::Error)
+        };
+        let mut reports = self.reports(findings).into_iter();
+        let first = reports.find(is_wrong);
+        first.unwrap_or_else(|| self.report(0, Vec::new()))
+    }
+}
+
+/// What an element holds.
+fn inside(element: Element<'_>) -> Span {
+    let (all, tag) = (element.range(), tag(element));
+    let text = &element.document().input_text()[all.clone()];
+    match text.rfind("</") {
+        Some(close) if tag.end < all.end => tag.end..all.start + close,
+        _ => tag.end..tag.end,
+    }
+}

@@ -1,11 +1,13 @@
 //! Robot descriptions, URDF and MJCF, as specs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use appell_robots::{Failure, MAX_FILE};
-pub use appell_robots::{Imported, LeftOut, Letters, Options, SNAP, Without};
+pub use appell_robots::{Format, Imported, LeftOut, Letters, Options, SNAP, Without};
+use serde_json::{Value, json};
+use walkdir::WalkDir;
 
-use crate::{Error, Field, Source, files};
+use crate::{Error, Field, Source, check, files};
 
 /// Largest mesh, in bytes.
 const MAX_MESH: u64 = 1 << 28;
@@ -50,6 +52,48 @@ pub fn read(path: &Path, options: &Options) -> Result<Imported, Error> {
         can_be_read.then(|| std::fs::read(&named).ok())?
     };
     appell_robots::import_with(&file, &text, options, &others).map_err(told)
+}
+
+/// The robot files of a folder and of the folders in it, by their names, each with its format.
+///
+/// A robot file ends in `.urdf`, or in `.xml` and begins with `<robot` or `<mujoco`. Links to folders are not followed.
+pub fn find(folder: &Path) -> Result<Vec<(PathBuf, Format)>, Error> {
+    /// Deepest nesting of folders.
+    const MOST_NESTED: usize = 32;
+    let all = WalkDir::new(folder).max_depth(MOST_NESTED);
+    let mut found = Vec::new();
+    for entry in all.sort_by_file_name() {
+        let entry = entry.map_err(|error| {
+            let path = error.path().unwrap_or(folder).to_owned();
+            Error::reading(&path)(error.into())
+        })?;
+        let ends = |end: &str| entry.path().extension().is_some_and(|own| own == end);
+        if !(ends("urdf") || ends("xml")) || !entry.path().is_file() {
+            continue;
+        }
+        let format = files::read(entry.path(), MAX_FILE).ok();
+        let format = format.and_then(|text| Format::of(&text));
+        // A URDF that begins otherwise is told to be wrong.
+        let format = format.or(ends("urdf").then_some(Format::Urdf));
+        found.extend(format.map(|format| (entry.into_path(), format)));
+    }
+    Ok(found)
+}
+
+/// What is told of an imported robot file, as JSON.
+pub fn entry(file: &str, robot: &Imported) -> Value {
+    let left_out = robot.left_out.iter();
+    let left_out = left_out
+        .map(|one| json!({ "what": one.what, "file": one.file, "lines": one.lines }))
+        .collect::<Vec<_>>();
+    let warnings = robot.warnings.iter();
+    let warnings = warnings
+        .map(|report| json!({ "file": report.file(), "findings": check::findings(report) }))
+        .collect::<Vec<_>>();
+    json!({
+        "file": file, "ok": true, "name": robot.name, "format": robot.format.word(), "bodies": robot.bodies,
+        "joints": robot.joints, "nearly_right_angles": robot.nearly_right, "warnings": warnings, "left_out": left_out,
+    })
 }
 
 /// The spec of a robot, as if it were read from a file.

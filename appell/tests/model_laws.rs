@@ -117,6 +117,59 @@ fn compensated_gravity_leaves_an_arm_at_rest() {
     }
 }
 
+/// A mass on a rail has a constant acceleration while its force is held.
+#[test]
+fn a_sampled_law_holds_what_it_computed() {
+    let rail = r#"
+mechanism = { name = "rail", title = "A mass on a rail" }
+parameters.m = { value = 3, unit = "kg" }
+coordinates.q = { unit = "m", initial = 0.2 }
+inputs.F = { unit = "N" }
+points.C = { from = "O", in = "ground", at = ["q", 0, 0] }
+bodies.mass = { centre = "C", mass = "m" }
+pseudo_velocities.v = "dot(q)"
+loads.drive = { kind = "generalized", coordinate = "q", force = "F" }
+"#;
+    let law = r#"
+law = "computed torque"
+inputs = ["F"]
+follow = { q = "0.1*t" }
+natural_frequency = 8
+sampled_ms = 50
+delay_ms = 20
+"#;
+    let rows = columns(rail, law, ["t", "q", "v"]);
+    let (period, delay) = (0.05, 0.02);
+    let mut sampled = [[0.2, 0.0]];
+    let mut acceleration = 0.0;
+    for k in 0..30 {
+        let start = f64::from(k) * period;
+        let [[q, v]] = sampled;
+        let next = -16.0 * (v - 0.1) - 64.0 * (q - 0.1 * start);
+        let at = |t: f64| {
+            let (before, after) = (t.min(delay), (t - delay).max(0.0));
+            let turned = v + acceleration * before;
+            [
+                q + v * before
+                    + 0.5 * acceleration * before * before
+                    + turned * after
+                    + 0.5 * next * after * after,
+                turned + next * after,
+            ]
+        };
+        for &[t, q, v] in rows
+            .iter()
+            .filter(|row| (start..start + period).contains(&row[0]))
+        {
+            let [wanted_q, wanted_v] = at(t - start);
+            assert_near(q, wanted_q, 1e-9, t);
+            assert_near(v, wanted_v, 1e-8, t);
+        }
+        (sampled, acceleration) = ([at(period)], next);
+    }
+    assert!(rows.len() > 100);
+}
+
 #[test]
 fn a_cart_follows_while_its_pole_swings_freely() {
     let cart = r#"

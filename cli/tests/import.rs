@@ -81,13 +81,12 @@ fn numbers_become_letters_by_name() {
 #[test]
 fn a_file_that_is_wrong_is_told_where() {
     let folder = Folder::new();
-    let bad =
-        "<robot name=\"r\">\n  <link name=\"a\"/>\n  <joint name=\"j\" type=\"planar\"/>\n</robot>";
+    let bad = "<robot name=\"r\">\n  <link name=\"a\"/>\n  <joint name=\"j\" type=\"sliding\"/>\n</robot>";
     folder.write("bad.urdf", bad);
     folder.fails(
         3,
         &["import", "bad.urdf"],
-        &["bad.urdf:3:25", "planar", "bad.urdf:3:3"],
+        &["bad.urdf:3:25", "sliding", "bad.urdf:3:3"],
     );
     folder.fails(3, &["import", "absent.urdf"], &["absent.urdf"]);
     folder.fails(2, &["import", "bad.urdf", "-o", "bad.svg"], &["bad.toml"]);
@@ -96,6 +95,54 @@ fn a_file_that_is_wrong_is_told_where() {
         &["import", "bad.urdf", "--without", "dampng"],
         &["did you mean `damping`"],
     );
+}
+
+#[test]
+fn the_robot_files_of_a_folder_are_listed() {
+    let folder = Folder::new();
+    folder.done(&["sample", "robot", "robot"]);
+    for within in ["robot/deeper", "none"] {
+        std::fs::create_dir(folder.path(within)).expect("a folder");
+    }
+    folder.write("robot/deeper/bad.urdf", "<robot><link/></robot>");
+    folder.write("robot/deeper/empty.urdf", "");
+    folder.write("robot/deeper/other.xml", "<svg/>");
+    folder.write("robot/deeper/part.xml", "<mujocoinclude/>");
+    folder.write(
+        "robot/deeper/scene.xml",
+        "<mujoco model=\"scene\"><include file=\"../arm.xml\"/></mujoco>",
+    );
+    let told = folder.done(&["list", "--robots", "robot", "--json", "robots.json"]);
+    let list = folder.json("robots.json");
+    let robots = list["robots"].as_array().expect("a list");
+    let told_of = |robot: &serde_json::Value| {
+        let file = robot["file"].as_str().expect("a file").to_owned();
+        let joints = robot["joints"].as_u64();
+        (file, joints)
+    };
+    let listed: Vec<_> = robots.iter().map(told_of).collect();
+    let expected = [
+        ("robot/arm.urdf", Some(4)),
+        ("robot/arm.xml", Some(4)),
+        ("robot/deeper/bad.urdf", None),
+        ("robot/deeper/empty.urdf", None),
+        ("robot/deeper/scene.xml", Some(4)),
+    ];
+    let expected = expected.map(|(file, joints)| (file.to_owned(), joints));
+    assert_eq!(listed, expected);
+    assert_eq!(robots[2]["findings"][0]["line"], 1);
+    let line = |file: &str| {
+        let mut lines = told.stdout.lines();
+        lines
+            .find(|line| line.contains(file))
+            .unwrap_or_default()
+            .to_owned()
+    };
+    assert!(line("deeper/bad.urdf").contains("a `link` without a name"));
+    assert!(line("deeper/scene.xml").contains("MJCF"));
+    folder.fails(3, &["list", "--robots", "absent"], &["absent"]);
+    folder.write("none/readme.txt", "");
+    folder.fails(3, &["list", "--robots", "none"], &["`.urdf`"]);
 }
 
 #[test]

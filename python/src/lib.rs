@@ -12,6 +12,7 @@ mod errors;
 mod model;
 mod motion;
 mod recordings;
+mod robot;
 mod watched;
 
 use pyo3::prelude::*;
@@ -26,4 +27,6 @@ mod _appell {
     use super::motion::{Simulated, simulate};
     #[pymodule_export]
     use super::recordings::{DataSet, Gap, Identified, apply, sample};
+    #[pymodule_export]
+    use super::robot::{import_robot, sample_robot};
 }

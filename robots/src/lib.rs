@@ -9,6 +9,7 @@
 //! | file | does |
 //! |---|---|
 //! | `includes.rs` | a file with those that it includes, as one text |
+//! | `format.rs` | the formats |
 //! | `xml.rs` | elements and numbers with their places, and findings about them |
 //! | `urdf.rs`, `mjcf.rs` | the formats, each to a `Robot` |
 //! | `model.rs` | what a robot is: links in a tree, joints with their properties |
@@ -19,6 +20,7 @@
 //! | `options.rs`, `without.rs`, `snap.rs` | requests; what is left out; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
+mod format;
 mod includes;
 mod inertia;
 mod letters;
@@ -40,6 +42,7 @@ use appell_spec::{Code, Diagnostic, Report, did_you_mean};
 
 use includes::Whole;
 
+pub use format::Format;
 pub use letters::Letters;
 pub use options::Options;
 pub use snap::SNAP;
@@ -55,6 +58,8 @@ pub struct Imported {
     pub spec: String,
     /// Name of the robot in its file.
     pub name: String,
+    /// The format of its file.
+    pub format: Format,
     /// Number of joints that move.
     pub joints: usize,
     /// Number of bodies: links that are fixed together count once.
@@ -134,17 +139,18 @@ pub fn import_with(
     let document = xml::parse(&whole.text).map_err(|error| fail(vec![error]))?;
     let findings = xml::Findings::default();
     let root = document.root_element();
-    let (kind, mut robot) = match root.tag_name().name() {
-        "robot" => ("URDF", urdf::read(root, &findings)),
-        "mujoco" => ("MJCF", mjcf::read(root, &findings, others)),
-        other => {
-            let message = format!("the file begins with `<{}>`", appell_spec::shown(other));
-            let error = Diagnostic::error(Code::UnknownWord, message).at(xml::tag(root), "");
-            let help = did_you_mean(other, ["robot", "mujoco"], || {
-                "a URDF begins with `<robot>`, an MJCF with `<mujoco>`".to_owned()
-            });
-            return Err(fail(vec![error.help(help)]));
-        }
+    let word = root.tag_name().name();
+    let Some(format) = Format::named(word) else {
+        let message = format!("the file begins with `<{}>`", appell_spec::shown(word));
+        let error = Diagnostic::error(Code::UnknownWord, message).at(xml::tag(root), "");
+        let help = did_you_mean(word, ["robot", "mujoco"], || {
+            "a URDF begins with `<robot>`, an MJCF with `<mujoco>`".to_owned()
+        });
+        return Err(fail(vec![error.help(help)]));
+    };
+    let mut robot = match format {
+        Format::Urdf => urdf::read(root, &findings),
+        Format::Mjcf => mjcf::read(root, &findings, others),
     };
     if options.floating {
         float(&mut robot);
@@ -168,7 +174,7 @@ pub fn import_with(
         return Err(fail(findings.into_inner()));
     }
     let findings = findings.into_inner();
-    let written = spec::write(file, kind, &robot, &tree, &meetings, options);
+    let written = spec::write(file, format, &robot, &tree, &meetings, options);
     if let Some(name) = written.unused.first() {
         let known = written.known.iter().map(String::as_str);
         let help = did_you_mean(name, known, || {
@@ -197,6 +203,7 @@ pub fn import_with(
     Ok(Imported {
         spec: written.text,
         name: robot.name.clone(),
+        format,
         joints: tree.bodies.len(),
         bodies: tree
             .bodies

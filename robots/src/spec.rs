@@ -7,6 +7,7 @@ mod remarks;
 
 use appell_spec::limits::MAX_SENTENCE;
 
+use crate::format::Format;
 use crate::letters::{Numbers, Parameter};
 use crate::loops::Meeting;
 use crate::model::{LeftOut, Link, Motion, Robot};
@@ -60,7 +61,7 @@ pub(crate) struct Written {
 /// Writes the spec of a robot.
 pub(crate) fn write(
     file: &str,
-    kind: &str,
+    format: Format,
     robot: &Robot,
     tree: &Tree,
     meetings: &[(String, Vec<Meeting>)],
@@ -83,7 +84,7 @@ pub(crate) fn write(
     writer.couplings(&robot.couplings, meetings);
     writer.ends();
     let name = Names::default().new_one(&robot.name);
-    let mut text = remarks::head(file, kind, robot, tree);
+    let mut text = remarks::head(file, format.word(), robot, tree);
     writer.mechanism(&name, &robot.name, file, &mut text);
     remarks::left_out(&robot.left_out, options, &mut text);
     Written {

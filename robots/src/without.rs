@@ -1,5 +1,9 @@
 //! What is left out of a robot on request.
 
+use std::str::FromStr;
+
+use appell_spec::did_you_mean;
+
 use crate::model::Robot;
 
 /// A property of robots that a spec can do without.
@@ -66,5 +70,19 @@ impl Without {
                 }
             }
         }
+    }
+}
+
+impl FromStr for Without {
+    type Err = String;
+
+    fn from_str(word: &str) -> Result<Self, String> {
+        let found = Self::ALL.into_iter().find(|one| one.word() == word);
+        found.ok_or_else(|| {
+            let words = Self::ALL.map(Self::word);
+            let help = did_you_mean(word, words, || format!("it can be {}", words.join(", ")));
+            let word = appell_spec::shown(word);
+            format!("there is nothing called `{word}` to leave out; {help}")
+        })
     }
 }

@@ -5,6 +5,7 @@
 //! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, 1980). Accelerations that nobody desires are unknowns as the
 //! inputs are; where there are fewer inputs than equations for them, least squares decide.
 
+use appell_analysis::control::sampled::Sampling;
 use appell_estimate::inverse::InputEquations;
 use appell_runtime::model::{At, Model};
 
@@ -15,20 +16,20 @@ pub(super) struct ModelLaw {
     pub(super) inputs: Vec<usize>,
     pub(super) aim: Aim,
     pub(super) believed: Vec<(usize, f64)>,
+    /// Of a discrete-time law.
+    pub(super) sampling: Option<Sampling>,
 }
 
 impl ModelLaw {
-    /// Adds its inputs to `u`, which holds those of others and the signals. `desired` are the followed coordinates
+    /// Its inputs beside `at.u`, which holds those of others and the signals. `desired` are the followed coordinates
     /// with their first and second derivatives. Where the equations do not determine the inputs they are not finite.
-    pub(super) fn add(&self, model: &dyn Model, at: At<'_>, desired: &[[f64; 3]], u: &mut [f64]) {
+    pub(super) fn asked(&self, model: &dyn Model, at: At<'_>, desired: &[[f64; 3]]) -> Vec<f64> {
         let mut p = at.p.to_vec();
         for &(parameter, value) in &self.believed {
             p[parameter] = value;
         }
-        let found = self.inputs_at(model, At { p: &p, u, ..at }, desired);
-        for (place, &input) in self.inputs.iter().enumerate() {
-            u[input] += found.as_ref().map_or(f64::NAN, |found| found[place]);
-        }
+        let found = self.inputs_at(model, At { p: &p, ..at }, desired);
+        found.unwrap_or_else(|| vec![f64::NAN; self.inputs.len()])
     }
 
     fn inputs_at(&self, model: &dyn Model, at: At<'_>, desired: &[[f64; 3]]) -> Option<Vec<f64>> {

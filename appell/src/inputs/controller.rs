@@ -32,8 +32,10 @@ pub struct Controller<'w> {
     wiring: &'w Wiring,
     model: &'w dyn Model,
     parameters: Vec<f64>,
-    /// Measurements of the discrete-time laws.
+    /// Measurements of the discrete-time laws with gains.
     samplers: Vec<Sampler>,
+    /// Measurements of those of the laws by the equations of motion that are discrete-time ones.
+    model_samplers: Vec<Option<Sampler>>,
     switching_times: Vec<f64>,
     /// Values of the function, kept to be written anew.
     values: Cell<Vec<f64>>,
@@ -194,7 +196,10 @@ impl Plan {
         self.switching_times.extend(&feedback.switching_times);
         let gains = match feedback.gains {
             Gains::Fixed(gains) => gains,
-            Gains::ByModel(law) => return self.by_model(law, feedback.inputs).map_err(told),
+            Gains::ByModel(law) => {
+                let sampling = feedback.sampled.map(|sampled| sampled.sampling);
+                return self.by_model(law, feedback.inputs, sampling).map_err(told);
+            }
             Gains::Scheduled(over, schedule) => {
                 let (states, desired): (Vec<_>, Vec<_>) = feedback.states.into_iter().unzip();
                 let law = self.scheduled.len();
@@ -238,6 +243,7 @@ impl Plan {
         &mut self,
         law: feedback::ModelLaw,
         inputs: Vec<usize>,
+        sampling: Option<Sampling>,
     ) -> Result<(), &'static str> {
         let place = self.by_model.len();
         if let Aim::ComputedTorque { followed, .. } = &law.aim {
@@ -256,6 +262,7 @@ impl Plan {
             inputs,
             aim: law.aim,
             believed: law.believed,
+            sampling,
         });
         Ok(())
     }
@@ -266,21 +273,22 @@ impl Plan {
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
         slots.extend(self.zero.into_iter().map(Slot::Desired));
-        let mut sampled = Vec::new();
-        for (law, inputs) in self.sampled {
-            if until / law.sampling.period() > MOST_MEASUREMENTS {
+        let sampled = self.sampled.into_iter().map(|(law, inputs)| SampledLaw {
+            sampling: law.sampling,
+            inputs,
+            pending_gains: law.pending_gains,
+        });
+        let sampled: Vec<SampledLaw> = sampled.collect();
+        let samplings = sampled.iter().map(|law| law.sampling);
+        for sampling in samplings.chain(self.by_model.iter().filter_map(|law| law.sampling)) {
+            let measurements = until / sampling.period();
+            if measurements > MOST_MEASUREMENTS {
                 let message = format!(
-                    "{} measurements are too many; choose a larger `sampled_ms` (at most \
-                     {MOST_MEASUREMENTS:.0} measurements)",
-                    until / law.sampling.period()
+                    "{measurements} measurements are too many; choose a larger `sampled_ms` (at most \
+                     {MOST_MEASUREMENTS:.0} measurements)"
                 );
                 return Err(Error::request(Field::Feedback, message));
             }
-            sampled.push(SampledLaw {
-                sampling: law.sampling,
-                inputs,
-                pending_gains: law.pending_gains,
-            });
         }
         Ok(Wiring {
             function,
@@ -311,14 +319,19 @@ impl Wiring {
         for expr in &self.switching {
             switching_times(expr, &parameters, &mut times);
         }
-        let sampler = |law: &SampledLaw| Sampler::new(law.sampling, until);
-        let samplers: Vec<Sampler> = self.sampled.iter().map(sampler).collect();
-        times.extend(samplers.iter().flat_map(Sampler::switching_times));
+        let sampler = |sampling: Sampling| Sampler::new(sampling, until);
+        let samplers = self.sampled.iter().map(|law| sampler(law.sampling));
+        let samplers: Vec<Sampler> = samplers.collect();
+        let model_samplers = self.by_model.iter().map(|law| law.sampling.map(sampler));
+        let model_samplers: Vec<Option<Sampler>> = model_samplers.collect();
+        let all = samplers.iter().chain(model_samplers.iter().flatten());
+        times.extend(all.flat_map(Sampler::switching_times));
         Controller {
             wiring: self,
             model,
             parameters,
             samplers,
+            model_samplers,
             switching_times: times,
             values: Cell::default(),
             series: None,
@@ -415,7 +428,8 @@ impl Controller<'_> {
         let (declared, signals) = all.split_at_mut(u.len());
         wiring.function.fill_signals(t, signals);
         declared.copy_from_slice(u);
-        for (law, by_model) in wiring.by_model.iter().enumerate() {
+        let laws = wiring.by_model.iter().zip(&self.model_samplers);
+        for (law, (by_model, sampler)) in laws.enumerate() {
             let mut desired = vec![[0.0; 3]; by_model.inputs.len()];
             for (slot, value) in wiring.slots.iter().zip(values) {
                 if let Slot::Followed(of, which, order) = *slot
@@ -424,8 +438,15 @@ impl Controller<'_> {
                     desired[which][order] = *value;
                 }
             }
-            let at = At { t, x, u: &[], p };
-            by_model.add(self.model, at, &desired, &mut all);
+            let at = At { t, x, u: &all, p };
+            let asked = || by_model.asked(self.model, at, &desired);
+            let acting = match sampler {
+                Some(sampler) => sampler.acting(t, |_| asked()),
+                None => Some(asked()),
+            };
+            for (&input, acting) in by_model.inputs.iter().zip(acting.iter().flatten()) {
+                all[input] += acting;
+            }
         }
         u.copy_from_slice(&all[..u.len()]);
     }

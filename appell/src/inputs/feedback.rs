@@ -171,7 +171,14 @@ fn feedback(reader: &mut Reader<'_>, table: &DeTable<'_>) -> Option<Feedback> {
     let law = match table.get("law") {
         Some(law) => {
             let (inputs, law) = by_model::read(reader, table, law)?;
-            Feedback::of(inputs, Gains::ByModel(law))
+            let sampled = sampling(reader, table).map(|sampling| Sampled {
+                sampling,
+                pending_gains: Vec::new(),
+            });
+            Feedback {
+                sampled,
+                ..Feedback::of(inputs, Gains::ByModel(law))
+            }
         }
         None => by_gains(reader, table)?,
     };

@@ -1,6 +1,7 @@
 //! `appell import`
 
 use std::path::PathBuf;
+use std::str::FromStr;
 
 use appell::robot::{self, Imported, LeftOut, Letters, Options, Without};
 use appell::{Severity, files};
@@ -37,7 +38,7 @@ pub(crate) struct Import {
     /// What is left out, separated by commas
     ///
     /// One or several of `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`, `compensation`.
-    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = what)]
+    #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = Without::from_str)]
     without: Vec<Without>,
     /// Take angles within 1e-4 rad of a right angle for right angles
     #[arg(long)]
@@ -45,16 +46,6 @@ pub(crate) struct Import {
     /// Let the root of a URDF float; an MJCF says itself what does
     #[arg(long)]
     floating: bool,
-}
-
-fn what(word: &str) -> Result<Without, String> {
-    let found = Without::ALL.into_iter().find(|one| one.word() == word);
-    found.ok_or_else(|| {
-        let words = Without::ALL.map(Without::word);
-        let help =
-            appell_spec::did_you_mean(word, words, || format!("it can be {}", words.join(", ")));
-        format!("there is nothing called `{word}` to leave out; {help}")
-    })
 }
 
 impl Import {

@@ -1,22 +1,27 @@
 //! `appell list`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use appell_models::{ALL, Shipped};
 use serde_json::{Value, json};
 
 use crate::failure::Error;
-use crate::output;
-use appell::files;
+use crate::{output, progress};
+use appell::robot::{self, Format, Imported, Options};
+use appell::{check, files};
 use appell_report::text::table;
 
-/// Lists the shipped mechanisms.
+/// Lists the shipped mechanisms, or the robot files of a folder.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   appell list
-  appell list --json mechanisms.json")]
+  appell list --json mechanisms.json
+  appell list --robots robot")]
 pub(crate) struct List {
+    /// List the robot files of a folder and of the folders in it, with what `appell import` makes of them
+    #[arg(long, value_name = "DIR")]
+    robots: Option<PathBuf>,
     /// Write the list as JSON; `-` is standard output
     #[arg(long, value_name = "FILE")]
     json: Option<PathBuf>,
@@ -24,6 +29,45 @@ pub(crate) struct List {
 
 impl List {
     pub(super) fn run(&self) -> Result<(), Error> {
+        match &self.robots {
+            Some(folder) => self.robots(folder),
+            None => self.mechanisms(),
+        }
+    }
+
+    fn robots(&self, folder: &Path) -> Result<(), Error> {
+        let found = robot::find(folder)?;
+        if found.is_empty() {
+            let folder = folder.display();
+            let message = "no file ends in `.urdf`, or in `.xml` and begins with `<mujoco`";
+            return Err(appell::Error::data(folder, message).into());
+        }
+        let heading = ["file", "robot", "format", "bodies", "joints", "remarks"];
+        let mut rows = vec![heading.map(str::to_owned).to_vec()];
+        let mut entries = Vec::new();
+        let bar = progress::cases(found.len() as u64, "robot files");
+        for (path, format) in found {
+            let robot = robot::read(&path, &Options::default());
+            let file = path.strip_prefix(folder).unwrap_or(&path).display();
+            rows.push(row(file.to_string(), format, &robot));
+            let file = path.to_string_lossy();
+            entries.push(match &robot {
+                Ok(robot) => robot::entry(&file, robot),
+                Err(failure) => check::failed(&file, failure),
+            });
+            bar.inc(1);
+        }
+        bar.finish_and_clear();
+        if let Some(path) = &self.json {
+            files::write_json(path, &json!({ "schema": "robots/1", "robots": entries }))?;
+            if files::is_stdout(path) {
+                return Ok(());
+            }
+        }
+        output::print(&table(&rows, 3..5))
+    }
+
+    fn mechanisms(&self) -> Result<(), Error> {
         if let Some(path) = &self.json {
             let entries = ALL.iter().map(entry).collect::<Result<Vec<_>, _>>()?;
             files::write_json(path, &json!({ "schema": "list/1", "mechanisms": entries }))?;
@@ -49,6 +93,32 @@ impl List {
         }
         let note = "`--json` has sources, names and costs\n";
         output::print(&(table(&rows, 1..2) + note))
+    }
+}
+
+/// The row of a robot file.
+fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) -> Vec<String> {
+    let format = format.word().to_owned();
+    match robot {
+        Ok(robot) => {
+            let findings = robot
+                .warnings
+                .iter()
+                .map(|report| report.diagnostics().len());
+            let remarks = match findings.sum() {
+                0 => String::new(),
+                1 => "1 warning".to_owned(),
+                count => format!("{count} warnings"),
+            };
+            let [bodies, joints] = [robot.bodies, robot.joints].map(|count| count.to_string());
+            vec![file, robot.name.clone(), format, bodies, joints, remarks]
+        }
+        Err(error) => {
+            let told = error.to_string();
+            let first = told.lines().next().unwrap_or_default().to_owned();
+            let none = || "-".to_owned();
+            vec![file, none(), format, none(), none(), first]
+        }
     }
 }
 

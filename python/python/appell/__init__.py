@@ -22,6 +22,7 @@ from ._motion import Motion
 from ._notebook import Page, Picture
 from ._recordings import Diagnosis, Identification, Recordings, base_parameters, diagnose, identify, sample_rig
 from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
+from ._robots import LeftOut, Robot, import_robot, sample_robot
 from ._values import Vector, labelled
 
 __version__ = _version("appell")
@@ -29,9 +30,9 @@ __version__ = _version("appell")
 __all__ = [
     "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "EndsEarly", "Energies",
     "Ensemble", "Error",
-    "Identification", "InverseDynamics", "Jacobians", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
-    "RequestError", "SpecError", "SteadyMotion", "Unstable", "Vector", "base_parameters", "diagnose", "ensemble", "identify", "labelled", "load", "sample_rig",
-    "shipped", "spread",
+    "Identification", "InverseDynamics", "Jacobians", "LeftOut", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
+    "RequestError", "Robot", "SpecError", "SteadyMotion", "Unstable", "Vector", "base_parameters", "diagnose", "ensemble", "identify", "import_robot", "labelled", "load", "sample_rig",
+    "sample_robot", "shipped", "spread",
 ]  # fmt: skip
 
 

@@ -7,6 +7,8 @@
 //! natural_frequency = 10                   # of the errors, in rad/s
 //! damping_ratio = 1
 //! believes = { m_load = "2kg" }            # parameters of the law's model; the others are those of the motion
+//! sampled_ms = 2                           # sampling period; inputs are held in between
+//! delay_ms = 1                             # from a measurement to its effect
 //! ```
 
 use appell_spec::expr::Expr;
@@ -61,6 +63,8 @@ const KEYS: &[&str] = &[
     "law",
     "inputs",
     "believes",
+    "sampled_ms",
+    "delay_ms",
     "switching_times_s",
     "initial",
 ];

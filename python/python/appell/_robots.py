@@ -1,0 +1,81 @@
+"""Robot files as models."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+
+from . import _appell
+from ._errors import Diagnostic
+from ._model import Model
+from ._values import many
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Elements of a robot file that have no counterpart in a spec."""
+
+    what: str
+    """Such as `actuator/motor`."""
+    file: str
+    lines: tuple[int, ...]
+
+
+@dataclass(frozen=True)
+class Robot:
+    """A robot file as a spec."""
+
+    name: str
+    format: str
+    """`URDF` or `MJCF`."""
+    spec: str
+    """The text of the spec."""
+    bodies: int
+    """Links that are fixed together count once."""
+    joints: int
+    """Joints that move."""
+    warnings: dict[str, tuple[Diagnostic, ...]]
+    """By file."""
+    left_out: tuple[LeftOut, ...]
+    nearly_right_angles: int
+    """Orientations and axes that `snap=True` makes right."""
+
+    def model(self) -> Model:
+        """The model."""
+        return Model(self.spec, text=True)
+
+    def save(self, file: str | Path) -> None:
+        """Writes the spec."""
+        Path(file).write_text(self.spec, encoding="utf-8")
+
+
+def import_robot(
+    file: str | Path,
+    *,
+    parameters: str | Iterable[str] = "none",
+    without: str | Iterable[str] = (),
+    snap: bool = False,
+    floating: bool = False,
+) -> Robot:
+    """A URDF or an MJCF file as a spec, with the files that it includes.
+
+    `parameters` are the numbers that become parameters: `none`, `inertias`, `all`, or names of links, joints and
+    parameters. `without` leaves out `damping`, `armature`, `springs`, `friction`, `limits`, `couplings` or
+    `compensation`. `snap` makes angles right that are so within 1e-4 rad, `floating` frees the root of a URDF.
+    """
+    chosen = ",".join(many(parameters))
+    spec, told = _appell.import_robot(Path(file), chosen, many(without), snap, floating)
+    told = json.loads(told)
+    return Robot(
+        spec=spec,
+        warnings={one["file"]: tuple(Diagnostic(**found) for found in one["findings"]) for one in told["warnings"]},
+        left_out=tuple(LeftOut(one["what"], one["file"], tuple(one["lines"])) for one in told["left_out"]),
+        **{key: told[key] for key in ("name", "format", "bodies", "joints", "nearly_right_angles")},
+    )
+
+
+def sample_robot(folder: str | Path) -> list[str]:
+    """Writes an arm with four joints as URDF and as MJCF; returns the names of the files."""
+    return _appell.sample_robot(Path(folder))

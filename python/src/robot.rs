@@ -1,0 +1,41 @@
+//! Robot files as specs.
+
+use std::path::PathBuf;
+use std::str::FromStr;
+
+use appell::robot::{self, Letters, Options, Without};
+use pyo3::exceptions::PyValueError;
+use pyo3::prelude::*;
+
+use crate::errors::Raise;
+use crate::watched::watched;
+
+/// The spec of a robot file, and what is told of it as JSON.
+#[pyfunction]
+pub(crate) fn import_robot(
+    py: Python<'_>,
+    file: PathBuf,
+    parameters: &str,
+    without: Vec<String>,
+    snap: bool,
+    floating: bool,
+) -> PyResult<(String, String)> {
+    let without = without.iter().map(|word| Without::from_str(word));
+    let options = Options {
+        letters: Letters::read(parameters),
+        without: without
+            .collect::<Result<_, _>>()
+            .map_err(PyValueError::new_err)?,
+        snap,
+        floating,
+    };
+    let name = file.to_string_lossy().into_owned();
+    let robot = watched(py, None, move |_| robot::read(&file, &options))?.raise(py)?;
+    Ok((robot.spec.clone(), robot::entry(&name, &robot).to_string()))
+}
+
+/// Writes a folder with a robot arm as URDF and as MJCF; the names of the files.
+#[pyfunction]
+pub(crate) fn sample_robot(py: Python<'_>, folder: PathBuf) -> PyResult<Vec<&'static str>> {
+    appell::sample::robot(&folder).raise(py)
+}

@@ -24,8 +24,8 @@ except ImportError:
 STUDY = """
 [study]
 model = "double_pendulum"
-cases = 24000
-chunk = 400
+cases = 9000
+chunk = 150
 [motion]
 t_end_s = 20
 rtol = 1e-11
@@ -111,7 +111,7 @@ def test_the_command_runs_on_a_cluster(cluster, tmp_path):
     if appell_command is None:
         pytest.skip("the command `appell` is not there; APPELL_COMMAND tells its path")
     study = tmp_path / "study.toml"
-    study.write_text(STUDY.replace("cases = 24000", "cases = 800"))
+    study.write_text(STUDY.replace("cases = 9000", "cases = 300"))
     alone = appell.ensemble(study, tmp_path / "alone")
     command = [appell_command, "ensemble", study, "--out", tmp_path / "spread"]
     command += ["--ray", cluster[0].address]

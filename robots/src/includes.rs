@@ -1,7 +1,7 @@
 //! A file with those that it includes, as one text; every place in it is known in its file.
 //!
 //! As `MuJoCo` has it, what the root of an included file holds stands in the place of `<include file="…"/>`, each file
-//! at most once, and paths are those from the folder of the first file.
+//! at most once, and paths are those from the folder of the first file, or else from that of the file that names them.
 
 use appell_spec::{Code, Diagnostic, Report, Severity, shown};
 
@@ -15,17 +15,16 @@ const MOST_NESTED: usize = 16;
 pub(crate) type Others<'f> = &'f dyn Fn(&str) -> Option<Vec<u8>>;
 
 /// A file with those that it includes.
-#[derive(Debug, Default)]
-pub(crate) struct Whole {
+pub(crate) struct Whole<'f> {
     /// The text of all.
     pub(crate) text: String,
     /// Name and text of each, the first one includes the others.
     files: Vec<(String, String)>,
     pieces: Vec<Piece>,
+    others: Others<'f>,
 }
 
 /// A part of a file that stands in the text as a whole.
-#[derive(Debug)]
 struct Piece {
     /// Where it begins in the text of all.
     start: usize,
@@ -41,15 +40,17 @@ struct Include {
     named: Option<(String, Span)>,
 }
 
-impl Whole {
+impl<'f> Whole<'f> {
     /// A file with all that it includes; what is wrong with the XML of one of them.
-    pub(crate) fn read(file: &str, text: &str, others: Others<'_>) -> Result<Self, Box<Report>> {
+    pub(crate) fn read(file: &str, text: &str, others: Others<'f>) -> Result<Self, Box<Report>> {
         let mut whole = Self {
+            text: String::new(),
             files: vec![(file.to_owned(), text.to_owned())],
-            ..Self::default()
+            pieces: Vec::new(),
+            others,
         };
         let (_, includes) = whole.parsed(0)?;
-        whole.append((0, 0..text.len()), includes, others, 0)?;
+        whole.append((0, 0..text.len()), includes, 0)?;
         Ok(whole)
     }
 
@@ -83,7 +84,6 @@ impl Whole {
         &mut self,
         (file, part): (usize, Span),
         includes: Vec<Include>,
-        others: Others<'_>,
         depth: usize,
     ) -> Result<(), Box<Report>> {
         let mut from = part.start;
@@ -94,10 +94,10 @@ impl Whole {
             }
             self.push(file, from..include.place.start);
             from = include.place.end;
-            let next = self.found(&include, others, depth);
+            let next = self.found(file, &include, depth);
             let next = next.map_err(|finding| self.report(file, vec![finding]))?;
             let (part, includes) = self.parsed(next)?;
-            self.append((next, part), includes, others, depth + 1)?;
+            self.append((next, part), includes, depth + 1)?;
         }
         self.push(file, from..part.end);
         Ok(())
@@ -112,13 +112,32 @@ impl Whole {
         self.text.push_str(&self.files[file].1[part]);
     }
 
-    /// Reads an included file; the result is its place.
-    fn found(
-        &mut self,
-        include: &Include,
-        others: Others<'_>,
-        depth: usize,
-    ) -> Result<usize, Diagnostic> {
+    /// The bytes of a file that a file names, and its path; `within` is a folder for files of its kind.
+    fn named(&self, by: usize, within: Option<&str>, name: &str) -> Option<(String, Vec<u8>)> {
+        let folder = match by {
+            0 => None,
+            _ => self.files[by].0.rsplit_once('/').map(|(folder, _)| folder),
+        };
+        let path = |folder: Option<&str>| {
+            let parts = [within, folder, Some(name)].into_iter().flatten();
+            parts.collect::<Vec<_>>().join("/")
+        };
+        let read = |path: String| (self.others)(&path).map(|bytes| (path, bytes));
+        read(path(None)).or_else(|| read(path(Some(folder?))))
+    }
+
+    /// The bytes of a file that is named at a place, and its path.
+    pub(crate) fn beside(
+        &self,
+        place: &Span,
+        within: Option<&str>,
+        name: &str,
+    ) -> Option<(String, Vec<u8>)> {
+        self.named(self.origin(place).0, within, name)
+    }
+
+    /// Reads a file that another includes; the result is its place.
+    fn found(&mut self, by: usize, include: &Include, depth: usize) -> Result<usize, Diagnostic> {
         let Some((named, place)) = &include.named else {
             let error = Diagnostic::error(Code::MissingKey, "`include` names no file");
             let help = "write `<include file=\"…\"/>`";
@@ -130,17 +149,22 @@ impl Whole {
                 .help(help))
         };
         let name = shown(named);
-        if self.files.iter().any(|(other, _)| other == named) {
-            let message = format!("`{name}` is included twice");
-            return fail(Code::DuplicateName, message, "remove one of the two");
-        }
         if depth >= MOST_NESTED {
             let message = format!("files include each other more than {MOST_NESTED} deep");
             return fail(Code::LimitExceeded, message, "put them together");
         }
-        let Some(bytes) = others(named) else {
+        let twice = |named: &str| self.files.iter().any(|(other, _)| other == named);
+        let found = self.named(by, None, named);
+        if found
+            .as_ref()
+            .map_or_else(|| twice(named), |(path, _)| twice(path))
+        {
+            let message = format!("`{name}` is included twice");
+            return fail(Code::DuplicateName, message, "remove one of the two");
+        }
+        let Some((path, bytes)) = found else {
             let message = format!("the file `{name}` cannot be read");
-            let help = "paths are those from the folder of the file that is imported";
+            let help = "paths are those from the folder of the file that is imported, or of that which includes";
             return fail(Code::UnknownReference, message, help);
         };
         let Ok(text) = String::from_utf8(bytes) else {
@@ -152,7 +176,7 @@ impl Whole {
             let message = format!("all files have more than {} MiB together", MAX_FILE >> 20);
             return fail(Code::LimitExceeded, message, "leave out what is not needed");
         }
-        self.files.push((named.clone(), text));
+        self.files.push((path, text));
         Ok(self.files.len() - 1)
     }
 

@@ -150,7 +150,7 @@ pub fn import_with(
     };
     let mut robot = match format {
         Format::Urdf => urdf::read(root, &findings),
-        Format::Mjcf => mjcf::read(root, &findings, others),
+        Format::Mjcf => mjcf::read(root, &findings, &whole),
     };
     if options.floating {
         float(&mut robot);

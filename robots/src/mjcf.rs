@@ -9,6 +9,7 @@ mod orientation;
 
 use appell_spec::{Code, did_you_mean};
 
+use crate::includes::Whole;
 use crate::inertia::Inertia;
 use crate::model::{LeftOut, Link, Robot};
 use crate::rotation::{Pose, Rotation, Vector};
@@ -54,8 +55,8 @@ pub(crate) struct Reader<'x, 'f> {
     links: Vec<Link>,
     left_out: Vec<LeftOut>,
     root: Element<'x>,
-    /// Reads a file that this one names.
-    read: &'f dyn Fn(&str) -> Option<Vec<u8>>,
+    /// The file, and those that it names.
+    whole: &'f Whole<'f>,
 }
 
 /// A place in the tree from which bodies are read.
@@ -68,11 +69,7 @@ struct Level<'x> {
 }
 
 /// Reads `<mujoco>`.
-pub(crate) fn read(
-    root: Element<'_>,
-    findings: &Findings,
-    others: &dyn Fn(&str) -> Option<Vec<u8>>,
-) -> Robot {
+pub(crate) fn read(root: Element<'_>, findings: &Findings, whole: &Whole<'_>) -> Robot {
     let mut reader = Reader {
         findings,
         compiler: compiler(root, findings),
@@ -80,7 +77,7 @@ pub(crate) fn read(
         links: Vec::new(),
         left_out: Vec::new(),
         root,
-        read: others,
+        whole,
     };
     let ground = Level {
         parent: None,

@@ -57,6 +57,20 @@ fn an_included_file_stands_where_it_is_included() {
 }
 
 #[test]
+fn a_path_may_begin_at_the_file_that_names_it() {
+    let nested = r#"<mujoco><include file="hand.xml"/></mujoco>"#;
+    let hand = r#"<mujoco><worldbody><body name="hand"><joint axis="0 1 0"/><geom size="0.1"/></body></worldbody></mujoco>"#;
+    let joints = |at: &str| {
+        let others = [("parts/arm.xml", nested), (at, hand)];
+        let first = r#"<mujoco><include file="parts/arm.xml"/></mujoco>"#;
+        with(first, &others).unwrap().joints
+    };
+    // As MuJoCo 4.0 finds them.
+    assert_eq!(joints("parts/hand.xml"), 1);
+    assert_eq!(joints("hand.xml"), 1);
+}
+
+#[test]
 fn what_is_left_out_is_told_with_its_file() {
     let robot = with(&scene(), &[]).unwrap();
     let told: Vec<_> = (robot.left_out.iter())

@@ -49,12 +49,13 @@ impl<'x> Reader<'x, '_> {
             all.last()
         };
         let folder = compiler("meshdir").or_else(|| compiler("assetdir"));
-        let path = match folder {
-            Some(folder) => format!("{}/{}", folder.trim_end_matches('/'), file.value()),
-            None => file.value().to_owned(),
-        };
-        let bytes =
-            (self.read)(&path).ok_or_else(|| format!("its file `{path}` cannot be read"))?;
+        let folder = folder.map(|folder| folder.trim_end_matches('/'));
+        let found = self.whole.beside(&file.range(), folder, file.value());
+        let (path, bytes) = found.ok_or_else(|| {
+            let named = [folder, Some(file.value())].into_iter().flatten();
+            let named = named.collect::<Vec<_>>().join("/");
+            format!("its file `{named}` cannot be read")
+        })?;
         let triangles =
             triangles(&path, &bytes).ok_or_else(|| format!("`{path}` is no mesh as STL or OBJ"))?;
         let scaled_by = |corner: Vector| [0, 1, 2].map(|k| corner[k] * scale[k]);

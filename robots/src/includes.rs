@@ -5,9 +5,10 @@
 
 use appell_spec::{Code, Diagnostic, Report, Severity, shown};
 
-use crate::MAX_FILE;
 use crate::xml::{Element, Span, parse, tag};
 
+/// Largest file with those that it includes, in bytes.
+pub const MAX_FILE: u64 = 1 << 24;
 /// Deepest nesting of files.
 const MOST_NESTED: usize = 16;
 

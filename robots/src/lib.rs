@@ -43,13 +43,11 @@ use appell_spec::{Code, Diagnostic, Report, did_you_mean};
 use includes::Whole;
 
 pub use format::Format;
+pub use includes::MAX_FILE;
 pub use letters::Letters;
 pub use options::Options;
 pub use snap::SNAP;
 pub use without::Without;
-
-/// Largest file, in bytes.
-pub const MAX_FILE: u64 = 1 << 24;
 
 /// A robot as a spec.
 #[derive(Debug)]

@@ -70,7 +70,7 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
     }
 }
 
-/// What is read of a joint: what resists motion, limits and `mimic` where it has one coordinate, or none.
+/// What is read of a joint: with several coordinates it is not known to which one `dynamics`, `limit` or `mimic` belong.
 fn known_of(joint: Element<'_>) -> &'static [&'static str] {
     const ALL: &[&str] = &[
         "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",

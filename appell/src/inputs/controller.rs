@@ -34,7 +34,7 @@ pub struct Controller<'w> {
     parameters: Vec<f64>,
     /// Measurements of the discrete-time laws with gains.
     samplers: Vec<Sampler>,
-    /// Measurements of those of the laws by the equations of motion that are discrete-time ones.
+    /// The same of laws by the equations of motion; nothing for one in continuous time.
     model_samplers: Vec<Option<Sampler>>,
     switching_times: Vec<f64>,
     /// Values of the function, kept to be written anew.

@@ -4,6 +4,7 @@ use std::path::{Path, PathBuf};
 
 use appell_analysis::{BranchError, ChartError, StabilityError, SteadyError};
 use appell_estimate::EstimateError;
+use appell_files::FileError;
 use appell_gap::base::BaseError;
 use appell_gap::diagnose::DiagnoseError;
 use appell_gap::effects::{EffectError, ModelError};
@@ -55,6 +56,9 @@ pub enum Error {
         #[source]
         cause: std::io::Error,
     },
+    /// A file is not one that is read.
+    #[error(transparent)]
+    Unreadable(FileError),
     /// Recordings cannot be used.
     #[error(transparent)]
     Recording(DataError),
@@ -221,6 +225,7 @@ impl Error {
             | Self::Simulate(SimulationError::Signal(_))
             | Self::Data { .. }
             | Self::File { .. }
+            | Self::Unreadable(_)
             | Self::Recording(_)
             | Self::Table { .. } => Class::Data,
             Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
@@ -339,6 +344,15 @@ fn plain(failures: &[Error]) -> String {
 impl From<Report> for Error {
     fn from(report: Report) -> Self {
         Self::Report(Box::new(report))
+    }
+}
+
+impl From<FileError> for Error {
+    fn from(error: FileError) -> Self {
+        match error {
+            FileError::System { path, cause } => Self::reading(&path)(cause),
+            other => Self::Unreadable(other),
+        }
     }
 }
 

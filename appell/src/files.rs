@@ -4,6 +4,9 @@ use std::fs::{self, OpenOptions};
 use std::io::{self, BufWriter, Read as _, Write};
 use std::path::{Path, PathBuf};
 
+use appell_files::Draft;
+pub use appell_files::{below, remove_drafts};
+
 use crate::Error;
 
 /// Maximum size of a recording or of a list of cases, in bytes.
@@ -31,8 +34,7 @@ pub fn write_with(
             .and_then(|file| fill_buffered(file, fill))
             .map_err(Error::writing(path));
     }
-    let permissions = there.map(|there| there.permissions());
-    if permissions.as_ref().is_some_and(fs::Permissions::readonly) {
+    if there.is_some_and(|there| there.permissions().readonly()) {
         let cause = io::Error::new(io::ErrorKind::PermissionDenied, "the file is read-only");
         return Err(Error::writing(path)(cause));
     }
@@ -41,18 +43,10 @@ pub fn write_with(
         let message = format!("there is no folder `{}`: create it first", folder.display());
         return Err(Error::data(path.display(), message));
     }
-    let mut name = target.file_name().unwrap_or_default().to_owned();
-    name.push(format!(".{}.tmp", std::process::id()));
-    let draft = target.with_file_name(name);
-    fs::File::create(&draft)
-        .and_then(|file| fill_buffered(file, fill))
-        .and_then(|()| permissions.map_or(Ok(()), |own| fs::set_permissions(&draft, own)))
-        .and_then(|()| fs::rename(&draft, &target))
-        .map_err(|cause| {
-            // A failure to remove the temporary file would only mask the cause.
-            let _ = fs::remove_file(&draft);
-            Error::writing(path)(cause)
-        })
+    let mut draft = Draft::new(&target).map_err(Error::writing(path))?;
+    fill(&mut draft)
+        .and_then(|()| draft.finish())
+        .map_err(Error::writing(path))
 }
 
 /// Makes a folder that was asked for, with those above it.
@@ -103,23 +97,27 @@ pub fn is_stdout(path: &Path) -> bool {
 }
 
 /// Reads a text file of at most `most` bytes; `-` is standard input.
+///
+/// The file is a regular one, or one that the shell has opened: `/dev/stdin`, or `<(command)`.
 pub fn read(path: &Path, most: u64) -> Result<String, Error> {
-    let mut bytes = Vec::new();
-    // One byte more shows that there are too many.
-    let read = if is_stdout(path) {
-        io::stdin().take(most + 1).read_to_end(&mut bytes)
-    } else {
-        fs::File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes))
-    };
-    let count = read.map_err(Error::reading(path))?;
-    let file = path.display();
-    if count as u64 > most {
-        let message = format!("the file exceeds the limit of {} MiB", most >> 20);
-        return Err(Error::data(file, message));
+    if is_stdout(path) {
+        return read_open(Path::new("standard input"), io::stdin(), most);
     }
-    String::from_utf8(bytes).map_err(|cause| {
-        let before = &cause.as_bytes()[..cause.utf8_error().valid_up_to()];
-        let line = before.split(|byte| *byte == b'\n').count();
-        Error::data(format!("{file}:{line}"), "the file is not UTF-8 text")
-    })
+    let is_open = path.starts_with("/dev/fd") || path.starts_with("/dev/stdin");
+    if is_open && let Ok(file) = fs::File::open(path) {
+        return read_open(path, file, most);
+    }
+    Ok(appell_files::read_text(path, most)?)
+}
+
+fn read_open(name: &Path, from: impl io::Read, most: u64) -> Result<String, Error> {
+    let mut text = String::new();
+    // One byte more shows that there are too many.
+    let read = from.take(most + 1).read_to_string(&mut text);
+    let count = read.map_err(Error::reading(name))?;
+    if count as u64 > most {
+        let message = format!("the text exceeds the limit of {} MiB", most >> 20);
+        return Err(Error::data(name.display(), message));
+    }
+    Ok(text)
 }

@@ -10,6 +10,7 @@ mod diagnosed;
 mod engine;
 mod failure;
 mod flags;
+mod interrupt;
 mod motions;
 mod output;
 mod picture;
@@ -31,6 +32,7 @@ static ALLOCATOR: MiMalloc = MiMalloc;
 
 fn main() -> ExitCode {
     CompleteEnv::with_factory(completion::command).complete();
+    interrupt::install();
     match run(&Arguments::command().get_matches()) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {

@@ -36,17 +36,41 @@ fn a_pipe_is_written_to_and_stays_a_pipe() {
 }
 
 #[test]
-fn a_spec_may_come_through_a_pipe() {
+fn a_spec_may_come_through_a_pipe_of_the_shell() {
     let folder = Folder::new();
     folder.done(&["new", "mine"]);
+    for command in [
+        "cat mine.toml | \"$0\" check -",
+        "cat mine.toml | \"$0\" check /dev/stdin",
+        "\"$0\" check <(cat mine.toml)",
+    ] {
+        let ran = Command::new("bash")
+            .args(["-c", command, env!("CARGO_BIN_EXE_appell")])
+            .current_dir(folder.path(""))
+            .output()
+            .expect("bash runs");
+        let told = String::from_utf8_lossy(&ran.stdout);
+        assert!(told.contains("degrees of freedom"), "{command}: {told}");
+    }
+}
+
+#[test]
+fn a_named_pipe_and_a_device_are_not_opened() {
+    let folder = Folder::new();
     let pipe = folder.path("pipe.toml");
     let made = Command::new("mkfifo").arg(&pipe).status();
     assert!(made.expect("mkfifo runs").success());
-    let text = folder.read("mine.toml");
-    let writer = std::thread::spawn(move || fs::write(pipe, text).expect("a reader"));
-    let told = folder.done(&["check", "pipe.toml"]).stdout;
-    writer.join().expect("the writer ends");
-    assert!(told.contains("degrees of freedom"), "{told}");
+    folder.fails(3, &["check", "pipe.toml"], &["this is a pipe"]);
+    folder.fails(3, &["check", "/dev/zero"], &["or a device"]);
+    let cases = [
+        "evaluate",
+        "pendulum",
+        "--cases",
+        "pipe.toml",
+        "--json",
+        "-",
+    ];
+    folder.fails(3, &cases, &["this is a pipe"]);
 }
 
 #[test]

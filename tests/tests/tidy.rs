@@ -12,6 +12,7 @@ const MOST_LINES: usize = 700;
 /// Which crates a crate may depend on; [`ARCHITECTURE.md`] tells why.
 const MAY_KNOW: &[(&str, &[&str])] = &[
     ("model_spec", &[]),
+    ("files", &[]),
     ("runtime", &[]),
     ("codegen", &["appell-spec", "appell-runtime"]),
     ("generated", &["appell-runtime", "appell-codegen"]),
@@ -20,7 +21,12 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ("estimate", &["appell-runtime", "appell-spectra"]),
     (
         "recordings",
-        &["appell-spec", "appell-runtime", "appell-estimate"],
+        &[
+            "appell-files",
+            "appell-spec",
+            "appell-runtime",
+            "appell-estimate",
+        ],
     ),
     (
         "gap",
@@ -34,7 +40,10 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         ],
     ),
     ("robots", &["appell-spec"]),
-    ("ensemble", &["appell-spec", "appell-recordings"]),
+    (
+        "ensemble",
+        &["appell-files", "appell-spec", "appell-recordings"],
+    ),
     (
         "report",
         &[
@@ -51,6 +60,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     (
         "appell",
         &[
+            "appell-files",
             "appell-ensemble",
             "appell-spec",
             "appell-codegen",
@@ -115,7 +125,8 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 ];
 
 /// Crates below the command line: they name no mechanism and no flag.
-const NAME_NO_MECHANISM: [&str; 15] = [
+const NAME_NO_MECHANISM: [&str; 16] = [
+    "files",
     "model_spec",
     "codegen",
     "runtime",

@@ -3,14 +3,12 @@
 mod on_ray;
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, Ordering};
 
 use appell::ensemble::{self, Ended, Ensemble, Folder, Running, Shard, Store, Summary, Watch};
 use appell::{files, json};
 
 use crate::failure::{Error, note};
-use crate::{output, progress};
+use crate::{interrupt, output, progress};
 
 /// Runs many motions whose parameters, starts, inputs, laws or specs vary, and tells their statistics.
 ///
@@ -114,11 +112,10 @@ impl EnsembleCommand {
                 whole - cases
             ));
         }
-        let stopped = Arc::new(AtomicBool::new(false));
-        let told = Arc::clone(&stopped);
-        // Without a handler Ctrl-C ends the process, which loses a chunk.
-        let _ = ctrlc::set_handler(move || told.store(true, Ordering::Relaxed));
-        let go_on = || !stopped.load(Ordering::Relaxed);
+        // Chunks that are begun are finished.
+        let go_on = || !interrupt::has_come();
+        // Asked before the first chunk: a signal ends it no more.
+        go_on();
         let mut ended = Ended::Done;
         if cases > 0 {
             let bar = progress::cases(cases, "cases");

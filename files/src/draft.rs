@@ -1,0 +1,90 @@
+//! Files that are written.
+
+use std::io::{self, BufWriter, IntoInnerError, Write};
+use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+
+use tempfile::{Builder, NamedTempFile};
+
+/// End of the name of a draft, which begins with a dot.
+const SUFFIX: &str = ".draft";
+
+/// The drafts of this process.
+static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
+fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
+    // A list of paths is whole at any time.
+    DRAFTS.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Removes all drafts of this process, which is about to be ended by a signal.
+pub fn remove_drafts() {
+    for draft in drafts().drain(..) {
+        // There is nobody left to tell.
+        let _ = std::fs::remove_file(draft);
+    }
+}
+
+/// An entry of the list of drafts.
+#[derive(Debug)]
+struct Listed(PathBuf);
+
+impl Drop for Listed {
+    fn drop(&mut self) {
+        drafts().retain(|draft| *draft != self.0);
+    }
+}
+
+/// A new file under a random name beside its place. [`Draft::finish`] puts it there; dropped before that, it is removed.
+#[derive(Debug)]
+pub struct Draft {
+    file: BufWriter<NamedTempFile>,
+    target: PathBuf,
+    // After the file, which is removed first.
+    _listed: Listed,
+}
+
+impl Draft {
+    /// A draft of the file at `target`, whose folder exists.
+    pub fn new(target: &Path) -> io::Result<Self> {
+        let folder = match target.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder,
+            _ => Path::new("."),
+        };
+        let mut naming = Builder::new();
+        naming.prefix(".").suffix(SUFFIX);
+        // As other programs make files: with what the user's mask leaves.
+        #[cfg(unix)]
+        naming.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
+        // Listed while it is made: a signal meanwhile waits for the list.
+        let mut drafts = drafts();
+        let file = naming.tempfile_in(folder)?;
+        drafts.push(file.path().to_owned());
+        Ok(Self {
+            _listed: Listed(file.path().to_owned()),
+            file: BufWriter::new(file),
+            target: target.to_owned(),
+        })
+    }
+
+    /// Puts the file in its place once it is on the disk. It replaces a file that is there, whose permissions it takes.
+    pub fn finish(self) -> io::Result<()> {
+        let file = self.file.into_inner().map_err(IntoInnerError::into_error)?;
+        if let Ok(there) = std::fs::metadata(&self.target) {
+            file.as_file().set_permissions(there.permissions())?;
+        }
+        file.as_file().sync_all()?;
+        file.persist(&self.target).map_err(|error| error.error)?;
+        Ok(())
+    }
+}
+
+impl Write for Draft {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        self.file.write(bytes)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.file.flush()
+    }
+}

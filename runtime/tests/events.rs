@@ -359,3 +359,74 @@ fn steps_end_where_switches_change() {
         .unwrap();
     assert!((x[0] - 0.5).abs() < 1e-14, "{}", x[0]);
 }
+
+/// All of a hundred short visits beyond a limit are found in one step, which no error shortens; where a step is a hundred
+/// periods long and nine samples say nothing, `longest` says how long a visit is at least.
+#[test]
+fn every_crossing_in_a_long_step_is_found() {
+    for longest in [f64::INFINITY, 0.1] {
+        let mut x = [0.0];
+        let mut watch = Watch {
+            events: vec![Event {
+                longest,
+                ..Event::new(Direction::Rising, |_, x: &[f64]| {
+                    (2.0 * PI * x[0]).sin() - 0.99
+                })
+            }],
+            ..Watch::default()
+        };
+        let options = Options {
+            first_step: Some(101.0),
+            ..Options::default()
+        };
+        let outcome = Solver::<Dop853>::new()
+            .integrate(
+                clock,
+                [0.0, 100.0],
+                &mut x,
+                &options,
+                &mut watch,
+                &mut NoObserver,
+            )
+            .unwrap();
+        assert_eq!(outcome.statistics.steps, 1);
+        assert_eq!(outcome.hits.len(), 100);
+        let first = 0.99_f64.asin() / (2.0 * PI);
+        for (hit, period) in outcome.hits.iter().zip(0..100) {
+            let t = first + f64::from(period);
+            // 2 π x has the rounding of 600.
+            assert!((hit.t - t).abs() < 1e-11, "{} {t}", hit.t);
+        }
+    }
+}
+
+/// A jump of the function itself, and a touch from below that does not cross.
+#[test]
+fn jumps_cross_and_touches_do_not() {
+    let mut x = [0.0];
+    let mut watch = Watch {
+        events: vec![
+            Event::new(
+                Direction::Rising,
+                |t, _: &[f64]| if t < 0.3 { -1.0 } else { 1.0 },
+            ),
+            Event::new(Direction::Rising, |t, _: &[f64]| -(t - 0.7).powi(2) - 1e-12),
+            Event::new(Direction::Rising, |t, _: &[f64]| 1e-12 - (t - 0.7).powi(2)),
+        ],
+        ..Watch::default()
+    };
+    let outcome = Solver::<Dopri5>::new()
+        .integrate(
+            clock,
+            [0.0, 1.0],
+            &mut x,
+            &Options::default(),
+            &mut watch,
+            &mut NoObserver,
+        )
+        .unwrap();
+    let found: Vec<usize> = outcome.hits.iter().map(|hit| hit.event).collect();
+    assert_eq!(found, [0, 2]);
+    assert!((outcome.hits[0].t - 0.3).abs() < EVENT_TOLERANCE);
+    assert!((outcome.hits[1].t - 0.699_999).abs() < 1e-9);
+}

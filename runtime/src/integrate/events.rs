@@ -1,6 +1,7 @@
 //! Where a function of the motion crosses zero.
 
 use super::dense_output::{DenseOutput, Ends};
+use super::pieces::{Piece, Sought, Walk};
 
 /// Which crossings of zero count.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,8 +31,8 @@ pub type EventFunction<'a> = Box<dyn FnMut(f64, &[f64]) -> f64 + 'a>;
 ///
 /// A crossing counts when g reaches zero or changes its sign. Where g is zero at the start of
 /// the integration there is no crossing: its sign is taken from the first instant it has one.
-/// Within a step g is sampled at eighths, so a pair of crossings closer than that can be missed;
-/// `max_step` bounds the step.
+/// Within a step g is resolved to some 1e-7 of its size; what lies between the samples of a shortest piece, a ninth of
+/// `longest`, can be missed.
 pub struct Event<'a> {
     /// The function.
     pub function: EventFunction<'a>,
@@ -39,6 +40,8 @@ pub struct Event<'a> {
     pub direction: Direction,
     /// Whether the integration ends at the first crossing that counts.
     pub terminal: bool,
+    /// The longest time in s on which the function is taken for a polynomial, however long the steps are.
+    pub longest: f64,
 }
 
 impl<'a> Event<'a> {
@@ -48,6 +51,7 @@ impl<'a> Event<'a> {
             function: Box::new(function),
             direction,
             terminal: false,
+            longest: f64::INFINITY,
         }
     }
 
@@ -81,15 +85,15 @@ pub struct EventHit {
     pub state: Vec<f64>,
 }
 
-/// Parts of a step between which sign changes are sought.
-const PARTS: usize = 8;
-
 /// The signs of all events up to the current time.
 #[derive(Debug, Default)]
 pub(super) struct Crossings {
     signs: Vec<i8>,
+    /// The largest absolute value of each so far.
+    sizes: Vec<f64>,
     x: Vec<f64>,
     found: Vec<(f64, usize)>,
+    walk: Walk,
 }
 
 impl Crossings {
@@ -103,6 +107,8 @@ impl Crossings {
                 .iter_mut()
                 .map(|event| sign((event.function)(t, x)).unwrap_or(0)),
         );
+        self.sizes.clear();
+        self.sizes.resize(events.len(), 0.0);
     }
 
     /// The crossings of one step in the order of time, as (time, event).
@@ -112,39 +118,120 @@ impl Crossings {
         ends: &Ends<'_>,
         dense: &DenseOutput,
     ) -> &[(f64, usize)] {
-        let [t_old, t_new] = ends.t;
         self.found.clear();
-        let time = |part: usize| t_old + (t_new - t_old) * (part as f64 / PARTS as f64);
-        for part in 1..=PARTS {
-            let t = if part == PARTS { t_new } else { time(part) };
-            if part == PARTS {
-                self.x.copy_from_slice(ends.x[1]);
-            } else {
-                dense.state(t, &mut self.x);
-            }
-            for (index, event) in events.iter_mut().enumerate() {
-                let before = self.signs[index];
-                let Some(after) = sign((event.function)(t, &self.x)) else {
-                    continue;
-                };
-                self.signs[index] = after;
-                let crosses = before != 0 && after != before;
-                if crosses && event.direction.admits(before) {
-                    let x = &mut self.x;
-                    let bracket = (time(part - 1), t);
-                    let root = brent(bracket, |s| {
-                        dense.state(s, x);
-                        (event.function)(s, x)
-                    });
-                    self.found.push((root, index));
-                    dense.state(t, &mut self.x);
-                }
-            }
+        if events.is_empty() {
+            return &self.found;
         }
+        let [from, to] = ends.t;
+        let longest = events
+            .iter()
+            .map(|e| e.longest)
+            .fold(f64::INFINITY, f64::min);
+        let (mut walk, mut x) = (std::mem::take(&mut self.walk), std::mem::take(&mut self.x));
+        let mut seen = Seen {
+            events,
+            ends,
+            dense,
+            x: &mut x,
+            crossings: self,
+        };
+        // What drives the motion may jump where the step ends.
+        let before = to.next_down().max(from);
+        walk.walk([from, before], longest, &mut seen);
+        for index in 0..seen.events.len() {
+            let value = seen.value(index, to);
+            seen.point(index, before, to, value);
+        }
+        (self.walk, self.x) = (walk, x);
         self.found.sort_by(|a, b| a.0.total_cmp(&b.0));
         &self.found
     }
 }
+
+/// Events during a step.
+struct Seen<'s, 'a> {
+    events: &'s mut [Event<'a>],
+    ends: &'s Ends<'s>,
+    dense: &'s DenseOutput,
+    x: &'s mut Vec<f64>,
+    crossings: &'s mut Crossings,
+}
+
+impl Seen<'_, '_> {
+    /// The value of an event.
+    fn value(&mut self, index: usize, t: f64) -> f64 {
+        let x = state(self.ends, self.dense, self.x, t);
+        (self.events[index].function)(t, x)
+    }
+
+    /// The next value of an event, after the one at another time.
+    fn point(&mut self, index: usize, last: f64, t: f64, value: f64) {
+        let Some(after) = sign(value) else {
+            return;
+        };
+        let before = std::mem::replace(&mut self.crossings.signs[index], after);
+        let crosses = before != 0 && after != before;
+        if crosses && self.events[index].direction.admits(before) {
+            let root = if last < t {
+                brent((last, t), |s| self.value(index, s))
+            } else {
+                t
+            };
+            self.crossings.found.push((root, index));
+        }
+    }
+}
+
+/// The state at a time of a step; at both ends that of the step itself.
+fn state<'x>(ends: &Ends<'x>, dense: &DenseOutput, x: &'x mut [f64], t: f64) -> &'x [f64] {
+    if t <= ends.t[0] {
+        ends.x[0]
+    } else if t >= ends.t[1].next_down() {
+        ends.x[1]
+    } else {
+        dense.state(t, x);
+        x
+    }
+}
+
+impl Sought for Seen<'_, '_> {
+    fn count(&self) -> usize {
+        self.events.len()
+    }
+
+    fn evaluate(&mut self, t: f64, values: &mut [f64]) {
+        let x = state(self.ends, self.dense, self.x, t);
+        for (event, value) in self.events.iter_mut().zip(values) {
+            *value = (event.function)(t, x);
+        }
+    }
+
+    fn is_enough(&self, which: usize, piece: &Piece) -> bool {
+        piece.keeps_its_sign()
+            || piece.is_resolved(piece.size().max(ROUNDING * self.crossings.sizes[which]))
+    }
+
+    fn see(&mut self, pieces: &[Piece]) {
+        for (index, piece) in pieces.iter().enumerate() {
+            let size = &mut self.crossings.sizes[index];
+            *size = size.max(piece.size());
+            let mut last = piece.span()[0];
+            let mut doubts = piece.doubts().into_iter().peekable();
+            for (t, value) in piece.points() {
+                while let Some(doubt) = doubts.next_if(|doubt| *doubt <= t) {
+                    let value = self.value(index, doubt);
+                    self.point(index, last, doubt, value);
+                    last = doubt;
+                }
+                self.point(index, last, t, value);
+                last = t;
+            }
+        }
+    }
+}
+
+/// A function whose values on a piece are that small beside its largest ones is rounding.
+const ROUNDING: f64 = 1e-6;
 
 /// −1, 0 or 1; nothing for NaN.
 fn sign(value: f64) -> Option<i8> {

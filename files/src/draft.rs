@@ -1,13 +1,18 @@
 //! Files that are written.
 
+use std::fs::{File, Metadata, TryLockError};
 use std::io::{self, BufWriter, IntoInnerError, Write};
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Duration;
 
 use tempfile::{Builder, NamedTempFile};
 
 /// End of the name of a draft, which begins with a dot.
 const SUFFIX: &str = ".draft";
+
+/// Without locks a draft of this age has no writer any more.
+const LEFT_BEHIND: Duration = Duration::from_hours(1);
 
 /// The drafts of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
@@ -22,6 +27,37 @@ pub fn remove_drafts() {
     for draft in drafts().drain(..) {
         // There is nobody left to tell.
         let _ = std::fs::remove_file(draft);
+    }
+}
+
+/// Removes the drafts of a folder whose writers are gone, and none of those that somebody is writing.
+pub fn remove_left_behind(folder: &Path) -> io::Result<()> {
+    for entry in std::fs::read_dir(folder)? {
+        let path = entry?.path();
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        if name.starts_with('.') && name.ends_with(SUFFIX) && is_left_behind(&path) {
+            match std::fs::remove_file(&path) {
+                // Another one was faster.
+                Err(cause) if cause.kind() != io::ErrorKind::NotFound => return Err(cause),
+                _ => {}
+            }
+        }
+    }
+    Ok(())
+}
+
+fn is_left_behind(draft: &Path) -> bool {
+    let about = std::fs::symlink_metadata(draft);
+    let Some(about) = about.ok().filter(Metadata::is_file) else {
+        return false;
+    };
+    match File::open(draft).map(|file| file.try_lock()) {
+        Ok(Ok(())) => true,
+        Ok(Err(TryLockError::Error(_))) => {
+            let age = about.modified().ok().and_then(|at| at.elapsed().ok());
+            age.is_some_and(|age| age > LEFT_BEHIND)
+        }
+        _ => false,
     }
 }
 
@@ -59,6 +95,8 @@ impl Draft {
         // Listed while it is made: a signal meanwhile waits for the list.
         let mut drafts = drafts();
         let file = naming.tempfile_in(folder)?;
+        // Says that it has a writer; on a system without locks its age does.
+        let _ = file.as_file().try_lock();
         drafts.push(file.path().to_owned());
         Ok(Self {
             _listed: Listed(file.path().to_owned()),

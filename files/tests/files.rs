@@ -4,7 +4,7 @@ use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-use appell_files::{Draft, FileError, below, read, read_text};
+use appell_files::{Draft, FileError, below, read, read_text, remove_left_behind};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
@@ -115,4 +115,18 @@ fn permissions_are_those_of_other_files_and_stay() {
     fs::set_permissions(here.path().join("plain"), fs::Permissions::from_mode(0o600)).unwrap();
     write("plain");
     assert_eq!(mode("plain"), 0o600);
+}
+
+#[test]
+fn drafts_without_a_writer_are_removed_and_others_stay() {
+    let here = folder();
+    let mut written = Draft::new(&here.path().join("a.txt")).unwrap();
+    written.write_all(b"ground").unwrap();
+    fs::write(here.path().join(".killed.draft"), "gro").unwrap();
+    fs::write(here.path().join(".other"), "").unwrap();
+    remove_left_behind(here.path()).unwrap();
+    assert!(!names(here.path()).contains(&".killed.draft".to_owned()));
+    written.finish().unwrap();
+    remove_left_behind(here.path()).unwrap();
+    assert_eq!(names(here.path()), [".other", "a.txt"]);
 }

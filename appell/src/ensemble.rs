@@ -34,13 +34,16 @@ use std::fmt::Write as _;
 use std::ops::Range;
 use std::path::Path;
 
+use appell_ensemble::TAKEN;
 use appell_ensemble::design::Design;
 use appell_ensemble::digest::Digest;
+use appell_ensemble::limits::{MAX_CHUNKS, MAX_JOBS, MAX_NUMBERS, MAX_VARIANTS};
 use appell_ensemble::run::{self, Engine as _};
 use appell_ensemble::study::{FEEDBACK, Keep, MODEL, Text, Varied};
-use appell_spec::Code;
+use appell_ensemble::summary::{See, Wanted};
+use appell_spec::{Code, shown};
 
-pub use appell_ensemble::chunk::{Chunk, Chunks, Shard};
+pub use appell_ensemble::chunk::{Chunk, Chunks, Missing, Shard};
 #[cfg(feature = "object-store")]
 pub use appell_ensemble::objects::Objects;
 pub use appell_ensemble::rows::{Column, Role, Rows};
@@ -93,6 +96,59 @@ pub struct Running {
     pub chunk: Option<u64>,
 }
 
+impl Running {
+    /// The number of threads, if one was asked for and it is possible.
+    fn threads(&self) -> Result<Option<usize>, Error> {
+        match self.jobs {
+            Some(jobs) if !(1..=MAX_JOBS).contains(&jobs) => {
+                let message = format!("from 1 to {MAX_JOBS} threads are possible");
+                Err(Error::request(Field::Jobs, message))
+            }
+            jobs => Ok(jobs),
+        }
+    }
+}
+
+/// The fewest and the most cases of a chunk: chunks are files, and each of them is in memory as a whole.
+fn chunk_sizes(cases: u64, columns: usize) -> [u64; 2] {
+    let own = columns + TAKEN.len();
+    [
+        cases.div_ceil(MAX_CHUNKS).max(1),
+        (MAX_NUMBERS / own as u64).max(1),
+    ]
+}
+
+/// Tells of more rows than chunks can hold, and of chunks that are too many or too large.
+fn sizes(reading: &mut Reading<'_>, design: &Design, columns: usize) {
+    let study = reading.study;
+    let (cases, own) = (design.cases(), study.chunk.as_ref());
+    let [least, most] = chunk_sizes(cases, columns);
+    if least > most {
+        let message = format!("{cases} rows of {columns} columns are too many numbers");
+        let help = format!("at most {} cases are possible", most * MAX_CHUNKS);
+        reading.tell(Code::LimitExceeded, message, &study.count, &help);
+        return;
+    }
+    match own {
+        Some(own) if own.value < least => {
+            let chunks = cases.div_ceil(own.value);
+            let message =
+                format!("{chunks} chunks are too many files; at most {MAX_CHUNKS} are possible");
+            let help = format!("write `chunk = {least}` or more, or leave it out");
+            reading.tell(Code::LimitExceeded, message, own, &help);
+        }
+        Some(own) if own.value.min(cases) > most => {
+            let message = format!(
+                "a chunk of {} rows of {columns} columns is too large",
+                own.value
+            );
+            let help = format!("write `chunk = {most}` or less, or leave it out");
+            reading.tell(Code::LimitExceeded, message, own, &help);
+        }
+        _ => {}
+    }
+}
+
 /// Chunks of a study that does not say how large they are, and the fewest and the most cases of such a chunk.
 const CHUNKS: u64 = 64;
 const LEAST_PER_CHUNK: u64 = 16;
@@ -110,7 +166,7 @@ impl Ensemble {
     pub fn parse(file: &str, text: &str, folder: &Path) -> Result<Self, Error> {
         let study = Study::parse(file, text)?;
         let mut reading = Reading::new(&study);
-        let table = Table::read(&study, folder)?;
+        let table = Table::read(&mut reading, folder)?;
         let own = own(&study);
         let mut digest = Digest::default();
         let mut models = Vec::new();
@@ -128,8 +184,8 @@ impl Ensemble {
         let targets = factors::targets(&mut reading, &setup, &table);
         reading.check()?;
         let design = factors::design(&mut reading, &setup, &targets, &table)?;
-        reading.check()?;
         let Some((design, columns, choices)) = design else {
+            reading.check()?;
             return Err(Error::data(file, "there is no design"));
         };
         let info = first.model.info();
@@ -148,9 +204,23 @@ impl Ensemble {
             .rare
             .as_ref()
             .and_then(|rare| rare::task(&mut reading, rare, &design, columns, info, &first.kept));
+        sizes(&mut reading, &design, task.layout.columns.len());
         reading.check()?;
         drop(setup);
         let laws = chosen(&study, FEEDBACK);
+        if let Some(law) = laws
+            .first()
+            .filter(|_| models.len() * laws.len() > MAX_VARIANTS)
+        {
+            let message = format!(
+                "{} specs under {} laws are too many",
+                models.len(),
+                laws.len()
+            );
+            let help = format!("at most {MAX_VARIANTS} pairs are possible");
+            reading.tell(Code::LimitExceeded, message, law, &help);
+            reading.check()?;
+        }
         let mut variants = Vec::new();
         for extended in &models {
             let (setup, _) = variant::nominal(&mut reading, &extended.model)?;
@@ -175,9 +245,9 @@ impl Ensemble {
         }
         for law in study.motion.feedback.iter().chain(&laws) {
             let path = folder.join(&law.text);
-            digest.add(&std::fs::read(&path).map_err(Error::reading(&path))?);
+            digest.add(files::read(&path, appell_spec::limits::MAX_FILE as u64)?.as_bytes());
         }
-        digest.add(&table.bytes);
+        digest.add(table.hash.as_bytes());
         digest.add(meaning(&study, &design).as_bytes());
         let laws = laws.len().max(1);
         Ok(Self {
@@ -207,16 +277,30 @@ impl Ensemble {
         &self.task.layout.columns
     }
 
-    /// All chunks of cases.
-    pub fn chunks(&self, size: Option<u64>) -> Chunks {
+    /// All chunks of cases, of a size that is asked for.
+    pub fn chunks(&self, size: Option<u64>) -> Result<Chunks, Error> {
+        let [least, most] = chunk_sizes(self.design.cases(), self.columns().len());
+        match size {
+            Some(size) if size < least || size.min(self.design.cases()) > most => {
+                let message = format!("a chunk has {least} to {most} cases in this study");
+                Err(Error::request(Field::Chunk, message))
+            }
+            size => Ok(self.sized(size)),
+        }
+    }
+
+    /// All chunks of cases; of the size that the study says, or as fits their number.
+    fn sized(&self, size: Option<u64>) -> Chunks {
         let cases = self.design.cases();
+        let [least, most] = chunk_sizes(cases, self.columns().len());
         let usual = cases
             .div_ceil(CHUNKS)
             .clamp(LEAST_PER_CHUNK, MOST_PER_CHUNK);
+        let own = self.study.chunk.as_ref().map(|chunk| chunk.value);
         Chunks {
             study: self.hash.clone(),
             cases,
-            size: size.or(self.study.chunk).unwrap_or(usual).max(1),
+            size: size.or(own).unwrap_or(usual).max(least).min(most),
         }
     }
 
@@ -232,16 +316,30 @@ impl Ensemble {
         rows
     }
 
-    /// The chunks that a store lacks.
-    pub fn missing(&self, store: &dyn Store, running: Running) -> Result<Vec<Chunk>, Error> {
-        let chunks = self.chunks(running.chunk);
-        let there = chunks.there(store).map_err(Error::computation)?;
-        Ok(chunks.missing(&there, running.shard))
+    /// The chunks that a store lacks, or holds damaged.
+    pub fn missing(&self, store: &dyn Store, running: Running) -> Result<Missing, Error> {
+        let chunks = self.chunks(running.chunk)?;
+        let missing = chunks.unsound_or_missing(store, self.columns(), running.shard);
+        missing.map_err(Error::computation)
+    }
+
+    /// How many chunks, those of the rare event among them, a store has no object of, and how many there are.
+    pub fn left(&self, store: &dyn Store, chunk: Option<u64>) -> Result<[u64; 2], Error> {
+        let mut counts = [0; 2];
+        for chunks in [Some(self.chunks(chunk)?), self.replicates()]
+            .into_iter()
+            .flatten()
+        {
+            let there = chunks.there(store).map_err(Error::computation)?;
+            counts[0] += chunks.missing(&there, None).len() as u64;
+            counts[1] += chunks.count();
+        }
+        Ok(counts)
     }
 
     /// Chunks by their names, those of the rare event among them; an unknown name is an error.
     pub fn named(&self, names: &[String]) -> Result<[Vec<Chunk>; 2], Error> {
-        let (cases, replicates) = (self.chunks(None), self.replicates());
+        let (cases, replicates) = (self.sized(None), self.replicates());
         let [mut own, mut rare] = [Vec::new(), Vec::new()];
         for name in names {
             let replicate = replicates.as_ref().and_then(|all| all.named(name));
@@ -266,15 +364,19 @@ impl Ensemble {
         running: Running,
         watch: Watch<'_>,
     ) -> Result<Ended, Error> {
-        let chunks = self.chunks(running.chunk);
-        run::run(self, &chunks, missing, store, running.jobs, watch).map_err(Error::computation)
+        let chunks = self.chunks(running.chunk)?;
+        let jobs = running.threads()?;
+        run::run(self, &chunks, missing, store, jobs, watch).map_err(Error::computation)
     }
 
     /// The statistics of the rows that a store holds.
     pub fn summary(&self, store: &dyn Store) -> Result<Summary, Error> {
-        let there = self.chunks(None).there(store).map_err(Error::computation)?;
+        let chunks = self.sized(None);
+        let there = chunks.there(store).map_err(Error::computation)?;
         let columns = self.columns();
-        let scan = |see: &mut dyn FnMut(&Rows)| run::scan(store, &there, columns.len(), see);
+        let scan = |wanted: Wanted<'_>, see: See<'_>| {
+            run::scan(store, &chunks, &there, columns, wanted, see)
+        };
         let summary = Summary::new(columns, &self.design, self.study.seed, scan);
         let event = self.study.rare.as_ref().map(|rare| rare.event.text.clone());
         Ok(Summary {
@@ -303,9 +405,11 @@ impl Ensemble {
     }
 
     /// Shows the rows of a store in the order of the cases.
-    pub fn scan(&self, store: &dyn Store, see: impl FnMut(&Rows)) -> Result<(), Error> {
-        let there = self.chunks(None).there(store).map_err(Error::computation)?;
-        run::scan(store, &there, self.columns().len(), see).map_err(Error::computation)
+    pub fn scan(&self, store: &dyn Store, mut see: impl FnMut(&Rows)) -> Result<(), Error> {
+        let chunks = self.sized(None);
+        let there = chunks.there(store).map_err(Error::computation)?;
+        run::scan(store, &chunks, &there, self.columns(), &|_| true, &mut see)
+            .map_err(Error::computation)
     }
 }
 
@@ -334,23 +438,31 @@ fn source(reading: &mut Reading<'_>, name: &Text, folder: &Path) -> Result<Optio
     if crate::source::Shipped::find(&name.text).is_some() {
         return Source::shipped(&name.text).map(Some);
     }
-    let path = folder.join(&name.text);
-    if path.exists() {
-        return Source::read(&path).map(Some);
+    if folder.join(&name.text).exists() {
+        return match reading.file(folder, name) {
+            Some(path) => Source::read(&path).map(Some),
+            None => Ok(None),
+        };
     }
     let similar = appell_spec::did_you_mean(&name.text, crate::source::names(), || {
         "write the name of a shipped mechanism, or the path of a spec from the folder of the study"
             .to_owned()
     });
-    let message = format!("there is no shipped mechanism and no file `{}`", name.text);
+    let message = format!(
+        "there is no shipped mechanism and no file `{}`",
+        shown(&name.text)
+    );
     reading.tell(Code::UnknownReference, message, name, &similar);
     Ok(None)
 }
 
+/// Number of the way in which rows are computed and written; another one where either changes.
+const ROWS: u32 = 2;
+
 /// What of a study its rows depend on, as a text.
 fn meaning(study: &Study, design: &Design) -> String {
     let mut text = format!(
-        "{} {:?} {} {:?} {:?} {:?} {:?} {:?}",
+        "{} {ROWS} {:?} {} {:?} {:?} {:?} {:?} {:?}",
         env!("CARGO_PKG_VERSION"),
         study.sampling,
         study.seed,
@@ -362,7 +474,7 @@ fn meaning(study: &Study, design: &Design) -> String {
     );
     if design.depends_on_count() {
         // Writing to a string cannot fail.
-        let _ = write!(text, " {}", study.count);
+        let _ = write!(text, " {}", study.count.value);
     }
     text
 }

@@ -63,6 +63,8 @@ fields! {
     Bias "bias" "Columns with a constant bias.",
     Letters "parameters" "Numbers of a robot that become parameters.",
     Study "study" "Study of an ensemble.",
+    Chunk "chunk" "Cases of a chunk of an ensemble.",
+    Jobs "jobs" "Threads of an ensemble.",
 }
 
 impl fmt::Display for Field {

@@ -5,7 +5,7 @@
 //! it was. A rig without a diagnosis is a row with the reason.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -285,9 +285,10 @@ fn names(folders: &[PathBuf]) -> Vec<String> {
             };
             let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
             let parts = whole.components().rev();
-            parts
-                .map(|part| part.as_os_str().to_string_lossy().into_owned())
-                .collect()
+            // The root of a file system has no name, and what goes up is none.
+            let parts = parts.filter(|part| matches!(part, Component::Normal(_)));
+            let own = parts.map(|part| part.as_os_str().to_string_lossy().into_owned());
+            own.collect()
         })
         .collect();
     let name = |own: &Vec<String>, length: usize| {

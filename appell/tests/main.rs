@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+mod chunks;
 mod control;
 mod ensemble;
 mod errors;
@@ -9,5 +10,6 @@ mod model_laws;
 mod orientations;
 mod robots;
 mod spinning;
+mod studies;
 mod taylor;
 mod turning;

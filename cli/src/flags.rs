@@ -38,6 +38,8 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Bias => "--bias",
         Field::Letters => "--parameters",
         Field::Sources => "--sources-only",
+        Field::Chunk => "--chunk",
+        Field::Jobs => "--jobs",
         _ => return None,
     })
 }

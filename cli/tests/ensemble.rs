@@ -77,7 +77,7 @@ fn a_killed_run_goes_on_and_ends_as_if_nothing_had_happened() {
     let left = std::fs::read_dir(folder.path("killed")).expect("the folder");
     let left = left.filter(|entry| {
         let name = entry.as_ref().expect("an entry").file_name();
-        name.to_string_lossy().ends_with(".unfinished")
+        name.to_string_lossy().ends_with(".draft")
     });
     assert_eq!(left.count(), 0);
 }

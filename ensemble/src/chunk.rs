@@ -2,7 +2,9 @@
 
 use std::ops::Range;
 
+use crate::rows::Column;
 use crate::store::{Store, StoreError};
+use crate::table_file;
 
 /// End of the name of a chunk.
 const EXTENSION: &str = ".parquet";
@@ -36,6 +38,13 @@ pub struct Shard {
     pub of: u64,
 }
 
+impl Shard {
+    /// Whether a chunk belongs to a shard, if there are shards.
+    fn has(shard: Option<Self>, number: u64) -> bool {
+        shard.is_none_or(|shard| number % shard.of == shard.number - 1)
+    }
+}
+
 impl std::fmt::Display for Shard {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "{}/{}", self.number, self.of)
@@ -63,8 +72,8 @@ impl Chunks {
 
     /// A chunk by its number.
     pub fn chunk(&self, number: u64) -> Chunk {
-        let first = number * self.size;
-        self.of(first..(first + self.size).min(self.cases))
+        let first = number.saturating_mul(self.size);
+        self.of(first..first.saturating_add(self.size).min(self.cases))
     }
 
     /// The chunk of these cases.
@@ -88,25 +97,62 @@ impl Chunks {
         })
     }
 
-    /// Chunks of this study that a store holds, by their first case; of any size.
+    /// Chunks with cases of this study that a store holds, by their first case; of any size. Their bytes are not
+    /// looked at.
     pub fn there(&self, store: &dyn Store) -> Result<Vec<Chunk>, StoreError> {
         let names = store.names()?;
-        let mut chunks: Vec<Chunk> = names.iter().filter_map(|name| self.named(name)).collect();
+        let chunks = names.iter().filter_map(|name| self.named(name));
+        let mut chunks: Vec<Chunk> = chunks.filter(|c| c.cases.start < self.cases).collect();
         chunks.sort_by_key(|chunk| (chunk.cases.start, chunk.cases.end));
         Ok(chunks)
     }
 
     /// The chunks with a case that no chunk of the store holds, of one shard or of all.
     pub fn missing(&self, there: &[Chunk], shard: Option<Shard>) -> Vec<Chunk> {
-        let own = |number: &u64| shard.is_none_or(|s| number % s.of == s.number - 1);
         let covered = covered(there);
         let is_missing = |chunk: &Chunk| {
-            let holds = |r: &Range<u64>| r.start <= chunk.cases.start && chunk.cases.end <= r.end;
-            !covered.iter().any(holds)
+            let before = covered.partition_point(|r| r.start <= chunk.cases.start);
+            let holds = |r: &Range<u64>| chunk.cases.end <= r.end;
+            !before.checked_sub(1).is_some_and(|r| holds(&covered[r]))
         };
-        let all = (0..self.count()).filter(own).map(|n| self.chunk(n));
-        all.filter(is_missing).collect()
+        let own = (0..self.count()).filter(|number| Shard::has(shard, *number));
+        own.map(|n| self.chunk(n)).filter(is_missing).collect()
     }
+
+    /// The chunks with a case that no sound chunk of the store holds. Only what the shard needs is read.
+    pub fn unsound_or_missing(
+        &self,
+        store: &dyn Store,
+        columns: &[Column],
+        shard: Option<Shard>,
+    ) -> Result<Missing, StoreError> {
+        let mut there = self.there(store)?;
+        let needed = |chunk: &Chunk| {
+            let last = chunk.cases.end.min(self.cases).saturating_sub(1);
+            (chunk.cases.start / self.size..=last / self.size).any(|n| Shard::has(shard, n))
+        };
+        let mut damaged = Vec::new();
+        for chunk in there.iter().filter(|chunk| needed(chunk)) {
+            let bytes = store.read(&chunk.name)?;
+            if table_file::read(bytes, columns, self, chunk, &|_| false).is_err() {
+                damaged.push(chunk.name.clone());
+            }
+        }
+        there.retain(|chunk| !damaged.contains(&chunk.name));
+        Ok(Missing {
+            chunks: self.missing(&there, shard),
+            damaged,
+        })
+    }
+}
+
+/// What a store lacks.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct Missing {
+    /// The chunks to be run.
+    pub chunks: Vec<Chunk>,
+    /// Names of objects that are there but are not what was written.
+    pub damaged: Vec<String>,
 }
 
 /// Cases of chunks, sorted by their first case, as few ranges.

@@ -1,6 +1,7 @@
 //! Which values the factors have in each case. A case knows its values by its number alone.
 
 use crate::distribution::Distribution;
+use crate::limits::MAX_CASES;
 use crate::normal;
 use crate::permutation::Permutation;
 use crate::random::Stream;
@@ -94,9 +95,6 @@ pub enum DesignError {
     #[error("there is no case")]
     Empty,
 }
-
-/// The most cases: numbers up to here are exact as `f64`.
-const MOST_CASES: u64 = 1 << 50;
 
 /// The values of all cases.
 #[derive(Debug, Clone)]
@@ -332,9 +330,11 @@ fn count_cases(
         .saturating_mul(u128::from(count))
         .saturating_mul(roles);
     let most = match sampling {
-        Sampling::Random | Sampling::Latin => MOST_CASES,
-        Sampling::Sobol => sobol::MOST_POINTS,
-        Sampling::Sensitivity => sobol::MOST_POINTS.saturating_mul(drawn as u64 + 2),
+        Sampling::Random | Sampling::Latin => MAX_CASES,
+        Sampling::Sobol => sobol::MOST_POINTS.min(MAX_CASES),
+        Sampling::Sensitivity => sobol::MOST_POINTS
+            .saturating_mul(drawn as u64 + 2)
+            .min(MAX_CASES),
     };
     match u64::try_from(found) {
         Ok(0) => Err(DesignError::Empty),
@@ -368,20 +368,65 @@ fn mixing(
         matrix[a][b] = correlation;
         matrix[b][a] = correlation;
     }
+    factor(&matrix).ok_or(DesignError::Correlations)
+}
+
+/// What rounding leaves of a pivot that is zero.
+const NO_PIVOT: f64 = 1e-12;
+
+/// The lower Cholesky factor of a symmetric matrix with ones on its diagonal; nothing where it is not positive
+/// semidefinite. What others determine has the pivot zero, and nothing else depends on it beyond rounding.
+fn factor(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
+    let n = matrix.len();
     let mut lower = vec![vec![0.0; n]; n];
     for i in 0..n {
         for j in 0..=i {
             let known: f64 = (0..j).map(|k| lower[i][k] * lower[j][k]).sum();
             let rest = matrix[i][j] - known;
-            if i == j {
-                if rest < 1e-12 {
-                    return Err(DesignError::Correlations);
+            lower[i][j] = if i == j {
+                if rest < -NO_PIVOT {
+                    return None;
                 }
-                lower[i][i] = rest.sqrt();
+                if rest < NO_PIVOT { 0.0 } else { rest.sqrt() }
+            } else if lower[j][j] > 0.0 {
+                rest / lower[j][j]
+            } else if rest.abs() > NO_PIVOT.sqrt() {
+                return None;
             } else {
-                lower[i][j] = rest / lower[j][j];
+                0.0
+            };
+        }
+    }
+    Some(lower)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn symmetric([ab, ac, bc]: [f64; 3]) -> Vec<Vec<f64>> {
+        vec![vec![1.0, ab, ac], vec![ab, 1.0, bc], vec![ac, bc, 1.0]]
+    }
+
+    #[test]
+    fn correlations_that_no_distribution_has_are_refused_and_singular_ones_are_not() {
+        // det = 1 + 2 ab ac bc − ab² − ac² − bc² is negative, zero, zero, positive.
+        assert_eq!(factor(&symmetric([0.9, 0.9, -0.9])), None);
+        assert_eq!(factor(&symmetric([1.0, 0.5, 0.2])), None);
+        for singular in [
+            [0.6, 0.8, 0.0],
+            [1.0, 0.5, 0.5],
+            [1.0, 1.0, 1.0],
+            [0.1, 0.2, 0.3],
+        ] {
+            let matrix = symmetric(singular);
+            let lower = factor(&matrix).expect("a factor");
+            for (i, row) in matrix.iter().enumerate() {
+                for (j, wanted) in row.iter().enumerate() {
+                    let product: f64 = lower[i].iter().zip(&lower[j]).map(|(a, b)| a * b).sum();
+                    assert!((product - wanted).abs() < 1e-6, "{singular:?}");
+                }
             }
         }
     }
-    Ok(lower)
 }

@@ -20,11 +20,16 @@ impl Digest {
 
     /// The hash as a word.
     pub fn text(self) -> String {
-        let mut text = String::new();
-        for byte in &self.0.finalize()[..SHOWN] {
-            // Writing to a string cannot fail.
-            let _ = write!(text, "{byte:02x}");
-        }
-        text
+        hex(&self.0.finalize()[..SHOWN])
     }
+}
+
+/// Bytes as digits.
+pub(crate) fn hex(bytes: &[u8]) -> String {
+    let mut text = String::new();
+    for byte in bytes {
+        // Writing to a string cannot fail.
+        let _ = write!(text, "{byte:02x}");
+    }
+    text
 }

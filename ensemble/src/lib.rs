@@ -5,7 +5,8 @@
 //! - [`rows`], [`chunk`], [`store`]: what is kept of each case, in pieces that are written as a whole;
 //! - [`mod@run`]: the missing pieces, on several threads, through the narrow trait [`run::Engine`];
 //! - [`summary`], [`statistics`]: what the rows say;
-//! - [`splitting`]: probabilities of rare events.
+//! - [`splitting`]: probabilities of rare events;
+//! - [`limits`]: how large a study may be.
 //!
 //! A row depends on its case alone, and statistics see rows in the order of cases: no result depends on the number
 //! of threads, on the size of the chunks, or on who ran them.
@@ -15,6 +16,7 @@ pub mod design;
 pub mod digest;
 mod directions;
 pub mod distribution;
+pub mod limits;
 pub mod normal;
 #[cfg(feature = "object-store")]
 pub mod objects;

@@ -7,7 +7,7 @@ use object_store::{ObjectStore, ObjectStoreExt as _, parse_url_opts};
 use tokio::runtime::{Builder, Runtime};
 use url::Url;
 
-use crate::store::{Store, StoreError};
+use crate::store::{Store, StoreError, check};
 
 /// Objects below a prefix of a store, which writes each of them as a whole.
 #[derive(Debug)]
@@ -68,6 +68,7 @@ impl Store for Objects {
     }
 
     fn write(&self, name: &str, bytes: Vec<u8>) -> Result<(), StoreError> {
+        check(name)?;
         let place = self.place(name);
         let written = self.runtime.block_on(self.store.put(&place, bytes.into()));
         written.map(|_| ()).map_err(|cause| self.error(name, cause))

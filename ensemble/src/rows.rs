@@ -76,6 +76,20 @@ impl Rows {
         self.ends.is_empty()
     }
 
+    /// Drops the rows of other cases. Lists may be empty.
+    pub(crate) fn keep(&mut self, cases: std::ops::Range<u64>) {
+        let count = |cases: u64| usize::try_from(cases).unwrap_or(usize::MAX);
+        let before = count(cases.start.saturating_sub(self.first));
+        let left = count(cases.end.saturating_sub(self.first));
+        for list in self.values.iter_mut().chain([&mut self.ends]) {
+            list.truncate(left);
+            list.drain(..before.min(list.len()));
+        }
+        self.reasons.truncate(left);
+        self.reasons.drain(..before.min(self.reasons.len()));
+        self.first = self.first.max(cases.start);
+    }
+
     /// Appends the row of the next case.
     pub fn push(&mut self, values: &[f64], end: f64, reason: &str) {
         for (column, value) in self.values.iter_mut().zip(values) {

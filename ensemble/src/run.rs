@@ -116,36 +116,47 @@ pub fn run(
     Ok(all)
 }
 
-/// Shows the rows of all cases once, in the order of the cases; `there` are chunks of any size.
+/// Shows the rows of all cases once, in the order of the cases; `there` are chunks of any size, by their first case. A
+/// damaged chunk is an error where no others have its cases.
 pub fn scan(
     store: &dyn Store,
+    chunks: &Chunks,
     there: &[Chunk],
-    columns: usize,
-    mut see: impl FnMut(&Rows),
+    columns: &[Column],
+    wanted: &dyn Fn(usize) -> bool,
+    see: &mut dyn FnMut(&Rows),
 ) -> Result<(), StoreError> {
     let mut next = 0;
-    for chunk in there
-        .iter()
-        .filter(|chunk| chunk.cases.start < chunk.cases.end)
-    {
-        if chunk.cases.end <= next {
+    // Cases before this one are in a damaged chunk.
+    let mut lost: Option<(u64, StoreError)> = None;
+    for chunk in there {
+        if chunk.cases.end.min(chunks.cases) <= next {
             continue;
         }
-        let bytes = store.read(&chunk.name)?;
-        let mut rows = table_file::read(bytes, columns, chunk.cases.start)
-            .map_err(|cause| StoreError::new(&chunk.name, cause))?;
-        let known = usize::try_from(next.saturating_sub(chunk.cases.start)).unwrap_or(0);
-        if known > 0 {
-            // The same cases in another chunk: the same rows.
-            let lists = rows.values.iter_mut().chain([&mut rows.ends]);
-            for list in lists {
-                list.drain(..known.min(list.len()));
-            }
-            rows.reasons.drain(..known.min(rows.reasons.len()));
-            rows.first += known as u64;
+        if let Some((until, error)) = lost.take_if(|_| chunk.cases.start > next)
+            && next < until
+        {
+            return Err(error);
         }
-        next = chunk.cases.end;
-        see(&rows);
+        let bytes = store.read(&chunk.name)?;
+        match table_file::read(bytes, columns, chunks, chunk, wanted) {
+            Ok(mut rows) => {
+                // The same cases in another chunk have the same rows.
+                rows.keep(next..chunks.cases);
+                next = chunk.cases.end.min(chunks.cases);
+                see(&rows);
+            }
+            Err(cause) => {
+                let until = lost.as_ref().map_or(0, |(until, _)| *until);
+                let cause =
+                    format!("the chunk is damaged: {cause}; the same command computes it again");
+                let error = StoreError::new(&chunk.name, cause);
+                lost = Some((until.max(chunk.cases.end.min(chunks.cases)), error));
+            }
+        }
     }
-    Ok(())
+    match lost {
+        Some((until, error)) if next < until => Err(error),
+        _ => Ok(()),
+    }
 }

@@ -32,6 +32,21 @@ pub const REPLICATES: u64 = 10;
 /// The fewest particles of a replicate.
 pub const LEAST_PARTICLES: usize = 20;
 
+/// The columns of replicates.
+pub fn columns() -> Vec<Column> {
+    let column = |name: &str, about: &str| Column {
+        name: name.to_owned(),
+        about: about.to_owned(),
+        unit: String::new(),
+        scale: 1.0,
+        role: Role::Value,
+    };
+    vec![
+        column("probability", "estimate of a replicate"),
+        column("evaluations", "motions of a replicate"),
+    ]
+}
+
 /// Replicates as cases: a row has its estimate and what it cost.
 pub struct Splitting<'a> {
     landscape: &'a dyn Landscape,
@@ -43,21 +58,11 @@ pub struct Splitting<'a> {
 impl<'a> Splitting<'a> {
     /// With this many particles in each replicate.
     pub fn new(landscape: &'a dyn Landscape, particles: usize, seed: u64) -> Self {
-        let column = |name: &str, about: &str| Column {
-            name: name.to_owned(),
-            about: about.to_owned(),
-            unit: String::new(),
-            scale: 1.0,
-            role: Role::Value,
-        };
         Self {
             landscape,
             particles: particles.max(LEAST_PARTICLES),
             stream: Stream::new(seed, "(splitting)"),
-            columns: vec![
-                column("probability", "estimate of a replicate"),
-                column("evaluations", "motions of a replicate"),
-            ],
+            columns: columns(),
         }
     }
 

@@ -27,10 +27,11 @@ use appell_recordings::fields::Fields;
 use appell_spec::{Code, Report};
 
 use crate::design::Sampling;
+use crate::limits::MAX_CASES;
 
 pub use keep::{Keep, Kept, Rare};
 pub use motion::{Method, Motion};
-pub use value::{Entry, Text};
+pub use value::{Correlation, Entry, Placed, Text};
 pub use vary::{FEEDBACK, MODEL, Noise, Varied, Vary};
 
 /// A study as it is written.
@@ -45,17 +46,17 @@ pub struct Study {
     /// Name or path of a spec; none where `[vary]` chooses between several.
     pub model: Option<Text>,
     /// Points, or points for each node of the grids.
-    pub count: u64,
+    pub count: Placed<u64>,
     /// How points are chosen.
-    pub sampling: Sampling,
+    pub sampling: Placed<Sampling>,
     /// Seed of all random numbers.
     pub seed: u64,
     /// Cases of a chunk.
-    pub chunk: Option<u64>,
+    pub chunk: Option<Placed<u64>>,
     /// A file whose columns are factors.
     pub table: Option<Text>,
     /// Pairs of factors with the correlation of their normal scores.
-    pub correlations: Vec<(Text, Text, f64)>,
+    pub correlations: Vec<Correlation>,
     /// The motion of each case.
     pub motion: Motion,
     /// What varies.
@@ -93,19 +94,21 @@ impl Study {
             fields,
             document: text,
         };
+        read.characters();
         if table.get("study").is_none() {
             let help = "begin with `[study]` and `model = \"…\"`, the name of a shipped mechanism or the path of a spec";
             read.tell(Code::MissingSection, "there is no `[study]`", 0..0, help);
         }
         let empty = toml::de::DeTable::new();
         let study = study.unwrap_or(&empty);
+        let place = table.get("study").map_or(0..0, toml::Spanned::span);
         read.fields.only(study, &STUDY);
         let model = read.text(study, "model");
-        let count = read.count(study, "cases");
+        let count = read.count(study, "cases", MAX_CASES);
         let sampling = read.sampling(study);
-        let seed = read.whole(study, "seed").unwrap_or(1);
-        let chunk = read.count(study, "chunk");
-        let title = read.text(study, "title");
+        let seed = read.whole(study, "seed").map_or(1, |seed| seed.value);
+        let chunk = read.count(study, "chunk", u64::MAX);
+        let title = read.sentence(study, "title");
         let points = read.text(study, "table");
         let correlations = read.correlations(study);
         let vary = vary::read(&mut read, table);
@@ -121,9 +124,21 @@ impl Study {
         {
             let help =
                 "write `model = \"…\"`, the name of a shipped mechanism or the path of a spec";
-            read.tell(Code::MissingKey, "the key `model` is missing", 0..0, help);
+            read.tell(
+                Code::MissingKey,
+                "the key `model` is missing",
+                place.clone(),
+                help,
+            );
         }
-        let has_nodes = points.is_some() || vary.iter().any(|vary| vary.varied.is_grid());
+        let grids = |entry: &toml::Spanned<toml::de::DeValue<'_>>| {
+            let entry = entry.get_ref().as_table();
+            entry.is_some_and(|entry| entry.contains_key("grid") || entry.contains_key("range"))
+        };
+        // Also those in which something else is wrong.
+        let entries = table.get("vary").and_then(|vary| vary.get_ref().as_table());
+        let has_nodes = study.contains_key("table")
+            || entries.is_some_and(|entries| entries.iter().any(|(_, entry)| grids(entry)));
         if let Some(model) = model.as_ref().filter(|_| chosen) {
             let message = "`model` stands here and in `[vary]`";
             read.tell(
@@ -135,7 +150,8 @@ impl Study {
         }
         if count.is_none() && !has_nodes && study.get("cases").is_none() {
             let help = "write how many, such as `cases = 1000`, under `[study]`";
-            read.tell(Code::MissingKey, "the key `cases` is missing", 0..0, help);
+            let message = "the key `cases` is missing";
+            read.tell(Code::MissingKey, message, place.clone(), help);
         }
         if vary.is_empty() && noise.is_empty() && points.is_none() {
             let help = "write what varies under `[vary]`, such as `m = { normal = [5, 0.2] }`";
@@ -147,10 +163,16 @@ impl Study {
         Ok(Self {
             file: file.to_owned(),
             text: text.to_owned(),
-            title: title.map_or_else(String::new, |title| title.text),
+            title,
             model,
-            count: count.unwrap_or(1),
-            sampling: sampling.unwrap_or(Sampling::Random),
+            count: count.unwrap_or(Placed {
+                value: 1,
+                at: place.clone(),
+            }),
+            sampling: sampling.unwrap_or(Placed {
+                value: Sampling::Random,
+                at: place,
+            }),
             seed,
             chunk,
             table: points,

@@ -1,6 +1,6 @@
 //! What the rows of a study say: statistics with intervals, in memory that does not grow with the number of cases.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::design::{Design, Sampling};
 use crate::rows::{Column, Role, Rows};
@@ -16,6 +16,10 @@ pub const PARTS: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 const BARS: usize = 40;
 /// Cases that figures show as points.
 const POINTS: usize = 2000;
+
+/// Different reasons of early ends that are counted one by one, and the word for the others.
+const REASONS: usize = 100;
+const OTHERS: &str = "another reason";
 
 /// The statistics of a study.
 #[derive(Debug, Clone)]
@@ -140,7 +144,9 @@ impl Counts {
     fn see(&mut self, rows: &Rows, columns: &[Column]) {
         self.done += rows.len() as u64;
         for reason in rows.reasons.iter().filter(|reason| !reason.is_empty()) {
-            *self.early.entry(reason.clone()).or_default() += 1;
+            let is_known = self.early.len() < REASONS || self.early.contains_key(reason);
+            let reason = if is_known { reason.as_str() } else { OTHERS };
+            *self.early.entry(reason.to_owned()).or_default() += 1;
         }
         for seen in &mut self.seen {
             for &value in &rows.values[seen.column] {
@@ -162,41 +168,56 @@ impl Counts {
         }
     }
 
-    /// Finds the quantiles of all columns.
+    /// Finds the quantiles of all columns, of some columns at a time: what counts their digits takes room.
     fn seek<E>(
         &mut self,
         columns: &[Column],
-        scan: &mut impl FnMut(&mut dyn FnMut(&Rows)) -> Result<(), E>,
+        scan: &mut impl FnMut(Wanted<'_>, See<'_>) -> Result<(), E>,
     ) -> Result<BTreeMap<usize, Vec<Quantile>>, E> {
-        for seen in &mut self.seen {
-            let count = seen.moments.count;
-            seen.ranks = PARTS.map(|part| order::ranks(part, count)).to_vec();
-            if is_course(&columns[seen.column]) {
-                // Bands have no intervals.
-                for ranks in &mut seen.ranks {
-                    ranks[2..].fill(None);
-                }
-            }
-            let ranks: Vec<u64> = seen.ranks.iter().flatten().copied().flatten().collect();
-            seen.selection = Selection::new(&ranks);
-        }
-        for _ in 0..order::PASSES {
-            scan(&mut |rows| {
-                for seen in &mut self.seen {
-                    let values = rows.values[seen.column].iter();
-                    for &value in values.filter(|value| value.is_finite()) {
-                        seen.selection.see(value);
+        let mut found = BTreeMap::new();
+        for some in self.seen.chunks_mut(TOGETHER) {
+            for seen in &mut *some {
+                let count = seen.moments.count;
+                seen.ranks = PARTS.map(|part| order::ranks(part, count)).to_vec();
+                if is_course(&columns[seen.column]) {
+                    // Bands have no intervals.
+                    for ranks in &mut seen.ranks {
+                        ranks[2..].fill(None);
                     }
                 }
-            })?;
-            for seen in &mut self.seen {
-                seen.selection.advance();
+                let ranks: Vec<u64> = seen.ranks.iter().flatten().copied().flatten().collect();
+                seen.selection = Selection::new(&ranks);
+            }
+            let own: BTreeSet<usize> = some.iter().map(|seen| seen.column).collect();
+            for _ in 0..order::PASSES {
+                scan(&|column| own.contains(&column), &mut |rows| {
+                    for seen in &mut *some {
+                        let values = rows.values[seen.column].iter();
+                        for &value in values.filter(|value| value.is_finite()) {
+                            seen.selection.see(value);
+                        }
+                    }
+                })?;
+                for seen in &mut *some {
+                    seen.selection.advance();
+                }
+            }
+            for seen in some {
+                found.insert(seen.column, seen.quantiles());
+                seen.selection = Selection::new(&[]);
             }
         }
-        let found = self.seen.iter().map(|seen| (seen.column, seen.quantiles()));
-        Ok(found.collect())
+        Ok(found)
     }
 }
+
+/// Columns whose quantiles are sought at a time: some ten kilobytes for each digit of each rank.
+const TOGETHER: usize = 256;
+
+/// Which columns a look at the rows asks for; the others may be empty.
+pub type Wanted<'w> = &'w dyn Fn(usize) -> bool;
+/// Who looks at rows.
+pub type See<'s> = &'s mut dyn FnMut(&Rows);
 
 fn is_course(column: &Column) -> bool {
     matches!(column.role, Role::Course { .. })
@@ -208,10 +229,10 @@ impl Summary {
         columns: &[Column],
         design: &Design,
         seed: u64,
-        mut scan: impl FnMut(&mut dyn FnMut(&Rows)) -> Result<(), E>,
+        mut scan: impl FnMut(Wanted<'_>, See<'_>) -> Result<(), E>,
     ) -> Result<Self, E> {
         let mut counts = Counts::new(columns);
-        scan(&mut |rows| counts.see(rows, columns))?;
+        scan(&|_| true, &mut |rows| counts.see(rows, columns))?;
         let quantiles = counts.seek(columns, &mut scan)?;
         let seen = counts.seen.iter();
         let mut numbers: Vec<Number> = seen
@@ -224,7 +245,7 @@ impl Summary {
             })
             .collect();
         let mut effects = Collected::new(columns, design, &numbers, &quantiles);
-        scan(&mut |rows| {
+        scan(&|column| !is_course(&columns[column]), &mut |rows| {
             for number in &mut numbers {
                 let Moments { min, max, .. } = number.moments;
                 let values = rows.values[number.column].iter();
@@ -367,7 +388,7 @@ impl Collected {
         let sums = match design.sampling() {
             Sampling::Sensitivity => of
                 .iter()
-                .map(|column| Sums::new(drawn, points, shift(column)))
+                .map(|column| Sums::new(drawn, points, shift(column), of.len()))
                 .collect(),
             _ => Vec::new(),
         };

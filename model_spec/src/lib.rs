@@ -18,7 +18,7 @@ pub mod joints;
 pub mod language;
 pub mod limits;
 pub mod mechanism;
-mod name;
+pub mod name;
 mod number;
 pub mod occurrences;
 pub mod outline;
@@ -32,6 +32,7 @@ pub mod units;
 
 pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
+pub use parse::is_forbidden;
 pub use resolve::{Scope, Snippet, formula, is_reserved};
 pub use starter::{NameError, starter};
 pub use suggest::{closest, did_you_mean, shown};

@@ -3,10 +3,10 @@
 use crate::limits::MAX_NAME;
 
 /// The rule in words.
-pub(crate) const RULE: &str = "a letter, then letters, digits and `_`, at most 64 in all";
+pub const RULE: &str = "a letter, then letters, digits and `_`, at most 64 in all";
 
 /// Whether a name may be defined.
-pub(crate) fn is_valid(name: &str) -> bool {
+pub fn is_valid(name: &str) -> bool {
     name.starts_with(|c: char| c.is_ascii_alphabetic())
         && name.bytes().all(|b| b.is_ascii_alphanumeric() || b == b'_')
         && name.len() <= MAX_NAME

@@ -16,10 +16,11 @@ use crate::language::{Presence, SECTIONS, Section};
 use crate::limits::MAX_FILE;
 use crate::suggest::{self, shown};
 
-use reader::{Reader, in_text_order, is_forbidden, phrase};
+use reader::{Reader, in_text_order, phrase};
 
 pub use expression::unit_diagnostic;
 pub(crate) use expression::zero;
+pub use reader::is_forbidden;
 
 /// Reads a spec; what could not be read is left out of the tree and reported in the diagnostics.
 pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {

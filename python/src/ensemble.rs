@@ -69,14 +69,14 @@ impl Study {
 
     /// Names of all chunks.
     #[pyo3(signature = (chunk = None))]
-    fn chunks(&self, chunk: Option<u64>) -> Vec<String> {
-        let all = self.ensemble.chunks(chunk);
+    fn chunks(&self, py: Python<'_>, chunk: Option<u64>) -> PyResult<Vec<String>> {
+        let all = self.ensemble.chunks(chunk).raise(py)?;
         let replicates = self.ensemble.replicates();
         let chunks = (0..all.count()).map(|number| all.chunk(number));
         let rare = replicates
             .iter()
             .flat_map(|all| (0..all.count()).map(|n| all.chunk(n)));
-        names(chunks.chain(rare).collect()).collect()
+        Ok(names(chunks.chain(rare).collect()).collect())
     }
 
     /// Names of the chunks that are not there.
@@ -91,7 +91,9 @@ impl Study {
         let store = self.store.as_ref();
         let cases = self.ensemble.missing(store, running).raise(py)?;
         let replicates = self.ensemble.missing_replicates(store, running).raise(py)?;
-        Ok(names(cases).chain(names(replicates)).collect())
+        Ok(names(cases.chunks)
+            .chain(names(replicates.chunks))
+            .collect())
     }
 
     /// Runs chunks by their names, or those that are missing.
@@ -112,8 +114,8 @@ impl Study {
             let [cases, replicates] = match chunks {
                 Some(names) => ensemble.named(&names)?,
                 None => [
-                    ensemble.missing(store, running)?,
-                    ensemble.missing_replicates(store, running)?,
+                    ensemble.missing(store, running)?.chunks,
+                    ensemble.missing_replicates(store, running)?.chunks,
                 ],
             };
             let watch = Watch {

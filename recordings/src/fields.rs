@@ -1,11 +1,22 @@
 //! Tables of a TOML file, read with places. Mistakes are reported and skipped, so that all of them are
 //! reported at once.
 
+use appell_spec::diagnostic::MAX_SHOWN;
 use appell_spec::expr::Span;
 use appell_spec::units::{self, Unit};
 use appell_spec::{Code, Diagnostic, Report, Severity, did_you_mean, shown};
 use toml::Spanned;
-use toml::de::{DeTable, DeValue};
+use toml::de::{DeInteger, DeTable, DeValue};
+
+/// An integer of any base as a number.
+fn whole(integer: &DeInteger<'_>) -> Option<f64> {
+    match integer.radix() {
+        10 => integer.as_str().parse().ok(),
+        base => i64::from_str_radix(integer.as_str(), base)
+            .ok()
+            .map(|whole| whole as f64),
+    }
+}
 
 /// A value with its place.
 pub type Value<'t> = Spanned<DeValue<'t>>;
@@ -33,8 +44,11 @@ impl<'t> Fields<'t> {
         (fields, table)
     }
 
-    /// Adds a finding.
+    /// Adds a finding; more than a report shows are not kept.
     pub fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
+        if self.findings.len() > MAX_SHOWN && self.is_wrong() {
+            return;
+        }
         let diagnostic = Diagnostic::error(code, message).at(at, "");
         let help = (!help.is_empty()).then(|| help.to_owned());
         self.findings.push(diagnostic.maybe_help(help));
@@ -111,7 +125,7 @@ impl<'t> Fields<'t> {
     pub fn number(&mut self, value: &Value<'_>) -> Option<f64> {
         let number = match value.get_ref() {
             DeValue::Float(float) => float.as_str().parse::<f64>().ok(),
-            DeValue::Integer(integer) => integer.as_str().parse::<f64>().ok(),
+            DeValue::Integer(integer) => whole(integer),
             _ => {
                 self.wrong_type(value, "a number");
                 return None;

@@ -27,8 +27,11 @@ use super::variant::Variant;
 use super::{Ensemble, Task};
 use crate::inputs::closed_loop::{ClosedLoop, Equations};
 
-/// Cases that are set up together, from which blocks of the same spec and law are made.
+/// Cases that are set up together, from which blocks of the same spec and law are made: fewer where each of them has a
+/// long list of times at which noise switches, but a block.
 const TOGETHER: u64 = 64;
+/// Times of all of them.
+const TIMES: u64 = 1 << 20;
 
 impl Engine for Ensemble {
     fn columns(&self) -> &[Column] {
@@ -38,13 +41,20 @@ impl Engine for Ensemble {
     fn run(&self, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows) {
         let mut solvers = Solvers::default();
         let mut next = cases.start;
+        let times = self.noise_times();
+        let together = (TIMES / times.max(1)).clamp(LANES as u64, TOGETHER);
         while next < cases.end {
             if !(watch.go_on)() {
                 return;
             }
-            let some = next..cases.end.min(next + TOGETHER);
+            let some = next..cases.end.min(next + together);
             let draws: Vec<Draws<'_>> = some.clone().map(Draws::Case).collect();
-            for mut row in self.motions(&self.task, &draws, &mut solvers) {
+            let motions = self.motions(&self.task, &draws, &mut solvers, watch.go_on);
+            if !(watch.go_on)() {
+                // Motions may have been broken off.
+                return;
+            }
+            for mut row in motions {
                 if !row.reason.is_empty() {
                     self.forget(&mut row.values);
                 }
@@ -95,11 +105,17 @@ struct Ride<'r> {
 impl Ensemble {
     /// Runs motions with work arrays of their own.
     pub(super) fn rows_of(&self, task: &Task, draws: &[Draws<'_>]) -> Vec<Row> {
-        self.motions(task, draws, &mut Solvers::default())
+        self.motions(task, draws, &mut Solvers::default(), &|| true)
     }
 
     /// Runs motions; returns a row for each.
-    fn motions(&self, task: &Task, draws: &[Draws<'_>], solvers: &mut Solvers) -> Vec<Row> {
+    fn motions(
+        &self,
+        task: &Task,
+        draws: &[Draws<'_>],
+        solvers: &mut Solvers,
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) -> Vec<Row> {
         let empty = || Row {
             values: vec![f64::NAN; task.layout.columns.len()],
             end: 0.0,
@@ -117,7 +133,7 @@ impl Ensemble {
         }
         for (variant, mut rides) in self.variants.iter().zip(rides) {
             if !rides.is_empty() {
-                self.ride(task, variant, &mut rides, solvers);
+                self.ride(task, variant, &mut rides, solvers, go_on);
             }
         }
         rows
@@ -169,7 +185,14 @@ impl Ensemble {
     }
 
     /// Runs motions under one spec and law.
-    fn ride(&self, task: &Task, variant: &Variant, rides: &mut [Ride<'_>], solvers: &mut Solvers) {
+    fn ride(
+        &self,
+        task: &Task,
+        variant: &Variant,
+        rides: &mut [Ride<'_>],
+        solvers: &mut Solvers,
+        go_on: &(dyn Fn() -> bool + Sync),
+    ) {
         let sources: Vec<Noisy<'_>> = rides
             .iter()
             .map(|ride| self.source(variant, ride))
@@ -228,7 +251,7 @@ impl Ensemble {
                 let row = values[place].take()?;
                 Some(Viewer {
                     events: awaited[place].events(task, gauge),
-                    observer: Keeper::new(gauge, &task.keep, &task.layout, row, from),
+                    observer: Keeper::new(gauge, &task.keep, &task.layout, row, from, go_on),
                 })
             });
         let viewers = viewers.collect();
@@ -345,6 +368,16 @@ impl Ensemble {
         })
     }
 
+    /// The most values of noise in a motion.
+    pub(super) fn noise_times(&self) -> u64 {
+        let until = self.study.motion.t_end;
+        let counts = self.variants.iter().map(|variant| {
+            let counts = variant.noises.iter().map(|noise| noise.count(until) as u64);
+            counts.sum()
+        });
+        counts.max().unwrap_or(0)
+    }
+
     /// Number of states.
     fn states(&self) -> usize {
         self.variants[0].model.info().state_len()
@@ -426,6 +459,7 @@ impl Awaited {
             let g = move |t: f64, x: &[f64]| gauge.borrow_mut().value(index, t, x);
             Event {
                 terminal: task.keep[index].kept == Kept::When { stop: true },
+                longest: task.layout.interval,
                 ..Event::new(Direction::Rising, g)
             }
         };

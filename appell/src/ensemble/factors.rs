@@ -3,17 +3,18 @@
 use std::path::Path;
 
 use appell_ensemble::design::{Design, DesignError, Factor, Sampling, Variation};
+use appell_ensemble::digest::Digest;
 use appell_ensemble::distribution::Distribution;
+use appell_ensemble::limits::{MAX_ENTRIES, MAX_TABLE};
 use appell_ensemble::rows::{Column, Role};
-use appell_ensemble::study::{FEEDBACK, MODEL, Study, Text, Varied, Vary};
-use appell_spec::Code;
-use appell_spec::did_you_mean;
+use appell_ensemble::study::{Correlation, FEEDBACK, MODEL, Text, Varied, Vary};
 use appell_spec::mechanism::ParameterId;
 use appell_spec::units::Unit;
+use appell_spec::{Code, did_you_mean, shown};
 
 use super::reading::Reading;
+use crate::Error;
 use crate::setup::Setup;
-use crate::{Error, Field, files};
 
 /// What a factor sets.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -72,7 +73,7 @@ fn unknown(reading: &mut Reading<'_>, setup: &Setup<'_>, name: &str, at: &Text) 
     let help = did_you_mean(name, quantities.map(|q| q.name.as_ref()), || {
         "a quantity of the study's own needs its `unit`".to_owned()
     });
-    let message = format!("there is no parameter or state `{name}`");
+    let message = format!("there is no parameter or state `{}`", shown(name));
     reading.tell(Code::UnknownName, message, at, &help);
 }
 
@@ -98,29 +99,51 @@ pub(super) struct Table {
     pub(super) names: Vec<String>,
     /// In the units of the spec.
     pub(super) columns: Vec<Vec<f64>>,
-    /// Its bytes, of which results are made.
-    pub(super) bytes: Vec<u8>,
+    /// Hash of its bytes, of which results are made.
+    pub(super) hash: String,
 }
 
 impl Table {
-    /// The table of a study, which may have none.
-    pub(super) fn read(study: &Study, folder: &Path) -> Result<Self, Error> {
+    /// The table of a study, which may have none; nothing where it is wrong, which is told.
+    pub(super) fn read(reading: &mut Reading<'_>, folder: &Path) -> Result<Self, Error> {
+        let study = reading.study;
         let Some(name) = &study.table else {
             return Ok(Self::default());
         };
-        let path = folder.join(&name.text);
-        let bytes = std::fs::read(&path).map_err(Error::reading(&path))?;
-        if bytes.len() as u64 > files::MAX_DATA {
-            return Err(Error::data(path.display(), "the table is too large"));
-        }
-        let (names, columns) = appell_recordings::columns(&path)?;
+        let Some(path) = reading.file(folder, name) else {
+            return Ok(Self::default());
+        };
+        let bytes = appell_files::read(&path, MAX_TABLE).map_err(Error::from);
+        let columns = appell_recordings::columns(&path).map_err(Error::from);
+        let bytes = reading.at(name, bytes)?;
+        let Some(((names, columns), bytes)) = reading.at(name, columns)?.zip(bytes) else {
+            return Ok(Self::default());
+        };
         if columns.iter().any(Vec::is_empty) || names.is_empty() {
-            return Err(Error::data(path.display(), "the table has no rows"));
+            reading.tell(Code::WrongType, "the table has no rows", name, "");
+            return Ok(Self::default());
         }
+        if names.len() > MAX_ENTRIES {
+            let message = format!("the table has more than {MAX_ENTRIES} columns");
+            reading.tell(Code::LimitExceeded, message, name, "");
+            return Ok(Self::default());
+        }
+        for (column, values) in names.iter().zip(&columns) {
+            if let Some(row) = values.iter().position(|value| !value.is_finite()) {
+                let message = format!(
+                    "the table has no finite number in row {} of column `{}`",
+                    row + 1,
+                    shown(column)
+                );
+                reading.tell(Code::NotFinite, message, name, "");
+            }
+        }
+        let mut digest = Digest::default();
+        digest.add(&bytes);
         Ok(Self {
             names,
             columns,
-            bytes,
+            hash: digest.text(),
         })
     }
 }
@@ -163,7 +186,7 @@ pub(super) fn design(
     }
     twice(reading, &factors);
     let mut correlations = Vec::new();
-    for (a, b, number) in &study.correlations {
+    for Correlation { pair, value } in &study.correlations {
         let mut place = |name: &Text| {
             let place = factors.iter().position(|f| f.name == name.text);
             if place.is_none() {
@@ -171,13 +194,13 @@ pub(super) fn design(
                     did_you_mean(&name.text, factors.iter().map(|f| f.name.as_str()), || {
                         "name two entries of `[vary]`".to_owned()
                     });
-                let message = format!("`{}` does not vary", name.text);
+                let message = format!("`{}` does not vary", shown(&name.text));
                 reading.tell(Code::UnknownName, message, name, &help);
             }
             place
         };
-        if let (Some(a), Some(b)) = (place(a), place(b)) {
-            correlations.push((a, b, *number));
+        if let [Some(a), Some(b)] = pair.each_ref().map(&mut place) {
+            correlations.push((a, b, value.value));
         }
     }
     if !reading.findings.is_empty() {
@@ -187,20 +210,53 @@ pub(super) fn design(
     let sampling = if factors.is_empty() {
         Sampling::Random
     } else {
-        study.sampling
+        study.sampling.value
     };
-    let design = Design::new(factors, sampling, study.count, study.seed, &correlations);
-    let design = design.map_err(|error: DesignError| {
-        Error::request(Field::Study, format!("{}: {error}", study.file))
-    })?;
-    Ok(Some((design, columns, choices)))
+    let design = Design::new(
+        factors,
+        sampling,
+        study.count.value,
+        study.seed,
+        &correlations,
+    );
+    let error = match design {
+        Ok(design) => return Ok(Some((design, columns, choices))),
+        Err(error) => error,
+    };
+    let message = error.to_string();
+    let correlation = study
+        .correlations
+        .iter()
+        .map(|correlation| &correlation.value);
+    match (&error, correlation.last()) {
+        (DesignError::Correlations, Some(last)) => {
+            let help = "the matrix of all correlations must be positive semidefinite";
+            reading.tell(Code::ValueOutsideLimits, message, last, help);
+        }
+        (DesignError::NotDrawn { name }, Some(last)) => {
+            let pairs = study.correlations.iter().flat_map(|c| &c.pair);
+            match pairs.clone().find(|own| own.text == *name) {
+                Some(own) => reading.tell(Code::ConflictingKeys, message, own, ""),
+                None => reading.tell(Code::ConflictingKeys, message, last, ""),
+            }
+        }
+        (DesignError::NotIndependent { .. } | DesignError::Dimensions { .. }, _) => {
+            let help = "choose `sampling = \"random\"` or `\"latin\"`";
+            reading.tell(Code::ConflictingKeys, message, &study.sampling, help);
+        }
+        _ => {
+            let help = "ask for fewer cases, or take nodes off the grids";
+            reading.tell(Code::LimitExceeded, message, &study.count, help);
+        }
+    }
+    Ok(None)
 }
 
 fn twice(reading: &mut Reading<'_>, factors: &[Factor]) {
     for (i, factor) in factors.iter().enumerate() {
         let is_same = |other: &Factor| other.name == factor.name;
         if let (true, Some(at)) = (factors[..i].iter().any(is_same), &reading.study.table) {
-            let message = format!("`{}` stands in `[vary]` and in the table", factor.name);
+            let message = format!("`{}` stands twice in `[vary]` and the table", factor.name);
             reading.tell(Code::DuplicateName, message, at, "remove one of them");
         }
     }
@@ -270,7 +326,8 @@ fn variation(
                 Target::State(index) => setup.initial[index],
                 Target::Model | Target::Feedback => 0.0,
             };
-            let part = reading.constant(setup, part, &one)?;
+            let (text, part) = (part, reading.constant(setup, part, &one)?);
+            not_negative(reading, text, part)?;
             Distribution::Normal([nominal, (nominal * part).abs()])
         }
         Varied::Normal(texts) => {
@@ -286,6 +343,11 @@ fn variation(
         Varied::Lognormal(texts) => {
             let values = several(reading, texts, &[&unit, &one])?;
             not_negative(reading, &texts[1], values[1])?;
+            if values[0] <= 0.0 {
+                let message = "the median of a lognormal distribution is positive";
+                reading.tell(Code::ValueOutsideLimits, message, &texts[0], "");
+                return None;
+            }
             Distribution::Lognormal([values[0], values[1]])
         }
         Varied::Triangular(texts) => {

@@ -1,10 +1,13 @@
 //! Where the numbers of a motion go in its row.
 
+use std::collections::BTreeSet;
+
 use appell_ensemble::TAKEN;
+use appell_ensemble::limits::MAX_COLUMNS;
 use appell_ensemble::rows::{Column, Role};
-use appell_ensemble::study::{Keep, Kept};
+use appell_ensemble::study::{Keep, Kept, Text};
 use appell_runtime::model::{ModelInfo, Quantity};
-use appell_spec::{Code, units};
+use appell_spec::{Code, shown, units};
 
 use super::reading::Reading;
 use super::spec::Quantity as Kind;
@@ -26,6 +29,8 @@ pub(super) struct Layout {
     pub(super) first: Vec<usize>,
     /// By their times.
     pub(super) moments: Vec<Moment>,
+    /// Interval of courses in s: what lasts as long is seen by all that is kept.
+    pub(super) interval: f64,
 }
 
 /// Times of a course without an interval.
@@ -41,11 +46,13 @@ pub(super) fn layout(
 ) -> Layout {
     let study = reading.study;
     let t_end = study.motion.t_end;
-    let interval = study.motion.interval.unwrap_or(t_end / TIMES);
+    let given = study.motion.interval.as_ref();
+    let interval = given.map_or(t_end / TIMES, |dt| dt.value);
     let mut layout = Layout {
         columns: factors,
         first: Vec::new(),
         moments: Vec::new(),
+        interval,
     };
     // Courses come last: there are many of their columns.
     let mut courses = Vec::new();
@@ -106,6 +113,24 @@ pub(super) fn layout(
             }
         }
     }
+    let each = (t_end / interval).floor() + 1.0;
+    if each * courses.len() as f64 > MAX_COLUMNS as f64 {
+        let message = format!(
+            "{} courses of {each} times are too many columns",
+            courses.len()
+        );
+        let help = format!(
+            "at most {MAX_COLUMNS} are possible: write a longer `dt_s`, or keep fewer courses"
+        );
+        match (given, courses.first()) {
+            (Some(interval), _) => reading.tell(Code::LimitExceeded, message, interval, &help),
+            (None, Some((first, _))) => {
+                reading.tell(Code::LimitExceeded, message, &keep[*first].name, &help);
+            }
+            (None, None) => {}
+        }
+        courses.clear();
+    }
     for (index, value) in courses {
         layout.first[index] = layout.columns.len();
         for t in times(t_end, interval) {
@@ -148,7 +173,7 @@ fn unit(reading: &mut Reading<'_>, keep: &Keep, quantity: &Quantity) -> (String,
         let found = units::quantity_name(&dimension);
         let message = format!(
             "`{}` is {found}, not {}",
-            keep.of.text,
+            shown(&keep.of.text),
             units::quantity_name(&unit.dimension)
         );
         let help = format!("its unit is `{}`", own.0);
@@ -185,19 +210,20 @@ fn sentence(keep: &Keep) -> String {
 
 fn unique(reading: &mut Reading<'_>, columns: &[Column]) {
     let study = reading.study;
-    for (i, column) in columns.iter().enumerate() {
-        let taken = TAKEN.contains(&column.name.as_str());
-        if taken || columns[..i].iter().any(|other| other.name == column.name) {
-            let at = study.keep.iter().map(|keep| &keep.name);
-            let at = at.chain(study.vary.iter().map(|vary| &vary.name));
-            let own = |name: &&appell_ensemble::study::Text| {
-                let rest = column.name.strip_prefix(name.text.as_str());
-                rest.is_some_and(|rest| rest.is_empty() || rest == "_t_s" || rest.starts_with('@'))
-            };
-            if let Some(at) = at.clone().find(own) {
-                let message = format!("two columns would have the name `{}`", column.name);
-                reading.tell(Code::DuplicateName, message, at, "give it another name");
-            }
+    let mut seen: BTreeSet<&str> = TAKEN.into();
+    for column in columns.iter().filter(|column| !seen.insert(&column.name)) {
+        let names = study.keep.iter().map(|keep| &keep.name);
+        let mut names = names.chain(study.vary.iter().map(|vary| &vary.name));
+        let own = |name: &&Text| {
+            let rest = column.name.strip_prefix(name.text.as_str());
+            rest.is_some_and(|rest| rest.is_empty() || rest == "_t_s" || rest.starts_with('@'))
+        };
+        let message = format!("two columns would have the name `{}`", column.name);
+        let help = "give it another name";
+        match (names.find(own), &study.table) {
+            (Some(at), _) => reading.tell(Code::DuplicateName, message, at, help),
+            (None, Some(table)) => reading.tell(Code::DuplicateName, message, table, help),
+            (None, None) => {}
         }
     }
 }

@@ -154,6 +154,9 @@ impl InputSource for Noisy<'_> {
             let last = noise.place(self.until);
             times.extend((1..=last).map(|place| place as f64 * noise.every));
         }
+        // Noises of one interval switch together.
+        times.sort_by(f64::total_cmp);
+        times.dedup();
         times
     }
 }

@@ -5,7 +5,7 @@ use std::ops::ControlFlow;
 
 use appell_ensemble::study::{Keep, Kept};
 use appell_runtime::inputs::ModelInputs;
-use appell_runtime::integrate::{DenseOutput, Observer, Step};
+use appell_runtime::integrate::{DenseOutput, Observer, Piece, Sought, Step, Walk};
 use appell_runtime::model::{At, Model};
 
 use super::layout::{Layout, Moment};
@@ -79,16 +79,8 @@ impl<'a> Gauge<'a> {
     }
 }
 
-/// Parts of a step between which extrema are sought and means taken.
-const PARTS: usize = 4;
-/// Weights of Boole's rule for the mean over them.
-const WEIGHTS: [f64; PARTS + 1] = [
-    7.0 / 90.0,
-    32.0 / 90.0,
-    12.0 / 90.0,
-    32.0 / 90.0,
-    7.0 / 90.0,
-];
+/// Error of a mean, and what a top may be missed by, relative to the largest value of the quantity, for each step.
+const TOLERANCE: f64 = 1e-7;
 
 /// A quantity that is followed all the time.
 struct Followed {
@@ -97,8 +89,19 @@ struct Followed {
     /// The best value so far, counted so that larger is better, and its time; of a mean the integral.
     best: f64,
     when: f64,
-    /// Values at the parts of the present step.
-    values: [f64; PARTS + 1],
+    /// The value at the start, which is the mean of a motion without duration.
+    first: f64,
+    /// The largest absolute value so far.
+    size: f64,
+}
+
+impl Followed {
+    /// A value that may be the best one.
+    fn raise(&mut self, t: f64, value: f64) {
+        if value > self.best {
+            (self.best, self.when) = (value, t);
+        }
+    }
 }
 
 /// Sees the steps.
@@ -109,6 +112,11 @@ pub(super) struct Keeper<'a> {
     followed: Vec<Followed>,
     start: f64,
     x: Vec<f64>,
+    /// The longest time on which quantities are taken for polynomials.
+    longest: f64,
+    walk: Walk,
+    /// Whether to go on, asked at every step.
+    go_on: &'a (dyn Fn() -> bool + Sync),
     /// The row, whose columns of moments are written on the way.
     pub(super) row: &'a mut [f64],
 }
@@ -120,6 +128,7 @@ impl<'a> Keeper<'a> {
         layout: &'a Layout,
         row: &'a mut [f64],
         (t, x): (f64, &[f64]),
+        go_on: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
         let mut followed = Vec::new();
         for (index, keep) in keep.iter().enumerate() {
@@ -137,7 +146,8 @@ impl<'a> Keeper<'a> {
                 kept: keep.kept,
                 best,
                 when: t,
-                values: [value; PARTS + 1],
+                first: value,
+                size: 0.0,
             });
         }
         let mut keeper = Self {
@@ -147,6 +157,9 @@ impl<'a> Keeper<'a> {
             followed,
             start: t,
             x: x.to_vec(),
+            longest: layout.interval,
+            walk: Walk::default(),
+            go_on,
             row,
         };
         while keeper.moments.get(keeper.next).is_some_and(|m| m.t <= t) {
@@ -172,11 +185,10 @@ impl<'a> Keeper<'a> {
             };
             if followed.kept == Kept::Mean {
                 let duration = t - self.start;
-                let constant = followed.values[PARTS];
                 self.row[column] = if duration > 0.0 {
                     followed.best / duration
                 } else {
-                    constant
+                    followed.first
                 };
             } else {
                 self.row[column] = sign * followed.best;
@@ -187,114 +199,88 @@ impl<'a> Keeper<'a> {
     }
 
     fn follow(&mut self, step: &Step<'_>, interior: &DenseOutput) {
-        let time = |part: usize| match part {
-            0 => step.t_old,
-            PARTS => step.t,
-            part => step.t_old + (step.t - step.t_old) * (part as f64 / PARTS as f64),
+        // An input may jump where the step ends.
+        let span = [step.t_old, step.t.next_down()];
+        let mut following = Following {
+            step,
+            interior,
+            gauge: &mut self.gauge.borrow_mut(),
+            x: &mut self.x,
+            followed: &mut self.followed,
         };
-        let mut gauge = self.gauge.borrow_mut();
-        for part in 0..=PARTS {
-            let t = time(part);
-            let x = match part {
-                // An input may jump where the last step ended.
-                0 => step.x_old,
-                PARTS => step.x,
-                _ => {
-                    interior.state(t, &mut self.x);
-                    &self.x
+        self.walk.walk(span, self.longest, &mut following);
+    }
+}
+
+/// The followed quantities during a step.
+struct Following<'f, 'g> {
+    step: &'f Step<'f>,
+    interior: &'f DenseOutput,
+    gauge: &'f mut Gauge<'g>,
+    x: &'f mut [f64],
+    followed: &'f mut [Followed],
+}
+
+/// The state at a time of a step that is shown up to just before its end.
+fn state<'x>(step: &Step<'x>, interior: &DenseOutput, x: &'x mut [f64], t: f64) -> &'x [f64] {
+    if t <= step.t_old {
+        step.x_old
+    } else if t >= step.t.next_down() {
+        step.x
+    } else {
+        interior.state(t, x);
+        x
+    }
+}
+
+impl Sought for Following<'_, '_> {
+    fn count(&self) -> usize {
+        self.followed.len()
+    }
+
+    fn evaluate(&mut self, t: f64, values: &mut [f64]) {
+        let x = state(self.step, self.interior, self.x, t);
+        for (followed, value) in self.followed.iter().zip(values) {
+            *value = self.gauge.value(followed.keep, t, x);
+        }
+    }
+
+    fn is_enough(&self, which: usize, piece: &Piece) -> bool {
+        let followed = &self.followed[which];
+        let (size, [least, most]) = (followed.size.max(piece.size()), piece.ends());
+        let (spread, [from, to]) = (most - least, piece.span());
+        // What is not finite has no mean and no top.
+        !piece.is_finite()
+            || piece.is_resolved(size)
+            || match followed.kept {
+                Kept::Max => most + 2.0 * spread < followed.best,
+                Kept::Min => 2.0 * spread - least < followed.best,
+                _ => spread * (to - from) <= TOLERANCE * size * (self.step.t - self.step.t_old),
+            }
+    }
+
+    fn see(&mut self, pieces: &[Piece]) {
+        for (place, piece) in pieces.iter().enumerate() {
+            let followed = &mut self.followed[place];
+            followed.size = followed.size.max(piece.size());
+            let [from, to] = piece.span();
+            let (sign, piece) = match followed.kept {
+                Kept::Mean => {
+                    followed.best += (to - from) * piece.mean();
+                    continue;
                 }
+                Kept::Min => (-1.0, piece.negative()),
+                _ => (1.0, *piece),
             };
-            for followed in &mut self.followed {
-                followed.values[part] = gauge.value(followed.keep, t, x);
+            for (t, value) in piece.points() {
+                followed.raise(t, value);
             }
-        }
-        for followed in &mut self.followed {
-            if followed.kept == Kept::Mean {
-                let mean: f64 = WEIGHTS
-                    .iter()
-                    .zip(followed.values)
-                    .map(|(w, v)| w * v)
-                    .sum();
-                followed.best += (step.t - step.t_old) * mean;
-                continue;
-            }
-            let sign = if followed.kept == Kept::Min {
-                -1.0
-            } else {
-                1.0
-            };
-            let values = followed.values.map(|value| sign * value);
-            let (part, largest) = largest(&values);
-            if largest > followed.best {
-                (followed.best, followed.when) = (largest, time(part));
-            }
-            let Some([from, to]) = bracket(&values, part).filter(|_| {
-                // A parabola rises above its largest sample by less than the samples differ.
-                let low = values.iter().copied().fold(f64::INFINITY, f64::min);
-                largest + (largest - low) > followed.best
-            }) else {
-                continue;
-            };
-            let keep = followed.keep;
-            let x = &mut self.x;
-            let place = |s: f64| step.t_old + (step.t - step.t_old) * s;
-            let found = maximum([from, to], |s| {
-                let t = place(s);
-                interior.state(t, x);
-                sign * gauge.value(keep, t, x)
-            });
-            if found.1 > followed.best {
-                (followed.best, followed.when) = (found.1, place(found.0));
+            if let Some(t) = piece.top(followed.best) {
+                let x = state(self.step, self.interior, self.x, t);
+                followed.raise(t, sign * self.gauge.value(followed.keep, t, x));
             }
         }
     }
-}
-
-fn largest(values: &[f64]) -> (usize, f64) {
-    let mut best = (0, values[0]);
-    for (part, &value) in values.iter().enumerate() {
-        if value > best.1 {
-            best = (part, value);
-        }
-    }
-    best
-}
-
-/// The part of a step, 0 to 1, in which the largest value lies if that is between samples.
-fn bracket(values: &[f64; PARTS + 1], part: usize) -> Option<[f64; 2]> {
-    let ends = |from: usize, to: usize| Some([from, to].map(|k| k as f64 / PARTS as f64));
-    match part {
-        // The parabola through the last three samples turns before the end.
-        PARTS => (3.0 * values[PARTS] + values[PARTS - 2] < 4.0 * values[PARTS - 1])
-            .then(|| ends(PARTS - 1, PARTS))
-            .flatten(),
-        0 => (3.0 * values[0] + values[2] < 4.0 * values[1])
-            .then(|| ends(0, 1))
-            .flatten(),
-        part => ends(part - 1, part + 1),
-    }
-}
-
-/// Section ratio, and sections after which the top is found to rounding of the value.
-const GOLDEN: f64 = 0.618_033_988_749_894_9;
-const SECTIONS: usize = 30;
-
-/// Place and value of the largest value in an interval with one top, by golden sections with a last parabola.
-fn maximum([mut from, mut to]: [f64; 2], mut f: impl FnMut(f64) -> f64) -> (f64, f64) {
-    let (mut a, mut b) = (to - GOLDEN * (to - from), from + GOLDEN * (to - from));
-    let (mut at_a, mut at_b) = (f(a), f(b));
-    for _ in 0..SECTIONS {
-        if at_a > at_b {
-            (to, b, at_b) = (b, a, at_a);
-            a = to - GOLDEN * (to - from);
-            at_a = f(a);
-        } else {
-            (from, a, at_a) = (a, b, at_b);
-            b = from + GOLDEN * (to - from);
-            at_b = f(b);
-        }
-    }
-    if at_a > at_b { (a, at_a) } else { (b, at_b) }
 }
 
 impl Observer for Keeper<'_> {
@@ -319,24 +305,10 @@ impl Observer for Keeper<'_> {
                 _ => self.record(t, step.x),
             }
         }
-        ControlFlow::Continue(())
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_top_of_a_curve_is_found_between_samples() {
-        let (place, value) = maximum([0.2, 0.6], |s| -(s - 0.37_f64).powi(2) + 2.0);
-        assert!((place - 0.37).abs() < 1e-6, "{place}");
-        assert!((value - 2.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn a_rising_step_has_no_top_inside() {
-        assert_eq!(bracket(&[0.0, 1.0, 2.0, 3.0, 4.0], 4), None);
-        assert_eq!(bracket(&[0.0, 2.0, 3.0, 3.5, 3.51], 4), Some([0.75, 1.0]));
+        if (self.go_on)() {
+            ControlFlow::Continue(())
+        } else {
+            ControlFlow::Break(())
+        }
     }
 }

@@ -1,10 +1,11 @@
 //! The probability of a rare event of a study, by splitting.
 
-use appell_ensemble::chunk::{Chunk, Chunks};
+use appell_ensemble::chunk::{Chunk, Chunks, Missing};
 use appell_ensemble::design::Design;
+use appell_ensemble::limits::MAX_SCORES;
 use appell_ensemble::rows::{Column, Rows};
 use appell_ensemble::run::{self, Ended, Watch};
-use appell_ensemble::splitting::{Landscape, Probability, REPLICATES, Splitting};
+use appell_ensemble::splitting::{self, Landscape, Probability, REPLICATES, Splitting};
 use appell_ensemble::store::Store;
 use appell_ensemble::study::{Keep, Kept, Rare};
 use appell_runtime::model::ModelInfo;
@@ -41,6 +42,19 @@ pub(super) fn task(
         unit: None,
         ..study.keep[which].clone()
     }];
+    let held: f64 = study
+        .noise
+        .iter()
+        .map(|n| study.motion.t_end / n.every.value + 1.0)
+        .sum();
+    let numbers = (design.drawn().count() as f64 + held) * rare.particles.value as f64;
+    if numbers > MAX_SCORES as f64 {
+        let message = format!("all particles together have {numbers:.0} random numbers");
+        let help = format!(
+            "at most {MAX_SCORES} are possible: write fewer particles, or a longer `every_s`"
+        );
+        reading.tell(Code::LimitExceeded, message, &rare.particles, &help);
+    }
     let layout = layout::layout(reading, factors, &keep, info, &[kept[which]]);
     Some(Task {
         keep,
@@ -57,17 +71,8 @@ struct Peak<'e> {
 
 impl Landscape for Peak<'_> {
     fn dimension(&self) -> usize {
-        let Ensemble {
-            design,
-            variants,
-            study,
-            ..
-        } = self.ensemble;
-        let noises = variants.iter().map(|variant| {
-            let counts = variant.noises.iter().map(|n| n.count(study.motion.t_end));
-            counts.sum::<usize>()
-        });
-        design.drawn().count() + noises.max().unwrap_or(0)
+        let noises = usize::try_from(self.ensemble.noise_times()).unwrap_or(usize::MAX);
+        self.ensemble.design.drawn().count().saturating_add(noises)
     }
 
     fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64> {
@@ -82,7 +87,11 @@ impl Ensemble {
     /// Replicates of the rare event as chunks; none where the study has no such event.
     pub fn replicates(&self) -> Option<Chunks> {
         self.rare.as_ref().map(|_| {
-            let particles = self.study.rare.as_ref().map_or(0, |rare| rare.particles);
+            let particles = self
+                .study
+                .rare
+                .as_ref()
+                .map_or(0, |rare| rare.particles.value);
             Chunks {
                 study: format!("{}-rare-{particles}", self.hash),
                 cases: REPLICATES,
@@ -96,12 +105,12 @@ impl Ensemble {
         &self,
         store: &dyn Store,
         running: Running,
-    ) -> Result<Vec<Chunk>, Error> {
+    ) -> Result<Missing, Error> {
         let Some(chunks) = self.replicates() else {
-            return Ok(Vec::new());
+            return Ok(Missing::default());
         };
-        let there = chunks.there(store).map_err(Error::computation)?;
-        Ok(chunks.missing(&there, running.shard))
+        let missing = chunks.unsound_or_missing(store, &splitting::columns(), running.shard);
+        missing.map_err(Error::computation)
     }
 
     /// Runs replicates and writes each to the store when it is done; the watch counts replicates.
@@ -120,13 +129,24 @@ impl Ensemble {
             task,
         };
         let splitting = Splitting::new(&peak, self.particles(), self.study.seed);
-        run::run(&splitting, &chunks, missing, store, running.jobs, watch)
-            .map_err(Error::computation)
+        run::run(
+            &splitting,
+            &chunks,
+            missing,
+            store,
+            running.threads()?,
+            watch,
+        )
+        .map_err(Error::computation)
     }
 
     /// Particles of a replicate.
     fn particles(&self) -> usize {
-        let all = self.study.rare.as_ref().map_or(0, |rare| rare.particles);
+        let all = self
+            .study
+            .rare
+            .as_ref()
+            .map_or(0, |rare| rare.particles.value);
         usize::try_from(all / REPLICATES).unwrap_or(usize::MAX)
     }
 
@@ -140,12 +160,14 @@ impl Ensemble {
             return Ok(None);
         }
         let mut all = Rows::new(0, 2, 0);
-        run::scan(store, &there, 2, |rows| {
+        let mut see = |rows: &Rows| {
             for row in 0..rows.len() {
                 all.push(&[rows.values[0][row], rows.values[1][row]], 0.0, "");
             }
-        })
-        .map_err(Error::computation)?;
+        };
+        let columns = splitting::columns();
+        run::scan(store, &chunks, &there, &columns, &|_| true, &mut see)
+            .map_err(Error::computation)?;
         Ok(Probability::new(&all))
     }
 }

@@ -1,12 +1,32 @@
 //! Values of a study file with the names of a spec, and what is wrong with them.
 
-use appell_ensemble::study::{Study, Text};
-use appell_spec::expr::Expr;
+use std::path::{Path, PathBuf};
+
+use appell_ensemble::study::{Placed, Study, Text};
+use appell_spec::expr::{Expr, Span};
 use appell_spec::units::Unit;
-use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula};
+use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula, shown};
 
 use crate::Error;
 use crate::setup::{Setup, bracketed};
+
+/// What stands somewhere in a study file.
+pub(super) trait Place {
+    /// Where.
+    fn span(&self) -> Span;
+}
+
+impl Place for Text {
+    fn span(&self) -> Span {
+        self.at.clone()
+    }
+}
+
+impl<T> Place for Placed<T> {
+    fn span(&self) -> Span {
+        self.at.clone()
+    }
+}
 
 /// A study file with what is wrong in it.
 pub(super) struct Reading<'s> {
@@ -22,13 +42,52 @@ impl<'s> Reading<'s> {
         }
     }
 
-    pub(super) fn tell(&mut self, code: Code, message: impl Into<String>, at: &Text, help: &str) {
-        let diagnostic = Diagnostic::error(code, message).at(at.at.clone(), "");
+    pub(super) fn tell(
+        &mut self,
+        code: Code,
+        message: impl Into<String>,
+        at: &impl Place,
+        help: &str,
+    ) {
+        let diagnostic = Diagnostic::error(code, message).at(at.span(), "");
         let help = (!help.is_empty()).then(|| help.to_owned());
         let diagnostic = diagnostic.maybe_help(help);
         // Several specs show the same mistake.
         if !self.findings.contains(&diagnostic) {
             self.findings.push(diagnostic);
+        }
+    }
+
+    /// What is known only by an error is told at a place of the study; a report about another file is an error.
+    pub(super) fn at<T>(
+        &mut self,
+        at: &impl Place,
+        result: Result<T, Error>,
+    ) -> Result<Option<T>, Error> {
+        match result {
+            Ok(value) => Ok(Some(value)),
+            Err(error @ Error::Report(_)) => Err(error),
+            Err(error) => {
+                let message = match error {
+                    Error::Request { message, .. } | Error::Data { message, .. } => message,
+                    error => error.to_string(),
+                };
+                self.tell(Code::NotAllowedHere, message, at, "");
+                Ok(None)
+            }
+        }
+    }
+
+    /// The path of a regular file that the study names: one of its own folder or below.
+    pub(super) fn file(&mut self, folder: &Path, name: &Text) -> Option<PathBuf> {
+        let path = appell_files::below(folder, &name.text);
+        let opened = path.and_then(|path| appell_files::open(&path, u64::MAX).map(|_| path));
+        match opened {
+            Ok(path) => Some(path),
+            Err(error) => {
+                self.tell(Code::UnknownReference, error.to_string(), name, "");
+                None
+            }
         }
     }
 
@@ -65,7 +124,7 @@ impl<'s> Reading<'s> {
         let expr = self.expr(setup, text, "the value", Scope::Constant, unit)?;
         let value = setup.constant(&expr);
         if value.is_none() {
-            let message = format!("`{}` is not a finite number", text.text);
+            let message = format!("`{}` is not a finite number", shown(&text.text));
             self.tell(Code::NotFinite, message, text, "");
         }
         value

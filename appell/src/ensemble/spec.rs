@@ -47,7 +47,7 @@ pub(super) fn extended(
     let before = reading.findings.len();
     for Own { name, unit } in own {
         if let Err(error) = units::parse(&unit.text) {
-            reading.tell(Code::UnknownUnit, error.to_string(), unit, "");
+            reading.tell(Code::UnknownUnit, error.to_string(), *unit, "");
             continue;
         }
         let fragment = format!(

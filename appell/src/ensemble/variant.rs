@@ -3,6 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use appell_ensemble::limits::MAX_HELD;
 use appell_ensemble::study::{Entry, Method, Text};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::{InputId, ParameterId};
@@ -74,7 +75,7 @@ pub(super) fn nominal<'m>(
         let expr = reading.expr(&setup, value, "the value", Scope::Constant, &unit);
         if let Some(expr) = expr {
             setup.parameters[index] = setup.constant(&expr).unwrap_or(f64::NAN);
-            derived.set.push((index, expr));
+            derived.set.push((index, expr, value.clone()));
         }
     }
     for Entry { name, value } in &study.motion.initial {
@@ -89,17 +90,20 @@ pub(super) fn nominal<'m>(
         let expr = reading.expr(&setup, value, "the initial value", Scope::Constant, &unit);
         if let Some(expr) = expr {
             setup.initial[index] = setup.constant(&expr).unwrap_or(f64::NAN);
-            derived.start.push((index, expr));
+            derived.start.push((index, expr, value.clone()));
         }
     }
     Ok((setup, derived))
 }
 
+/// A value that follows from parameters, and where the study gives it or its file.
+type Following = (usize, Expr, Text);
+
 /// Values that follow from parameters.
 #[derive(Default)]
 pub(super) struct Derived {
-    set: Vec<(usize, Expr)>,
-    start: Vec<(usize, Expr)>,
+    set: Vec<Following>,
+    start: Vec<Following>,
 }
 
 /// A spec under the law of a choice, if there is one; nothing where the study is wrong, which is told.
@@ -115,13 +119,18 @@ pub(super) fn variant(
     let mut plan = Plan::new(&setup);
     let mut start = Vec::new();
     for file in study.motion.feedback.iter().chain(law) {
-        let law = feedback::read(&common.folder.join(&file.text), &setup)?;
-        law.start(&mut setup)?;
-        start.extend(law.initial.clone());
-        plan.feedback(law)?;
+        let Some(path) = reading.file(common.folder, file) else {
+            continue;
+        };
+        let law = feedback::read(&path, &setup)?;
+        let started = law.start(&mut setup);
+        reading.at(file, started)?;
+        let initial = law.initial.iter();
+        start.extend(initial.map(|(state, expr)| (*state, expr.clone(), file.clone())));
+        reading.at(file, plan.feedback(law))?;
     }
     // What the study gives comes after what laws give.
-    for (index, expr) in &derived.start {
+    for (index, expr, _) in &derived.start {
         setup.initial[*index] = setup.constant(expr).unwrap_or(f64::NAN);
     }
     start.extend(derived.start);
@@ -139,11 +148,18 @@ pub(super) fn variant(
             .clone();
         let expr = reading.expr(&setup, value, "the input", Scope::Law, &unit);
         if let Some(expr) = expr {
-            plan.input(index, &expr, &setup)?;
+            reading.at(value, plan.input(index, &expr, &setup))?;
         }
     }
-    let mut noises = Vec::new();
+    let (mut noises, mut held) = (Vec::new(), 0.0);
     for noise in &study.noise {
+        held += study.motion.t_end / noise.every.value;
+        if held > MAX_HELD {
+            let message = format!("a motion would have more than {MAX_HELD} values of noise");
+            let help = "write a longer `every_s`, or a shorter motion";
+            reading.tell(Code::LimitExceeded, message, &noise.every, help);
+            break;
+        }
         let target = factors::named(&setup, &noise.name.text);
         let (onto, unit) = match target {
             Some(Target::State(index)) => {
@@ -161,36 +177,42 @@ pub(super) fn variant(
             }
         };
         if let Some(deviation) = reading.constant(&setup, &noise.deviation, &unit) {
+            if deviation < 0.0 {
+                let message = "a standard deviation is not negative";
+                reading.tell(Code::ValueOutsideLimits, message, &noise.deviation, "");
+            }
             noises.push(Noise::new(
                 study.seed,
                 &noise.name.text,
                 onto,
                 deviation,
-                noise.every,
+                noise.every.value,
             ));
         }
     }
     if !reading.findings.is_empty() {
         return Ok(None);
     }
-    let compile = |exprs: Vec<(usize, Expr)>| -> Result<Vec<(usize, StateFunction)>, Error> {
-        let mut functions = Vec::new();
-        for (index, expr) in exprs {
-            let mut bench = Workbench::new(&setup.mechanism);
-            let lowered = bench.lower(&expr).ok_or_else(|| {
-                Error::data(&study.file, "an expression divides by the number zero")
-            })?;
-            functions.push((index, bench.function(setup.info, vec![lowered])?));
-        }
-        Ok(functions)
-    };
+    let set = compile(reading, &setup, derived.set)?;
+    let start = compile(reading, &setup, start)?;
     let limits = setup.mechanism.parameters.iter().map(|parameter| {
         [
             parameter.at_least.unwrap_or(f64::NEG_INFINITY),
             parameter.at_most.unwrap_or(f64::INFINITY),
         ]
     });
-    let wiring = plan.wiring(&setup, study.motion.t_end)?;
+    let inputs = study.motion.input.iter().map(|input| &input.value);
+    let driving = study.motion.feedback.iter().chain(law).chain(inputs);
+    let wiring = match driving.last() {
+        Some(driving) => {
+            let wiring = plan.wiring(&setup, study.motion.t_end);
+            reading.at(driving, wiring)?
+        }
+        None => Some(plan.wiring(&setup, study.motion.t_end)?),
+    };
+    let Some(wiring) = wiring.filter(|_| reading.findings.is_empty()) else {
+        return Ok(None);
+    };
     let kind = match study.motion.method {
         Method::Taylor => Kind::Series,
         Method::Dop853 | Method::Dopri5 => Kind::Rates,
@@ -201,12 +223,32 @@ pub(super) fn variant(
         limits: limits.collect(),
         closed: wiring.closed_loop(model.rates()?, setup.info, &seen, kind)?,
         wiring,
-        set: compile(derived.set)?,
-        start: compile(start)?,
+        set,
+        start,
         parameters: setup.parameters.clone(),
         initial: setup.initial.clone(),
         targets: common.targets.to_vec(),
         noises,
         kept: Arc::clone(&extended.kept),
     }))
+}
+
+/// Values that follow from parameters as functions of them.
+fn compile(
+    reading: &mut Reading<'_>,
+    setup: &Setup<'_>,
+    following: Vec<Following>,
+) -> Result<Vec<(usize, StateFunction)>, Error> {
+    let mut functions = Vec::new();
+    for (index, expr, at) in following {
+        let mut bench = Workbench::new(&setup.mechanism);
+        match bench.lower(&expr) {
+            Some(lowered) => functions.push((index, bench.function(setup.info, vec![lowered])?)),
+            None => {
+                let message = "the expression divides by the number zero";
+                reading.tell(Code::DivisionByZero, message, &at, "");
+            }
+        }
+    }
+    Ok(functions)
 }

@@ -4,7 +4,9 @@ mod on_ray;
 
 use std::path::{Path, PathBuf};
 
-use appell::ensemble::{self, Ended, Ensemble, Folder, Running, Shard, Store, Summary, Watch};
+use appell::ensemble::{
+    self, Ended, Ensemble, Folder, Missing, Running, Shard, Store, Summary, Watch,
+};
 use appell::{files, json};
 
 use crate::failure::{Error, note};
@@ -29,13 +31,13 @@ pub(crate) struct EnsembleCommand {
     #[arg(long, short, value_name = "FOLDER")]
     out: PathBuf,
     /// Threads [default: one for each processor]
-    #[arg(long, value_name = "N")]
-    jobs: Option<usize>,
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
+    jobs: Option<u16>,
     /// Run the K-th of N parts, as on a cluster; whoever comes last tells the statistics
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
     /// Cases of a chunk [default: the study's, or a 64th of the cases, at most 4096]
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(1..))]
     chunk: Option<u64>,
     /// Run on the Ray cluster of this address, which sees study and folder under their paths; `auto` is the one that
     /// this machine belongs to. Needs the Python package and Ray
@@ -56,10 +58,11 @@ impl EnsembleCommand {
         let ensemble = Ensemble::from_file(&self.study);
         spinner.finish_and_clear();
         let ensemble = ensemble?;
+        ensemble.chunks(self.chunk)?;
         let store = store_at(&self.out)?;
         let store = store.as_ref();
         let running = Running {
-            jobs: self.jobs,
+            jobs: self.jobs.map(usize::from),
             shard: self.shard,
             chunk: self.chunk,
         };
@@ -67,17 +70,8 @@ impl EnsembleCommand {
             Some(address) => self.spread(&ensemble, store, address, running)?,
             None => self.fill(&ensemble, store, running)?,
         };
-        let whole = Running {
-            shard: None,
-            ..running
-        };
-        let left = ensemble.missing(store, whole)?.len()
-            + ensemble.missing_replicates(store, whole)?.len();
-        let replicates = ensemble
-            .replicates()
-            .map_or(0, |replicates| replicates.count());
-        let chunks = ensemble.chunks(self.chunk).count() + replicates;
-        let there = chunks - left as u64;
+        let [left, chunks] = ensemble.left(store, self.chunk)?;
+        let there = chunks - left;
         if ended == Ended::Stopped {
             return Err(Error::Computation(format!(
                 "stopped; {there} of {chunks} chunks are there, and the same command goes on with the others"
@@ -102,8 +96,19 @@ impl EnsembleCommand {
         store: &dyn Store,
         running: Running,
     ) -> Result<Ended, Error> {
-        let missing = ensemble.missing(store, running)?;
+        let Missing {
+            chunks: missing,
+            mut damaged,
+        } = ensemble.missing(store, running)?;
         let replicates = ensemble.missing_replicates(store, running)?;
+        damaged.extend(replicates.damaged);
+        let replicates = replicates.chunks;
+        if !damaged.is_empty() {
+            let (count, first) = (damaged.len(), &damaged[0]);
+            note(&format!(
+                "chunks are damaged and computed again: {count}, the first is {first}"
+            ));
+        }
         let cases: u64 = missing.iter().map(|c| c.cases.end - c.cases.start).sum();
         let whole = ensemble.design().cases();
         if cases < whole && self.shard.is_none() {
@@ -112,7 +117,7 @@ impl EnsembleCommand {
                 whole - cases
             ));
         }
-        // Chunks that are begun are finished.
+        // Chunks that are finished stay.
         let go_on = || !interrupt::has_come();
         // Asked before the first chunk: a signal ends it no more.
         go_on();
@@ -148,7 +153,7 @@ impl EnsembleCommand {
         address: &str,
         running: Running,
     ) -> Result<Ended, Error> {
-        let left = ensemble.missing(store, running)?.len();
+        let left = ensemble.missing(store, running)?.chunks.len();
         if left > 0 && is_address(&self.out) {
             let message =
                 "a cluster writes to a folder that all its machines see, not to an address";

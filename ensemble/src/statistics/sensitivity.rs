@@ -3,8 +3,10 @@
 
 use crate::random::Stream;
 
-/// Groups of points, of which the bootstrap draws.
-const GROUPS: u64 = 1000;
+/// Groups of points, of which the bootstrap draws; fewer where many columns have many factors.
+const GROUPS: [u64; 2] = [100, 1000];
+/// Numbers of all groups of all columns together.
+const ROOM: u64 = 1 << 23;
 /// Draws of the bootstrap.
 const DRAWS: u64 = 1000;
 
@@ -40,11 +42,12 @@ pub struct Sums {
 }
 
 impl Sums {
-    /// Of `points` pairs in a number of factors; `shift` is a number near the mean.
-    pub fn new(factors: usize, points: u64, shift: f64) -> Self {
-        // At most GROUPS.
+    /// Of `points` pairs in a number of factors; `shift` is a number near the mean, and so many columns have sums.
+    pub fn new(factors: usize, points: u64, shift: f64, columns: usize) -> Self {
+        let room = ROOM / ((3 + 2 * factors) * columns.max(1)) as u64;
+        // At most a thousand.
         #[allow(clippy::cast_possible_truncation)]
-        let groups = points.min(GROUPS) as usize;
+        let groups = points.min(room.clamp(GROUPS[0], GROUPS[1])) as usize;
         Self {
             factors,
             points,

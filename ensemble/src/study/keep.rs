@@ -1,10 +1,11 @@
 //! `[keep]` and `[rare]`: what is kept of each motion, and which rare event is sought.
 
-use appell_spec::Code;
+use appell_spec::{Code, shown};
 use toml::de::DeTable;
 
 use super::read::Reader;
-use super::value::Text;
+use super::value::{Placed, Text};
+use crate::limits::MAX_PARTICLES;
 
 /// An entry of `[keep]`.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,12 +45,12 @@ pub enum Kept {
 }
 
 /// A rare event, whose probability importance splitting finds.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq)]
 pub struct Rare {
     /// Name of the kept event.
     pub event: Text,
     /// Particles.
-    pub particles: u64,
+    pub particles: Placed<u64>,
 }
 
 const FORMS: [&str; 6] = ["end", "max", "min", "mean", "when", "course"];
@@ -67,7 +68,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             continue;
         };
         read.fields.only(entry, &KEYS);
-        let about = read.text(entry, "about");
+        let about = read.sentence(entry, "about");
         let unit = read.text(entry, "unit");
         let at = read.number(entry, "at_s");
         let stop = read.fields.flag(entry, "stop");
@@ -96,7 +97,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             continue;
         };
         let kept = match (form, at) {
-            ("end", Some(at)) => Kept::At(at),
+            ("end", Some(at)) => Kept::At(at.value),
             ("end", None) => Kept::End,
             ("max", None) => Kept::Max,
             ("min", None) => Kept::Min,
@@ -121,7 +122,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             kept,
             of,
             unit,
-            about: about.map_or_else(String::new, |about| about.text),
+            about,
         });
     }
     if all.is_empty() && table.get("keep").is_none_or(|v| v.get_ref().is_table()) {
@@ -134,20 +135,29 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
 pub(super) fn rare(read: &mut Reader<'_>, table: &DeTable<'_>, keep: &[Keep]) -> Option<Rare> {
     let section = read.fields.section(table, "rare")?;
     read.fields.only(section, &["event", "particles"]);
-    let particles = read.count(section, "particles").unwrap_or(PARTICLES);
+    let place = table.get("rare").map_or(0..0, toml::Spanned::span);
+    let particles = read.count(section, "particles", MAX_PARTICLES);
     let Some(event) = read.text(section, "event") else {
         let help = "write `event = \"…\"`, a name of `[keep]` with `when`";
         let message = "a rare event needs `event`";
-        read.tell(Code::MissingKey, message, 0..0, help);
+        if section.get("event").is_none() {
+            read.tell(Code::MissingKey, message, place, help);
+        }
         return None;
     };
     let is_event = |k: &&Keep| matches!(k.kept, Kept::When { .. });
     let mut events = keep.iter().filter(is_event);
     if !events.any(|keep| keep.name.text == event.text) {
-        let message = format!("`[keep]` has no event `{}`", event.text);
+        let message = format!("`[keep]` has no event `{}`", shown(&event.text));
         let help = "name an entry with `when`";
         read.tell(Code::UnknownReference, message, event.at, help);
         return None;
     }
-    Some(Rare { event, particles })
+    Some(Rare {
+        particles: particles.unwrap_or(Placed {
+            value: PARTICLES,
+            at: event.at.clone(),
+        }),
+        event,
+    })
 }

@@ -4,7 +4,8 @@ use appell_spec::Code;
 use toml::de::DeTable;
 
 use super::read::Reader;
-use super::value::{Entry, Text};
+use super::value::{Entry, Placed, Text};
+use crate::limits::{DURATIONS, MAX_STEPS, MAX_TIMES, MAX_TOLERANCE, MAX_VARIANTS};
 
 /// The integrators.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub struct Motion {
     /// Final time in s.
     pub t_end: f64,
     /// Interval of kept courses in s.
-    pub interval: Option<f64>,
+    pub interval: Option<Placed<f64>>,
     /// The integrator.
     pub method: Method,
     /// Relative tolerance.
@@ -83,8 +84,14 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Option<Motion>
     let section = read.fields.section(table, "motion")?;
     read.fields.only(section, &KEYS);
     let default = Motion::default();
-    let t_end = read.positive(section, "t_end_s").unwrap_or(default.t_end);
-    let interval = read.positive(section, "dt_s");
+    let t_end = read.positive(section, "t_end_s", DURATIONS[1]);
+    if let Some(short) = t_end.as_ref().filter(|t_end| t_end.value < DURATIONS[0]) {
+        let message = format!("a motion lasts at least {} s", DURATIONS[0]);
+        let at = short.at.clone();
+        read.tell(Code::ValueOutsideLimits, message, at, "write a longer one");
+    }
+    let t_end = t_end.map_or(default.t_end, |t_end| t_end.value);
+    let interval = read.positive(section, "dt_s", f64::MAX);
     let method = read.text(section, "method").and_then(|word| {
         let words = [
             ("dop853", Method::Dop853),
@@ -98,23 +105,29 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Option<Motion>
         Some(value) if value.get_ref().is_array() => read.values(value, None).unwrap_or_default(),
         Some(value) => read.value(value).into_iter().collect(),
     };
-    if interval.is_some_and(|interval| t_end / interval > 1e5) {
-        let at = section.get("dt_s").map_or(0..0, toml::Spanned::span);
-        let message = "a course would have more than 100000 times";
-        read.tell(
-            Code::ValueOutsideLimits,
-            message,
-            at,
-            "choose a longer `dt_s`",
-        );
+    if let Some(law) = feedback.get(MAX_VARIANTS) {
+        let message = format!("more than {MAX_VARIANTS} laws");
+        read.tell(Code::LimitExceeded, message, law.at.clone(), "remove some");
     }
+    if let Some(interval) = interval.as_ref().filter(|dt| t_end / dt.value > MAX_TIMES) {
+        let message = format!("a course would have more than {MAX_TIMES} times");
+        let help = format!("write {} or more", t_end / MAX_TIMES);
+        let at = interval.at.clone();
+        read.tell(Code::LimitExceeded, message, at, &help);
+    }
+    let mut tolerance = |key: &str, usual: f64| {
+        let given = read.positive(section, key, MAX_TOLERANCE);
+        given.map_or(usual, |given| given.value)
+    };
     Some(Motion {
         t_end,
         interval,
         method: method.unwrap_or(default.method),
-        rtol: read.positive(section, "rtol").unwrap_or(default.rtol),
-        atol: read.positive(section, "atol").unwrap_or(default.atol),
-        max_steps: read.count(section, "max_steps"),
+        rtol: tolerance("rtol", default.rtol),
+        atol: tolerance("atol", default.atol),
+        max_steps: read
+            .count(section, "max_steps", MAX_STEPS)
+            .map(|most| most.value),
         ignore_ranges: read.fields.flag(section, "ignore_ranges"),
         set: read.entries(section, "set"),
         initial: read.entries(section, "initial"),

@@ -1,12 +1,15 @@
 //! Values of a study file, each with its place.
 
 use appell_recordings::fields::{Fields, Value};
+use appell_spec::diagnostic::MAX_SHOWN;
 use appell_spec::expr::Span;
-use appell_spec::{Code, did_you_mean, shown};
+use appell_spec::limits::MAX_SENTENCE;
+use appell_spec::{Code, did_you_mean, is_forbidden, name, shown};
 use toml::de::{DeTable, DeValue};
 
-use super::value::{Entry, Text};
+use super::value::{Correlation, Entry, Placed, Text};
 use crate::design::Sampling;
+use crate::limits::{MAX_ENTRIES, MAX_LIST};
 
 /// The text of the file with what is wrong in it.
 pub(super) struct Reader<'t> {
@@ -19,22 +22,34 @@ impl Reader<'_> {
         self.fields.tell(code, message, at, help);
     }
 
+    /// Refuses characters that cannot be seen or that reorder what is seen.
+    pub(super) fn characters(&mut self) {
+        let hidden = self
+            .document
+            .char_indices()
+            .filter(|(at, c)| is_forbidden(*c) && !(*at == 0 && *c == '\u{feff}'));
+        for (at, c) in hidden.take(MAX_SHOWN) {
+            let message = format!("the character U+{:04X} is not allowed", u32::from(c));
+            let at = at..at + c.len_utf8();
+            self.tell(Code::ForbiddenCharacter, message, at, "remove it");
+        }
+    }
+
     /// A number or a text.
     pub(super) fn value(&mut self, value: &Value<'_>) -> Option<Text> {
         let text = match value.get_ref() {
             DeValue::String(text) => text.to_string(),
-            DeValue::Integer(_) | DeValue::Float(_) => self
-                .document
-                .get(value.span())
-                .unwrap_or_default()
-                .replace('_', ""),
+            // In base ten, as expressions have it.
+            DeValue::Integer(integer) => i128::from_str_radix(integer.as_str(), integer.radix())
+                .map_or_else(|_| integer.to_string(), |whole| whole.to_string()),
+            DeValue::Float(float) => float.to_string(),
             _ => {
                 self.fields
                     .wrong_type(value, "a number, or a text such as \"30cm\"");
                 return None;
             }
         };
-        Some(Text {
+        self.plain(Text {
             text,
             at: value.span(),
         })
@@ -43,56 +58,112 @@ impl Reader<'_> {
     /// A text that may be absent.
     pub(super) fn text(&mut self, table: &DeTable<'_>, key: &str) -> Option<Text> {
         let (text, at) = self.fields.string(table, key)?;
-        Some(Text { text, at })
+        self.plain(Text { text, at })
+    }
+
+    /// A text of one line without what cannot be seen, which escapes may hide.
+    fn plain(&mut self, text: Text) -> Option<Text> {
+        let Some(c) = text
+            .text
+            .chars()
+            .find(|c| is_forbidden(*c) || c.is_control())
+        else {
+            return Some(text);
+        };
+        let message = format!("the character U+{:04X} is not allowed here", u32::from(c));
+        let help = "write one line of plain text";
+        self.tell(Code::ForbiddenCharacter, message, text.at, help);
+        None
+    }
+
+    /// A sentence that may be absent.
+    pub(super) fn sentence(&mut self, table: &DeTable<'_>, key: &str) -> String {
+        let Some(sentence) = self.text(table, key) else {
+            return String::new();
+        };
+        if sentence.text.len() > MAX_SENTENCE {
+            let message = format!("`{key}` has more than {MAX_SENTENCE} bytes");
+            self.tell(Code::LimitExceeded, message, sentence.at, "shorten it");
+        }
+        sentence.text
     }
 
     /// A finite number that may be absent.
-    pub(super) fn number(&mut self, table: &DeTable<'_>, key: &str) -> Option<f64> {
+    pub(super) fn number(&mut self, table: &DeTable<'_>, key: &str) -> Option<Placed<f64>> {
         let value = table.get(key)?;
-        self.fields.number(value)
+        Some(Placed {
+            value: self.fields.number(value)?,
+            at: value.span(),
+        })
     }
 
-    /// A positive number that may be absent.
-    pub(super) fn positive(&mut self, table: &DeTable<'_>, key: &str) -> Option<f64> {
+    /// A positive number, up to a largest one, that may be absent.
+    pub(super) fn positive(
+        &mut self,
+        table: &DeTable<'_>,
+        key: &str,
+        most: f64,
+    ) -> Option<Placed<f64>> {
         let number = self.number(table, key)?;
-        if number > 0.0 {
+        if number.value > 0.0 && number.value <= most {
             return Some(number);
         }
-        let at = table.get(key).map_or(0..0, toml::Spanned::span);
-        let message = format!("`{key}` must be a positive number");
-        self.tell(Code::ValueOutsideLimits, message, at, "");
+        let message = if number.value > 0.0 {
+            format!("`{key}` must not be larger than {most}")
+        } else {
+            format!("`{key}` must be a positive number")
+        };
+        self.tell(Code::ValueOutsideLimits, message, number.at, "");
         None
     }
 
     /// A whole number that may be absent and is not negative.
-    pub(super) fn whole(&mut self, table: &DeTable<'_>, key: &str) -> Option<u64> {
+    pub(super) fn whole(&mut self, table: &DeTable<'_>, key: &str) -> Option<Placed<u64>> {
         let value = table.get(key)?;
         let DeValue::Integer(integer) = value.get_ref() else {
             self.fields.wrong_type(value, "a whole number");
             return None;
         };
-        let number = integer.as_str().replace('_', "").parse::<u64>().ok();
-        if number.is_none() {
-            let message = format!("`{key}` must be a whole number that is not negative");
-            self.tell(Code::ValueOutsideLimits, message, value.span(), "");
+        let at = value.span();
+        match u64::from_str_radix(integer.as_str(), integer.radix()) {
+            Ok(value) => Some(Placed { value, at }),
+            Err(_) if integer.as_str().starts_with('-') => {
+                let message = format!("`{key}` must be a whole number that is not negative");
+                self.tell(Code::ValueOutsideLimits, message, at, "");
+                None
+            }
+            Err(_) => {
+                let message = format!("`{key}` is a number of more than 64 bits");
+                self.tell(Code::LimitExceeded, message, at, "write a smaller one");
+                None
+            }
         }
-        number
     }
 
-    /// A whole number from 1 on that may be absent.
-    pub(super) fn count(&mut self, table: &DeTable<'_>, key: &str) -> Option<u64> {
+    /// A whole number from 1 to a largest one that may be absent.
+    pub(super) fn count(
+        &mut self,
+        table: &DeTable<'_>,
+        key: &str,
+        most: u64,
+    ) -> Option<Placed<u64>> {
         let number = self.whole(table, key)?;
-        if number > 0 {
-            return Some(number);
+        if number.value == 0 {
+            let message = format!("`{key}` must be at least 1");
+            self.tell(Code::ValueOutsideLimits, message, number.at, "");
+            return None;
         }
-        let at = table.get(key).map_or(0..0, toml::Spanned::span);
-        self.tell(
-            Code::ValueOutsideLimits,
-            format!("`{key}` must be at least 1"),
-            at,
-            "",
-        );
-        None
+        if number.value > most {
+            let message = format!("`{key}` is {}, at most {most} are possible", number.value);
+            self.tell(
+                Code::LimitExceeded,
+                message,
+                number.at,
+                "write a smaller number",
+            );
+            return None;
+        }
+        Some(number)
     }
 
     /// The table behind a value.
@@ -108,7 +179,8 @@ impl Reader<'_> {
         table
     }
 
-    /// The items of a section in the order of the text.
+    /// The items of a section in the order of the text. Their names are those of specs: columns, figures and files
+    /// are called after them.
     pub(super) fn items<'v, 'd>(
         &mut self,
         table: &'v DeTable<'d>,
@@ -126,6 +198,20 @@ impl Reader<'_> {
         });
         let mut named: Vec<_> = named.collect();
         named.sort_by_key(|(name, _)| name.at.start);
+        if let Some((name, _)) = named.get(MAX_ENTRIES) {
+            let message = format!("`[{section}]` has more than {MAX_ENTRIES} entries");
+            self.tell(Code::LimitExceeded, message, name.at.clone(), "remove some");
+            named.truncate(MAX_ENTRIES);
+        }
+        named.retain(|(name, _)| {
+            let is_valid = name::is_valid(&name.text);
+            if !is_valid {
+                let message = format!("`{}` is not a valid name", shown(&name.text));
+                let help = format!("a name is {}", name::RULE);
+                self.tell(Code::InvalidName, message, name.at.clone(), &help);
+            }
+            is_valid
+        });
         named
     }
 
@@ -155,6 +241,12 @@ impl Reader<'_> {
             self.fields.wrong_type(value, &wanted);
             return None;
         };
+        if let Some(value) = list.get(MAX_LIST) {
+            let message = format!("a list of more than {MAX_LIST} values");
+            let help = "write them as `range = [from, to]` with `count`, or into a `table`";
+            self.tell(Code::LimitExceeded, message, value.span(), help);
+            return None;
+        }
         let values: Vec<Option<Text>> = list.iter().map(|value| self.value(value)).collect();
         values.into_iter().collect()
     }
@@ -173,12 +265,14 @@ impl Reader<'_> {
         found.map(|(_, value)| *value)
     }
 
-    pub(super) fn sampling(&mut self, table: &DeTable<'_>) -> Option<Sampling> {
+    pub(super) fn sampling(&mut self, table: &DeTable<'_>) -> Option<Placed<Sampling>> {
         let word = self.text(table, "sampling")?;
-        self.word(&word, &Sampling::ALL)
+        let value = self.word(&word, &Sampling::ALL)?;
+        Some(Placed { value, at: word.at })
     }
 
-    pub(super) fn correlations(&mut self, table: &DeTable<'_>) -> Vec<(Text, Text, f64)> {
+    /// Pairs of factors with their correlations, each pair once.
+    pub(super) fn correlations(&mut self, table: &DeTable<'_>) -> Vec<Correlation> {
         let Some(value) = table.get("correlations") else {
             return Vec::new();
         };
@@ -187,23 +281,37 @@ impl Reader<'_> {
                 .wrong_type(value, "a list such as [[\"m\", \"h\", 0.6]]");
             return Vec::new();
         };
-        let mut read = Vec::new();
-        for value in list {
+        let mut read: Vec<Correlation> = Vec::new();
+        for value in list.iter().take(MAX_LIST) {
             let Some(triple) = self.values(value, Some(3)) else {
                 continue;
             };
             let Ok([a, b, number]) = <[Text; 3]>::try_from(triple) else {
                 continue;
             };
-            match number.text.parse::<f64>() {
-                Ok(number) if number.abs() < 1.0 => read.push((a, b, number)),
-                _ => self.tell(
-                    Code::ValueOutsideLimits,
-                    "a correlation is a number between -1 and 1",
-                    number.at,
-                    "",
-                ),
-            }
+            let pair = [a.text.as_str(), b.text.as_str()];
+            let mut others = read
+                .iter()
+                .map(|other| other.pair.each_ref().map(|own| own.text.as_str()));
+            let message = match number.text.parse::<f64>() {
+                _ if a.text == b.text => "a quantity is always correlated with itself",
+                _ if others.any(|[c, d]| [c, d] == pair || [d, c] == pair) => {
+                    "this pair has a correlation already"
+                }
+                Ok(value) if value.abs() <= 1.0 => {
+                    let value = Placed {
+                        value,
+                        at: number.at,
+                    };
+                    read.push(Correlation {
+                        pair: [a, b],
+                        value,
+                    });
+                    continue;
+                }
+                _ => "a correlation is a number from -1 to 1",
+            };
+            self.tell(Code::ValueOutsideLimits, message, value.span(), "");
         }
         read
     }

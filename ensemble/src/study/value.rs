@@ -17,6 +17,30 @@ impl std::fmt::Debug for Text {
     }
 }
 
+/// A value with its place in the study file, which its `Debug` leaves out.
+#[derive(Clone, PartialEq)]
+pub struct Placed<T> {
+    /// The value.
+    pub value: T,
+    /// Where it stands.
+    pub at: Span,
+}
+
+impl<T: std::fmt::Debug> std::fmt::Debug for Placed<T> {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        self.value.fmt(f)
+    }
+}
+
+/// A pair of factors with the correlation of their normal scores.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Correlation {
+    /// Their names.
+    pub pair: [Text; 2],
+    /// From −1 to 1.
+    pub value: Placed<f64>,
+}
+
 /// A name with a value.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Entry {

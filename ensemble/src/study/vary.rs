@@ -4,7 +4,8 @@ use appell_spec::Code;
 use toml::de::DeTable;
 
 use super::read::Reader;
-use super::value::Text;
+use super::value::{Placed, Text};
+use crate::limits::{MAX_VALUES, MAX_VARIANTS};
 
 /// Entries of `[vary]` that choose between specs and between laws.
 pub const MODEL: &str = "model";
@@ -62,7 +63,7 @@ pub struct Noise {
     /// Standard deviation.
     pub deviation: Text,
     /// How long each number is held, in s.
-    pub every: f64,
+    pub every: Placed<f64>,
     /// Unit of a quantity of the study's own.
     pub unit: Option<Text>,
 }
@@ -101,7 +102,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Vary> {
         };
         read.fields.only(entry, &KEYS);
         let unit = read.text(entry, "unit");
-        let about = read.text(entry, "about");
+        let about = read.sentence(entry, "about");
         let truncate = entry.get("truncate").and_then(|value| pair(read, value));
         if let Some(varied) = form(read, entry, &name) {
             if truncate.is_some() && (varied.is_grid() || matches!(varied, Varied::Choice(..))) {
@@ -114,7 +115,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Vary> {
                 varied,
                 truncate,
                 unit,
-                about: about.map_or_else(String::new, |about| about.text),
+                about,
             });
         }
     }
@@ -151,6 +152,18 @@ fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varie
         read.tell(Code::UnknownWord, message, value.span(), help);
         return None;
     }
+    if chooses && let Some(file) = value.get_ref().as_array().and_then(|l| l.get(MAX_VARIANTS)) {
+        let message = format!("more than {MAX_VARIANTS} files to choose from");
+        read.tell(Code::LimitExceeded, message, file.span(), "remove some");
+        return None;
+    }
+    for (key, of) in [("count", "range"), ("weights", "choice")] {
+        if let Some(value) = entry.get(key).filter(|_| form != of) {
+            let message = format!("`{key}` belongs to `{of}`");
+            let help = format!("leave `{key}` out");
+            read.tell(Code::ConflictingKeys, message, value.span(), &help);
+        }
+    }
     Some(match form {
         "scatter" => Varied::Scatter(read.value(value)?),
         "normal" => Varied::Normal(pair(read, value)?),
@@ -165,13 +178,12 @@ fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varie
         "grid" => Varied::Grid(read.values(value, None)?),
         _ => {
             let ends = pair(read, value)?;
-            let Some(count) = read.count(entry, "count") else {
+            if entry.get("count").is_none() {
                 let help = "write how many values, such as `count = 11`";
                 let message = "a range needs `count`";
                 read.tell(Code::MissingKey, message, value.span(), help);
-                return None;
-            };
-            Varied::Range(ends, count)
+            }
+            Varied::Range(ends, read.count(entry, "count", MAX_VALUES)?.value)
         }
     })
 }
@@ -189,7 +201,8 @@ fn weights(read: &mut Reader<'_>, entry: &DeTable<'_>, count: usize) -> Option<V
     let numbers = texts.iter().map(|text| text.text.parse::<f64>().ok());
     let numbers: Option<Vec<f64>> = numbers.collect();
     let fit = |numbers: &Vec<f64>| {
-        numbers.iter().all(|w| w.is_finite() && *w >= 0.0) && numbers.iter().any(|w| *w > 0.0)
+        let sum: f64 = numbers.iter().sum();
+        numbers.iter().all(|w| *w >= 0.0) && sum > 0.0 && sum.is_finite()
     };
     let numbers = numbers.filter(fit);
     if numbers.is_none() {
@@ -208,7 +221,7 @@ pub(super) fn noise(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Noise> {
         };
         read.fields.only(entry, &["deviation", "every_s", "unit"]);
         let deviation = entry.get("deviation").and_then(|value| read.value(value));
-        let every = read.positive(entry, "every_s");
+        let every = read.positive(entry, "every_s", f64::MAX);
         let unit = read.text(entry, "unit");
         for key in ["deviation", "every_s"] {
             if entry.get(key).is_none() {

@@ -60,7 +60,7 @@ fn words(value: &DeValue<'_>) -> &'static str {
 }
 
 /// Control characters, and marks that hide or reorder text.
-pub(super) fn is_forbidden(c: char) -> bool {
+pub fn is_forbidden(c: char) -> bool {
     if matches!(c, ' '..='~' | '\n') {
         // Almost all of every file.
         return false;

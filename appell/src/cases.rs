@@ -60,27 +60,50 @@ impl<'de> Deserialize<'de> for Object<'de> {
     }
 }
 
+/// Largest file of cases, in bytes.
+pub const MAX_BYTES: u64 = 1 << 28;
+
 /// Maximum number of mistakes reported for a file.
 const MOST: usize = 20;
 
-/// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`; a case may have
-/// `"accelerations"` by pseudo-velocity.
-pub fn read_cases(file: &str, text: &str, info: &ModelInfo) -> Result<Vec<Case>, Error> {
-    let mut reader = Reader {
-        text,
-        findings: Vec::new(),
-    };
-    let cases = match serde_json::from_str(text) {
-        Ok(top) => reader.cases(top, info),
-        Err(error) => {
-            reader.broken(&error);
-            Vec::new()
+/// Cases that have been checked, as they stand in their file: each is read when it is wanted, so that their number costs
+/// no memory.
+pub struct Cases<'a> {
+    text: &'a str,
+    info: &'a ModelInfo,
+    list: Vec<&'a RawValue>,
+}
+
+impl<'a> Cases<'a> {
+    /// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`; a case may have
+    /// `"accelerations"` by pseudo-velocity. All mistakes are reported at once.
+    pub fn read(file: &str, text: &'a str, info: &'a ModelInfo) -> Result<Self, Error> {
+        let mut reader = Reader::new(text);
+        let list = match serde_json::from_str(text) {
+            Ok(top) => reader.list(top),
+            Err(error) => {
+                reader.broken(&error);
+                Vec::new()
+            }
+        };
+        for case in &list {
+            if reader.findings.len() >= MOST {
+                break;
+            }
+            reader.case(case, info);
         }
-    };
-    if reader.findings.is_empty() {
-        Ok(cases)
-    } else {
-        Err(Report::new(file, text, reader.findings).into())
+        if reader.findings.is_empty() {
+            Ok(Self { text, info, list })
+        } else {
+            Err(Report::new(file, text, reader.findings).into())
+        }
+    }
+
+    /// The cases in the order of the file.
+    pub fn iter(&self) -> impl Iterator<Item = Case> {
+        let mut reader = Reader::new(self.text);
+        let cases = self.list.iter();
+        cases.map(move |case| reader.case(case, self.info))
     }
 }
 
@@ -90,6 +113,13 @@ struct Reader<'a> {
 }
 
 impl<'a> Reader<'a> {
+    fn new(text: &'a str) -> Self {
+        Self {
+            text,
+            findings: Vec::new(),
+        }
+    }
+
     /// Reports the first syntax error.
     fn broken(&mut self, error: &serde_json::Error) {
         let line = error.line().saturating_sub(1);
@@ -114,21 +144,15 @@ impl<'a> Reader<'a> {
         );
     }
 
-    fn cases(&mut self, top: &'a RawValue, info: &ModelInfo) -> Vec<Case> {
+    /// The list of cases.
+    fn list(&mut self, top: &'a RawValue) -> Vec<&'a RawValue> {
         let Some(object) = self.object(top, "an object") else {
             return Vec::new();
         };
         self.keys(&object, self.head(top), &["cases"], "cases");
         let list = object.get("cases");
-        let list = list.and_then(|list| self.parse::<Vec<&RawValue>>(list, "a list of cases"));
-        let mut cases = Vec::new();
-        for case in list.unwrap_or_default() {
-            if self.findings.len() >= MOST {
-                break;
-            }
-            cases.push(self.case(case, info));
-        }
-        cases
+        let list = list.and_then(|list| self.parse(list, "a list of cases"));
+        list.unwrap_or_default()
     }
 
     /// The place of a value in the text.

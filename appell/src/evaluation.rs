@@ -1,11 +1,15 @@
 //! The equations evaluated at given states.
 
+use std::cell::RefCell;
+use std::io::{self, Write};
+
 pub use appell_runtime::condition::Conditions;
 pub use appell_runtime::contact::ContactForce;
 use appell_runtime::contact::ContactForces;
 use appell_runtime::inputs::{ModelInputs, ZeroInputs};
 pub use appell_runtime::model::Energies;
 use appell_runtime::model::{At, Model as Equations, ModelInfo};
+use serde::ser::{Serialize, SerializeMap as _, Serializer};
 use serde_json::{Map, Value, json};
 
 use crate::cases::Case;
@@ -45,46 +49,95 @@ pub struct Values {
     pub inverse_dynamics: Option<Vec<f64>>,
 }
 
-/// The values of all cases.
-#[derive(Debug, Clone)]
+/// The equations of a model, to be evaluated at cases.
 pub struct Evaluation<'a> {
-    info: &'a ModelInfo,
-    /// The values, in the order of the cases.
-    pub values: Vec<Values>,
+    model: &'a Model,
+    inputs: ModelInputs<'a>,
 }
 
 impl Model {
-    /// Evaluates the equations at given states.
+    /// The equations, to be evaluated at given states.
     ///
     /// ```
-    /// use appell::{Model, cases::read_cases};
+    /// use appell::{Model, cases::Cases};
     ///
     /// let model = Model::shipped("pendulum")?;
     /// let cases = r#"{"cases": [{"state": {"theta": 0.1, "omega": 0}}]}"#;
-    /// let cases = read_cases("cases.json", cases, model.info())?;
-    /// let evaluation = model.evaluate(&cases)?;
-    /// assert!(evaluation.values[0].rates[0] < 0.0);
+    /// let cases = Cases::read("cases.json", cases, model.info())?;
+    /// let evaluation = model.evaluation()?;
+    /// for case in cases.iter() {
+    ///     assert!(evaluation.at(&case).rates[0] < 0.0);
+    /// }
     /// # Ok::<(), appell::Error>(())
     /// ```
-    pub fn evaluate(&self, cases: &[Case]) -> Result<Evaluation<'_>, Error> {
-        let (model, info) = (self.equations(), self.info());
-        let inputs = ModelInputs::new(info, &ZeroInputs)?;
-        let values = cases.iter().map(|case| {
-            let mut u = vec![0.0; info.input_len()];
-            inputs.fill(case.t, &case.x, &mut u);
-            for (u, given) in u.iter_mut().zip(&case.u) {
-                *u = given.unwrap_or(*u);
-            }
-            let at = At {
-                t: case.t,
-                x: &case.x,
-                u: &u,
-                p: &case.p,
-            };
-            Values::at(model, at, case.accelerations.as_deref())
+    pub fn evaluation(&self) -> Result<Evaluation<'_>, Error> {
+        let inputs = ModelInputs::new(self.info(), &ZeroInputs)?;
+        Ok(Evaluation {
+            model: self,
+            inputs,
+        })
+    }
+}
+
+impl Evaluation<'_> {
+    /// The values at a case.
+    pub fn at(&self, case: &Case) -> Values {
+        let mut u = vec![0.0; self.model.info().input_len()];
+        self.inputs.fill(case.t, &case.x, &mut u);
+        for (u, given) in u.iter_mut().zip(&case.u) {
+            *u = given.unwrap_or(*u);
+        }
+        let at = At {
+            t: case.t,
+            x: &case.x,
+            u: &u,
+            p: &case.p,
+        };
+        let accelerations = case.accelerations.as_deref();
+        Values::at(self.model.equations(), at, accelerations)
+    }
+
+    /// Writes the values of cases as JSON, one by one, with the names of what they belong to; numbers that are not finite are
+    /// `null`. `see` is shown each case with its number.
+    pub fn write(
+        &self,
+        cases: impl Iterator<Item = Case>,
+        to: &mut dyn Write,
+        mut see: impl FnMut(usize, &Case, &Values),
+    ) -> io::Result<()> {
+        let info = self.model.info();
+        let head = [
+            ("schema", json!("evaluation/1")),
+            ("mechanism", json!(info.name)),
+            ("state_order", json!(names(&info.states))),
+            ("input_order", json!(names(&info.inputs))),
+            ("speed_order", json!(names(info.speed_quantities()))),
+            ("parameter_order", json!(names(&info.parameters))),
+            ("output_order", json!(names(&info.outputs))),
+            ("constraint_order", json!(info.constraint_rows)),
+        ];
+        let mut serializer = serde_json::Serializer::pretty(&mut *to);
+        let mut map = serializer.serialize_map(None)?;
+        for (key, value) in head {
+            map.serialize_entry(key, &value)?;
+        }
+        let cases = cases.enumerate().map(|(index, case)| {
+            let values = self.at(&case);
+            see(index, &case, &values);
+            values.to_json(info)
         });
-        let values = values.collect();
-        Ok(Evaluation { info, values })
+        map.serialize_entry("cases", &List(RefCell::new(cases)))?;
+        map.end()?;
+        to.write_all(b"\n")
+    }
+}
+
+/// A list whose items are made while it is written.
+struct List<I>(RefCell<I>);
+
+impl<I: Iterator<Item = Value>> Serialize for List<I> {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        serializer.collect_seq(&mut *self.0.borrow_mut())
     }
 }
 
@@ -217,24 +270,5 @@ impl Values {
                 (contact.name.to_string(), entry)
             })
             .collect()
-    }
-}
-
-impl Evaluation<'_> {
-    /// The values with the names of what they belong to; numbers that are not finite are `null`.
-    pub(crate) fn to_json(&self) -> Value {
-        let info = self.info;
-        let cases = self.values.iter().map(|values| values.to_json(info));
-        json!({
-            "schema": "evaluation/1",
-            "mechanism": info.name,
-            "state_order": names(&info.states),
-            "input_order": names(&info.inputs),
-            "speed_order": names(info.speed_quantities()),
-            "parameter_order": names(&info.parameters),
-            "output_order": names(&info.outputs),
-            "constraint_order": info.constraint_rows,
-            "cases": cases.collect::<Vec<_>>(),
-        })
     }
 }

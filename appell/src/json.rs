@@ -23,7 +23,6 @@ pub use recording::recording;
 use crate::capture::Converted;
 use crate::check::{Checked, Thorough};
 use crate::control::attraction::Explored;
-use crate::evaluation::Evaluation;
 
 /// Disturbed motions and their fates.
 pub fn attraction(region: &Explored<'_>) -> Value {
@@ -43,11 +42,6 @@ pub fn thorough(thorough: &Thorough) -> Value {
 /// A converted motion capture.
 pub fn capture(converted: &Converted) -> Value {
     converted.to_json()
-}
-
-/// Evaluated cases.
-pub fn evaluation(evaluation: &Evaluation<'_>) -> Value {
-    evaluation.to_json()
 }
 
 /// Values by the names of their quantities.

@@ -228,8 +228,8 @@ fn values(spec: &str, states: &[[f64; 8]]) -> Vec<Values> {
             accelerations: None,
         }
     });
-    let cases: Vec<Case> = cases.collect();
-    model.evaluate(&cases).expect("values").values
+    let evaluation = model.evaluation().expect("values");
+    cases.map(|case| evaluation.at(&case)).collect()
 }
 
 /// Speeds and coordinates, within the limits.

@@ -6,7 +6,7 @@ use appell_runtime::model::Quantity;
 
 use crate::engine::{self, Engine};
 use crate::failure::Error;
-use appell::cases::{Case, read_cases};
+use appell::cases::{Case, Cases, MAX_BYTES};
 use appell::files;
 
 /// Evaluates the equations at given states.
@@ -35,18 +35,26 @@ pub(crate) struct Evaluate {
 
 impl Evaluate {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let text = files::read(&self.cases, files::MAX_DATA)?;
+        let text = files::read(&self.cases, MAX_BYTES)?;
         let model = engine::model(&self.model, Some(self.engine))?;
-        let cases = read_cases(&self.cases.to_string_lossy(), &text, model.info())?;
-        let evaluation = model.evaluate(&cases)?;
-        files::write_json(&self.json, &appell::json::evaluation(&evaluation))?;
-        let values = cases.iter().zip(&evaluation.values).enumerate();
-        let singular: Vec<String> = values
-            .filter(|(_, (_, values))| !values.is_finite())
-            .map(|(index, (case, _))| describe(index, case, &model.info().states))
-            .collect();
-        if singular.is_empty() {
+        let cases = Cases::read(&self.cases.to_string_lossy(), &text, model.info())?;
+        let evaluation = model.evaluation()?;
+        let (mut singular, mut count) = (Vec::new(), 0_usize);
+        files::write_with(&self.json, |to| {
+            evaluation.write(cases.iter(), to, |index, case, values| {
+                if !values.is_finite() {
+                    count += 1;
+                    if count <= MOST_SHOWN {
+                        singular.push(describe(index, case, &model.info().states));
+                    }
+                }
+            })
+        })?;
+        if count == 0 {
             return Ok(());
+        }
+        if count > MOST_SHOWN {
+            singular.push(format!("  … and {} more", count - MOST_SHOWN));
         }
         Err(Error::Computation(format!(
             "the equations are not finite at these cases; the numbers affected are written as `null`\n{}",
@@ -54,6 +62,9 @@ impl Evaluate {
         )))
     }
 }
+
+/// Cases without finite values that are shown.
+const MOST_SHOWN: usize = 20;
 
 fn describe(index: usize, case: &Case, states: &[Quantity]) -> String {
     let state: Vec<String> = states

@@ -62,6 +62,7 @@ fields! {
     Sources "sources" "Sources of an FMU without machine code.",
     Bias "bias" "Columns with a constant bias.",
     Letters "parameters" "Numbers of a robot that become parameters.",
+    Lock "lock" "Joints of a robot that become rigid.",
     Study "study" "Study of an ensemble.",
     Chunk "chunk" "Cases of a chunk of an ensemble.",
     Jobs "jobs" "Threads of an ensemble.",

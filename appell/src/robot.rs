@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use appell_robots::{Failure, MAX_FILE};
-pub use appell_robots::{Format, Imported, LeftOut, Letters, Options, SNAP, Without};
+pub use appell_robots::{Format, Imported, LeftOut, Letters, Lock, Options, SNAP, Without};
 use serde_json::{Value, json};
 use walkdir::WalkDir;
 
@@ -33,6 +33,7 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Err
 fn told(failure: Failure) -> Error {
     match failure {
         Failure::File(report) => Error::Report(report),
+        Failure::Lock(why) => Error::request(Field::Lock, why),
         Failure::Unknown { name, help } => Error::request(
             Field::Letters,
             format!("`{name}` is no link, joint or parameter of the robot; {help}"),
@@ -46,10 +47,9 @@ pub fn read(path: &Path, options: &Options) -> Result<Imported, Error> {
     let file = path.to_string_lossy().replace('\\', "/");
     let folder = path.parent().unwrap_or(Path::new(""));
     let others = |name: &str| {
-        let named = folder.join(name);
-        let there = std::fs::metadata(&named).ok()?;
-        let can_be_read = there.is_file() && there.len() <= MAX_MESH;
-        can_be_read.then(|| std::fs::read(&named).ok())?
+        let path = appell_files::below(folder, name);
+        let bytes = path.and_then(|path| appell_files::read(&path, MAX_MESH));
+        bytes.map_err(|why| why.to_string())
     };
     appell_robots::import_with(&file, &text, options, &others).map_err(told)
 }
@@ -84,7 +84,7 @@ pub fn find(folder: &Path) -> Result<Vec<(PathBuf, Format)>, Error> {
 pub fn entry(file: &str, robot: &Imported) -> Value {
     let left_out = robot.left_out.iter();
     let left_out = left_out
-        .map(|one| json!({ "what": one.what, "file": one.file, "lines": one.lines }))
+        .map(|one| json!({ "what": one.what, "file": one.file, "lines": one.lines, "effect": one.effect }))
         .collect::<Vec<_>>();
     let warnings = robot.warnings.iter();
     let warnings = warnings

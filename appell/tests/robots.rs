@@ -246,8 +246,7 @@ fn imported(file: &str, text: &str, letters: &str, without: &[Without]) -> Strin
     let options = Options {
         letters: Letters::read(letters),
         without: without.to_vec(),
-        snap: false,
-        floating: false,
+        ..Options::default()
     };
     robot::import(file, text, &options).expect("a robot").spec
 }

@@ -37,6 +37,7 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Hypothesis => "--hypothesis",
         Field::Bias => "--bias",
         Field::Letters => "--parameters",
+        Field::Lock => "--lock",
         Field::Sources => "--sources-only",
         Field::Chunk => "--chunk",
         Field::Jobs => "--jobs",

@@ -2,8 +2,8 @@
 
 /// Largest file, in bytes.
 pub const MAX_FILE: usize = 1 << 20;
-/// Most items in one section.
-pub const MAX_ITEMS: usize = 256;
+/// Most items in one section: those of a robot with hundreds of joints.
+pub const MAX_ITEMS: usize = 4096;
 /// Most parameters: ten for each of many bodies, and their places.
 pub const MAX_PARAMETERS: usize = 4096;
 /// Most samples of one signal.

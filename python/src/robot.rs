@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use appell::robot::{self, Letters, Options, Without};
+use appell::robot::{self, Letters, Lock, Options, Without};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -17,6 +17,7 @@ pub(crate) fn import_robot(
     file: PathBuf,
     parameters: &str,
     without: Vec<String>,
+    lock: Vec<(String, Option<f64>)>,
     snap: bool,
     floating: bool,
 ) -> PyResult<(String, String)> {
@@ -26,6 +27,10 @@ pub(crate) fn import_robot(
         without: without
             .collect::<Result<_, _>>()
             .map_err(PyValueError::new_err)?,
+        lock: lock
+            .into_iter()
+            .map(|(joint, value)| Lock { joint, value })
+            .collect(),
         snap,
         floating,
     };

@@ -41,6 +41,26 @@ def test_what_is_left_out_has_its_lines(folder):
     left_out = {one.what: one for one in appell.import_robot(folder / "arm.urdf").left_out}
     assert left_out["transmission"].lines
     assert left_out["transmission"].file.endswith("arm.urdf")
+    left_out = {one.what: one for one in appell.import_robot(folder / "arm.xml").left_out}
+    assert all("input of the joint" in one.effect for what, one in left_out.items() if what.startswith("actuator/"))
+
+
+def test_locked_joints_have_no_coordinate(folder):
+    whole = appell.import_robot(folder / "arm.xml").model()
+    stiff = appell.import_robot(folder / "arm.xml", lock={"elbow": 0.5, "reach": None})
+    assert stiff.joints == 2
+    model = stiff.model()
+    assert set(model.states) == {name for name in whole.states if "elbow" not in name and "reach" not in name}
+    state = {name: 0.1 for name in whole.states}
+    state |= {"elbow": 0.5, "v_elbow": 0, "reach": 0, "v_reach": 0}
+    free = [name for name in whole.states if name in model.states and name.startswith("v_")]
+    speeds = [name for name in whole.states if name.startswith("v_")]
+    kept = [speeds.index(name) for name in free]
+    mass = whole.mass_matrix([state[name] for name in whole.states])
+    reduced = model.mass_matrix([state[name] for name in model.states])
+    assert np.allclose(reduced, mass[np.ix_(kept, kept)], rtol=1e-12, atol=1e-12)
+    with pytest.raises(appell.RequestError, match="did you mean `elbow`"):
+        appell.import_robot(folder / "arm.xml", lock=["elbw"])
 
 
 def test_what_is_wrong_has_its_place(folder, tmp_path):

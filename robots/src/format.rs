@@ -34,7 +34,7 @@ impl Format {
 }
 
 /// Name of the first element of an XML file, after declarations and comments.
-fn first_element(text: &str) -> Option<&str> {
+pub(crate) fn first_element(text: &str) -> Option<&str> {
     let mut rest = text.trim_start_matches('\u{feff}').trim_start();
     loop {
         let skipped = [("<?", "?>"), ("<!--", "-->"), ("<!", ">")];
@@ -43,7 +43,9 @@ fn first_element(text: &str) -> Option<&str> {
         };
         rest = rest.split_once(end)?.1.trim_start();
     }
-    let named = rest.strip_prefix('<')?;
+    let named = rest
+        .strip_prefix('<')
+        .filter(|rest| rest.starts_with(char::is_alphabetic))?;
     let end = named.find(|c: char| c.is_whitespace() || matches!(c, '>' | '/'))?;
     Some(&named[..end])
 }

@@ -5,15 +5,15 @@
 
 use appell_spec::{Code, Diagnostic, Report, Severity, shown};
 
-use crate::xml::{Element, Span, parse, tag};
+use crate::xml::{Element, Span, begun, parse, tag};
 
 /// Largest file with those that it includes, in bytes.
 pub const MAX_FILE: u64 = 1 << 24;
 /// Deepest nesting of files.
 const MOST_NESTED: usize = 16;
 
-/// Gives the bytes of a file by its path from the folder of the first one.
-pub(crate) type Others<'f> = &'f dyn Fn(&str) -> Option<Vec<u8>>;
+/// Gives the bytes of a file by its path from the folder of the first one, or says why not.
+pub(crate) type Others<'f> = &'f dyn Fn(&str) -> Result<Vec<u8>, String>;
 
 /// A file with those that it includes.
 pub(crate) struct Whole<'f> {
@@ -21,6 +21,8 @@ pub(crate) struct Whole<'f> {
     pub(crate) text: String,
     /// Name and text of each, the first one includes the others.
     files: Vec<(String, String)>,
+    /// Where the lines of each file begin.
+    lines: Vec<Vec<usize>>,
     pieces: Vec<Piece>,
     others: Others<'f>,
 }
@@ -46,10 +48,12 @@ impl<'f> Whole<'f> {
     pub(crate) fn read(file: &str, text: &str, others: Others<'f>) -> Result<Self, Box<Report>> {
         let mut whole = Self {
             text: String::new(),
-            files: vec![(file.to_owned(), text.to_owned())],
+            files: Vec::new(),
+            lines: Vec::new(),
             pieces: Vec::new(),
             others,
         };
+        whole.add(file.to_owned(), text);
         let (_, includes) = whole.parsed(0)?;
         whole.append((0, 0..text.len()), includes, 0)?;
         Ok(whole)
@@ -113,8 +117,14 @@ impl<'f> Whole<'f> {
         self.text.push_str(&self.files[file].1[part]);
     }
 
-    /// The bytes of a file that a file names, and its path; `within` is a folder for files of its kind.
-    fn named(&self, by: usize, within: Option<&str>, name: &str) -> Option<(String, Vec<u8>)> {
+    /// The bytes of a file that a file names, and its path; `within` is a folder for files of its kind. The error says why
+    /// it cannot be read.
+    fn named(
+        &self,
+        by: usize,
+        within: Option<&str>,
+        name: &str,
+    ) -> Result<(String, Vec<u8>), String> {
         let folder = match by {
             0 => None,
             _ => self.files[by].0.rsplit_once('/').map(|(folder, _)| folder),
@@ -124,7 +134,10 @@ impl<'f> Whole<'f> {
             parts.collect::<Vec<_>>().join("/")
         };
         let read = |path: String| (self.others)(&path).map(|bytes| (path, bytes));
-        read(path(None)).or_else(|| read(path(Some(folder?))))
+        read(path(None)).or_else(|why| match folder {
+            Some(_) => read(path(folder)),
+            None => Err(why),
+        })
     }
 
     /// The bytes of a file that is named at a place, and its path.
@@ -133,7 +146,7 @@ impl<'f> Whole<'f> {
         place: &Span,
         within: Option<&str>,
         name: &str,
-    ) -> Option<(String, Vec<u8>)> {
+    ) -> Result<(String, Vec<u8>), String> {
         self.named(self.origin(place).0, within, name)
     }
 
@@ -158,27 +171,43 @@ impl<'f> Whole<'f> {
         let found = self.named(by, None, named);
         if found
             .as_ref()
-            .map_or_else(|| twice(named), |(path, _)| twice(path))
+            .map_or_else(|_| twice(named), |(path, _)| twice(path))
         {
             let message = format!("`{name}` is included twice");
             return fail(Code::DuplicateName, message, "remove one of the two");
         }
-        let Some((path, bytes)) = found else {
-            let message = format!("the file `{name}` cannot be read");
-            let help = "paths are those from the folder of the file that is imported, or of that which includes";
-            return fail(Code::UnknownReference, message, help);
+        let (path, bytes) = match found {
+            Ok(found) => found,
+            Err(why) => {
+                let message = format!("the file `{name}` cannot be read: {why}");
+                let help = "paths are those from the folder of the file that is imported, or of that which includes";
+                return fail(Code::UnknownReference, message, help);
+            }
         };
         let Ok(text) = String::from_utf8(bytes) else {
             let message = format!("`{name}` is not UTF-8 text");
             return fail(Code::WrongType, message, "save it as UTF-8");
         };
+        if crate::format::first_element(&text).is_none() {
+            // Its lines are shown nowhere: it may be anything.
+            let message = format!("`{name}` is no XML file");
+            return fail(Code::WrongType, message, "name a file of MuJoCo");
+        }
         let all: usize = self.files.iter().map(|(_, text)| text.len()).sum();
         if (all + text.len()) as u64 > MAX_FILE {
             let message = format!("all files have more than {} MiB together", MAX_FILE >> 20);
             return fail(Code::LimitExceeded, message, "leave out what is not needed");
         }
-        self.files.push((path, text));
-        Ok(self.files.len() - 1)
+        Ok(self.add(path, &text))
+    }
+
+    /// Keeps a file; the result is its index.
+    fn add(&mut self, name: String, text: &str) -> usize {
+        let text = begun(text);
+        let ends = text.match_indices('\n').map(|(at, _)| at + 1);
+        self.lines.push([0].into_iter().chain(ends).collect());
+        self.files.push((name, text));
+        self.files.len() - 1
     }
 
     /// File and place of a place in the text of all.
@@ -198,8 +227,8 @@ impl<'f> Whole<'f> {
     /// Name of the file of a place in the text of all, and the line.
     pub(crate) fn line(&self, place: &Span) -> (&str, usize) {
         let (file, place) = self.origin(place);
-        let (name, text) = &self.files[file];
-        (name, 1 + text[..place.start].matches('\n').count())
+        let line = self.lines[file].partition_point(|start| *start <= place.start);
+        (&self.files[file].0, line)
     }
 
     /// Findings as reports, one for each file that has any.

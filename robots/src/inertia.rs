@@ -118,6 +118,20 @@ impl Inertia {
         self.mass == 0.0 && self.tensor.iter().all(|entry| *entry == 0.0)
     }
 
+    /// Rows of its tensor.
+    pub(crate) fn rows(&self) -> [Vector; 3] {
+        rows(self.tensor)
+    }
+
+    /// Whether all of it are numbers.
+    pub(crate) fn is_finite(&self) -> bool {
+        let numbers = [self.mass]
+            .into_iter()
+            .chain(self.centre)
+            .chain(self.tensor);
+        numbers.into_iter().all(f64::is_finite)
+    }
+
     /// The same body in the frame in which `pose` places the present one.
     pub(crate) fn placed(&self, pose: Pose) -> Self {
         Self {
@@ -153,10 +167,36 @@ impl Inertia {
         }
     }
 
+    /// Raises principal moments that are less than a bound.
+    pub(crate) fn bound_moments(&mut self, least: f64) {
+        let (moments, axes) = principal(self.tensor);
+        if least > 0.0 && moments.iter().any(|moment| *moment < least) {
+            let [xx, yy, zz] = moments.map(|moment| moment.max(least));
+            self.tensor = turned(axes, [xx, yy, zz, 0.0, 0.0, 0.0]);
+        }
+    }
+
+    /// Whether a principal moment exceeds the sum of the others.
+    pub(crate) fn exceeds_triangle(&self) -> bool {
+        let [small, middle, large] = sorted(principal(self.tensor).0);
+        large > small + middle
+    }
+
+    /// What rounding leaves of moments beside those of the mass about the origin of the frame is zero.
+    pub(crate) fn without_rounding(&self) -> Self {
+        let about = self.mass.abs() * dot(self.centre, self.centre);
+        let vanishes = |entry: &f64| entry.abs() <= ROUNDING * about;
+        let tensor = if self.tensor.iter().all(vanishes) {
+            [0.0; 6]
+        } else {
+            self.tensor
+        };
+        Self { tensor, ..*self }
+    }
+
     /// What no body has, in words; `None` if there can be such a body.
     pub(crate) fn impossible(&self) -> Option<String> {
-        let moments = principal(self.tensor);
-        let [small, middle, large] = moments;
+        let [small, middle, large] = sorted(principal(self.tensor).0);
         let number = |x: f64| plain(format!("{x:.3e}").parse().unwrap_or(x));
         if self.mass < 0.0 {
             return Some(format!("its mass, {} kg, is negative", self.mass));
@@ -176,9 +216,10 @@ impl Inertia {
     }
 }
 
-/// Principal moments in increasing order, by Jacobi's rotations.
-fn principal(tensor: Tensor) -> Vector {
+/// Principal moments, and the rotation to their axes, by Jacobi's rotations.
+fn principal(tensor: Tensor) -> (Vector, Rotation) {
     let mut a = rows(tensor);
+    let mut axes = Rotation::IDENTITY.0;
     for _ in 0..50 {
         let (p, q) = [(0, 1), (0, 2), (1, 2)]
             .into_iter()
@@ -189,10 +230,10 @@ fn principal(tensor: Tensor) -> Vector {
         }
         let angle = 0.5 * (2.0 * a[p][q]).atan2(a[q][q] - a[p][p]);
         let (s, c) = angle.sin_cos();
-        for k in 0..3 {
-            let (x, y) = (a[k][p], a[k][q]);
-            a[k][p] = c * x - s * y;
-            a[k][q] = s * x + c * y;
+        for rows in [&mut a, &mut axes] {
+            for row in rows {
+                (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+            }
         }
         for k in 0..3 {
             let (x, y) = (a[p][k], a[q][k]);
@@ -209,7 +250,11 @@ fn principal(tensor: Tensor) -> Vector {
             }
         }
     }
-    let mut moments = [a[0][0], a[1][1], a[2][2]];
+    ([a[0][0], a[1][1], a[2][2]], Rotation(axes))
+}
+
+/// In increasing order.
+fn sorted(mut moments: Vector) -> Vector {
     moments.sort_by(f64::total_cmp);
     moments
 }
@@ -221,7 +266,15 @@ mod tests {
     #[test]
     fn principal_moments_do_not_depend_on_the_frame() {
         let rotation = Rotation::roll_pitch_yaw([0.3, -0.7, 1.9]);
-        let moments = principal(turned(rotation, [1.0, 2.0, 2.5, 0.0, 0.0, 0.0]));
+        let tensor = turned(rotation, [1.0, 2.0, 2.5, 0.0, 0.0, 0.0]);
+        let (moments, axes) = principal(tensor);
+        let [xx, yy, zz] = moments;
+        let back = turned(axes, [xx, yy, zz, 0.0, 0.0, 0.0]);
+        assert!(
+            (0..6).all(|k| (back[k] - tensor[k]).abs() < 1e-14),
+            "{back:?}"
+        );
+        let moments = sorted(moments);
         assert!(
             minus(moments, [1.0, 2.0, 2.5])
                 .iter()

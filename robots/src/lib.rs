@@ -15,16 +15,21 @@
 //! | `model.rs` | what a robot is: links in a tree, joints with their properties |
 //! | `rotation.rs`, `inertia.rs` | rotations and their turns; inertias turned, shifted, put together |
 //! | `tree.rs` | links that are fixed together become one body |
-//! | `loops.rs` | what connects two links of the tree: equations, and which coordinates follow from them |
+//! | `kinematics.rs`, `mass.rs` | where links are and how they move with each coordinate; the mass matrix |
+//! | `loops.rs`, `elimination.rs` | equations between coordinates, of loops and couplings, and which follow from the others |
 //! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
-//! | `options.rs`, `without.rs`, `snap.rs` | requests; what is left out; nearly right angles |
+//! | `options.rs`, `without.rs`, `lock.rs`, `snap.rs` | requests; what is left out; joints made rigid; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
+mod elimination;
 mod format;
 mod includes;
 mod inertia;
+mod kinematics;
 mod letters;
+mod lock;
 mod loops;
+mod mass;
 mod mjcf;
 mod model;
 mod names;
@@ -38,13 +43,15 @@ mod urdf;
 mod without;
 mod xml;
 
-use appell_spec::{Code, Diagnostic, Report, did_you_mean};
+use appell_spec::{Code, Diagnostic, Report, Severity, did_you_mean};
 
+use appell_spec::limits::MAX_ITEMS;
 use includes::Whole;
 
 pub use format::Format;
 pub use includes::MAX_FILE;
 pub use letters::Letters;
+pub use lock::Lock;
 pub use options::Options;
 pub use snap::SNAP;
 pub use without::Without;
@@ -79,6 +86,8 @@ pub struct LeftOut {
     pub file: String,
     /// Their lines, from 1.
     pub lines: Vec<usize>,
+    /// How the motion differs without them; none where it does not.
+    pub effect: Option<&'static str>,
 }
 
 /// Why a robot cannot be imported.
@@ -86,6 +95,8 @@ pub struct LeftOut {
 pub enum Failure {
     /// Its file, or one that it includes, is wrong or has what cannot be imported; the report is about one file.
     File(Box<Report>),
+    /// A joint that cannot be locked, in a sentence.
+    Lock(String),
     /// Names that are to become parameters but name nothing.
     Unknown {
         /// The first one.
@@ -109,6 +120,49 @@ fn float(robot: &mut model::Robot) {
     }
 }
 
+/// Refuses what a spec cannot have, where it comes from in the file of the robot.
+fn refuse(spec: &Report, lines: &[(usize, xml::Span)], root: xml::Span, findings: &xml::Findings) {
+    for error in spec.diagnostics() {
+        if error.severity != Severity::Error {
+            continue;
+        }
+        let at = error.labels.first().map_or(0, |(place, _)| place.start);
+        let line = lines.partition_point(|(start, _)| *start <= at);
+        let place = line.checked_sub(1).map(|line| lines[line].1.clone());
+        let place = place
+            .filter(|place| !place.is_empty())
+            .unwrap_or_else(|| root.clone());
+        let mut own = Diagnostic::error(error.code, error.message.clone()).at(place, "");
+        own.help.clone_from(&error.help);
+        findings.add(own);
+    }
+}
+
+/// What has no counterpart, by kind, with its lines.
+fn left_out(robot: &model::Robot, whole: &Whole<'_>) -> Vec<LeftOut> {
+    let mut left_out: Vec<LeftOut> = Vec::new();
+    let mut index = std::collections::BTreeMap::new();
+    for one in &robot.left_out {
+        let (file, line) = whole.line(&one.place);
+        let next = left_out.len();
+        let at = *index
+            .entry((&one.what, file.to_owned(), one.effect))
+            .or_insert(next);
+        if at == next {
+            left_out.push(LeftOut {
+                what: one.what.clone(),
+                file: file.to_owned(),
+                lines: Vec::new(),
+                effect: one.effect,
+            });
+        }
+        left_out[at].lines.push(line);
+    }
+    // What changes the motion comes first.
+    left_out.sort_by_key(|one| one.effect.is_none());
+    left_out
+}
+
 /// Turns the text of a URDF or an MJCF file into that of a spec.
 ///
 /// ```
@@ -121,19 +175,23 @@ fn float(robot: &mut model::Robot) {
 /// assert!(door.spec.contains("leaf = { parent = \"ground\", about_axis = \"z\", by = \"hinge\" }"));
 /// ```
 pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Failure> {
-    import_with(file, text, options, &|_| None)
+    let none = |_: &str| Err("only this text is read".to_owned());
+    import_with(file, text, options, &none)
 }
 
 /// [`import`] where files that this one names may be read: `others` gives the bytes of a file by its path from
-/// the folder of this one. An MJCF includes others, and meshes are read where a body has no other inertia.
+/// the folder of this one, or says why not. An MJCF includes others, and meshes are read where a body has no other inertia.
 pub fn import_with(
     file: &str,
     text: &str,
     options: &Options,
-    others: &dyn Fn(&str) -> Option<Vec<u8>>,
+    others: &dyn Fn(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Imported, Failure> {
     let whole = Whole::read(file, text, others).map_err(Failure::File)?;
-    let fail = |findings: Vec<Diagnostic>| Failure::File(Box::new(whole.first_error(findings)));
+    let fail = |mut findings: Vec<Diagnostic>| {
+        findings.retain(|finding| finding.severity == Severity::Error);
+        Failure::File(Box::new(whole.first_error(findings)))
+    };
     let document = xml::parse(&whole.text).map_err(|error| fail(vec![error]))?;
     let findings = xml::Findings::default();
     let root = document.root_element();
@@ -146,15 +204,31 @@ pub fn import_with(
         });
         return Err(fail(vec![error.help(help)]));
     };
+    let of_xacro = |element: &xml::Element<'_>| {
+        let namespace = element.tag_name().namespace();
+        namespace.is_some_and(|name| name.contains("xacro"))
+    };
+    if let Some(element) = root.descendants().find(of_xacro) {
+        let name = appell_spec::shown(element.tag_name().name());
+        let error = Diagnostic::error(
+            Code::NotAllowedHere,
+            format!("`xacro:{name}` is not expanded"),
+        );
+        return Err(fail(vec![error.at(xml::tag(element), "").help(xml::XACRO)]));
+    }
     let mut robot = match format {
-        Format::Urdf => urdf::read(root, &findings),
-        Format::Mjcf => mjcf::read(root, &findings, &whole),
+        Format::Urdf => urdf::read(root, &findings, options),
+        Format::Mjcf => mjcf::read(root, &findings, &whole, options),
     };
     if options.floating {
         float(&mut robot);
     }
     for one in &options.without {
         one.apply(&mut robot);
+    }
+    // A file that is wrong is told so first.
+    if !findings.has_errors() {
+        lock::lock(&mut robot, &options.lock).map_err(Failure::Lock)?;
     }
     let nearly_right = snap::snap(&mut robot, options.snap);
     let tree = tree::merged(&robot.links, &findings);
@@ -167,12 +241,21 @@ pub fn import_with(
             help,
         );
     }
-    let meetings = loops::meetings(&robot, &tree, &findings);
+    if tree.bodies.len() > MAX_ITEMS {
+        let count = tree.bodies.len();
+        findings.error(
+            Code::LimitExceeded,
+            xml::tag(root),
+            format!("the robot has {count} joints that move"),
+            format!("a spec has at most {MAX_ITEMS} coordinates: import a part of the robot"),
+        );
+        return Err(fail(findings.into_inner()));
+    }
+    let equations = loops::equations(&robot, &tree, &findings);
     if findings.has_errors() {
         return Err(fail(findings.into_inner()));
     }
-    let findings = findings.into_inner();
-    let written = spec::write(file, format, &robot, &tree, &meetings, options);
+    let written = spec::write(file, format, &robot, &tree, &equations, options);
     if let Some(name) = written.unused.first() {
         let known = written.known.iter().map(String::as_str);
         let help = did_you_mean(name, known, || {
@@ -183,21 +266,12 @@ pub fn import_with(
             help,
         });
     }
-    let mut left_out: Vec<LeftOut> = Vec::new();
-    for (what, all) in spec::grouped(&robot.left_out) {
-        let first = left_out.len();
-        for one in all {
-            let (file, line) = whole.line(&one.place);
-            match left_out[first..].iter_mut().find(|own| own.file == file) {
-                Some(own) => own.lines.push(line),
-                None => left_out.push(LeftOut {
-                    what: what.to_owned(),
-                    file: file.to_owned(),
-                    lines: vec![line],
-                }),
-            }
-        }
+    if let Err(report) = appell_spec::load("robot.toml", &written.text) {
+        refuse(&report, &written.lines, xml::tag(root), &findings);
+        return Err(fail(findings.into_inner()));
     }
+    let findings = findings.into_inner();
+    let left_out = left_out(&robot, &whole);
     Ok(Imported {
         spec: written.text,
         name: robot.name.clone(),

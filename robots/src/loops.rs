@@ -1,18 +1,21 @@
-//! Closed loops: what connects two links of the tree demands that points of both meet. Some of the equations may
-//! say the same, as that across the plane of a four-bar; these are left out, and of the others each gets the
-//! coordinate that follows from it.
+//! Equations between coordinates: closed loops, where what connects two links of the tree demands that points of both
+//! meet, and couplings. Some may say the same, as that across the plane of a four-bar; these are left out. Each of the
+//! others gets the coordinate that follows from it, chosen by pivoting where the motion begins.
 
 use appell_spec::Code;
 
-use crate::model::{Connection, Coupling, Link, Motion, Robot};
-use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
+use crate::elimination::{eliminated, independent, matched};
+use crate::kinematics::{Freedom, anywhere, poses};
+use crate::mass;
+use crate::model::{Connection, Coupling, Link, Motion, Robot, Sum};
+use crate::rotation::{Pose, Rotation, Vector, add, dot, minus};
 use crate::tree::Tree;
 use crate::xml::Findings;
 
-/// A row shorter than this share of itself, less what others say, adds nothing.
-const NOTHING: f64 = 1e-5;
 /// What a driven joint counts less where one is chosen to follow.
 const DRIVEN: f64 = 1e-2;
+/// Most entries of the equations' matrix.
+const MOST_ENTRIES: usize = 1 << 18;
 
 /// A point of each of two bodies that shall meet.
 #[derive(Debug)]
@@ -32,109 +35,235 @@ pub(crate) struct Follower {
     pub(crate) component: usize,
 }
 
-/// The equations of all connections.
-pub(crate) fn meetings(
-    robot: &Robot,
-    tree: &Tree,
-    findings: &Findings,
-) -> Vec<(String, Vec<Meeting>)> {
-    let mut rows = Rows::new(robot, tree, findings);
-    (robot.connections.iter())
-        .map(|connection| (connection.name.clone(), rows.of(connection)))
-        .collect()
+/// The equations of a robot with their followers.
+#[derive(Debug, Default)]
+pub(crate) struct Equations {
+    /// By connection.
+    pub(crate) meetings: Vec<(String, Vec<Meeting>)>,
+    /// By coupling; none where it says nothing new.
+    pub(crate) couplings: Vec<Option<Follower>>,
 }
 
-/// The equations that are known so far, reduced to those of their followers.
-struct Rows<'a> {
+impl Equations {
+    /// All followers.
+    pub(crate) fn followers(&self) -> impl Iterator<Item = Follower> {
+        let meetings = self.meetings.iter().flat_map(|(_, of)| of);
+        let meetings =
+            meetings.flat_map(|meeting| meeting.rows.iter().map(|(_, follower)| *follower));
+        meetings.chain(self.couplings.iter().copied().flatten())
+    }
+}
+
+/// Which equation a row belongs to.
+enum Of {
+    Coupling(usize),
+    /// Connection, meeting and axis.
+    Meeting(usize, usize, usize),
+}
+
+/// An equation between rates, by freedom.
+struct Row {
+    of: Of,
+    /// Where no link is in line with another by chance, and where the motion begins.
+    anywhere: Vec<f64>,
+    start: Vec<f64>,
+    /// The coordinate that follows if it can.
+    preferred: Option<usize>,
+}
+
+/// The equations of all couplings and connections. Refuses what cannot move by them.
+pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equations {
+    let freedoms = Freedom::all(&robot.links);
+    let places = Places::new(robot, tree, freedoms);
+    let count = robot.couplings.len() + 9 * robot.connections.len();
+    if count.saturating_mul(places.freedoms.len()) > MOST_ENTRIES {
+        let most = robot.connections.iter().map(|one| &one.place);
+        let place = most
+            .chain(robot.couplings.iter().map(|one| &one.place))
+            .next();
+        findings.error(
+            Code::LimitExceeded,
+            place.cloned().unwrap_or_default(),
+            format!(
+                "{count} equations between {} rates are too many",
+                places.freedoms.len()
+            ),
+            "leave the couplings out with `--without couplings`, or import a part of the robot",
+        );
+        return Equations::default();
+    }
+    let mut equations = Equations::default();
+    let mut rows = Vec::new();
+    for (index, coupling) in robot.couplings.iter().enumerate() {
+        equations.couplings.push(None);
+        rows.push(places.coupled(index, coupling));
+    }
+    for (index, connection) in robot.connections.iter().enumerate() {
+        let meetings = places.meetings(connection);
+        rows.extend(places.rows(index, connection, &meetings));
+        equations.meetings.push((connection.name.clone(), meetings));
+    }
+    let new = independent(rows.iter().map(|row| row.anywhere.clone()).collect());
+    let rows: Vec<Row> = (rows.into_iter().zip(new))
+        .filter_map(|(row, new)| new.then_some(row))
+        .collect();
+    let pivots = places.pivots(&rows);
+    for (row, &pivot) in rows.iter().zip(&pivots) {
+        let follower = places.follower(pivot);
+        if places.turns(pivot) {
+            places.refuse(&row.of, follower, findings);
+        }
+        match row.of {
+            Of::Coupling(index) => equations.couplings[index] = Some(follower),
+            Of::Meeting(connection, meeting, axis) => {
+                equations.meetings[connection].1[meeting]
+                    .rows
+                    .push((axis, follower));
+            }
+        }
+    }
+    for (_, meetings) in &mut equations.meetings {
+        meetings.retain(|meeting| !meeting.rows.is_empty());
+    }
+    places.refuse_what_has_no_mass(&rows, &pivots, findings);
+    equations
+}
+
+/// Poses of the links, as they are drawn, where the motion begins, and where no link is in line with another by chance.
+struct Places<'a> {
     robot: &'a Robot,
     tree: &'a Tree,
-    findings: &'a Findings,
-    /// Poses of the links as they are drawn, and near by, where no link is in line with another by chance.
+    freedoms: Vec<Freedom>,
     drawn: Vec<Pose>,
-    near: Vec<Pose>,
-    columns: Vec<Follower>,
-    known: Vec<(usize, Vec<f64>)>,
+    start: Vec<Pose>,
+    anywhere: Vec<Pose>,
 }
 
-impl<'a> Rows<'a> {
-    fn new(robot: &'a Robot, tree: &'a Tree, findings: &'a Findings) -> Self {
-        let mut columns = Vec::new();
-        for (body, moved) in tree.bodies.iter().enumerate() {
-            let count = match moved.joint.motion {
-                Motion::Turning | Motion::Sliding => 1,
-                Motion::Free => 6,
-                Motion::Ball => 3,
-            };
-            columns.extend((0..count).map(|component| Follower { body, component }));
-        }
-        let mut rows = Self {
+impl<'a> Places<'a> {
+    fn new(robot: &'a Robot, tree: &'a Tree, freedoms: Vec<Freedom>) -> Self {
+        let links = &robot.links;
+        let begun =
+            |link: usize| (links[link].joint.as_ref()).map_or(0.0, |own| own.start() - own.zero);
+        Self {
             robot,
             tree,
-            findings,
-            drawn: poses(&robot.links, |_| 0.0),
-            near: poses(&robot.links, |link| 0.1 + 0.05 * ((7 * link) % 5) as f64),
-            columns,
-            known: Vec::new(),
+            freedoms,
+            drawn: poses(links, |_| 0.0),
+            start: poses(links, begun),
+            anywhere: poses(links, anywhere),
+        }
+    }
+
+    fn follower(&self, freedom: usize) -> Follower {
+        let Freedom { link, component } = self.freedoms[freedom];
+        Follower {
+            body: self.tree.body_of[link].unwrap_or_default(),
+            component,
+        }
+    }
+
+    /// The row of a coupling.
+    fn coupled(&self, index: usize, coupling: &Coupling) -> Row {
+        let column = |name: &str| {
+            let body = *self.tree.by_joint.get(name)?;
+            let link = self.tree.bodies[body].link;
+            self.freedoms
+                .iter()
+                .position(|freedom| freedom.link == link)
         };
-        for coupling in &robot.couplings {
-            rows.coupled(coupling);
+        let row = |begins: bool| {
+            let value = |name: &str| {
+                let body = self
+                    .tree
+                    .by_joint
+                    .get(name)
+                    .map(|body| &self.tree.bodies[*body]);
+                body.map_or(0.0, |body| {
+                    if begins {
+                        body.joint.start()
+                    } else {
+                        body.joint.zero + anywhere(body.link)
+                    }
+                })
+            };
+            let mut row = vec![0.0; self.freedoms.len()];
+            let mut add = |sum: &Sum, by: f64| {
+                for (name, factor) in &sum.terms {
+                    if let Some(column) = column(name) {
+                        row[column] += by * factor;
+                    }
+                }
+            };
+            add(&coupling.follows, 1.0);
+            if let Some(other) = &coupling.other {
+                let x = other.at(value) - coupling.zeros[1];
+                // By Horner's rule, from the highest power on.
+                let powers = coupling.coefficients.iter().enumerate().skip(1).rev();
+                let slope =
+                    powers.fold(0.0, |sum, (power, factor)| sum * x + factor * power as f64);
+                add(other, -slope);
+            }
+            row
+        };
+        let preferred = match coupling.follows.terms.as_slice() {
+            [(name, _)] => column(name),
+            _ => None,
+        };
+        Row {
+            of: Of::Coupling(index),
+            anywhere: row(false),
+            start: row(true),
+            preferred,
+        }
+    }
+
+    /// The points that a connection makes meet, without their equations.
+    fn meetings(&self, connection: &Connection) -> Vec<Meeting> {
+        let along = self.along(connection);
+        let points = connection.points().into_iter();
+        points
+            .map(|offset| Meeting {
+                ends: connection
+                    .ends_at(offset)
+                    .map(|(link, at)| self.on_body(link, at)),
+                along,
+                rows: Vec::new(),
+            })
+            .collect()
+    }
+
+    /// The body that carries both ends, along whose axes the equations are written.
+    fn along(&self, connection: &Connection) -> Option<usize> {
+        let shared = self.carrier_of_both(connection.links());
+        shared.and_then(|link| self.tree.body_of[link])
+    }
+
+    /// The rows of a connection.
+    fn rows(&self, index: usize, connection: &Connection, meetings: &[Meeting]) -> Vec<Row> {
+        let shared = self.carrier_of_both(connection.links());
+        let along = self.along(connection);
+        let mut rows = Vec::new();
+        for (meeting, offset) in (0..meetings.len()).zip(connection.points()) {
+            let ends = connection.ends_at(offset);
+            for axis in 0..3 {
+                let row = |poses: &[Pose]| {
+                    let turned = along.map_or(Rotation::IDENTITY, |body| self.axes(body, poses));
+                    let direction = turned.0.map(|row| row[axis]);
+                    let mut row = vec![0.0; self.freedoms.len()];
+                    for (sign, end) in [(1.0, ends[0]), (-1.0, ends[1])] {
+                        self.add_slopes(&mut row, sign, end, direction, shared, poses);
+                    }
+                    row
+                };
+                rows.push(Row {
+                    of: Of::Meeting(index, meeting, axis),
+                    anywhere: row(&self.anywhere),
+                    start: row(&self.start),
+                    preferred: None,
+                });
+            }
         }
         rows
-    }
-
-    /// The follower of a coupling follows.
-    fn coupled(&mut self, coupling: &Coupling) {
-        let column = |name: &str| {
-            let named = |f: &Follower| self.tree.bodies[f.body].joint.name == name;
-            self.columns.iter().position(named)
-        };
-        let Some(own) = column(&coupling.joint) else {
-            return;
-        };
-        let mut row = vec![0.0; self.columns.len()];
-        row[own] = 1.0;
-        if let Some(other) = coupling.other.as_deref().and_then(column) {
-            row[other] = -coupling.coefficients.get(1).copied().unwrap_or(0.0);
-        }
-        self.known.push((own, row));
-    }
-
-    fn of(&mut self, connection: &Connection) -> Vec<Meeting> {
-        let ends = connection.ends;
-        let shared = self.carrier_of_both(ends.map(|(link, _)| link));
-        let along = shared.and_then(|link| self.body_of(link));
-        let turned = along.map_or(Rotation::IDENTITY, |body| self.axes(body, &self.near));
-        let mut meetings = Vec::new();
-        for offset in connection.points() {
-            let mut rows = Vec::new();
-            // The second end is where the first is while all is as drawn.
-            let first = (ends[0].0, add(ends[0].1, offset));
-            let met = place(first, &self.drawn);
-            let second = (
-                ends[1].0,
-                match connection.second {
-                    Some(pose) => pose.of(first.1),
-                    None => self.within(ends[1].0, met),
-                },
-            );
-            for axis in 0..3 {
-                let direction = turned.0.map(|row| row[axis]);
-                let mut row = vec![0.0; self.columns.len()];
-                for (sign, end) in [(1.0, first), (-1.0, second)] {
-                    self.add_slopes(&mut row, sign, end, direction, shared);
-                }
-                match self.follower(row) {
-                    Some(follower) if self.turns(follower) => self.refuse(connection, follower),
-                    Some(follower) => rows.push((axis, follower)),
-                    None => {}
-                }
-            }
-            if !rows.is_empty() {
-                let ends = [first, second].map(|(link, at)| self.on_body(link, at));
-                meetings.push(Meeting { ends, along, rows });
-            }
-        }
-        meetings
     }
 
     /// Adds how a point of a link moves along a direction with every coordinate behind the link that carries
@@ -146,75 +275,68 @@ impl<'a> Rows<'a> {
         end: (Option<usize>, Vector),
         direction: Vector,
         shared: Option<usize>,
+        poses: &[Pose],
     ) {
-        let end_at = place(end, &self.near);
-        let mut at = end.0;
-        while let Some(index) = at.filter(|_| at != shared) {
-            let link = &self.robot.links[index];
-            let found = (self.tree.bodies.iter()).position(|body| body.link == index);
-            if let (Some(joint), Some(body)) = (&link.joint, found) {
-                let pose = self.near[index];
-                let axis = pose.rotation.of(joint.axis);
-                for (column, slope) in self.columns.iter().zip(row.iter_mut()) {
-                    if column.body != body {
-                        continue;
-                    }
-                    let velocity = match joint.motion {
-                        Motion::Turning => cross(axis, minus(end_at, pose.of(joint.anchor))),
-                        Motion::Sliding => axis,
-                        Motion::Free if column.component < 3 => {
-                            Rotation::IDENTITY.0[column.component]
-                        }
-                        Motion::Free | Motion::Ball => {
-                            let axis = pose.rotation.0.map(|row| row[column.component % 3]);
-                            cross(axis, minus(end_at, pose.of(joint.anchor)))
-                        }
-                    };
-                    *slope += sign * dot(velocity, direction);
-                }
+        let end_at = place(end, poses);
+        let behind = std::iter::successors(end.0, |&link| self.robot.links[link].parent);
+        let behind: Vec<usize> = behind.take_while(|link| Some(*link) != shared).collect();
+        for (freedom, slope) in self.freedoms.iter().zip(row.iter_mut()) {
+            if behind.contains(&freedom.link) {
+                let velocity = freedom.twist(&self.robot.links, poses).at(end_at);
+                *slope += sign * dot(velocity, direction);
             }
-            at = link.parent;
         }
     }
 
-    /// The coordinate that follows from a row; none where the row says nothing new.
-    fn follower(&mut self, mut row: Vec<f64>) -> Option<Follower> {
-        let length = |row: &[f64]| row.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
-        let whole = length(&row).max(NOTHING);
-        for (pivot, known) in &self.known {
-            let factor = row[*pivot] / known[*pivot];
-            for (entry, known) in row.iter_mut().zip(known) {
-                *entry -= factor * known;
-            }
-        }
-        let follows = |column: usize| self.known.iter().any(|(pivot, _)| *pivot == column);
-        let weight = |column: usize| {
-            if self.turns(self.columns[column]) {
-                return 0.0;
-            }
-            let joint = &self.tree.bodies[self.columns[column].body].joint.name;
-            let driven = self.robot.driven.contains(joint);
-            row[column].abs() * if driven { DRIVEN } else { 1.0 }
+    /// The follower of each row: couplings have theirs, the others those that pivoting finds where the motion begins, or,
+    /// where some rows say nothing there, anywhere.
+    fn pivots(&self, rows: &[Row]) -> Vec<usize> {
+        let weights: Vec<f64> = (0..self.freedoms.len())
+            .map(|column| self.weight(column))
+            .collect();
+        let preferred: Vec<Option<usize>> = rows.iter().map(|row| row.preferred).collect();
+        let of = |which: fn(&Row) -> &Vec<f64>| {
+            let own: Vec<&Vec<f64>> = rows.iter().map(which).collect();
+            let all = own.iter().map(|row| (*row).clone()).collect();
+            let (pivots, _) = eliminated(all, &preferred, &weights)?;
+            Some(matched(&own, &pivots))
         };
-        let open = (0..row.len())
-            .filter(|&column| !follows(column) && row[column].abs() > NOTHING * whole);
-        let pivot = open.max_by(|&a, &b| weight(a).total_cmp(&weight(b)))?;
-        self.known.push((pivot, row));
-        Some(self.columns[pivot])
+        of(|row| &row.start)
+            .or_else(|| of(|row| &row.anywhere))
+            .unwrap_or_default()
+    }
+
+    /// How gladly a freedom follows.
+    fn weight(&self, freedom: usize) -> f64 {
+        let joint = self.robot.links[self.freedoms[freedom].link].joint.as_ref();
+        match joint {
+            _ if self.turns(freedom) => 0.0,
+            Some(joint) if self.robot.driven.contains(&joint.name) => DRIVEN,
+            _ => 1.0,
+        }
     }
 
     /// Whether a way to move is a turn of what has no angle.
-    fn turns(&self, way: Follower) -> bool {
-        match self.tree.bodies[way.body].joint.motion {
-            Motion::Turning | Motion::Sliding => false,
-            Motion::Free => way.component >= 3,
-            Motion::Ball => true,
+    fn turns(&self, freedom: usize) -> bool {
+        let Freedom { link, component } = self.freedoms[freedom];
+        match self.robot.links[link]
+            .joint
+            .as_ref()
+            .map(|joint| joint.motion)
+        {
+            Some(Motion::Free) => component >= 3,
+            Some(Motion::Ball) => true,
+            _ => false,
         }
     }
 
-    fn refuse(&self, connection: &Connection, follower: Follower) {
+    fn refuse(&self, of: &Of, follower: Follower, findings: &Findings) {
+        let Of::Meeting(connection, ..) = of else {
+            return;
+        };
+        let connection = &self.robot.connections[*connection];
         let joint = &self.tree.bodies[follower.body].joint.name;
-        self.findings.error(
+        findings.error(
             Code::NotAllowedHere,
             connection.place.clone(),
             format!(
@@ -223,6 +345,32 @@ impl<'a> Rows<'a> {
             ),
             "connect by a point what a ball joint or a free joint turns, or use hinges",
         );
+    }
+
+    /// A joint along which nothing has inertia, whatever follows it, has no equation of motion.
+    fn refuse_what_has_no_mass(&self, rows: &[Row], pivots: &[usize], findings: &Findings) {
+        let links = &self.robot.links;
+        if findings.has_errors() || self.freedoms.len() > mass::MOST_FREEDOMS {
+            return;
+        }
+        let m = mass::matrix(links, &self.robot.tendons, anywhere);
+        let preferred: Vec<Option<usize>> = pivots.iter().copied().map(Some).collect();
+        let all = rows.iter().map(|row| row.anywhere.clone()).collect();
+        let Some((pivots, rows)) = eliminated(all, &preferred, &vec![1.0; self.freedoms.len()])
+        else {
+            return;
+        };
+        let rows: Vec<(usize, Vec<f64>)> = pivots.into_iter().zip(rows).collect();
+        if let Some(freedom) = mass::without_inertia(&m, &rows) {
+            let body = &self.tree.bodies[self.follower(freedom).body];
+            let (link, joint) = (&links[body.link].name, &body.joint.name);
+            findings.error(
+                Code::SingularMassMatrix,
+                links[body.link].place.clone(),
+                format!("`{link}` moves by joint `{joint}` but has no inertia along it, nor has anything on it"),
+                "give it a mass and an inertia, or make the joint fixed, as `--lock` does",
+            );
+        }
     }
 
     /// The last link that carries both; none is the ground.
@@ -234,29 +382,16 @@ impl<'a> Rows<'a> {
         first.into_iter().find(|link| second.contains(link))
     }
 
-    fn body_of(&self, link: usize) -> Option<usize> {
-        let holds = |body: &crate::tree::Body| body.parts.iter().any(|part| part.link == link);
-        self.tree.bodies.iter().position(holds)
-    }
-
     /// Directions of the axes of a body's frame.
     fn axes(&self, body: usize, poses: &[Pose]) -> Rotation {
         let moved = &self.tree.bodies[body];
         poses[moved.link].rotation.then(moved.own)
     }
 
-    /// A place as a link has it while all is as drawn.
-    fn within(&self, link: Option<usize>, place: Vector) -> Vector {
-        link.map_or(place, |link| {
-            let pose = self.drawn[link];
-            pose.rotation.inverse().of(minus(place, pose.position))
-        })
-    }
-
     /// A point of a link as its body has it.
     fn on_body(&self, link: Option<usize>, at: Vector) -> (Option<usize>, Vector) {
         let at = place((link, at), &self.drawn);
-        let Some(body) = link.and_then(|link| self.body_of(link)) else {
+        let Some(body) = link.and_then(|link| self.tree.body_of[link]) else {
             return (None, at);
         };
         let moved = &self.tree.bodies[body];
@@ -270,36 +405,28 @@ impl<'a> Rows<'a> {
     }
 }
 
+impl Connection {
+    /// The links that it connects.
+    fn links(&self) -> [Option<usize>; 2] {
+        self.ends.map(|(link, _)| link)
+    }
+
+    /// A point of the first end, shifted in its frame, and the point of the second that it meets.
+    fn ends_at(&self, offset: Vector) -> [(Option<usize>, Vector); 2] {
+        let [(first, at), (second, _)] = self.ends;
+        let at = add(at, offset);
+        [(first, at), (second, self.second.of(at))]
+    }
+}
+
 /// Where a point of a link is.
 fn place((link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
     link.map_or(at, |link| poses[link].of(at))
 }
 
-/// Poses of all links where joints with an axis have moved by some way from how they are drawn.
-fn poses(links: &[Link], moved: impl Fn(usize) -> f64) -> Vec<Pose> {
-    let mut poses: Vec<Pose> = Vec::with_capacity(links.len());
-    for (index, link) in links.iter().enumerate() {
-        let on = link.parent.map_or(Pose::IDENTITY, |parent| poses[parent]);
-        let mut pose = on.then(link.pose);
-        if let Some(joint) = &link.joint {
-            let way = moved(index);
-            match joint.motion {
-                Motion::Turning => {
-                    let rotation = Rotation::about_vector(joint.axis, way);
-                    let position = minus(joint.anchor, rotation.of(joint.anchor));
-                    pose = pose.then(Pose { rotation, position });
-                }
-                Motion::Sliding => {
-                    let position = scaled(joint.axis, 0.1 * way);
-                    pose = pose.then(Pose {
-                        rotation: Rotation::IDENTITY,
-                        position,
-                    });
-                }
-                Motion::Ball | Motion::Free => {}
-            }
-        }
-        poses.push(pose);
-    }
-    poses
+/// The pose of one link in another while all is as drawn; none is the ground.
+pub(crate) fn drawn(links: &[Link], [first, second]: [Option<usize>; 2]) -> Pose {
+    let poses = poses(links, |_| 0.0);
+    let of = |link: Option<usize>| link.map_or(Pose::IDENTITY, |link| poses[link]);
+    of(second).inverse().then(of(first))
 }

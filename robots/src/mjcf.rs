@@ -1,51 +1,54 @@
 //! MJCF: bodies within bodies, with joints and geoms, and defaults by class.
 
+mod compiler;
 mod defaults;
 mod equality;
 mod geoms;
 mod joints;
 mod meshes;
 mod orientation;
+mod schema;
+mod tendons;
+
+use std::collections::{BTreeMap, BTreeSet};
 
 use appell_spec::{Code, did_you_mean};
 
 use crate::includes::Whole;
 use crate::inertia::Inertia;
+use crate::mass;
 use crate::model::{LeftOut, Link, Robot};
+use crate::options::Options;
 use crate::rotation::{Pose, Rotation, Vector};
-use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
+use crate::without::Without;
+use crate::xml::{Element, Findings, Span, child, children, elements, exactly, tag};
 
+use compiler::{Compiler, InertiaFrom};
 use defaults::Defaults;
 use equality::Equality;
-use orientation::Angles;
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
-/// Sections that say nothing about masses and joints.
-const ELSEWHERE: &[&str] = &["compiler", "option", "default", "worldbody", "equality"];
+/// Sections that are read elsewhere.
+const ELSEWHERE: &[&str] = &[
+    "compiler",
+    "option",
+    "default",
+    "asset",
+    "worldbody",
+    "equality",
+    "tendon",
+    "actuator",
+    "size",
+    "statistic",
+    "visual",
+    "extension",
+    "deformable",
+];
 /// What stands in a body beside those that are read.
-const READ: &[&str] = &["body", "joint", "geom", "inertial", "frame", "freejoint"];
+const READ: &[&str] = &["joint", "inertial", "freejoint"];
 /// Elements that change the tree, and are not read.
 const NOT_YET: &[&str] = &["replicate", "composite", "flexcomp", "attach"];
-
-/// How the file is to be read.
-pub(crate) struct Compiler {
-    pub(crate) angles: Angles,
-    /// Whether a range makes a limit.
-    autolimits: bool,
-    inertia_from: InertiaFrom,
-    /// Mass to which that of the whole robot is scaled.
-    total_mass: Option<f64>,
-}
-
-/// Where the inertia of a body comes from.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum InertiaFrom {
-    /// `inertial`, or the geoms where there is none.
-    Either,
-    Geoms,
-    Inertial,
-}
 
 /// What all parts of the reader share.
 pub(crate) struct Reader<'x, 'f> {
@@ -53,7 +56,17 @@ pub(crate) struct Reader<'x, 'f> {
     compiler: Compiler,
     defaults: Defaults<'x>,
     links: Vec<Link>,
+    /// Links by the names of their joints with an axis.
+    joint_links: BTreeMap<String, usize>,
+    /// Names of bodies and joints.
+    names: BTreeSet<(&'static str, String)>,
+    /// Link and pose of sites.
+    sites: BTreeMap<String, (Option<usize>, Pose)>,
     left_out: Vec<LeftOut>,
+    /// Geoms that could touch others.
+    touching: Vec<Span>,
+    /// Whether a body that moves has been read.
+    moves: bool,
     root: Element<'x>,
     /// The file, and those that it names.
     whole: &'f Whole<'f>,
@@ -69,16 +82,27 @@ struct Level<'x> {
 }
 
 /// Reads `<mujoco>`.
-pub(crate) fn read(root: Element<'_>, findings: &Findings, whole: &Whole<'_>) -> Robot {
+pub(crate) fn read(
+    root: Element<'_>,
+    findings: &Findings,
+    whole: &Whole<'_>,
+    options: &Options,
+) -> Robot {
     let mut reader = Reader {
         findings,
-        compiler: compiler(root, findings),
+        compiler: Compiler::read(root, findings),
         defaults: Defaults::new(root, findings),
         links: Vec::new(),
+        joint_links: BTreeMap::new(),
+        names: BTreeSet::new(),
+        sites: BTreeMap::new(),
         left_out: Vec::new(),
+        touching: Vec::new(),
+        moves: false,
         root,
         whole,
     };
+    schema::check(root, findings, &mut reader.left_out);
     let ground = Level {
         parent: None,
         pose: Pose::IDENTITY,
@@ -89,7 +113,7 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings, whole: &Whole<'_>) ->
             "worldbody" => reader.level(section, ground),
             name if NOT_YET.contains(&name) => reader.not_yet(section),
             name if ELSEWHERE.contains(&name) => {}
-            name => reader.leave_out_section(section, name),
+            name => reader.leave_out_of(name, section),
         }
     }
     if reader.links.is_empty() {
@@ -103,23 +127,72 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings, whole: &Whole<'_>) ->
     if let Some(total) = reader.compiler.total_mass {
         reader.scale_to(total);
     }
+    let mut tendons = reader.tendons();
+    reader.drives(&mut tendons);
+    if !mass::settle(&mut reader.links, &tendons) {
+        findings.error(
+            Code::LimitExceeded,
+            tag(root),
+            format!(
+                "`springdamper` is read of robots with at most {} freedoms",
+                mass::MOST_FREEDOMS
+            ),
+            "write `stiffness` and `damping`",
+        );
+    }
+    let is_off = |flag: &str| schema::disabled(root, flag);
+    let free = is_off("equality") || is_off("constraint");
     let Equality {
         couplings,
         connections,
-    } = equality::read(root, &mut reader);
-    Robot {
+    } = if free || options.without.contains(&Without::Couplings) {
+        Equality::default()
+    } else {
+        equality::read(root, &mut reader, &tendons)
+    };
+    if !(is_off("contact") || is_off("constraint")) {
+        reader.leave_out_contacts();
+    }
+    let mut robot = Robot {
         name: root.attribute("model").unwrap_or("robot").to_owned(),
-        gravity: gravity(root, findings),
+        gravity: if is_off("gravity") {
+            [0.0; 3]
+        } else {
+            gravity(root, findings)
+        },
         links: reader.links,
         couplings,
+        tendons,
         connections,
         driven: driven(root),
         left_out: reader.left_out,
+    };
+    for one in switched_off(&is_off) {
+        one.apply(&mut robot);
     }
+    robot
+}
+
+/// What flags of `option` leave out.
+fn switched_off(is_off: &dyn Fn(&str) -> bool) -> Vec<Without> {
+    let passive = is_off("passive");
+    let (springs, dampers) = (passive || is_off("spring"), passive || is_off("damper"));
+    let constraint = is_off("constraint");
+    let all = [
+        (springs, Without::Springs),
+        (dampers, Without::Damping),
+        // Without springs and dampers no passive force is left.
+        (springs && dampers, Without::Compensation),
+        (constraint || is_off("frictionloss"), Without::Friction),
+        (constraint || is_off("limit"), Without::Limits),
+    ];
+    all.into_iter()
+        .filter_map(|(off, what)| off.then_some(what))
+        .collect()
 }
 
 /// Joints that actuators drive, by tendons or by themselves.
-fn driven(root: Element<'_>) -> Vec<String> {
+fn driven(root: Element<'_>) -> BTreeSet<String> {
     let sections = ["actuator", "tendon"].into_iter();
     let drives = sections.flat_map(|section| children(root, section));
     let named = drives.flat_map(|drive| drive.descendants());
@@ -135,82 +208,6 @@ fn gravity(root: Element<'_>, findings: &Findings) -> Vector {
     read.last().unwrap_or(GRAVITY)
 }
 
-fn compiler(root: Element<'_>, findings: &Findings) -> Compiler {
-    let mut compiler = Compiler {
-        angles: Angles::default(),
-        autolimits: true,
-        inertia_from: InertiaFrom::Either,
-        total_mass: None,
-    };
-    for element in children(root, "compiler") {
-        let word = |key: &str, words: &[&str]| -> Option<usize> {
-            let given = element.attribute_node(key)?;
-            let found = words.iter().position(|word| *word == given.value());
-            if found.is_none() {
-                findings.error(
-                    Code::UnknownWord,
-                    given.range_value(),
-                    format!("`{key}` cannot be `{}`", appell_spec::shown(given.value())),
-                    did_you_mean(given.value(), words.iter().copied(), || {
-                        format!("write {}", words.join(" or "))
-                    }),
-                );
-            }
-            found
-        };
-        if let Some(unit) = word("angle", &["degree", "radian"]) {
-            compiler.angles.degrees = unit == 0;
-        }
-        if let Some(on) = word("autolimits", &["false", "true"]) {
-            compiler.autolimits = on == 1;
-        }
-        if let Some(from) = word("inertiafromgeom", &["auto", "true", "false"]) {
-            compiler.inertia_from = [
-                InertiaFrom::Either,
-                InertiaFrom::Geoms,
-                InertiaFrom::Inertial,
-            ][from];
-        }
-        if word("coordinate", &["local", "global"]) == Some(1) {
-            let help = "global coordinates were removed from the format: save the file anew with MuJoCo 2.3 or older";
-            findings.error(
-                Code::NotAllowedHere,
-                tag(element),
-                "`coordinate=\"global\"` is not read",
-                help,
-            );
-        }
-        if let Some(given) = element.attribute_node("eulerseq") {
-            compiler.angles.read_sequence(&given, findings);
-        }
-        if let Some(given) = element.attribute_node("settotalmass")
-            && let Some([total]) = exactly(findings, &given, "`settotalmass`")
-            && total > 0.0
-        {
-            compiler.total_mass = Some(total);
-        }
-        for key in [
-            "boundmass",
-            "boundinertia",
-            "balanceinertia",
-            "inertiagrouprange",
-        ] {
-            if let Some(given) = element.attribute_node(key)
-                && !["0", "false"].contains(&given.value())
-            {
-                let help = "masses and inertias are taken as they are in the file";
-                findings.warning(
-                    Code::NotAllowedHere,
-                    given.range(),
-                    format!("`{key}` is not applied"),
-                    help,
-                );
-            }
-        }
-    }
-    compiler
-}
-
 impl<'x> Reader<'x, '_> {
     fn leave_out(&mut self, what: String, element: Element<'_>) {
         let keys = ["name", "joint", "class"];
@@ -218,19 +215,40 @@ impl<'x> Reader<'x, '_> {
         self.left_out.push(LeftOut {
             what,
             name: name.map(str::to_owned),
+            effect: schema::effect(element),
             place: tag(element),
         });
     }
 
-    fn leave_out_section(&mut self, section: Element<'_>, name: &str) {
+    /// Leaves out an element of a section, or all that a section holds.
+    fn leave_out_of(&mut self, section: &str, element: Element<'_>) {
+        if element.tag_name().name() != section {
+            let what = format!("{section}/{}", element.tag_name().name());
+            return self.leave_out(what, element);
+        }
         let mut empty = true;
-        for element in elements(section) {
-            self.leave_out(format!("{name}/{}", element.tag_name().name()), element);
+        for inner in elements(element) {
+            self.leave_out_of(section, inner);
             empty = false;
         }
         if empty {
-            self.leave_out(name.to_owned(), section);
+            self.leave_out(section.to_owned(), element);
         }
+    }
+
+    /// Contacts of geoms, which a spec would have to describe otherwise.
+    fn leave_out_contacts(&mut self) {
+        let touching = std::mem::take(&mut self.touching);
+        if touching.len() < 2 {
+            return;
+        }
+        self.left_out
+            .extend(touching.into_iter().map(|place| LeftOut {
+                what: "contacts of geoms".to_owned(),
+                name: None,
+                effect: Some(schema::TOUCH),
+                place,
+            }));
     }
 
     fn not_yet(&self, element: Element<'_>) {
@@ -249,6 +267,8 @@ impl<'x> Reader<'x, '_> {
         for inner in elements(element) {
             match inner.tag_name().name() {
                 "body" => self.body(inner, level),
+                "site" => self.site_at(inner, level),
+                "geom" => self.touch(inner, level.class),
                 "frame" => {
                     let pose = level.pose.then(self.pose(inner, None));
                     let class = self.class(inner, "childclass").or(level.class);
@@ -317,25 +337,23 @@ impl<'x> Reader<'x, '_> {
         let class = self.class(element, "childclass").or(level.class);
         let name = element.attribute("name");
         let name = name.map_or_else(|| format!("body{}", self.links.len() + 1), str::to_owned);
-        if self
-            .links
-            .iter()
-            .any(|link| link.written && link.name == name)
-        {
-            let message = format!("there are two bodies `{name}`");
-            self.findings.error(
-                Code::DuplicateName,
-                tag(element),
-                message,
-                "rename one of them",
-            );
-        }
+        self.refuse_twice("bodies", &name, tag(element));
         let joints = self.joints(element, &name, class);
-        let inertia = self.inertia(element, &name, class, !joints.is_empty());
+        for joint in &joints {
+            self.refuse_twice("joints", &joint.name, joint.place.clone());
+        }
+        self.moves |= !joints.is_empty();
+        let inertia = self.inertia(element, &name, class);
         let carried = element.attribute_node("gravcomp");
         let carried = carried.and_then(|given| exactly(self.findings, &given, "`gravcomp`"));
         let own = Link::fixed(name, level.parent, pose, tag(element));
+        let from = self.links.len();
         let here = own.moved_by(joints, &mut self.links);
+        for (index, link) in self.links.iter().enumerate().skip(from) {
+            if let Some(joint) = link.joint.as_ref().filter(|joint| joint.motion.has_axis()) {
+                self.joint_links.insert(joint.name.clone(), index);
+            }
+        }
         self.links[here].inertia = inertia;
         self.links[here].carried = carried.map_or(0.0, |[share]: [f64; 1]| share);
         let inside = Level {
@@ -346,25 +364,35 @@ impl<'x> Reader<'x, '_> {
         self.level(element, inside);
     }
 
+    /// Names of one kind are different.
+    fn refuse_twice(&mut self, kind: &'static str, name: &str, place: Span) {
+        if !self.names.insert((kind, name.to_owned())) {
+            let message = format!("there are two {kind} `{name}`");
+            self.findings
+                .error(Code::DuplicateName, place, message, "rename one of them");
+        }
+    }
+
+    /// Keeps where a site is; they are drawn marks where nothing names them.
+    fn site_at(&mut self, element: Element<'x>, level: Level<'x>) {
+        let class = self.class(element, "class").or(level.class);
+        let pose = level.pose.then(self.pose(element, Some(("site", class))));
+        if let Some(name) = element.attribute("name") {
+            self.sites.insert(name.to_owned(), (level.parent, pose));
+        }
+        self.leave_out("site".to_owned(), element);
+    }
+
     /// The inertia of a body in its frame.
-    fn inertia(
-        &mut self,
-        body: Element<'x>,
-        name: &str,
-        class: Option<&'x str>,
-        moves: bool,
-    ) -> Inertia {
+    fn inertia(&mut self, body: Element<'x>, name: &str, class: Option<&'x str>) -> Inertia {
         let inertial = child(body, "inertial");
         let from = self.compiler.inertia_from;
         let inertia = match inertial {
             Some(inertial) if from != InertiaFrom::Geoms => self.inertial(inertial),
             None if from == InertiaFrom::Inertial => Inertia::NONE,
-            _ => self.of_geoms(
-                body,
-                class,
-                moves || self.links.iter().any(|link| link.joint.is_some()),
-            ),
+            _ => self.of_geoms(body, class, self.moves),
         };
+        let inertia = self.compiler.corrected(inertia).without_rounding();
         if let Some(reason) = inertia.impossible() {
             self.findings.warning(
                 Code::NotPhysical,

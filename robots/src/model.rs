@@ -1,5 +1,7 @@
 //! A robot as its file has it: links in a tree, each with at most one joint.
 
+use std::collections::{BTreeMap, BTreeSet};
+
 use crate::inertia::Inertia;
 use crate::rotation::{Pose, Vector};
 use crate::xml::Span;
@@ -12,9 +14,10 @@ pub(crate) struct Robot {
     /// Parents stand before their children.
     pub(crate) links: Vec<Link>,
     pub(crate) couplings: Vec<Coupling>,
+    pub(crate) tendons: Vec<Tendon>,
     pub(crate) connections: Vec<Connection>,
     /// Joints that something drives.
-    pub(crate) driven: Vec<String>,
+    pub(crate) driven: BTreeSet<String>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
@@ -87,7 +90,19 @@ impl Motion {
     pub(crate) fn has_axis(self) -> bool {
         matches!(self, Self::Turning | Self::Sliding)
     }
+
+    /// In how many ways it moves.
+    pub(crate) fn freedoms(self) -> usize {
+        match self {
+            Self::Turning | Self::Sliding => 1,
+            Self::Ball => 3,
+            Self::Free => 6,
+        }
+    }
 }
+
+/// Factors of a quantity, its square and its cube. Damping has the signs of odd functions: a v + b v |v| + c v³.
+pub(crate) type Polynomial = [f64; 3];
 
 /// A joint.
 #[derive(Debug, Clone)]
@@ -102,17 +117,28 @@ pub(crate) struct Joint {
     pub(crate) zero: f64,
     pub(crate) range: Option<[f64; 2]>,
     /// Damping, with the rate.
-    pub(crate) damping: f64,
+    pub(crate) damping: Polynomial,
     /// Inertia of what turns with the joint alone.
     pub(crate) armature: f64,
     /// Dry friction.
     pub(crate) friction: f64,
-    pub(crate) stiffness: f64,
+    pub(crate) stiffness: Polynomial,
     /// The coordinate at which the spring is relaxed.
     pub(crate) relaxed: f64,
+    /// Time constant and damping ratio that its spring and its damping shall give it.
+    pub(crate) settles: Option<[f64; 2]>,
+    pub(crate) place: Span,
 }
 
 impl Joint {
+    /// The coordinate at which the motion begins: as it is drawn, if that is in its range.
+    pub(crate) fn start(&self) -> f64 {
+        match self.range {
+            Some([from, to]) if !(from..=to).contains(&self.zero) => f64::midpoint(from, to),
+            _ => self.zero,
+        }
+    }
+
     /// A joint without an axis, and without anything that resists it.
     pub(crate) fn without_axis(name: String, motion: Motion, anchor: Vector) -> Self {
         Self {
@@ -130,27 +156,76 @@ impl Joint {
             anchor: [0.0; 3],
             zero: 0.0,
             range: None,
-            damping: 0.0,
+            damping: [0.0; 3],
             armature: 0.0,
             friction: 0.0,
-            stiffness: 0.0,
+            stiffness: [0.0; 3],
             relaxed: 0.0,
+            settles: None,
+            place: 0..0,
         }
     }
 }
 
-/// A coordinate that follows from another one, or has one value.
+/// A sum of coordinates of joints with an axis, each with its factor, and a constant.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Sum {
+    pub(crate) terms: Vec<(String, f64)>,
+    pub(crate) constant: f64,
+}
+
+impl Sum {
+    /// The coordinate of a joint.
+    pub(crate) fn of(joint: &str) -> Self {
+        Self {
+            terms: vec![(joint.to_owned(), 1.0)],
+            constant: 0.0,
+        }
+    }
+
+    /// Gives coordinates their values.
+    pub(crate) fn fix(&mut self, values: &BTreeMap<String, f64>) {
+        for (name, factor) in &self.terms {
+            self.constant += values.get(name).map_or(0.0, |value| factor * value);
+        }
+        self.terms.retain(|(name, _)| !values.contains_key(name));
+    }
+
+    /// Its value where the coordinates have values.
+    pub(crate) fn at(&self, value: impl Fn(&str) -> f64) -> f64 {
+        let terms = self.terms.iter();
+        self.constant
+            + terms
+                .map(|(name, factor)| factor * value(name))
+                .sum::<f64>()
+    }
+}
+
+/// An equation between coordinates: what follows, less its value as drawn, is a polynomial of another sum less its own.
 #[derive(Debug)]
 pub(crate) struct Coupling {
     pub(crate) name: String,
-    /// The joint that follows.
-    pub(crate) joint: String,
-    /// The joint that it follows.
-    pub(crate) other: Option<String>,
+    pub(crate) follows: Sum,
+    pub(crate) other: Option<Sum>,
     /// Values of the two at which `coefficients` are taken.
     pub(crate) zeros: [f64; 2],
     /// The polynomial, from its constant on.
     pub(crate) coefficients: Vec<f64>,
+    pub(crate) place: Span,
+}
+
+/// A length that is a sum of coordinates, and what resists it.
+#[derive(Debug)]
+pub(crate) struct Tendon {
+    pub(crate) name: String,
+    pub(crate) length: Sum,
+    pub(crate) damping: Polynomial,
+    pub(crate) stiffness: Polynomial,
+    /// Lengths between which its spring is relaxed.
+    pub(crate) relaxed: [f64; 2],
+    pub(crate) friction: f64,
+    pub(crate) armature: f64,
+    pub(crate) place: Span,
 }
 
 /// Two links that meet, and close a loop of the tree.
@@ -159,8 +234,8 @@ pub(crate) struct Connection {
     pub(crate) name: String,
     /// The links, and a point of each, in its frame; no link is the ground.
     pub(crate) ends: [(Option<usize>, Vector); 2],
-    /// The pose of the first in the second; as they are drawn, where there is none.
-    pub(crate) second: Option<Pose>,
+    /// The pose of the first in the second.
+    pub(crate) second: Pose,
     /// Whether they do not turn against each other either.
     pub(crate) rigid: bool,
     pub(crate) place: Span,
@@ -183,5 +258,7 @@ pub(crate) struct LeftOut {
     /// Its element, such as `actuator/motor`.
     pub(crate) what: String,
     pub(crate) name: Option<String>,
+    /// How the motion differs without it, where it does.
+    pub(crate) effect: Option<&'static str>,
     pub(crate) place: Span,
 }

@@ -1,6 +1,6 @@
 //! Names of a file as names of a spec.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 
 use appell_spec::limits::MAX_NAME;
 
@@ -9,22 +9,31 @@ const ROOM: usize = 16;
 
 /// The names of one namespace.
 #[derive(Debug, Default)]
-pub(crate) struct Names(BTreeSet<String>);
+pub(crate) struct Names {
+    taken: BTreeSet<String>,
+    /// The last number behind a name.
+    counts: BTreeMap<String, usize>,
+}
 
 impl Names {
     /// A namespace in which some names are taken.
     pub(crate) fn without(taken: &[&str]) -> Self {
-        Self(taken.iter().map(|name| (*name).to_owned()).collect())
+        Self {
+            taken: taken.iter().map(|name| (*name).to_owned()).collect(),
+            counts: BTreeMap::new(),
+        }
     }
 
     /// A valid name, as close to `name` as possible, that nothing else has.
     pub(crate) fn new_one(&mut self, name: &str) -> String {
         let valid = legal(name);
         let mut candidate = valid.clone();
-        let mut count = 1;
-        while appell_spec::is_reserved(&candidate) || !self.0.insert(candidate.clone()) {
-            count += 1;
-            candidate = format!("{valid}_{count}");
+        let count = self.counts.entry(valid.clone()).or_insert(1);
+        while appell_spec::is_reserved(&candidate) || !self.taken.insert(candidate.clone()) {
+            *count += 1;
+            let number = format!("_{count}");
+            let kept = valid.len().min(MAX_NAME - number.len());
+            candidate = format!("{}{number}", &valid[..kept]);
         }
         candidate
     }

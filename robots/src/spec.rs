@@ -4,17 +4,21 @@ mod bodies;
 mod connections;
 mod joints;
 mod remarks;
+mod resistances;
+mod tendons;
 
-use appell_spec::limits::MAX_SENTENCE;
+use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
 use crate::format::Format;
 use crate::letters::{Numbers, Parameter};
-use crate::loops::Meeting;
-use crate::model::{LeftOut, Link, Motion, Robot};
+use crate::loops::Equations;
+use crate::model::{Link, Motion, Robot};
 use crate::names::{Names, short};
 use crate::options::Options;
 use crate::table::{Item, Section, quoted};
 use crate::tree::{Body, Tree};
+use crate::without::Without;
+use crate::xml::Span;
 
 /// What bodies and joints are called in the spec.
 struct Called {
@@ -40,6 +44,8 @@ pub(crate) struct Writer<'a> {
     /// That of frames, points and bodies, which are called by their links.
     places: Names,
     numbers: Numbers<'a>,
+    /// Names, points and masses of drives that have inertia, but no weight.
+    weightless: Vec<(String, String, String)>,
     coordinates: Section,
     inputs: Section,
     frames: Section,
@@ -54,6 +60,8 @@ pub(crate) struct Writer<'a> {
 /// A spec, and what was chosen in vain.
 pub(crate) struct Written {
     pub(crate) text: String,
+    /// Where lines begin, and where in the file of the robot they come from.
+    pub(crate) lines: Vec<(usize, Span)>,
     pub(crate) unused: Vec<String>,
     pub(crate) known: Vec<String>,
 }
@@ -64,31 +72,49 @@ pub(crate) fn write(
     format: Format,
     robot: &Robot,
     tree: &Tree,
-    meetings: &[(String, Vec<Meeting>)],
+    equations: &Equations,
     options: &Options,
 ) -> Written {
     // The folder may be another one where the spec is read.
     let file = file.rsplit('/').next().unwrap_or(file);
     let mut writer = Writer::new(robot, tree, options);
     let letters = writer.gravity(robot.gravity);
-    for index in 0..tree.bodies.len() {
+    writer.mark(&(0..0));
+    for (index, body) in tree.bodies.iter().enumerate() {
         writer.frame(index);
         writer.point(index);
         writer.body(index);
+        writer.mark(&robot.links[body.link].place);
         writer.joint(index);
+        writer.mark(&body.joint.place);
     }
-    writer.links_on_the_ground();
-    writer.links_on_bodies();
+    let count = tree
+        .bodies
+        .iter()
+        .map(|body| 2 + body.parts.len())
+        .sum::<usize>()
+        + tree.ground.len();
+    let all_points = count <= MAX_ITEMS && !options.without.contains(&Without::Points);
+    if all_points {
+        writer.links_on_the_ground();
+    }
+    writer.links_on_bodies(all_points);
+    writer.mark(&(0..0));
+    writer.connections(&robot.connections, equations);
+    writer.couplings(&robot.couplings, equations);
+    writer.speeds(equations);
     writer.carried(robot.gravity, &letters);
-    writer.connections(meetings);
-    writer.couplings(&robot.couplings, meetings);
+    writer.tendons(&robot.tendons);
     writer.ends();
+    writer.mark(&(0..0));
     let name = Names::default().new_one(&robot.name);
     let mut text = remarks::head(file, format.word(), robot, tree);
-    writer.mechanism(&name, &robot.name, file, &mut text);
+    let mut lines = Vec::new();
+    writer.mechanism(&name, &robot.name, file, &mut text, &mut lines);
     remarks::left_out(&robot.left_out, options, &mut text);
     Written {
         text,
+        lines,
         unused: writer
             .numbers
             .unused()
@@ -138,6 +164,7 @@ impl<'a> Writer<'a> {
             quantities,
             places,
             numbers: Numbers::new(&options.letters),
+            weightless: Vec::new(),
             coordinates: Section::default(),
             inputs: Section::default(),
             frames: Section::default(),
@@ -162,7 +189,51 @@ impl<'a> Writer<'a> {
         parent.map_or("O".to_owned(), |parent| self.called.points[parent].clone())
     }
 
-    fn mechanism(&self, name: &str, title: &str, file: &str, text: &mut String) {
+    /// Says where in the robot's file the items come from that were added since this was said last.
+    fn mark(&mut self, place: &Span) {
+        for section in [
+            &mut self.coordinates,
+            &mut self.inputs,
+            &mut self.frames,
+            &mut self.points,
+            &mut self.bodies,
+            &mut self.constraints,
+            &mut self.speeds,
+            &mut self.loads,
+            &mut self.outputs,
+        ] {
+            section.mark(place);
+        }
+    }
+
+    /// Speeds of the coordinates that follow from no equation.
+    fn speeds(&mut self, equations: &Equations) {
+        let mut followers: Vec<Vec<usize>> = vec![Vec::new(); self.tree.bodies.len()];
+        for follower in equations.followers() {
+            followers[follower.body].push(follower.component);
+        }
+        for (index, body) in self.tree.bodies.iter().enumerate() {
+            if !body.joint.motion.has_axis() {
+                self.several_speeds(index, &followers[index]);
+            } else if followers[index].is_empty() {
+                let q = &self.called.coordinates[index];
+                let name = self.quantities.new_one(&format!("v_{q}"));
+                let item = Item::default().text("value", &format!("dot({q})"));
+                let rate = joints::Units::of(body.joint.motion).rate;
+                self.speeds.add(&name, &item.text("unit", rate));
+            }
+            self.mark(&body.joint.place);
+        }
+    }
+
+    fn mechanism(
+        &self,
+        name: &str,
+        title: &str,
+        file: &str,
+        text: &mut String,
+        lines: &mut Vec<(usize, Span)>,
+    ) {
         let mut mechanism = Section::default();
         let count = self.tree.bodies.len();
         let joints = if count == 1 { "joint" } else { "joints" };
@@ -192,7 +263,7 @@ impl<'a> Writer<'a> {
             };
             parameters.add(name, &item);
         }
-        mechanism.write("mechanism", text);
+        mechanism.write("mechanism", text, lines);
         for (title, section) in [
             ("parameters", &parameters),
             ("coordinates", &self.coordinates),
@@ -205,7 +276,7 @@ impl<'a> Writer<'a> {
             ("loads", &self.loads),
             ("outputs", &self.outputs),
         ] {
-            section.write(title, text);
+            section.write(title, text, lines);
         }
     }
 
@@ -233,16 +304,4 @@ fn plus(expression: &str, number: &str) -> String {
             |number| format!("{expression} - {number}"),
         ),
     }
-}
-
-/// Kinds of what was left out, in the order of the file, with where.
-pub(crate) fn grouped(left_out: &[LeftOut]) -> Vec<(&str, Vec<&LeftOut>)> {
-    let mut groups: Vec<(&str, Vec<&LeftOut>)> = Vec::new();
-    for one in left_out {
-        match groups.iter_mut().find(|(what, _)| *what == one.what) {
-            Some((_, all)) => all.push(one),
-            None => groups.push((&one.what, vec![one])),
-        }
-    }
-    groups
 }

@@ -2,10 +2,16 @@
 
 use std::fmt::Write as _;
 
+use crate::names::Names;
+use crate::xml::Span;
+
 /// A section with its items.
 #[derive(Debug, Default)]
 pub(crate) struct Section {
     items: Vec<(String, String)>,
+    names: Names,
+    /// Where in the file of the robot the items come from, as far as that is known.
+    places: Vec<Span>,
 }
 
 /// Keys of an item, in order.
@@ -72,8 +78,10 @@ pub(crate) fn list(values: &[String]) -> String {
 }
 
 impl Section {
+    /// Adds an item, with a number behind its name where that is taken.
     pub(crate) fn add(&mut self, name: &str, item: &Item) {
-        self.items.push((name.to_owned(), item.table()));
+        let name = self.names.new_one(name);
+        self.items.push((name, item.table()));
     }
 
     /// Adds a key whose value is no table.
@@ -81,8 +89,13 @@ impl Section {
         self.items.push((name.to_owned(), value));
     }
 
-    /// Writes the section, unless it is empty.
-    pub(crate) fn write(&self, title: &str, to: &mut String) {
+    /// Says where the items come from that were added since this was said last.
+    pub(crate) fn mark(&mut self, place: &Span) {
+        self.places.resize(self.items.len(), place.clone());
+    }
+
+    /// Writes the section, unless it is empty; keeps for each line where it begins and where it comes from.
+    pub(crate) fn write(&self, title: &str, to: &mut String, lines: &mut Vec<(usize, Span)>) {
         if self.items.is_empty() {
             return;
         }
@@ -93,7 +106,12 @@ impl Section {
             .max()
             .unwrap_or(0);
         let _ = writeln!(to, "\n[{title}]");
-        for (name, value) in &self.items {
+        for (index, (name, value)) in self.items.iter().enumerate() {
+            lines.extend(
+                self.places
+                    .get(index)
+                    .map(|place| (to.len(), place.clone())),
+            );
             let _ = writeln!(to, "{name:width$} = {value}");
         }
     }

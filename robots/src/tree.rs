@@ -1,5 +1,7 @@
 //! From links to bodies: what is fixed together is one, and its frame has an axis along the axis of its joint.
 
+use std::collections::BTreeMap;
+
 use appell_spec::Code;
 
 use crate::inertia::{Inertia, position_without_rounding};
@@ -13,6 +15,10 @@ pub(crate) struct Tree {
     pub(crate) bodies: Vec<Body>,
     /// Links that are fixed to the ground.
     pub(crate) ground: Vec<Part>,
+    /// By link: the body that it belongs to, unless that is the ground.
+    pub(crate) body_of: Vec<Option<usize>>,
+    /// Bodies by the names of joints with an axis.
+    pub(crate) by_joint: BTreeMap<String, usize>,
 }
 
 /// A link that belongs to a body.
@@ -64,6 +70,8 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
     let mut tree = Tree {
         bodies: Vec::new(),
         ground: Vec::new(),
+        body_of: Vec::new(),
+        by_joint: BTreeMap::new(),
     };
     let mut seats: Vec<Seat> = Vec::new();
     for (index, link) in links.iter().enumerate() {
@@ -94,6 +102,17 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
         };
         seats.push(seat);
         let inertia = link.inertia.placed(seat.pose);
+        if !inertia.is_finite() || !pose.position.iter().all(|one| one.is_finite()) {
+            findings.error(
+                Code::NotFinite,
+                link.place.clone(),
+                format!(
+                    "place or inertia of `{}` are too large for a number",
+                    link.name
+                ),
+                "give lengths in m, masses in kg",
+            );
+        }
         let part = Part {
             link: index,
             position: position_without_rounding(seat.pose.position),
@@ -108,7 +127,14 @@ pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
             }
         }
     }
-    tree.refuse_what_has_no_mass(links, findings);
+    tree.body_of = seats.into_iter().map(|seat| seat.body).collect();
+    for (index, body) in tree.bodies.iter().enumerate() {
+        if body.joint.motion.has_axis() {
+            tree.by_joint
+                .entry(body.joint.name.clone())
+                .or_insert(index);
+        }
+    }
     tree
 }
 
@@ -162,33 +188,6 @@ impl Tree {
         Seat {
             body: Some(self.bodies.len() - 1),
             pose: within,
-        }
-    }
-
-    /// A joint with nothing behind it that has inertia has no equation of motion.
-    fn refuse_what_has_no_mass(&self, links: &[Link], findings: &Findings) {
-        let mut moves: Vec<bool> = self
-            .bodies
-            .iter()
-            .map(|body| !body.inertia.is_nothing())
-            .collect();
-        for index in (0..self.bodies.len()).rev() {
-            let body = &self.bodies[index];
-            if moves[index] {
-                if let Some(parent) = body.parent {
-                    moves[parent] = true;
-                }
-            } else if body.joint.armature == 0.0 {
-                let (link, joint) = (&links[body.link].name, &body.joint.name);
-                findings.error(
-                    Code::SingularMassMatrix,
-                    links[body.link].place.clone(),
-                    format!(
-                        "`{link}` moves by joint `{joint}` but has no mass, nor has anything on it"
-                    ),
-                    "give it a mass and an inertia, or make the joint fixed",
-                );
-            }
         }
     }
 }

@@ -1,12 +1,14 @@
 //! URDF: links, and joints that name their parent and child.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use appell_spec::{Code, did_you_mean};
 
 use crate::inertia::Inertia;
-use crate::model::{Coupling, Joint, LeftOut, Link, Motion, Robot};
+use crate::model::{Coupling, Joint, LeftOut, Link, Motion, Robot, Sum};
+use crate::options::Options;
 use crate::rotation::{Axis, Pose, Rotation, Vector, unit};
+use crate::without::Without;
 use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
@@ -23,7 +25,7 @@ struct Connection<'x> {
 }
 
 /// Reads `<robot>`.
-pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
+pub(crate) fn read(root: Element<'_>, findings: &Findings, options: &Options) -> Robot {
     let mut left_out = Vec::new();
     let links: Vec<Element<'_>> = children(root, "link").collect();
     let mut by_name = BTreeMap::new();
@@ -49,7 +51,14 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
         );
     }
     let inertias: Vec<Inertia> = links.iter().map(|link| inertia(*link, findings)).collect();
-    let (connections, couplings) = joints(root, &by_name, findings);
+    let (connections, joints_by_name) = joints(root, &by_name, findings);
+    let couplings = if options.without.contains(&Without::Couplings) {
+        Vec::new()
+    } else {
+        let all = children(root, "joint");
+        all.filter_map(|element| mimic(element, &joints_by_name, findings))
+            .collect()
+    };
     for element in elements(root) {
         match element.tag_name().name() {
             "joint" => {
@@ -64,8 +73,9 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings) -> Robot {
         gravity: GRAVITY,
         links: tree(&links, &inertias, connections, findings),
         couplings,
+        tendons: Vec::new(),
         connections: Vec::new(),
-        driven: Vec::new(),
+        driven: BTreeSet::new(),
         left_out,
     }
 }
@@ -107,6 +117,7 @@ fn omitted(element: Element<'_>, what: String) -> LeftOut {
     LeftOut {
         what,
         name: name.map(str::to_owned),
+        effect: None,
         place: tag(element),
     }
 }
@@ -187,7 +198,9 @@ fn inertia(link: Element<'_>, findings: &Findings) -> Inertia {
         mass: number(mass, "value", 0.0, findings),
         centre: [0.0; 3],
         tensor: entries.map(|key| number(tensor, key, 0.0, findings)),
-    };
+    }
+    .placed(pose)
+    .without_rounding();
     if let Some(reason) = own.impossible() {
         let link = link.attribute("name").unwrap_or_default();
         let at = if own.mass < 0.0 { mass } else { tensor };
@@ -198,17 +211,16 @@ fn inertia(link: Element<'_>, findings: &Findings) -> Inertia {
             "it is taken as it is; the motion is right wherever the mass matrix is positive definite",
         );
     }
-    own.placed(pose)
+    own
 }
 
-/// The joints, and the couplings that they mention.
+/// The joints, and their elements by their names.
 fn joints<'x>(
     root: Element<'x>,
     links: &BTreeMap<&str, usize>,
     findings: &Findings,
-) -> (Vec<Connection<'x>>, Vec<Coupling>) {
+) -> (Vec<Connection<'x>>, BTreeMap<&'x str, Element<'x>>) {
     let mut connections = Vec::new();
-    let mut couplings = Vec::new();
     let mut names = BTreeMap::new();
     for element in children(root, "joint") {
         let Some(name) = name(element, findings) else {
@@ -236,10 +248,7 @@ fn joints<'x>(
             });
         }
     }
-    for element in children(root, "joint") {
-        couplings.extend(mimic(element, &names, findings));
-    }
-    (connections, couplings)
+    (connections, names)
 }
 
 /// The link that a joint names.
@@ -340,7 +349,8 @@ fn joint(element: Element<'_>, name: &str, motion: Motion, findings: &Findings) 
     let dynamics = child(element, "dynamics");
     Joint {
         range: range(element, name, findings),
-        damping: number(dynamics, "damping", 0.0, findings),
+        damping: [number(dynamics, "damping", 0.0, findings), 0.0, 0.0],
+        place: tag(element),
         friction: number(dynamics, "friction", 0.0, findings),
         ..Joint::along(name.to_owned(), motion, axis(element, name, findings))
     }
@@ -434,8 +444,9 @@ fn mimic<'x>(
     let follows = moves(other.value()) && other.value() != name;
     moves(name).then(|| Coupling {
         name: format!("{name}_follows"),
-        joint: name.to_owned(),
-        other: follows.then(|| other.value().to_owned()),
+        follows: Sum::of(name),
+        other: follows.then(|| Sum::of(other.value())),
+        place: tag(mimic),
         zeros: [0.0; 2],
         coefficients: if follows {
             vec![offset, multiplier]

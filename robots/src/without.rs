@@ -13,7 +13,7 @@ pub enum Without {
     Damping,
     /// Inertia of drives (armature).
     Armature,
-    /// Springs of joints.
+    /// Springs of joints and tendons.
     Springs,
     /// Dry friction.
     Friction,
@@ -23,11 +23,13 @@ pub enum Without {
     Couplings,
     /// Forces that carry the weight of links (`gravcomp`).
     Compensation,
+    /// Points at the origins of links that nothing uses.
+    Points,
 }
 
 impl Without {
     /// All of them.
-    pub const ALL: [Self; 7] = [
+    pub const ALL: [Self; 8] = [
         Self::Damping,
         Self::Armature,
         Self::Springs,
@@ -35,6 +37,7 @@ impl Without {
         Self::Limits,
         Self::Couplings,
         Self::Compensation,
+        Self::Points,
     ];
 
     /// Its word.
@@ -47,6 +50,7 @@ impl Without {
             Self::Limits => "limits",
             Self::Couplings => "couplings",
             Self::Compensation => "compensation",
+            Self::Points => "points",
         }
     }
 
@@ -55,18 +59,27 @@ impl Without {
             robot.couplings.clear();
             robot.connections.clear();
         }
+        for tendon in &mut robot.tendons {
+            match self {
+                Self::Damping => tendon.damping = [0.0; 3],
+                Self::Armature => tendon.armature = 0.0,
+                Self::Springs => tendon.stiffness = [0.0; 3],
+                Self::Friction => tendon.friction = 0.0,
+                _ => {}
+            }
+        }
         for link in &mut robot.links {
             if self == Self::Compensation {
                 link.carried = 0.0;
             }
             if let Some(joint) = &mut link.joint {
                 match self {
-                    Self::Damping => joint.damping = 0.0,
+                    Self::Damping => joint.damping = [0.0; 3],
                     Self::Armature => joint.armature = 0.0,
-                    Self::Springs => joint.stiffness = 0.0,
+                    Self::Springs => joint.stiffness = [0.0; 3],
                     Self::Friction => joint.friction = 0.0,
                     Self::Limits => joint.range = None,
-                    Self::Couplings | Self::Compensation => {}
+                    Self::Couplings | Self::Compensation | Self::Points => {}
                 }
             }
         }

@@ -1,6 +1,6 @@
 //! Elements and attributes with their places; what is wrong with them is collected.
 
-use std::cell::RefCell;
+use std::cell::{Cell, RefCell};
 use std::ops::Range;
 
 use appell_spec::{Code, Diagnostic, Severity};
@@ -11,6 +11,8 @@ pub(crate) type Span = Range<usize>;
 
 /// Deepest nesting of elements.
 pub(crate) const MOST_NESTED: usize = 200;
+/// What to do with a file that has to be expanded.
+pub(crate) const XACRO: &str = "this is a xacro file, expand it first: `xacro FILE > OUT.urdf`";
 /// Most elements and texts of a file.
 const MOST_NODES: u32 = 1 << 20;
 
@@ -19,22 +21,32 @@ pub(crate) type Element<'x> = Node<'x, 'x>;
 
 /// What was found in a file.
 #[derive(Debug, Default)]
-pub(crate) struct Findings(RefCell<Vec<Diagnostic>>);
+pub(crate) struct Findings {
+    all: RefCell<Vec<Diagnostic>>,
+    errors: Cell<usize>,
+}
+
+/// Most errors that are kept, and most warnings.
+const MOST_FINDINGS: usize = 100;
 
 impl Findings {
-    /// Adds a finding; what is read twice is wrong once.
+    /// Adds a finding; what is read twice is wrong once. Of very many the first are kept.
     pub(crate) fn add(&self, finding: Diagnostic) {
-        let mut all = self.0.borrow_mut();
-        if !all.contains(&finding) {
+        let mut all = self.all.borrow_mut();
+        let is_error = finding.severity == Severity::Error;
+        let count = if is_error {
+            self.errors.get()
+        } else {
+            all.len() - self.errors.get()
+        };
+        if count < MOST_FINDINGS && !all.contains(&finding) {
+            self.errors.set(self.errors.get() + usize::from(is_error));
             all.push(finding);
         }
     }
 
     pub(crate) fn has_errors(&self) -> bool {
-        self.0
-            .borrow()
-            .iter()
-            .any(|finding| finding.severity == Severity::Error)
+        self.errors.get() > 0
     }
 
     /// An error at a place, with a remedy.
@@ -60,7 +72,7 @@ impl Findings {
     }
 
     pub(crate) fn into_inner(self) -> Vec<Diagnostic> {
-        self.0.into_inner()
+        self.all.into_inner()
     }
 }
 
@@ -81,10 +93,7 @@ pub(crate) fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
             .rsplit_once(" at ")
             .map_or(found.as_str(), |(found, _)| found);
         let help = match &error {
-            roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => {
-                "this is a xacro file: convert it first, with `xacro FILE.xacro -o FILE.urdf`"
-                    .to_owned()
-            }
+            roxmltree::Error::UnknownNamespace(prefix, _) if prefix == "xacro" => XACRO.to_owned(),
             roxmltree::Error::UnexpectedCloseTag(expected, ..) => {
                 format!("close `{expected}` first, with `</{expected}>`")
             }
@@ -96,6 +105,28 @@ pub(crate) fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
             .at(at..(at + 1).min(text.len()), "")
             .help(help)
     })
+}
+
+/// The text with blanks in place of a mark of byte order, and of a declaration that does not stand first, where XML wants
+/// it; all places stay.
+pub(crate) fn begun(text: &str) -> String {
+    let blank = |part: &str| -> String {
+        let bytes = part.bytes();
+        bytes
+            .map(|byte| if byte == b'\n' { '\n' } else { ' ' })
+            .collect()
+    };
+    let body = text.trim_start_matches(|c: char| c == '\u{feff}' || c.is_whitespace());
+    let (head, mut body) = text.split_at(text.len() - body.len());
+    let mut begun = blank(head);
+    if !head.is_empty()
+        && body.starts_with("<?xml")
+        && let Some(end) = body.find("?>").map(|at| at + 2)
+    {
+        begun.push_str(&blank(&body[..end]));
+        body = &body[end..];
+    }
+    begun + body
 }
 
 /// Where elements are nested too deeply, by counting tags. Comments and texts with `<` can only raise the count
@@ -208,7 +239,7 @@ fn instead(word: &str) -> String {
         return format!("write `{pointed}`, with a decimal point");
     }
     if word.contains("${") || word.contains("$(") {
-        return "this is a xacro expression: convert the file first, with `xacro FILE.xacro -o FILE.urdf`".to_owned();
+        return XACRO.to_owned();
     }
     if word.contains(',') {
         return "separate numbers by blanks".to_owned();

@@ -18,11 +18,12 @@ fn scene() -> String {
 fn with(text: &str, others: &[(&str, &str)]) -> Result<Imported, String> {
     let read = |name: &str| {
         let given = others.iter().find(|(own, _)| *own == name);
-        given.map_or_else(|| beside(name), |(_, text)| Some(text.as_bytes().to_vec()))
+        let found = given.map_or_else(|| beside(name), |(_, text)| Some(text.as_bytes().to_vec()));
+        found.ok_or_else(|| "it does not exist".to_owned())
     };
     import_with("scene.xml", text, &Options::default(), &read).map_err(|failure| match failure {
         Failure::File(report) => report.plain(),
-        Failure::Unknown { name, .. } => name,
+        Failure::Unknown { name, .. } | Failure::Lock(name) => name,
     })
 }
 
@@ -79,6 +80,8 @@ fn what_is_left_out_is_told_with_its_file() {
     assert_eq!(
         told,
         [
+            ("contacts of geoms", "scene.xml", &[5][..]),
+            ("contacts of geoms", "parts/wrist.xml", &[2][..]),
             ("light", "parts/arm.xml", &[7][..]),
             ("light", "scene.xml", &[4][..]),
         ]
@@ -141,7 +144,7 @@ fn errors_name_the_file_and_the_remedy() {
 fn files_that_never_end_are_refused() {
     let next = |name: &str| {
         let next = format!("<mujoco><include file=\"{name}+\"/></mujoco>");
-        Some(next.into_bytes())
+        Ok(next.into_bytes())
     };
     let first = "<mujoco><include file=\"a\"/></mujoco>";
     let Err(Failure::File(report)) = import_with("a.xml", first, &Options::default(), &next) else {
@@ -150,7 +153,7 @@ fn files_that_never_end_are_refused() {
     assert!(report.plain().contains("more than 16 deep"), "{report}");
     let large = |_: &str| {
         let text = format!("<mujoco><!--{}--></mujoco>", " ".repeat(1 << 24));
-        Some(text.into_bytes())
+        Ok(text.into_bytes())
     };
     let Err(Failure::File(report)) = import_with("a.xml", first, &Options::default(), &large)
     else {

@@ -4,4 +4,5 @@
 
 mod files;
 mod includes;
+mod mjcf;
 mod orientations;

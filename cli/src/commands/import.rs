@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
-use appell::robot::{self, Imported, LeftOut, Letters, Options, Without};
+use appell::robot::{self, Imported, LeftOut, Letters, Lock, Options, Without};
 use appell::{Severity, files};
 
 use crate::destinations::extension;
@@ -17,12 +17,13 @@ const MOST_LINES: usize = 6;
 ///
 /// Links and joints keep their names. Links that are fixed together become one body, each joint a coordinate with
 /// its range, its damping, spring, dry friction and armature, and an input that drives it. What has no counterpart in a
-/// spec is listed with its lines.
+/// spec is listed with its lines, and with how the motion differs without it.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   appell import robot/arm.urdf -o arm.toml
-  appell import robot/arm.xml -o arm_to_identify.toml --parameters inertias --without limits")]
+  appell import robot/arm.xml -o arm_to_identify.toml --parameters inertias --without limits
+  appell import robot/arm.xml -o stiff.toml --lock elbow=0.5 --lock slide")]
 pub(crate) struct Import {
     /// The robot: a URDF or an MJCF file
     robot: PathBuf,
@@ -37,9 +38,15 @@ pub(crate) struct Import {
     parameters: String,
     /// What is left out, separated by commas
     ///
-    /// One or several of `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`, `compensation`.
+    /// One or several of `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`, `compensation`, `points`
+    /// (those at the origins of links that nothing uses).
     #[arg(long, value_name = "WHAT", value_delimiter = ',', value_parser = Without::from_str)]
     without: Vec<Without>,
+    /// Make a joint rigid, at a value in rad or m, or as the file draws it; can be repeated
+    ///
+    /// What it carries is fixed there: a model with fewer coordinates.
+    #[arg(long, value_name = "JOINT[=VALUE]", value_parser = Lock::from_str, allow_hyphen_values = true)]
+    lock: Vec<Lock>,
     /// Take angles within 1e-4 rad of a right angle for right angles
     #[arg(long)]
     snap: bool,
@@ -67,6 +74,7 @@ impl Import {
         let options = Options {
             letters: Letters::read(&self.parameters),
             without: self.without.clone(),
+            lock: self.lock.clone(),
             snap: self.snap,
             floating: self.floating,
         };
@@ -101,12 +109,19 @@ impl Import {
         }
         if !robot.left_out.is_empty() {
             let file = self.robot.to_string_lossy().replace('\\', "/");
-            let all = robot.left_out.iter().map(|one| left_out(one, &file));
-            let all: Vec<String> = all.collect();
-            tell(&format!(
-                "left out, for want of a counterpart:\n{}\n",
-                all.join("\n")
-            ));
+            for (acts, heading) in [
+                (true, "left out, and the motion is another one"),
+                (false, "left out, for want of a counterpart"),
+            ] {
+                let own = robot
+                    .left_out
+                    .iter()
+                    .filter(|one| one.effect.is_some() == acts);
+                let own: Vec<String> = own.map(|one| left_out(one, &file)).collect();
+                if !own.is_empty() {
+                    tell(&format!("{heading}:\n{}\n", own.join("\n")));
+                }
+            }
         }
         if robot.nearly_right > 0 && !self.snap {
             let count = robot.nearly_right;
@@ -144,5 +159,8 @@ fn left_out(one: &LeftOut, robot: &str) -> String {
     } else {
         format!(" of {}", one.file)
     };
-    format!("  {}: line{plural} {lines}{more}{of}", one.what)
+    let effect = one
+        .effect
+        .map_or(String::new(), |effect| format!(" ({effect})"));
+    format!("  {}: line{plural} {lines}{more}{of}{effect}", one.what)
 }

@@ -115,7 +115,9 @@ fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) ->
         }
         Err(error) => {
             let told = error.to_string();
-            let first = told.lines().next().unwrap_or_default().to_owned();
+            // Warnings may stand before what is wrong.
+            let wrong = told.lines().find(|line| line.starts_with("error["));
+            let first = wrong.or(told.lines().next()).unwrap_or_default().to_owned();
             let none = || "-".to_owned();
             vec![file, none(), format, none(), none(), first]
         }

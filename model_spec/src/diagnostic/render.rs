@@ -50,6 +50,9 @@ fn render_one(renderer: &Renderer, report: &Report, diagnostic: &Diagnostic) -> 
     lines.join("\n").trim_end().to_owned()
 }
 
+/// Most bytes of a line that are shown behind what is marked.
+const MOST_BEHIND: usize = 1000;
+
 /// The lines that the labels touch, and no others: a large file costs nothing.
 fn snippet<'a>(
     report: &'a Report,
@@ -64,7 +67,8 @@ fn snippet<'a>(
     let first = spans.iter().map(|s| s.start).min().unwrap_or(0);
     let last = spans.iter().map(|s| s.end).max().unwrap_or(0);
     let from = text[..first].rfind('\n').map_or(0, |i| i + 1);
-    let to = text[last..].find('\n').map_or(text.len(), |i| last + i);
+    let end = text.ceil_char_boundary(text.len().min(last + MOST_BEHIND));
+    let to = text[last..end].find('\n').map_or(end, |i| last + i);
     let annotations =
         spans
             .iter()

@@ -131,7 +131,12 @@ class Study:
 
 def shipped() -> list[str]: ...
 def import_robot(
-    file: Path, parameters: str, without: list[str], snap: bool, floating: bool
+    file: Path,
+    parameters: str,
+    without: list[str],
+    lock: list[tuple[str, float | None]],
+    snap: bool,
+    floating: bool,
 ) -> tuple[str, str]: ...
 def sample_robot(folder: Path) -> list[str]: ...
 def sample(folder: str) -> list[str]: ...

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,6 +21,8 @@ class LeftOut:
     """Such as `actuator/motor`."""
     file: str
     lines: tuple[int, ...]
+    effect: str | None
+    """How the motion differs without them; None where it does not."""
 
 
 @dataclass(frozen=True)
@@ -56,22 +58,24 @@ def import_robot(
     *,
     parameters: str | Iterable[str] = "none",
     without: str | Iterable[str] = (),
+    lock: Mapping[str, float | None] | Iterable[str] = (),
     snap: bool = False,
     floating: bool = False,
 ) -> Robot:
     """A URDF or an MJCF file as a spec, with the files that it includes.
 
     `parameters` are the numbers that become parameters: `none`, `inertias`, `all`, or names of links, joints and
-    parameters. `without` leaves out `damping`, `armature`, `springs`, `friction`, `limits`, `couplings` or
-    `compensation`. `snap` makes angles right that are so within 1e-4 rad, `floating` frees the root of a URDF.
+    parameters. `without` leaves out `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`,
+    `compensation` or `points`. `lock` makes joints rigid, at values by their names or as the file draws them. `snap` makes angles right that are so within 1e-4 rad, `floating` frees the root of a URDF.
     """
     chosen = ",".join(many(parameters))
-    spec, told = _appell.import_robot(Path(file), chosen, many(without), snap, floating)
+    values = lock.items() if isinstance(lock, Mapping) else ((joint, None) for joint in many(lock))
+    spec, told = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating)
     told = json.loads(told)
     return Robot(
         spec=spec,
         warnings={one["file"]: tuple(Diagnostic(**found) for found in one["findings"]) for one in told["warnings"]},
-        left_out=tuple(LeftOut(one["what"], one["file"], tuple(one["lines"])) for one in told["left_out"]),
+        left_out=tuple(LeftOut(one["what"], one["file"], tuple(one["lines"]), one["effect"]) for one in told["left_out"]),
         **{key: told[key] for key in ("name", "format", "bodies", "joints", "nearly_right_angles")},
     )
 

@@ -77,6 +77,17 @@ impl<'x> Defaults<'x> {
         class: Option<&str>,
         key: &str,
     ) -> Option<Attribute<'x, 'x>> {
+        self.of_any(kind, class, key)
+    }
+
+    /// What a class says of an attribute of any of some kinds of elements, separated by blanks.
+    pub(super) fn of_any(
+        &self,
+        kinds: &str,
+        class: Option<&str>,
+        key: &str,
+    ) -> Option<Attribute<'x, 'x>> {
+        let is_one = |name: &str| kinds.split_ascii_whitespace().any(|kind| kind == name);
         let mut name = class.or(self.main)?;
         // Classes are nested in the text, so that this ends.
         loop {
@@ -85,7 +96,7 @@ impl<'x> Defaults<'x> {
                 .elements
                 .iter()
                 .rev()
-                .filter(|element| element.tag_name().name() == kind);
+                .filter(|element| is_one(element.tag_name().name()));
             if let Some(found) = own.find_map(|element| element.attribute_node(key)) {
                 return Some(found);
             }

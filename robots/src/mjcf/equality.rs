@@ -2,8 +2,9 @@
 
 use appell_spec::{Code, did_you_mean};
 
-use crate::model::{Connection, Coupling, Link};
-use crate::rotation::{Pose, Rotation};
+use crate::loops::drawn;
+use crate::model::{Connection, Coupling, Link, Sum, Tendon};
+use crate::rotation::{Pose, Rotation, Vector, minus};
 use crate::xml::{Element, children, elements, exactly, numbers, tag};
 
 use super::Reader;
@@ -19,17 +20,26 @@ pub(super) struct Equality {
 }
 
 /// Reads `<equality>`.
-pub(super) fn read<'x>(root: Element<'x>, reader: &mut Reader<'x, '_>) -> Equality {
+pub(super) fn read<'x>(
+    root: Element<'x>,
+    reader: &mut Reader<'x, '_>,
+    tendons: &[Tendon],
+) -> Equality {
     let mut read = Equality::default();
     for element in children(root, "equality").flat_map(elements) {
-        if element.attribute("active") == Some("false") {
+        let class = reader.class(element, "class");
+        let active = element.attribute_node("active");
+        let active = active.or_else(|| reader.defaults.attribute("equality", class, "active"));
+        if active.is_some_and(|given| given.value() == "false") {
             reader.leave_out("inactive equality".to_owned(), element);
             continue;
         }
         match element.tag_name().name() {
             "joint" => {
-                let count = read.couplings.len();
-                read.couplings.extend(coupling(element, reader, count));
+                reader.coupled_joints(element, &mut read);
+            }
+            "tendon" => {
+                reader.coupled_tendons(element, tendons, &mut read);
             }
             word @ ("connect" | "weld") => {
                 let count = read.connections.len();
@@ -48,20 +58,40 @@ pub(super) fn read<'x>(root: Element<'x>, reader: &mut Reader<'x, '_>) -> Equali
 }
 
 /// `equality/connect` and `equality/weld`: two bodies meet at a point, or everywhere.
-fn connection(
-    element: Element<'_>,
-    reader: &Reader<'_, '_>,
-    rigid: bool,
+fn connection<'x>(
+    element: Element<'x>,
+    reader: &Reader<'x, '_>,
+    weld: bool,
     count: usize,
 ) -> Option<Connection> {
-    if let Some(site) = element.attribute_node("site1") {
-        reader.findings.error(
-            Code::NotAllowedHere,
-            site.range_value(),
-            "a connection of sites is not imported",
-            "name the bodies, `body1` and `body2`, and the `anchor` in the frame of the first",
-        );
-        return None;
+    let name = element.attribute("name").map_or_else(
+        || format!("{}_{}", element.tag_name().name(), count + 1),
+        str::to_owned,
+    );
+    let scale = element.attribute_node("torquescale");
+    let scale = scale.and_then(|given| exactly::<1>(reader.findings, &given, "`torquescale`"));
+    let rigid = weld && scale != Some([0.0]);
+    let connected =
+        |first: (Option<usize>, Vector), second: Option<usize>, pose: Pose| Connection {
+            name,
+            ends: [first, (second, pose.of(first.1))],
+            second: pose,
+            rigid,
+            place: tag(element),
+        };
+    if element.has_attribute("site1") {
+        let ends = ["site1", "site2"].map(|key| reader.site(element, key));
+        let [Some((first, own)), Some((second, other))] = ends else {
+            return None;
+        };
+        let pose = other.then(own.inverse());
+        // A connection of sites lets them turn against each other as they like.
+        let pose = if weld {
+            pose
+        } else {
+            shifted(own.position, other.position)
+        };
+        return Some(connected((first, own.position), second, pose));
     }
     let (first, second) = (
         body(element, "body1", reader).ok()?,
@@ -71,51 +101,42 @@ fn connection(
         Some(given) => exactly(reader.findings, &given, "a point, x y z,")?,
         None => [0.0; 3],
     };
-    let name = element.attribute("name").map_or_else(
-        || format!("{}_{}", element.tag_name().name(), count + 1),
-        str::to_owned,
-    );
-    if !rigid {
-        return Some(Connection {
-            name,
-            ends: [(first, anchor), (second, [0.0; 3])],
-            second: None,
-            rigid,
-            place: tag(element),
-        });
-    }
-    // The pose of the second in the first, and the anchor in the second.
-    let relative = match element.attribute_node("relpose") {
+    let drawn = drawn(&reader.links, [first, second]);
+    // What a weld says of the pose of the second in the first, at the anchor in the second.
+    let relative = match element.attribute_node("relpose").filter(|_| weld) {
         Some(given) => {
             let [x, y, z, q @ ..]: [f64; 7] = exactly(
                 reader.findings,
                 &given,
                 "a position and a quaternion, x y z and w x y z,",
             )?;
-            Rotation::quaternion(q).map(|rotation| Pose {
-                rotation,
-                position: [x, y, z],
-            })
+            Rotation::quaternion(q).map(|rotation| (rotation, [x, y, z]))
         }
         None => None,
     };
     Some(match relative {
-        Some(pose) => Connection {
-            name,
-            ends: [(first, pose.of(anchor)), (second, anchor)],
-            second: Some(pose.inverse()),
-            rigid,
-            place: tag(element),
-        },
+        // The anchor of the second is at the position in the first.
+        Some((rotation, position)) => {
+            let rotation = rotation.inverse();
+            let position_of_first = minus(anchor, rotation.of(position));
+            let pose = Pose {
+                rotation,
+                position: position_of_first,
+            };
+            connected((first, position), second, pose)
+        }
         // The same wherever it is anchored.
-        None => Connection {
-            name,
-            ends: [(first, [0.0; 3]), (second, [0.0; 3])],
-            second: None,
-            rigid,
-            place: tag(element),
-        },
+        None if weld => connected((first, [0.0; 3]), second, drawn),
+        None => connected((first, anchor), second, drawn),
     })
+}
+
+/// The pose that takes one point to another without a turn.
+fn shifted(from: Vector, to: Vector) -> Pose {
+    Pose {
+        rotation: Rotation::IDENTITY,
+        position: minus(to, from),
+    }
 }
 
 /// There is no body of a name, which is told.
@@ -155,46 +176,77 @@ fn body(
     Err(Unknown)
 }
 
-/// `equality/joint`: a joint follows another one by a polynomial, or stands still.
-fn coupling(element: Element<'_>, reader: &Reader<'_, '_>, count: usize) -> Option<Coupling> {
-    let find = |key: &str| {
-        let given = element.attribute_node(key)?;
-        let joints = || reader.links.iter().filter_map(|link| link.joint.as_ref());
-        let found = joints().find(|joint| joint.name == given.value());
+impl<'x> Reader<'x, '_> {
+    /// `equality/joint`: a joint follows another one by a polynomial, or stands still.
+    fn coupled_joints(&self, element: Element<'x>, read: &mut Equality) -> Option<()> {
+        let joint = self.joint_named(element, "joint1")?;
+        let other = match element.attribute_node("joint2") {
+            Some(_) => Some(self.joint_named(element, "joint2")?),
+            None => None,
+        };
+        let zeros = [joint.zero, other.map_or(0.0, |other| other.zero)];
+        let sums = (
+            Sum::of(&joint.name),
+            other.map(|other| Sum::of(&other.name)),
+        );
+        self.couple(element, sums, zeros, read)
+    }
+
+    /// Adds the equation of two sums; without the second, the first keeps a value.
+    pub(super) fn couple(
+        &self,
+        element: Element<'x>,
+        (follows, other): (Sum, Option<Sum>),
+        zeros: [f64; 2],
+        read: &mut Equality,
+    ) -> Option<()> {
+        let mut coefficients = vec![0.0, 1.0];
+        if let Some(given) = element.attribute_node("polycoef") {
+            // Those that are not given are as they are by default.
+            let given = numbers(self.findings, &given)?;
+            if given.len() > 1 {
+                coefficients = given;
+                coefficients.truncate(MOST);
+            } else {
+                coefficients[0] = given.first().copied().unwrap_or_default();
+            }
+        }
+        if other.is_none() {
+            coefficients.truncate(1);
+        }
+        let count = read.couplings.len() + 1;
+        let name = element.attribute("name");
+        read.couplings.push(Coupling {
+            name: name.map_or_else(|| format!("coupling_{count}"), str::to_owned),
+            follows,
+            other,
+            zeros,
+            coefficients,
+            place: tag(element),
+        });
+        Some(())
+    }
+
+    /// The link and the pose of the site that an attribute names.
+    fn site(&self, element: Element<'x>, key: &str) -> Option<(Option<usize>, Pose)> {
+        let Some(given) = element.attribute_node(key) else {
+            let help = "name two sites, `site1` and `site2`, or bodies";
+            self.findings
+                .error(Code::MissingKey, tag(element), format!("no `{key}`"), help);
+            return None;
+        };
+        let found = self.sites.get(given.value()).copied();
         if found.is_none() {
-            let known = joints().map(|joint| joint.name.as_str());
-            reader.findings.error(
+            let known = self.sites.keys().map(String::as_str);
+            self.findings.error(
                 Code::UnknownReference,
                 given.range_value(),
-                format!("there is no joint `{}`", appell_spec::shown(given.value())),
+                format!("there is no site `{}`", appell_spec::shown(given.value())),
                 did_you_mean(given.value(), known, || {
-                    "name a hinge or a slide of the file".to_owned()
+                    "name a site of the file".to_owned()
                 }),
             );
         }
         found
-    };
-    let joint = find("joint1")?;
-    let other = match element.attribute_node("joint2") {
-        Some(_) => Some(find("joint2")?),
-        None => None,
-    };
-    let mut coefficients = vec![0.0, 1.0];
-    if let Some(given) = element.attribute_node("polycoef") {
-        coefficients = numbers(reader.findings, &given)?;
-        coefficients.truncate(MOST);
     }
-    if other.is_none() {
-        coefficients.truncate(1);
-    }
-    let name = element
-        .attribute("name")
-        .map_or_else(|| format!("coupling_{}", count + 1), str::to_owned);
-    Some(Coupling {
-        name,
-        joint: joint.name.clone(),
-        other: other.map(|other| other.name.clone()),
-        zeros: [joint.zero, other.map_or(0.0, |other| other.zero)],
-        coefficients,
-    })
 }

@@ -35,6 +35,19 @@ impl<'x> Reader<'x, '_> {
         self.geoms_within(body, class, Pose::IDENTITY, matters)
     }
 
+    /// Keeps the place of a geom that others could touch.
+    pub(super) fn touch(&mut self, geom: Element<'x>, class: Option<&'x str>) {
+        let class = self.class(geom, "class").or(class);
+        let touches = |key: &str| {
+            let own = geom.attribute_node(key);
+            let given = own.or_else(|| self.defaults.attribute("geom", class, key));
+            given.is_none_or(|given| given.value() != "0")
+        };
+        if touches("contype") || touches("conaffinity") {
+            self.touching.push(tag(geom));
+        }
+    }
+
     /// Geoms stand in a body, or in frames within it.
     fn geoms_within(
         &self,
@@ -81,6 +94,11 @@ impl<'x> Reader<'x, '_> {
             },
             |given| given.value(),
         );
+        let group = number("group").unwrap_or_default();
+        let [first, last] = self.compiler.groups;
+        if !(first..=last).contains(&group) {
+            return None;
+        }
         let given_mass = number("mass");
         let density = number("density").unwrap_or(DENSITY);
         let massless = given_mass == Some(0.0) || (given_mass.is_none() && density == 0.0);
@@ -88,6 +106,8 @@ impl<'x> Reader<'x, '_> {
             return None;
         }
         let of_surface = attribute("shellinertia").is_some_and(|given| given.value() == "true");
+        // Of a mesh it is said elsewhere.
+        let of_surface = of_surface && shape != "mesh";
         if of_surface || shape == "sdf" {
             if matters {
                 self.mass_unknown(
@@ -98,6 +118,12 @@ impl<'x> Reader<'x, '_> {
                         "of type `sdf`"
                     },
                 );
+            }
+            return None;
+        }
+        if attribute("mesh").is_some() && shape != "mesh" {
+            if matters {
+                self.mass_unknown(geom, &format!("a {shape} that is fitted to a mesh"));
             }
             return None;
         }

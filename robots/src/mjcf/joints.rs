@@ -4,8 +4,8 @@ use appell_spec::{Code, did_you_mean};
 use roxmltree::Attribute;
 
 use crate::model::{Joint, Motion};
-use crate::rotation::{Vector, unit};
-use crate::xml::{Element, child, children, exactly, tag};
+use crate::rotation::{Pose, Vector, is_zero, unit};
+use crate::xml::{Element, elements, exactly, tag};
 
 use super::Reader;
 
@@ -17,28 +17,64 @@ impl<'x> Reader<'x, '_> {
         name: &str,
         class: Option<&'x str>,
     ) -> Vec<Joint> {
-        if let Some(free) = child(body, "freejoint") {
-            let name = free.attribute("name").unwrap_or(name).to_owned();
-            return vec![Joint::without_axis(name, Motion::Free, [0.0; 3])];
-        }
-        let elements: Vec<Element<'x>> = children(body, "joint").collect();
+        let mut elements = Vec::new();
+        self.joint_elements(body, class, Pose::IDENTITY, &mut elements);
         let count = elements.len();
         let joints = elements.into_iter().enumerate();
-        let joints = joints.filter_map(|(index, element)| {
-            let name = element.attribute("name").map_or_else(
-                || match count {
-                    1 => format!("joint_{name}"),
-                    _ => format!("joint_{name}_{}", index + 1),
+        let joints = joints.filter_map(|(index, (element, class, within))| {
+            let given = element.attribute("name").map(str::to_owned);
+            if element.has_tag_name("freejoint") {
+                // Defaults of joints do not apply.
+                return Some(Joint {
+                    place: tag(element),
+                    ..Joint::without_axis(given.unwrap_or(name.to_owned()), Motion::Free, [0.0; 3])
+                });
+            }
+            let name = given.unwrap_or_else(|| match count {
+                1 => format!("joint_{name}"),
+                _ => format!("joint_{name}_{}", index + 1),
+            });
+            let joint = self.joint_of(element, name, class)?;
+            Some(Joint {
+                axis: within.rotation.of(joint.axis),
+                anchor: if joint.motion == Motion::Free {
+                    [0.0; 3]
+                } else {
+                    within.of(joint.anchor)
                 },
-                str::to_owned,
-            );
-            let class = self.class(element, "class").or(class);
-            self.joint(element, name, class)
+                ..joint
+            })
         });
         joints.collect()
     }
 
-    fn joint(&self, element: Element<'x>, name: String, class: Option<&'x str>) -> Option<Joint> {
+    /// Joints stand in a body, or in frames within it; with their classes, and the poses of the frames.
+    fn joint_elements(
+        &self,
+        holder: Element<'x>,
+        class: Option<&'x str>,
+        within: Pose,
+        found: &mut Vec<(Element<'x>, Option<&'x str>, Pose)>,
+    ) {
+        for inner in elements(holder) {
+            match inner.tag_name().name() {
+                "freejoint" => found.push((inner, class, within)),
+                "joint" => found.push((inner, self.class(inner, "class").or(class), within)),
+                "frame" => {
+                    let class = self.class(inner, "childclass").or(class);
+                    self.joint_elements(inner, class, within.then(self.pose(inner, None)), found);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    fn joint_of(
+        &self,
+        element: Element<'x>,
+        name: String,
+        class: Option<&'x str>,
+    ) -> Option<Joint> {
         let attribute = |key: &str| {
             let own = element.attribute_node(key);
             own.or_else(|| self.defaults.attribute("joint", class, key))
@@ -53,48 +89,28 @@ impl<'x> Reader<'x, '_> {
         };
         let kind = attribute("type");
         let motion = self.motion(element, kind)?;
+        let polynomial = |key: &str| self.polynomial(attribute(key));
+        let friction = number("frictionloss").unwrap_or_default();
+        let armature = number("armature").unwrap_or_default();
         if !motion.has_axis() {
-            let anchor = vector("pos", "a position, x y z,").unwrap_or_default();
-            let positive = |key: &str| number(key).filter(|number| *number != 0.0);
-            let mut left_out = vec!["stiffness", "frictionloss"];
-            left_out.extend((motion == Motion::Free).then_some("armature"));
-            for &key in &left_out {
-                if positive(key).is_some() {
-                    self.findings.warning(
-                        Code::NotAllowedHere,
-                        tag(element),
-                        format!("`{key}` of joint `{name}` is left out"),
-                        "it is read of hinges and slides; add a load to the spec",
-                    );
-                }
-            }
-            return Some(Joint {
-                damping: number("damping").unwrap_or_default(),
-                armature: if motion == Motion::Free {
-                    0.0
-                } else {
-                    number("armature").unwrap_or_default()
-                },
-                ..Joint::without_axis(name, motion, anchor)
-            });
+            let joint = Joint {
+                anchor: vector("pos", "a position, x y z,").unwrap_or_default(),
+                damping: polynomial("damping"),
+                stiffness: polynomial("stiffness"),
+                armature,
+                friction,
+                settles: self.springdamper(&attribute),
+                place: tag(element),
+                ..Joint::along(name, motion, [1.0, 0.0, 0.0])
+            };
+            let free = attribute("limited").is_some_and(|given| given.value() == "false");
+            let limited = motion == Motion::Ball && attribute("range").is_some() && !free;
+            return Some(self.without_axis(joint, limited));
         }
         let angle = |value: f64| match motion {
             Motion::Turning => self.compiler.angles.radians(value),
             _ => value,
         };
-        if let Some(given) = attribute("springdamper")
-            && given
-                .value()
-                .split_ascii_whitespace()
-                .any(|word| word != "0")
-        {
-            self.findings.error(
-                Code::NotAllowedHere,
-                given.range(),
-                format!("`springdamper` of joint `{name}` is not read yet"),
-                "write `stiffness` and `damping`",
-            );
-        }
         let along: Vector = vector("axis", "a direction, x y z,").unwrap_or([0.0, 0.0, 1.0]);
         let axis = unit(along).unwrap_or_else(|| {
             let at = attribute("axis").map_or_else(|| tag(element), |given| given.range_value());
@@ -124,13 +140,62 @@ impl<'x> Reader<'x, '_> {
             range: range
                 .filter(|[from, to]| limited && from < to)
                 .map(|range| range.map(angle)),
-            damping: number("damping").unwrap_or_default(),
-            armature: number("armature").unwrap_or_default(),
-            friction: number("frictionloss").unwrap_or_default(),
-            stiffness: number("stiffness").unwrap_or_default(),
+            damping: polynomial("damping"),
+            armature,
+            friction,
+            stiffness: polynomial("stiffness"),
+            settles: self.springdamper(&attribute),
+            place: tag(element),
             relaxed: angle(number("springref").unwrap_or_default()),
             name,
         })
+    }
+
+    /// A joint without an axis; what has no counterpart there is warned of.
+    fn without_axis(&self, joint: Joint, limited: bool) -> Joint {
+        let [damping, higher @ ..] = joint.damping;
+        for (what, is_there) in [
+            ("stiffness", !is_zero(joint.stiffness)),
+            ("springdamper", joint.settles.is_some()),
+            ("range", limited),
+            ("damping", higher.iter().any(|factor| *factor != 0.0)),
+        ] {
+            if is_there {
+                let which = if what == "damping" {
+                    " beyond its first factor"
+                } else {
+                    ""
+                };
+                let name = &joint.name;
+                self.findings.warning(
+                    Code::NotAllowedHere,
+                    joint.place.clone(),
+                    format!("`{what}`{which} of joint `{name}` is left out, and the motion is another one"),
+                    "it is read of hinges and slides; add a load to the spec",
+                );
+            }
+        }
+        Joint {
+            damping: [damping, 0.0, 0.0],
+            stiffness: [0.0; 3],
+            anchor: if joint.motion == Motion::Free {
+                [0.0; 3]
+            } else {
+                joint.anchor
+            },
+            ..joint
+        }
+    }
+
+    /// Time constant and damping ratio of a spring with a damper, where both are positive.
+    fn springdamper(
+        &self,
+        attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
+    ) -> Option<[f64; 2]> {
+        let given = attribute("springdamper")?;
+        let what = "a time constant and a damping ratio";
+        exactly(self.findings, &given, what)
+            .filter(|both: &[f64; 2]| both.iter().all(|one| *one > 0.0))
     }
 
     fn motion(&self, element: Element<'x>, kind: Option<Attribute<'_, '_>>) -> Option<Motion> {

@@ -43,6 +43,15 @@ impl<'x> Reader<'x, '_> {
                 .ok_or("its scale is not known")?,
             None => [1.0; 3],
         };
+        for (key, usual) in [
+            ("inertia", "legacy"),
+            ("refpos", "0 0 0"),
+            ("refquat", "1 0 0 0"),
+        ] {
+            if attribute(key).is_some_and(|given| given.value() != usual) {
+                return Err(format!("its `{key}` is read as `{usual}` only"));
+            }
+        }
         let file = attribute("file").ok_or("a mesh without a file is not read")?;
         let compiler = |key: &str| {
             let all = children(root, "compiler").filter_map(|element| element.attribute(key));
@@ -50,11 +59,18 @@ impl<'x> Reader<'x, '_> {
         };
         let folder = compiler("meshdir").or_else(|| compiler("assetdir"));
         let folder = folder.map(|folder| folder.trim_end_matches('/'));
-        let found = self.whole.beside(&file.range(), folder, file.value());
-        let (path, bytes) = found.ok_or_else(|| {
-            let named = [folder, Some(file.value())].into_iter().flatten();
+        let named = match compiler("strippath") {
+            Some("true") => file.value().rsplit(['/', '\\']).next().unwrap_or_default(),
+            _ => file.value(),
+        };
+        let found = self.whole.beside(&file.range(), folder, named);
+        let (path, bytes) = found.map_err(|why| {
+            let named = [folder, Some(named)].into_iter().flatten();
             let named = named.collect::<Vec<_>>().join("/");
-            format!("its file `{named}` cannot be read")
+            format!(
+                "its file `{}` cannot be read: {why}",
+                appell_spec::shown(&named)
+            )
         })?;
         let triangles =
             triangles(&path, &bytes).ok_or_else(|| format!("`{path}` is no mesh as STL or OBJ"))?;

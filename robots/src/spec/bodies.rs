@@ -1,9 +1,12 @@
 //! Frames, points, bodies and weights.
 
+use std::collections::BTreeSet;
+
 use crate::letters::{Kind, Number, quantity};
 use crate::model::Motion;
 use crate::rotation::{Vector, dot, is_zero, right_angles};
 use crate::table::{Item, list};
+use crate::tree::Part;
 
 use super::{Writer, plus};
 
@@ -359,12 +362,14 @@ impl Writer<'_> {
         }
     }
 
-    /// Origins of links that are fixed to others.
-    pub(super) fn links_on_bodies(&mut self) {
+    /// Origins of links that are fixed to others, all or those at the ends of chains.
+    pub(super) fn links_on_bodies(&mut self, all: bool) {
+        let ends: BTreeSet<usize> = self.ends_of_chains().map(|part| part.link).collect();
         for (index, body) in self.tree.bodies.iter().enumerate() {
             for part in &body.parts {
                 let name = &self.called.links[part.link];
-                if !self.links[part.link].written || *name == self.called.points[index] {
+                let written = self.links[part.link].written && *name != self.called.points[index];
+                if !written || !(all || ends.contains(&part.link)) {
                     continue;
                 }
                 let at: Vec<String> = part
@@ -383,6 +388,9 @@ impl Writer<'_> {
 
     /// Forces that carry a share of the weight of links.
     pub(super) fn carried(&mut self, gravity: Vector, letters: &[String; 3]) {
+        if is_zero(gravity) {
+            return;
+        }
         for (index, body) in self.tree.bodies.iter().enumerate() {
             for part in &body.parts {
                 let link = &self.links[part.link];
@@ -397,46 +405,83 @@ impl Writer<'_> {
                     .text("in", &self.called.frames[index])
                     .expressions("at", &at);
                 self.points.add(&point, &item);
-                let carries =
-                    |component: f64| -component.signum() * link.carried * link.inertia.mass;
-                let force: Vec<String> = gravity
-                    .iter()
-                    .zip(letters)
-                    .map(|(component, letter)| match *component {
-                        0.0 => "0".to_owned(),
-                        component => format!("{}*{letter}", quantity(carries(component), "kg")),
-                    })
-                    .collect();
-                let item = Item::default()
-                    .text("kind", "force")
-                    .text("on", &point)
-                    .text("in", "ground")
-                    .expressions("vector", &force)
-                    .text("about", "gravity compensation");
-                self.loads.add(&format!("carried_{called}"), &item);
+                let mass = quantity(link.carried * link.inertia.mass, "kg");
+                self.lift(
+                    &point,
+                    &point,
+                    &mass,
+                    gravity,
+                    letters,
+                    "gravity compensation",
+                );
             }
         }
+        for (rotor, point, mass) in std::mem::take(&mut self.weightless) {
+            let about = "the drive has no weight";
+            self.lift(
+                &format!("weightless_{rotor}"),
+                &point,
+                &mass,
+                gravity,
+                letters,
+                about,
+            );
+        }
+    }
+
+    /// A force against the weight of a mass.
+    fn lift(
+        &mut self,
+        name: &str,
+        point: &str,
+        mass: &str,
+        gravity: Vector,
+        letters: &[String; 3],
+        about: &str,
+    ) {
+        let force = gravity.iter().zip(letters);
+        let force = force.map(
+            |(component, letter)| match (*component, mass.strip_prefix('-')) {
+                (0.0, _) => "0".to_owned(),
+                (component, Some(mass)) if component > 0.0 => format!("{mass}*{letter}"),
+                (component, None) if component > 0.0 => format!("-{mass}*{letter}"),
+                _ => format!("{mass}*{letter}"),
+            },
+        );
+        let item = Item::default()
+            .text("kind", "force")
+            .text("on", point)
+            .text("in", "ground")
+            .expressions("vector", &force.collect::<Vec<String>>())
+            .text("about", about);
+        self.loads.add(name, &item);
+    }
+
+    /// The furthest link that carries nothing, of each body that carries none.
+    fn ends_of_chains(&self) -> impl Iterator<Item = &'_ Part> {
+        let mut is_parent = vec![false; self.links.len()];
+        for parent in self.links.iter().filter_map(|link| link.parent) {
+            is_parent[parent] = true;
+        }
+        let mut carries = vec![false; self.tree.bodies.len()];
+        for parent in self.tree.bodies.iter().filter_map(|body| body.parent) {
+            carries[parent] = true;
+        }
+        let last = (self.tree.bodies.iter().zip(carries)).filter(|(_, carries)| !carries);
+        last.filter_map(move |(body, _)| {
+            let distance = |part: &&Part| dot(part.position, part.position);
+            let ends = body.parts.iter().filter(|part| !is_parent[part.link]);
+            ends.max_by(|a, b| distance(a).total_cmp(&distance(b)))
+        })
     }
 
     /// Positions of the ends of the chains.
     pub(super) fn ends(&mut self) {
-        let is_parent = |link: usize| self.links.iter().any(|other| other.parent == Some(link));
-        let carries = |index: usize| {
-            self.tree
-                .bodies
-                .iter()
-                .any(|body| body.parent == Some(index))
-        };
-        for (index, body) in self.tree.bodies.iter().enumerate() {
-            let furthest = |part: &&crate::tree::Part| dot(part.position, part.position);
-            let ends = body.parts.iter().filter(|part| !is_parent(part.link));
-            let Some(end) = ends.max_by(|a, b| furthest(a).total_cmp(&furthest(b))) else {
-                continue;
-            };
-            if carries(index) {
-                continue;
-            }
-            let called = self.called.links[end.link].clone();
+        let ends: Vec<String> = self
+            .ends_of_chains()
+            .map(|part| self.called.links[part.link].clone())
+            .collect();
+        for called in ends {
             for axis in AXES {
                 let name = self.quantities.new_one(&format!("{axis}_of_{called}"));
                 let item = Item::default()

@@ -1,7 +1,8 @@
 //! Points that meet where links close a loop.
 
 use crate::letters::quantity;
-use crate::loops::Meeting;
+use crate::loops::Equations;
+use crate::model::Connection;
 use crate::rotation::{Vector, is_zero};
 use crate::table::Item;
 
@@ -11,11 +12,12 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Writer<'_> {
     /// The equations of what connects links.
-    pub(super) fn connections(&mut self, meetings: &[(String, Vec<Meeting>)]) {
+    pub(super) fn connections(&mut self, connections: &[Connection], equations: &Equations) {
         let mut names = crate::names::Names::default();
-        for (name, meetings) in meetings {
+        for (connection, (name, meetings)) in connections.iter().zip(&equations.meetings) {
+            let name = crate::names::short(name);
             for meeting in meetings {
-                let called = names.new_one(name);
+                let called = names.new_one(&name);
                 let along = self.frame_of(meeting.along);
                 let [first, second] = [0, 1].map(|end| self.end(&called, end, meeting.ends[end]));
                 for &(axis, follower) in &meeting.rows {
@@ -35,6 +37,7 @@ impl Writer<'_> {
                     self.constraints.add(&format!("{called}_{axis}"), &item);
                 }
             }
+            self.mark(&connection.place);
         }
     }
 

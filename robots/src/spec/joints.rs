@@ -1,34 +1,32 @@
 //! Coordinates, what drives and resists them, and what couples them.
 
-use crate::letters::{Kind, Number, plain, quantity};
-use crate::loops::Meeting;
-use crate::model::{Coupling, Joint, Motion};
+use crate::letters::plain;
+use crate::model::{Joint, Motion};
 use crate::table::{Item, list};
 
-use super::{Writer, plus, sentence};
-
-/// Rates below which dry friction fades out.
-const SLOW: f64 = 0.01;
+use super::resistances::Owner;
+use super::{Writer, sentence};
 
 /// Units of what belongs to a kind of joint.
-struct Units {
-    coordinate: &'static str,
-    rate: &'static str,
-    force: &'static str,
-    damping: &'static str,
-    stiffness: &'static str,
-    inertia: &'static str,
+pub(super) struct Units {
+    pub(super) coordinate: &'static str,
+    pub(super) rate: &'static str,
+    pub(super) force: &'static str,
+    /// Of the factors of a rate, its square and its cube, and of a coordinate likewise.
+    pub(super) damping: [&'static str; 3],
+    pub(super) stiffness: [&'static str; 3],
+    pub(super) inertia: &'static str,
 }
 
 impl Units {
-    fn of(motion: Motion) -> Self {
+    pub(super) fn of(motion: Motion) -> Self {
         match motion {
             Motion::Turning => Self {
                 coordinate: "rad",
                 rate: "rad/s",
                 force: "N*m",
-                damping: "N*m*s",
-                stiffness: "N*m",
+                damping: ["N*m*s", "N*m*s^2", "N*m*s^3"],
+                stiffness: ["N*m"; 3],
                 inertia: "kg*m^2",
             },
             // What has several coordinates has no unit of its own.
@@ -36,8 +34,8 @@ impl Units {
                 coordinate: "m",
                 rate: "m/s",
                 force: "N",
-                damping: "N*s/m",
-                stiffness: "N/m",
+                damping: ["N*s/m", "N*s^2/m^2", "N*s^3/m^3"],
+                stiffness: ["N/m", "N/m^2", "N/m^3"],
                 inertia: "kg",
             },
         }
@@ -45,26 +43,6 @@ impl Units {
 }
 
 impl Writer<'_> {
-    /// A number of a joint, as an expression.
-    fn of_joint(
-        &mut self,
-        joint: &Joint,
-        q: &str,
-        value: f64,
-        (letter, unit, about): (&str, &'static str, &str),
-    ) -> String {
-        let number = Number {
-            value,
-            unit,
-            letter: &format!("{letter}_{q}"),
-            of: &joint.name,
-            about: &format!("{about} of joint {}", joint.name),
-            kind: Kind::Other,
-            never_negative: letter != "relaxed",
-        };
-        self.numbers.write(number, &mut self.quantities)
-    }
-
     /// The coordinate of a joint, its speed, its input, and what resists it.
     pub(super) fn joint(&mut self, index: usize) {
         let joint = &self.tree.bodies[index].joint;
@@ -77,71 +55,16 @@ impl Writer<'_> {
         let rate = format!("dot({q})");
         self.coordinate(joint, &q, &units);
         self.drive(joint, &q, &units);
-        if joint.damping != 0.0 {
-            let damping = self.of_joint(
-                joint,
-                &q,
-                joint.damping,
-                ("damping", units.damping, "damping"),
-            );
-            let item = Item::default()
-                .text("kind", "damper")
-                .text("coordinate", &q);
-            self.loads.add(
-                &format!("damping_{q}"),
-                &item.expression("damping", &damping),
-            );
-        }
-        if joint.stiffness != 0.0 {
-            let stiffness = self.of_joint(
-                joint,
-                &q,
-                joint.stiffness,
-                ("stiffness", units.stiffness, "stiffness of the spring"),
-            );
-            let relaxed = self.of_joint(
-                joint,
-                &q,
-                joint.relaxed,
-                (
-                    "relaxed",
-                    units.coordinate,
-                    "coordinate of the relaxed spring",
-                ),
-            );
-            let item = Item::default()
-                .text("kind", "spring")
-                .text("coordinate", &q);
-            let item = item.expression("stiffness", &stiffness);
-            let item = if relaxed == "0" {
-                item
-            } else {
-                item.expression("relaxed", &relaxed)
-            };
-            self.loads.add(&format!("spring_{q}"), &item);
-        }
-        if joint.friction != 0.0 {
-            let friction = self.of_joint(
-                joint,
-                &q,
-                joint.friction,
-                ("friction", units.force, "dry friction"),
-            );
-            let slow = quantity(
-                SLOW,
-                if joint.motion == Motion::Turning {
-                    "rad/s"
-                } else {
-                    units.rate
-                },
-            );
-            let force = format!("-{friction}*smooth_sign({rate}, {slow})");
-            let item = Item::default()
-                .text("kind", "generalized")
-                .text("coordinate", &q);
-            self.loads
-                .add(&format!("friction_{q}"), &item.text("force", &force));
-        }
+        let owner = Owner {
+            called: &q,
+            of: &joint.name,
+            kind: "joint",
+            along: ("coordinate", &q),
+            units: &units,
+        };
+        self.damping(&owner, joint.damping, &rate);
+        self.spring(&owner, joint.stiffness, joint.relaxed);
+        self.friction(&owner, joint.friction, &rate);
         if joint.armature != 0.0 {
             self.armature(joint, &q, &units);
         }
@@ -204,7 +127,7 @@ impl Writer<'_> {
 
     /// Their speeds: those of the place in the ground, and the angular velocity from what carries the joint, in the
     /// frame of the body.
-    fn several_speeds(&mut self, index: usize, followers: &[usize]) {
+    pub(super) fn several_speeds(&mut self, index: usize, followers: &[usize]) {
         let body = &self.tree.bodies[index];
         let q = self.called.coordinates[index].clone();
         if body.joint.motion == Motion::Free {
@@ -251,37 +174,42 @@ impl Writer<'_> {
             self.inputs.add(&input, &declared.text("about", &about));
             self.loads.add(&format!("drive_{q}_{axis}"), &item(&input));
         }
-        if joint.damping != 0.0 {
-            let damping = self.of_joint(
-                joint,
-                &q,
-                joint.damping,
-                ("damping", units.damping, "damping"),
-            );
-            self.loads.add(
-                &format!("damping_{q}_{axis}"),
-                &item(&format!("-{damping}*{speed}")),
-            );
-        }
+        let owner = Owner {
+            called: speed,
+            of: &joint.name,
+            kind: "joint",
+            along: ("velocity", speed),
+            units,
+        };
+        self.damping(&owner, joint.damping, speed);
+        self.friction(&owner, joint.friction, speed);
     }
 
-    /// Inertia of what turns with a ball joint alone.
+    /// Inertia of what turns with a ball joint alone, or moves with a free one.
     fn armature_of_several(&mut self, index: usize) {
         let joint = &self.tree.bodies[index].joint;
         let q = self.called.coordinates[index].clone();
-        let inertia = self.of_joint(
-            joint,
-            &q,
-            joint.armature,
-            ("armature", "kg*m^2", "inertia of the drive"),
-        );
+        let is_free = joint.motion == Motion::Free;
+        let of = format!("joint {}", joint.name);
+        let number = |unit: &'static str, letter: &'static str| {
+            (joint.armature, unit, letter, "inertia of the drive")
+        };
+        let inertia = self.of_owner(&q, &joint.name, "joint", number("kg*m^2", "armature"));
         let rotor = self.places.new_one(&format!("rotor_{q}"));
+        if is_free {
+            let mass = self.of_owner(&q, &joint.name, "joint", number("kg", "armature_mass"));
+            let point = self.called.points[index].clone();
+            let frame = self.called.frames[index].clone();
+            self.weightless
+                .push((q.clone(), point.clone(), mass.clone()));
+            return self.rotor(&rotor, &frame, (&point, &mass), &inertia, &of);
+        }
         let all = &self.called.several[index];
         let quaternion = all[all.len() - 4..].to_vec();
         let item = Item::default().text("parent", "ground");
         self.frames
             .add(&rotor, &item.raw("quaternion", &list(&quaternion)));
-        self.rotor(&rotor, &inertia, joint);
+        self.rotor(&rotor, &rotor, ("O", "0"), &inertia, &of);
     }
 
     fn coordinate(&mut self, joint: &Joint, q: &str, units: &Units) {
@@ -295,10 +223,7 @@ impl Writer<'_> {
             Some(range) => item.raw("range", &list(&range.map(plain))),
             None => item,
         };
-        let start = match joint.range {
-            Some([from, to]) if !(from..=to).contains(&joint.zero) => f64::midpoint(from, to),
-            _ => joint.zero,
-        };
+        let start = joint.start();
         let item = if start == 0.0 {
             item
         } else {
@@ -307,141 +232,64 @@ impl Writer<'_> {
         self.coordinates.add(q, &item);
     }
 
-    /// Inertia of a drive that turns with its joint alone: a body at rest on the ground but for that turn.
+    /// Inertia of a drive that turns with its joint alone.
     fn armature(&mut self, joint: &Joint, q: &str, units: &Units) {
-        let inertia = self.of_joint(
-            joint,
-            q,
+        let number = (
             joint.armature,
-            ("armature", units.inertia, "inertia of the drive"),
+            units.inertia,
+            "armature",
+            "inertia of the drive",
         );
-        let rotor = self.places.new_one(&format!("rotor_{q}"));
-        let (by, inertia) = match joint.motion {
-            Motion::Turning => (q.to_owned(), inertia),
+        let inertia = self.of_owner(q, &joint.name, "joint", number);
+        self.turning_rotor(q, q, inertia, units, &format!("joint {}", joint.name));
+    }
+
+    /// A body at rest on the ground but for a turn by a sum of coordinates.
+    pub(super) fn turning_rotor(
+        &mut self,
+        called: &str,
+        by: &str,
+        inertia: String,
+        units: &Units,
+        of: &str,
+    ) {
+        let rotor = self.places.new_one(&format!("rotor_{called}"));
+        let (by, inertia) = match units.coordinate {
+            "rad" => (by.to_owned(), inertia),
             // A turn of a radian a metre.
-            _ => (format!("{q}/(1 [m])"), format!("{inertia}*(1 [m])^2")),
+            _ if by.contains(' ') => (format!("({by})/(1 [m])"), format!("{inertia}*(1 [m])^2")),
+            _ => (format!("{by}/(1 [m])"), format!("{inertia}*(1 [m])^2")),
         };
         let item = Item::default()
             .text("parent", "ground")
             .text("about_axis", "z");
         self.frames.add(&rotor, &item.text("by", &by));
-        self.rotor(&rotor, &inertia, joint);
+        self.rotor(&rotor, &rotor, ("O", "0"), &inertia, of);
     }
 
-    /// A body without mass at the origin, with an inertia about it.
-    fn rotor(&mut self, rotor: &str, inertia: &str, joint: &Joint) {
-        let tensor = Item::default().text("in", rotor);
+    /// A body with an inertia about every axis of a frame.
+    fn rotor(
+        &mut self,
+        rotor: &str,
+        frame: &str,
+        (centre, mass): (&str, &str),
+        inertia: &str,
+        of: &str,
+    ) {
+        let tensor = Item::default().text("in", frame);
         let tensor = tensor.raw(
             "diagonal",
             &list(&[inertia, inertia, inertia].map(str::to_owned)),
         );
         let item = Item::default()
-            .text("frame", rotor)
-            .text("centre", "O")
-            .raw("mass", "0")
+            .text("frame", frame)
+            .text("centre", centre)
+            .expression("mass", mass)
             .raw("inertia", &tensor.table())
             .text(
                 "about",
-                &sentence(&format!(
-                    "inertia of the drive of joint {} (armature)",
-                    joint.name
-                )),
+                &sentence(&format!("inertia of the drive of {of} (armature)")),
             );
         self.bodies.add(rotor, &item);
-    }
-
-    /// Speeds of the coordinates that are free, and the equations of the others.
-    pub(super) fn couplings(
-        &mut self,
-        couplings: &[Coupling],
-        meetings: &[(String, Vec<Meeting>)],
-    ) {
-        let find = |name: &str| {
-            self.tree
-                .bodies
-                .iter()
-                .position(|body| body.joint.motion.has_axis() && body.joint.name == name)
-        };
-        let mut follows = vec![false; self.tree.bodies.len()];
-        let rows = || {
-            meetings
-                .iter()
-                .flat_map(|(_, of)| of)
-                .flat_map(|meeting| &meeting.rows)
-        };
-        for coupling in couplings {
-            let Some(own) = find(&coupling.joint) else {
-                continue;
-            };
-            let other = coupling.other.as_deref().and_then(find);
-            follows[own] = true;
-            let unit = |body: usize| Units::of(self.tree.bodies[body].joint.motion).coordinate;
-            let shifted = |body: usize, zero: f64| {
-                let q = &self.called.coordinates[body];
-                plus(q, &quantity(-zero, unit(body)))
-            };
-            let mut value = "0".to_owned();
-            for (power, coefficient) in coupling.coefficients.iter().enumerate() {
-                if *coefficient == 0.0 {
-                    continue;
-                }
-                let term = match (power, other) {
-                    (0, _) => quantity(*coefficient, unit(own)),
-                    (_, None) => continue,
-                    (_, Some(other)) => {
-                        let x = shifted(other, coupling.zeros[1]);
-                        let x = if x.contains(' ') { format!("({x})") } else { x };
-                        let x = if power == 1 {
-                            x
-                        } else {
-                            format!("{x}^{power}")
-                        };
-                        let factor = match (unit(own), unit(other)) {
-                            (y, x) if y == x && (power == 1 || y == "rad") => plain(*coefficient),
-                            ("m", "m") => format!("{} [1/m^{}]", plain(*coefficient), power - 1),
-                            ("m", _) => format!("{} [m]", plain(*coefficient)),
-                            _ => format!("{} [1/m^{power}]", plain(*coefficient)),
-                        };
-                        if factor == "1" {
-                            x
-                        } else {
-                            format!("{factor}*{x}")
-                        }
-                    }
-                };
-                value = plus(&value, &term);
-            }
-            let zero = shifted(own, coupling.zeros[0]);
-            let zero = if value == "0" {
-                zero
-            } else if value.contains([' ', '-']) {
-                format!("{zero} - ({value})")
-            } else {
-                format!("{zero} - {value}")
-            };
-            let item = Item::default()
-                .text("kind", "position")
-                .text("zero", &zero)
-                .text("dependent", &self.called.coordinates[own]);
-            self.constraints.add(
-                &crate::names::Names::default().new_one(&coupling.name),
-                &item,
-            );
-        }
-        for (index, body) in self.tree.bodies.iter().enumerate() {
-            let followers: Vec<usize> = rows()
-                .filter(|(_, follower)| follower.body == index)
-                .map(|(_, follower)| follower.component)
-                .collect();
-            if !body.joint.motion.has_axis() {
-                self.several_speeds(index, &followers);
-            } else if !follows[index] && followers.is_empty() {
-                let q = &self.called.coordinates[index];
-                let name = self.quantities.new_one(&format!("v_{q}"));
-                let item = Item::default().text("value", &format!("dot({q})"));
-                self.speeds
-                    .add(&name, &item.text("unit", Units::of(body.joint.motion).rate));
-            }
-        }
     }
 }

@@ -1,12 +1,11 @@
 //! Comments: where the spec comes from, what its file has besides.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
 use crate::model::{LeftOut, Robot};
 use crate::options::Options;
 use crate::tree::Tree;
-
-use super::grouped;
 
 /// Most names that a list gives.
 const MOST_NAMES: usize = 12;
@@ -45,25 +44,41 @@ pub(super) fn left_out(left_out: &[LeftOut], options: &Options, text: &mut Strin
         return;
     }
     text.push_str("\n# The file also has, without a counterpart here:\n");
-    for (what, all) in grouped(left_out) {
-        let names: Vec<&str> = all.iter().filter_map(|one| one.name.as_deref()).collect();
+    let mut kinds: Vec<(&LeftOut, Vec<&str>, usize)> = Vec::new();
+    let mut index = BTreeMap::new();
+    for one in left_out {
+        let at = *index.entry((&one.what, one.effect)).or_insert(kinds.len());
+        if at == kinds.len() {
+            kinds.push((one, Vec::new(), 0));
+        }
+        kinds[at].1.extend(one.name.as_deref());
+        kinds[at].2 += 1;
+    }
+    // What changes the motion comes first.
+    kinds.sort_by_key(|(one, ..)| one.effect.is_none());
+    for (one, names, count) in kinds {
         let names = if names.is_empty() {
             String::new()
         } else {
-            format!(": {}", line(&some(&names)))
+            format!(": {}", some(&names))
         };
-        let _ = writeln!(text, "# - {} {what}{names}", all.len());
+        let effect = one
+            .effect
+            .map_or(String::new(), |effect| format!(" ({effect})"));
+        let _ = writeln!(
+            text,
+            "# - {count} {}{}{effect}",
+            line(&one.what),
+            line(&names)
+        );
     }
 }
 
 /// Names, the first ones of many.
 fn some(names: &[&str]) -> String {
-    let mut unique: Vec<&str> = Vec::new();
-    for name in names {
-        if !unique.contains(name) {
-            unique.push(name);
-        }
-    }
+    let mut seen = BTreeSet::new();
+    let unique = names.iter().copied().filter(|name| seen.insert(*name));
+    let unique: Vec<&str> = unique.collect();
     let more = unique.len().saturating_sub(MOST_NAMES);
     let shown = unique
         .iter()

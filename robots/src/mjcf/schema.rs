@@ -1,0 +1,354 @@
+//! What MJCF has, as of `MuJoCo` 4.0, and what becomes of it: read, without effect on the motion, or left out, with a
+//! sentence on how the motion differs. What is not in this table is no MJCF and refused.
+
+use appell_spec::{Code, did_you_mean};
+
+use crate::model::LeftOut;
+use crate::xml::{Element, Findings, elements, tag};
+
+/// An element, within some others.
+struct Row {
+    element: &'static str,
+    /// Elements that hold it; `body` stands for all that holds bodies.
+    within: &'static str,
+    /// Attributes that are read.
+    read: &'static str,
+    /// Attributes without effect on the motion: of pictures, names, sensors, solvers and contacts.
+    idle: &'static str,
+    /// Attributes that would change the motion, the value at which they do not, and how.
+    left_out: &'static [(&'static str, &'static str, &'static str)],
+    /// Whether what it holds is looked at.
+    open: bool,
+    /// How the motion differs where the whole element is left out.
+    effect: Option<&'static str>,
+}
+
+impl Row {
+    /// An element that is read.
+    const fn read(element: &'static str, within: &'static str, read: &'static str) -> Self {
+        Self {
+            element,
+            within,
+            read,
+            idle: "",
+            left_out: &[],
+            open: true,
+            effect: None,
+        }
+    }
+
+    /// Elements without effect on the motion, whatever they hold.
+    const fn idle_element(element: &'static str, within: &'static str) -> Self {
+        let row = Self::read(element, within, "");
+        Self { open: false, ..row }
+    }
+
+    /// Elements that are left out, whatever they hold.
+    const fn apart(element: &'static str, within: &'static str, effect: &'static str) -> Self {
+        let row = Self::idle_element(element, within);
+        Self {
+            effect: Some(effect),
+            ..row
+        }
+    }
+
+    const fn idle(self, idle: &'static str) -> Self {
+        Self { idle, ..self }
+    }
+
+    const fn left_out(
+        self,
+        left_out: &'static [(&'static str, &'static str, &'static str)],
+    ) -> Self {
+        Self { left_out, ..self }
+    }
+}
+
+const OFF: &str = "disable";
+const ON: &str = "enable";
+const FLUID: &str = "lift, drag and viscous forces of the medium do not act";
+const ACTUATOR: &str =
+    "its force is an input of the joint; its law, its bounds and its own states do not act";
+const DRIVE_BOUND: &str = "forces of actuators are not bounded";
+const ALIGNED: &str = "coordinates of the free joint are those of the body's frame, where MuJoCo's are those of its \
+                       centre of mass and principal axes";
+const YIELD: &str = "the spring does not yield";
+const TENDON: &str = "it resists nothing and bounds nothing";
+/// What geoms would do.
+pub(super) const TOUCH: &str = "bodies pass through each other";
+
+/// All elements with their attributes.
+const TABLE: &[Row] = &[
+    Row::read("mujoco", "", "model"),
+    Row::read(
+        "compiler",
+        "mujoco",
+        "angle assetdir autolimits balanceinertia boundinertia boundmass coordinate eulerseq inertiafromgeom \
+         inertiagrouprange meshdir settotalmass strippath",
+    )
+    .idle(
+        "conflict convexhull discardvisual fitaabb fusestatic passthrough savecanonical savecompiled saveinertial \
+         texturedir usethread",
+    )
+    .left_out(&[
+        ("alignfree", "false", ALIGNED),
+        ("exactmeshinertia", "false", "meshes have their inertia by MuJoCo's older way"),
+    ]),
+    Row::idle_element("lengthrange", "compiler"),
+    Row::read("option", "mujoco", "gravity")
+        .idle(
+            "apirate ccd_iterations ccd_tolerance collision cone impratio integrator iterations jacobian ls_iterations \
+             ls_tolerance magnetic mpr_iterations mpr_tolerance noslip_iterations noslip_tolerance o_friction o_margin \
+             o_solimp o_solref sdf_initpoints sdf_iterations sleep_tolerance solver timestep tolerance",
+        )
+        .left_out(&[
+            ("density", "0", FLUID),
+            ("viscosity", "0", FLUID),
+            ("wind", "0", "the medium is at rest"),
+            ("actuatorgroupdisable", "", "their joints have inputs all the same"),
+        ]),
+    Row::read(
+        "flag",
+        "option",
+        "constraint contact damper equality frictionloss gravity limit passive spring",
+    )
+    .idle(
+        "autoreset clampctrl diagexact energy eulerdamp filterparent fwdinv invdiscrete ipc island midphase multiccd \
+         nativeccd override refsafe sensor sensornoise sleep speculative warmstart",
+    )
+    .left_out(&[("actuation", ON, "joints have inputs all the same")]),
+    Row::idle_element("size", "mujoco"),
+    Row::idle_element("statistic", "mujoco"),
+    Row::idle_element("visual", "mujoco"),
+    Row::idle_element("sensor", "mujoco"),
+    Row::idle_element("keyframe", "mujoco"),
+    Row::idle_element("custom", "mujoco"),
+    Row::idle_element("extension", "mujoco"),
+    Row::read("default", "mujoco default", "class"),
+    Row::read("asset", "mujoco", ""),
+    Row::read("mesh", "asset default", "class file inertia name refpos refquat scale").idle(
+        "builtin content_type face material maxhullvert normal params smoothnormal texcoord vertex",
+    ),
+    Row::idle_element("plugin", "mesh geom actuator sensor"),
+    Row::idle_element("hfield", "asset"),
+    Row::idle_element("skin", "asset deformable"),
+    Row::idle_element("texture", "asset default"),
+    Row::idle_element("material", "asset default"),
+    Row::read("model", "asset", "content_type file name"),
+    Row::read("worldbody", "mujoco", ""),
+    Row::read(
+        "body",
+        "body",
+        "axisangle childclass euler gravcomp name pos quat xyaxes zaxis",
+    )
+    .idle("fuse simple sleep user")
+    .left_out(&[("mocap", "false", "it stands still")]),
+    Row::read("frame", "body", "axisangle childclass euler name pos quat xyaxes zaxis"),
+    Row::read("replicate", "mujoco body", "count euler offset sep"),
+    Row::read("attach", "body", "body frame model prefix"),
+    Row::read(
+        "inertial",
+        "body",
+        "axisangle diaginertia euler fullinertia mass pos quat xyaxes zaxis",
+    ),
+    Row::read(
+        "joint",
+        "body default",
+        "armature axis class damping frictionloss limited name pos range ref springdamper springref stiffness type",
+    )
+    .idle("actuatorgravcomp group solimpfriction solimplimit solreffriction solreflimit user")
+    .left_out(&[
+        ("actuatorfrcrange", "0", DRIVE_BOUND),
+        ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
+        ("margin", "0", "the limit begins at the range itself"),
+        ("springyield", "0", YIELD),
+    ]),
+    Row::read("freejoint", "body", "name")
+        .idle("group")
+        .left_out(&[("align", "false|auto", ALIGNED)]),
+    Row::read(
+        "geom",
+        "body default",
+        "axisangle class conaffinity contype density euler fromto group mass mesh name pos quat shellinertia size type \
+         xyaxes zaxis",
+    )
+    .idle(
+        "adhesion castshadow condim fitscale fluidcoef fluidshape friction gap hfield margin material priority rgba \
+         solimp solmix solref surfacevel user",
+    ),
+    Row::read(
+        "site",
+        "body default",
+        "axisangle class euler fromto name pos quat xyaxes zaxis",
+    )
+    .idle("group material mesh rgba size type user"),
+    Row::idle_element("camera", "body default"),
+    Row::idle_element("light", "body default"),
+    Row::apart("plugin", "body", "its forces do not act"),
+    Row::idle_element("composite", "body"),
+    Row::idle_element("flexcomp", "body"),
+    Row::read("deformable", "mujoco", ""),
+    Row::apart("flex", "deformable", "its elastic forces do not act"),
+    Row::read("contact", "mujoco", ""),
+    Row::apart("pair", "contact", TOUCH),
+    Row::idle_element("pair", "default"),
+    Row::idle_element("exclude", "contact"),
+    Row::read("tendon", "mujoco", ""),
+    TENDONS,
+    Row {
+        element: "fixed",
+        within: "tendon",
+        ..TENDONS
+    },
+    Row {
+        element: "tendon",
+        within: "default",
+        ..TENDONS
+    },
+    Row::read("joint", "fixed", "coef joint"),
+    Row::read("site", "spatial", "site"),
+    Row::read("geom", "spatial", "geom sidesite"),
+    Row::read("pulley", "spatial", "divisor"),
+    Row::read("equality", "mujoco", ""),
+    Row::read("equality", "default", "active").idle("solimp solref"),
+    Row::read(
+        "connect",
+        "equality",
+        "active anchor body1 body2 class name site1 site2",
+    )
+    .idle("solimp solref"),
+    Row::read(
+        "weld",
+        "equality",
+        "active anchor body1 body2 class name relpose site1 site2 torquescale",
+    )
+    .idle("solimp solref"),
+    Row::read("joint", "equality", "active class joint1 joint2 name polycoef").idle("solimp solref"),
+    Row::read("tendon", "equality", "active class name polycoef tendon1 tendon2")
+        .idle("solimp solref"),
+    Row::read("flex", "equality", "active class flex name").idle("solimp solref"),
+    Row::read("flexvert", "equality", "active class flex name").idle("solimp solref"),
+    Row::read("flexstrain", "equality", "active cell class flex name").idle("solimp solref"),
+    Row::read("distance", "equality", "active class name geom1 geom2 distance").idle("solimp solref"),
+    Row::read("actuator", "mujoco", ""),
+    Row::apart(ACTUATORS, "actuator default", ACTUATOR),
+];
+
+/// Tendons of both kinds, and what their defaults are.
+const TENDONS: Row = Row::read(
+    "spatial",
+    "tendon",
+    "armature class damping frictionloss limited name range springlength stiffness",
+)
+.idle("group margin material rgba solimpfriction solimplimit solreffriction solreflimit user width")
+.left_out(&[
+    ("actuatorfrcrange", "0", DRIVE_BOUND),
+    ("actuatorfrclimited", "false|auto", DRIVE_BOUND),
+    ("springyield", "0", YIELD),
+]);
+
+/// The kinds of actuators.
+pub(super) const ACTUATORS: &str = "general motor position velocity intvelocity orientation pid damper cylinder muscle \
+                                    adhesion dcmotor";
+
+fn has(words: &str, word: &str) -> bool {
+    words.split_ascii_whitespace().any(|own| own == word)
+}
+
+/// The kind of an element that holds others.
+fn kind(holder: Element<'_>) -> &str {
+    match holder.tag_name().name() {
+        "worldbody" | "frame" | "replicate" => "body",
+        name => name,
+    }
+}
+
+fn row(element: Element<'_>) -> Option<&'static Row> {
+    let holder = element.parent_element().map_or("", kind);
+    let name = element.tag_name().name();
+    let fits =
+        |row: &&Row| has(row.element, name) && (has(row.within, holder) || holder == row.within);
+    TABLE.iter().find(fits)
+}
+
+/// How the motion differs where an element is left out.
+pub(super) fn effect(element: Element<'_>) -> Option<&'static str> {
+    match element.tag_name().name() {
+        "spatial" | "fixed" => Some(TENDON),
+        _ => row(element)?.effect,
+    }
+}
+
+/// Refuses what is no MJCF, and lists attributes that are left out.
+pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<LeftOut>) {
+    let mut open = vec![root];
+    while let Some(element) = open.pop() {
+        let name = element.tag_name().name();
+        let Some(row) = row(element) else {
+            let holder = element.parent_element();
+            let all = || {
+                TABLE
+                    .iter()
+                    .filter(|row| holder.is_some_and(|holder| has(row.within, kind(holder))))
+            };
+            let known = all().flat_map(|row| row.element.split_ascii_whitespace());
+            let within = holder.map_or("", |holder| holder.tag_name().name());
+            findings.error(
+                Code::UnknownKey,
+                tag(element),
+                format!("`{within}` holds no element `{}`", appell_spec::shown(name)),
+                did_you_mean(name, known, || {
+                    "MuJoCo 4.0 has none there: remove it, or say it otherwise".to_owned()
+                }),
+            );
+            continue;
+        };
+        if !row.open {
+            continue;
+        }
+        for attribute in element.attributes() {
+            let key = attribute.name();
+            if let Some((_, idle, effect)) = row.left_out.iter().find(|(own, ..)| *own == key) {
+                if !changes_nothing(attribute.value(), idle) {
+                    left_out.push(LeftOut {
+                        what: format!("{name}/{key}"),
+                        name: element.attribute("name").map(str::to_owned),
+                        effect: Some(effect),
+                        place: attribute.range(),
+                    });
+                }
+            } else if !has(row.read, key) && !has(row.idle, key) {
+                let all = [row.read, row.idle]
+                    .into_iter()
+                    .flat_map(str::split_ascii_whitespace);
+                let all = all.chain(row.left_out.iter().map(|(own, ..)| *own));
+                findings.error(
+                    Code::UnknownKey,
+                    attribute.range(),
+                    format!("`{name}` has no attribute `{}`", appell_spec::shown(key)),
+                    did_you_mean(key, all, || {
+                        "MuJoCo 4.0 has none of that name: remove it, or say it otherwise"
+                            .to_owned()
+                    }),
+                );
+            }
+        }
+        let inner: Vec<Element<'_>> = elements(element).collect();
+        open.extend(inner.into_iter().rev());
+    }
+}
+
+/// Whether a value is one at which an attribute does nothing: one of several words, or zeros.
+fn changes_nothing(value: &str, idle: &str) -> bool {
+    let zero = |word: &str| word.parse::<f64>().is_ok_and(|number| number == 0.0);
+    let mut words = value.split_ascii_whitespace();
+    idle.split('|').any(|word| word == value) || (idle == "0" && words.all(zero))
+}
+
+/// Whether a flag of `option` disables what it names.
+pub(super) fn disabled(root: Element<'_>, flag: &str) -> bool {
+    let options = elements(root).filter(|section| section.has_tag_name("option"));
+    let flags = options.flat_map(|option| elements(option).filter(|one| one.has_tag_name("flag")));
+    let given = flags.filter_map(|flags| flags.attribute(flag));
+    given.last() == Some(OFF)
+}

@@ -1,0 +1,190 @@
+//! What resists a coordinate, a speed or the length of a tendon: damping, springs, dry friction.
+
+use crate::letters::{Kind, Number, quantity};
+use crate::model::Polynomial;
+use crate::rotation::is_zero;
+use crate::table::Item;
+
+use super::joints::Units;
+use super::{Writer, plus};
+
+/// Rates below which dry friction fades out.
+const SLOW: f64 = 0.01;
+
+/// What is resisted.
+pub(super) struct Owner<'a> {
+    /// Its name in the spec, and in the file.
+    pub(super) called: &'a str,
+    pub(super) of: &'a str,
+    /// `joint` or `tendon`.
+    pub(super) kind: &'a str,
+    /// The key of a load and its value: along what it acts.
+    pub(super) along: (&'a str, &'a str),
+    pub(super) units: &'a Units,
+}
+
+impl Writer<'_> {
+    /// A number of a joint or a tendon, as an expression.
+    pub(super) fn of_owner(
+        &mut self,
+        called: &str,
+        of: &str,
+        kind: &str,
+        (value, unit, letter, about): (f64, &'static str, &str, &str),
+    ) -> String {
+        let number = Number {
+            value,
+            unit,
+            letter: &format!("{letter}_{called}"),
+            of,
+            about: &format!("{about} of {kind} {of}"),
+            kind: Kind::Other,
+            never_negative: value >= 0.0 && !letter.starts_with("relaxed"),
+        };
+        self.numbers.write(number, &mut self.quantities)
+    }
+
+    /// A load along what is resisted.
+    fn resist(&mut self, owner: &Owner<'_>, word: &str, force: &str) {
+        let (key, along) = owner.along;
+        let item = Item::default()
+            .text("kind", "generalized")
+            .text(key, along)
+            .text("force", force);
+        self.loads.add(&format!("{word}_{}", owner.called), &item);
+    }
+
+    /// The force of a polynomial, by the powers of what it is taken of.
+    fn opposing(
+        &mut self,
+        owner: &Owner<'_>,
+        word: &str,
+        factors: Polynomial,
+        (units, powers): ([&'static str; 3], [String; 3]),
+    ) -> String {
+        let mut force = "0".to_owned();
+        for (index, (factor, power)) in factors.into_iter().zip(powers).enumerate() {
+            if factor == 0.0 {
+                continue;
+            }
+            let letter = match index {
+                0 => word.to_owned(),
+                _ => format!("{word}_{}", index + 1),
+            };
+            let number = (factor, units[index], letter.as_str(), word);
+            let factor = self.of_owner(owner.called, owner.of, owner.kind, number);
+            let term = format!("{factor}*{power}");
+            force = match (force.as_str(), term.strip_prefix('-')) {
+                ("0", Some(term)) => term.to_owned(),
+                ("0", None) => format!("-{term}"),
+                (force, Some(term)) => format!("{force} + {term}"),
+                (force, None) => format!("{force} - {term}"),
+            };
+        }
+        force
+    }
+
+    /// Damping a v + b v |v| + c v³.
+    pub(super) fn damping(&mut self, owner: &Owner<'_>, damping: Polynomial, rate: &str) {
+        let ("coordinate", [linear, 0.0, 0.0]) = (owner.along.0, damping) else {
+            if !is_zero(damping) {
+                let factor = one(rate);
+                let powers = [
+                    factor.clone(),
+                    format!("{factor}*abs({rate})"),
+                    format!("{factor}^3"),
+                ];
+                let powers = (owner.units.damping, powers);
+                let force = self.opposing(owner, "damping", damping, powers);
+                self.resist(owner, "damping", &force);
+            }
+            return;
+        };
+        if linear != 0.0 {
+            let number = (linear, owner.units.damping[0], "damping", "damping");
+            let damping = self.of_owner(owner.called, owner.of, owner.kind, number);
+            let item = Item::default()
+                .text("kind", "damper")
+                .text("coordinate", owner.along.1)
+                .expression("damping", &damping);
+            self.loads.add(&format!("damping_{}", owner.called), &item);
+        }
+    }
+
+    /// A spring of a coordinate, a x + b x² + c x³.
+    pub(super) fn spring(&mut self, owner: &Owner<'_>, stiffness: Polynomial, relaxed: f64) {
+        if is_zero(stiffness) {
+            return;
+        }
+        let about = "coordinate of the relaxed spring";
+        let unit = owner.units.coordinate;
+        if let [linear, 0.0, 0.0] = stiffness {
+            let number = (
+                linear,
+                owner.units.stiffness[0],
+                "stiffness",
+                "stiffness of the spring",
+            );
+            let stiffness = self.of_owner(owner.called, owner.of, owner.kind, number);
+            let relaxed = self.of_owner(
+                owner.called,
+                owner.of,
+                owner.kind,
+                (relaxed, unit, "relaxed", about),
+            );
+            let item = Item::default()
+                .text("kind", "spring")
+                .text("coordinate", owner.along.1)
+                .expression("stiffness", &stiffness);
+            let item = if relaxed == "0" {
+                item
+            } else {
+                item.expression("relaxed", &relaxed)
+            };
+            self.loads.add(&format!("spring_{}", owner.called), &item);
+            return;
+        }
+        let relaxed = self.of_owner(
+            owner.called,
+            owner.of,
+            owner.kind,
+            (-relaxed, unit, "relaxed", about),
+        );
+        let x = plus(owner.along.1, &relaxed);
+        self.elastic(owner, stiffness, &x);
+    }
+
+    /// The force of a spring by how far it is strained.
+    pub(super) fn elastic(&mut self, owner: &Owner<'_>, stiffness: Polynomial, strain: &str) {
+        let x = one(strain);
+        let powers = [x.clone(), format!("{x}^2"), format!("{x}^3")];
+        let force = self.opposing(
+            owner,
+            "stiffness",
+            stiffness,
+            (owner.units.stiffness, powers),
+        );
+        self.resist(owner, "spring", &force);
+    }
+
+    /// Dry friction.
+    pub(super) fn friction(&mut self, owner: &Owner<'_>, friction: f64, rate: &str) {
+        if friction == 0.0 {
+            return;
+        }
+        let number = (friction, owner.units.force, "friction", "dry friction");
+        let friction = self.of_owner(owner.called, owner.of, owner.kind, number);
+        let slow = quantity(SLOW, owner.units.rate);
+        let force = format!("-{friction}*smooth_sign({rate}, {slow})");
+        self.resist(owner, "friction", &force);
+    }
+}
+
+/// A sum in brackets.
+fn one(expression: &str) -> String {
+    if expression.contains(' ') || expression.starts_with('-') {
+        format!("({expression})")
+    } else {
+        expression.to_owned()
+    }
+}

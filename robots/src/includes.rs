@@ -5,7 +5,7 @@
 
 use appell_spec::{Code, Diagnostic, Report, Severity, shown};
 
-use crate::xml::{Element, Span, begun, parse, tag};
+use crate::xml::{Element, Span, begun, inside, parse};
 
 /// Largest file with those that it includes, in bytes.
 pub const MAX_FILE: u64 = 1 << 24;
@@ -34,6 +34,14 @@ struct Piece {
     file: usize,
     /// Where it begins in its file.
     from: usize,
+}
+
+/// A part of another text.
+pub(crate) enum Edit {
+    /// A part of the text as it is.
+    Keep(Span),
+    /// Words that stand for what is at a place.
+    Insert(String, usize),
 }
 
 /// `<include>`
@@ -115,6 +123,41 @@ impl<'f> Whole<'f> {
             from: part.start,
         });
         self.text.push_str(&self.files[file].1[part]);
+    }
+
+    /// The same files with an edited text; places in it are those of the parts that it consists of.
+    pub(crate) fn edited(self, edits: &[Edit]) -> Self {
+        let (mut text, mut pieces) = (String::new(), Vec::new());
+        for edit in edits {
+            let place = match edit {
+                Edit::Keep(part) => part.clone(),
+                Edit::Insert(_, at) => *at..*at + 1,
+            };
+            let first = self
+                .pieces
+                .partition_point(|piece| piece.start <= place.start);
+            let first = first.saturating_sub(1);
+            let overlaps = self.pieces[first..]
+                .iter()
+                .take_while(|piece| piece.start < place.end);
+            for piece in overlaps {
+                let from = place.start.max(piece.start);
+                pieces.push(Piece {
+                    start: text.len() + from - place.start,
+                    file: piece.file,
+                    from: piece.from + from - piece.start,
+                });
+            }
+            text.push_str(match edit {
+                Edit::Keep(part) => &self.text[part.clone()],
+                Edit::Insert(words, _) => words,
+            });
+        }
+        Self {
+            text,
+            pieces,
+            ..self
+        }
     }
 
     /// The bytes of a file that a file names, and its path; `within` is a folder for files of its kind. The error says why
@@ -258,15 +301,5 @@ impl<'f> Whole<'f> {
         let mut reports = self.reports(findings).into_iter();
         let first = reports.find(is_wrong);
         first.unwrap_or_else(|| self.report(0, Vec::new()))
-    }
-}
-
-/// What an element holds.
-fn inside(element: Element<'_>) -> Span {
-    let (all, tag) = (element.range(), tag(element));
-    let text = &element.document().input_text()[all.clone()];
-    match text.rfind("</") {
-        Some(close) if tag.end < all.end => tag.end..all.start + close,
-        _ => tag.end..tag.end,
     }
 }

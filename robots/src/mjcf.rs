@@ -7,6 +7,7 @@ mod geoms;
 mod joints;
 mod meshes;
 mod orientation;
+mod replicate;
 mod schema;
 mod tendons;
 
@@ -26,6 +27,7 @@ use crate::xml::{Element, Findings, Span, child, children, elements, exactly, ta
 use compiler::{Compiler, InertiaFrom};
 use defaults::Defaults;
 use equality::Equality;
+pub(crate) use replicate::expanded;
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 

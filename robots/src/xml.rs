@@ -271,3 +271,13 @@ pub(crate) fn exactly<const N: usize>(
         None
     })
 }
+
+/// What an element holds.
+pub(crate) fn inside(element: Element<'_>) -> Span {
+    let (all, tag) = (element.range(), tag(element));
+    let text = &element.document().input_text()[all.clone()];
+    match text.rfind("</") {
+        Some(close) if tag.end < all.end => tag.end..all.start + close,
+        _ => tag.end..tag.end,
+    }
+}

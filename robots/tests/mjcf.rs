@@ -109,8 +109,8 @@ fn what_is_no_mjcf_is_refused_with_a_remedy() {
         ),
         (
             "<worldbody>",
-            "<worldbody><replicate/>",
-            ["`replicate` changes the tree", "1:"],
+            "<worldbody><attach prefix=\"a\"/>",
+            ["`attach` changes the tree", "1:"],
         ),
     ] {
         let wrong = told(&bar("").replace(from, to), &Options::default()).unwrap_err();
@@ -211,4 +211,57 @@ fn joints_that_follow_others_need_no_mass() {
         "{}",
         report.plain()
     );
+}
+
+#[test]
+fn copies_are_written_out_with_what_names_them() {
+    let bodies = |inner: &str| {
+        format!("<mujoco><worldbody>{inner}</worldbody>
+<equality><joint name=\"held\" joint1=\"q\" polycoef=\"0.1\"/></equality><actuator><motor joint=\"q\" gear=\"2\" armature=\"0.1\"/></actuator></mujoco>")
+    };
+    let body = |name: &str, more: &str| {
+        format!(
+            "<body name=\"b{name}\"{more}><joint name=\"q{name}\" axis=\"0 1 0\"/><geom size=\"0.1\" pos=\"0 0 0.2\"/></body>"
+        )
+    };
+    let robot = read(&bodies(&format!(
+        "<replicate count=\"2\" sep=\"_\" offset=\"0.5 0 0\" euler=\"0 0 90\">{}</replicate>",
+        body("", "")
+    )));
+    let by_hand = bodies(&(body("_0", "") + &body("_1", " pos=\"0.5 0 0\" euler=\"0 0 90\"")))
+        .replace("<joint name=\"held\" joint1=\"q\" polycoef=\"0.1\"/>", "<joint name=\"held_0\" joint1=\"q_0\" polycoef=\"0.1\"/><joint name=\"held_1\" joint1=\"q_1\" polycoef=\"0.1\"/>")
+        .replace("<motor joint=\"q\" gear=\"2\" armature=\"0.1\"/>", "<motor joint=\"q_0\" gear=\"2\" armature=\"0.1\"/><motor joint=\"q_1\" gear=\"2\" armature=\"0.1\"/>");
+    assert_eq!(robot.spec, read(&by_hand).spec);
+    // Copies of copies, the inner ending first.
+    let inner = format!(
+        "<replicate count=\"2\" sep=\"-\" offset=\"0 1 0\">\n{}</replicate>",
+        body("", "")
+    );
+    let outer = format!(
+        "<mujoco><worldbody><replicate count=\"11\" offset=\"1 0 0\">{inner}</replicate></worldbody></mujoco>"
+    );
+    let robot = read(&outer);
+    assert_eq!(robot.joints, 22);
+    assert!(robot.spec.contains("\nq_110 "), "{}", robot.spec);
+    assert!(
+        robot
+            .left_out
+            .iter()
+            .all(|one| one.lines.iter().all(|line| *line == 2)),
+        "{:?}",
+        robot.left_out
+    );
+    for (attributes, words) in [
+        ("", "between 1 and 65536"),
+        ("count=\"1e9\"", "between 1 and 65536"),
+        ("count=\"65536\"", "copies make the file larger"),
+        ("count=\"2\" euler=\"0 0\"", "`euler` has 2 of 3 numbers"),
+    ] {
+        let text = format!(
+            "<mujoco><worldbody><replicate {attributes}>{}</replicate></worldbody></mujoco>",
+            body("", "").repeat(3)
+        );
+        let wrong = told(&text, &Options::default()).unwrap_err();
+        assert!(wrong.contains(words) && wrong.contains("1:"), "{wrong}");
+    }
 }

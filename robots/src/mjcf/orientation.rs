@@ -53,7 +53,7 @@ impl Angles {
         }
     }
 
-    fn euler(&self, angles: Vector) -> Rotation {
+    pub(super) fn euler(&self, angles: Vector) -> Rotation {
         let mut rotation = Rotation::IDENTITY;
         for ((axis, stays), angle) in self.sequence.into_iter().zip(angles) {
             let turn = Rotation::about(axis, self.radians(angle));

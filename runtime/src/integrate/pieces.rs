@@ -372,7 +372,8 @@ mod tests {
             one.integral
         );
         assert!((one.best.1 - 1.0).abs() < 1e-10, "{:?}", one.best);
-        assert!(one.evaluations < 2000, "{}", one.evaluations);
+        // 32 periods of the square, an eighth of one each piece.
+        assert!(one.evaluations < 5000, "{}", one.evaluations);
         // A jump and a kink.
         let one = known([0.0, 1.0], |t| if t < 0.3 { 1.0 } else { 0.0 });
         assert!((one.integral - 0.3).abs() < 1e-7, "{}", one.integral);

@@ -188,7 +188,7 @@ pub fn import_with(
     others: &dyn Fn(&str) -> Result<Vec<u8>, String>,
 ) -> Result<Imported, Failure> {
     let whole = Whole::read(file, text, others).map_err(Failure::File)?;
-    let whole = mjcf::expanded(whole).map_err(Failure::File);
+    let whole = mjcf::expanded(whole).map_err(Failure::File)?;
     let fail = |mut findings: Vec<Diagnostic>| {
         findings.retain(|finding| finding.severity == Severity::Error);
         Failure::File(Box::new(whole.first_error(findings)))

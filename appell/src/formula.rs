@@ -11,9 +11,10 @@ use appell_runtime::model::{At, ModelInfo};
 use appell_runtime::series::{Cubic, differentiated};
 use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
-use appell_spec::expr::{BinaryOp, Expr as SpecExpr, ExprKind, Function as Named, Quantity};
+use appell_spec::expr::Expr as SpecExpr;
 
 /// An expression graph with the symbols of a mechanism.
+#[derive(Clone)]
 pub(crate) struct Workbench {
     /// The graph.
     pub(crate) graph: Graph,
@@ -225,120 +226,6 @@ impl StateFunction {
         match &self.native {
             Some(native) => native.call(At { t, x, u, p }, [values]),
             None => values.copy_from_slice(&interpret(&self.schedule, t, x, u, p)[0]),
-        }
-    }
-}
-
-/// Collects the times at which an expression switches because it compares linear functions of `t`, or takes
-/// the sign of one; `p` are the parameters.
-pub(crate) fn switching_times(expr: &SpecExpr, p: &[f64], times: &mut Vec<f64>) {
-    let mut zero_of = |function: Option<Linear>| times.extend(function.and_then(Linear::zero));
-    match &expr.kind {
-        ExprKind::Number(_) | ExprKind::Quantity(_) => {}
-        ExprKind::Negate(a) => switching_times(a, p, times),
-        ExprKind::Binary(_, a, b) => {
-            switching_times(a, p, times);
-            switching_times(b, p, times);
-        }
-        ExprKind::Call(function, arguments) => {
-            if let (Named::Sign | Named::Abs, [argument]) = (function, &arguments[..]) {
-                zero_of(Linear::of(argument, p));
-            }
-            for argument in arguments {
-                switching_times(argument, p, times);
-            }
-        }
-        ExprKind::Choice {
-            compared, branches, ..
-        } => {
-            let [left, right] = compared.each_ref().map(|side| Linear::of(side, p));
-            zero_of(left.zip(right).map(|(left, right)| left.plus(right, -1.0)));
-            compared
-                .iter()
-                .chain(branches.iter())
-                .for_each(|a| switching_times(a, p, times));
-        }
-    }
-}
-
-/// `constant + slope t`
-#[derive(Clone, Copy)]
-struct Linear {
-    constant: f64,
-    slope: f64,
-}
-
-impl Linear {
-    /// An expression of numbers, parameters and `t`, if it is linear in `t`.
-    fn of(expr: &SpecExpr, p: &[f64]) -> Option<Self> {
-        let constant = |constant: f64| Self {
-            constant,
-            slope: 0.0,
-        };
-        Some(match &expr.kind {
-            ExprKind::Number(n) => {
-                constant(appell_codegen::symbolic::Rational::from_big(n.clone()).to_f64())
-            }
-            ExprKind::Quantity(Quantity::Parameter(id)) => constant(*p.get(id.index())?),
-            ExprKind::Quantity(Quantity::Time) => Self {
-                constant: 0.0,
-                slope: 1.0,
-            },
-            ExprKind::Negate(a) => constant(0.0).plus(Self::of(a, p)?, -1.0),
-            ExprKind::Binary(operation, a, b) => {
-                let (a, b) = (Self::of(a, p)?, Self::of(b, p)?);
-                match operation {
-                    BinaryOp::Add => a.plus(b, 1.0),
-                    BinaryOp::Subtract => a.plus(b, -1.0),
-                    BinaryOp::Multiply if a.slope == 0.0 => constant(0.0).plus(b, a.constant),
-                    BinaryOp::Multiply if b.slope == 0.0 => constant(0.0).plus(a, b.constant),
-                    BinaryOp::Divide if b.slope == 0.0 => constant(0.0).plus(a, b.constant.recip()),
-                    _ => return None,
-                }
-            }
-            _ => return None,
-        })
-    }
-
-    /// `self + factor other`
-    fn plus(self, other: Self, factor: f64) -> Self {
-        Self {
-            constant: self.constant + factor * other.constant,
-            slope: self.slope + factor * other.slope,
-        }
-    }
-
-    /// Where it vanishes.
-    fn zero(self) -> Option<f64> {
-        (self.slope != 0.0).then(|| -self.constant / self.slope)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use appell_spec::units::{Dimension, Unit};
-    use appell_spec::{Scope, Snippet, formula};
-
-    #[test]
-    fn inputs_switch_where_linear_functions_of_time_meet() {
-        let spec = include_str!("../../generated/mechanisms/cart_pole.toml");
-        for (text, expected) in [
-            ("if(t < 2, 1, 0)", vec![2.0]),
-            ("if(t - 5 < 0, 1, 0)", vec![5.0]),
-            ("if(2*t > 9 - t, 1, 0)", vec![3.0]),
-            ("sign(t/2 - 4)", vec![8.0]),
-            ("if(t*t < 4, 1, 0)", vec![]),
-            ("if(x < 1, 1, 0)", vec![]),
-            ("if(t < m_cart/(5[kg/s]), 1, 0)", vec![0.4]),
-        ] {
-            let snippet = Snippet::alone(text);
-            let unit = Unit::si(Dimension::NONE);
-            let expr = formula(spec, &snippet, "the input", Scope::Law, &unit)
-                .unwrap_or_else(|report| panic!("{text}: {report:?}"));
-            let mut times = Vec::new();
-            switching_times(&expr, &[2.0], &mut times);
-            assert_eq!(times, expected, "{text}");
         }
     }
 }

@@ -7,4 +7,5 @@ pub(crate) mod closed_loop;
 pub mod controller;
 pub mod feedback;
 mod law;
+mod switching;
 pub mod tabulated;

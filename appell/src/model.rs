@@ -187,13 +187,8 @@ impl Model {
             }
             .run()
         };
-        motion.simulate(
-            self.equations(),
-            || self.rates(),
-            self.setup()?,
-            self.name(),
-            run,
-        )
+        let ready = motion.ready(self.equations(), self.setup()?, self.name())?;
+        motion.simulate(self.equations(), || self.rates(), &ready, run)
     }
 
     /// Integrates the equations of motion as long as `go_on`, which is asked several times in each step.
@@ -227,13 +222,8 @@ impl Model {
             }
             .run()
         };
-        motion.simulate(
-            self.equations(),
-            || self.rates(),
-            self.setup()?,
-            self.name(),
-            run,
-        )
+        let ready = motion.ready(self.equations(), self.setup()?, self.name())?;
+        motion.simulate(self.equations(), || self.rates(), &ready, run)
     }
 
     /// A page that animates a motion; `ending` is the reason of an early end.

@@ -8,11 +8,12 @@ use appell_codegen::schedule::Schedule;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::{Ending, Options};
 use appell_runtime::model::Model;
+use appell_runtime::series::Cubic;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
-use appell_runtime::trajectory::Extras;
+use appell_runtime::trajectory::{Extras, NotFinite};
 use appell_runtime::{Simulation, Trajectory};
 
-use crate::inputs::controller::Plan;
+use crate::inputs::controller::{Controller, Plan, Wiring};
 use crate::inputs::{feedback, tabulated};
 use crate::setup::{Assignment, Setup};
 use crate::{Error, Field};
@@ -91,6 +92,8 @@ pub struct Simulated {
     pub trajectory: Trajectory,
     /// The reason of an early end.
     pub failure: Option<String>,
+    /// Which inputs, outputs and energies are no numbers, if any is.
+    pub undefined: Option<String>,
     /// Whether neither inputs nor feedback drive the mechanism.
     pub undriven: bool,
     /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
@@ -200,64 +203,81 @@ impl Motion {
         self.interval.unwrap_or(self.t_end / 1000.0)
     }
 
-    /// Integrates the equations of motion with `run`; `name` names the spec in messages, `rates` gives the
-    /// operations to be expanded if the method needs them.
-    pub(crate) fn simulate<'r>(
+    /// What the motion is made of, once it is found valid; `name` names the spec in messages.
+    pub(crate) fn ready(
         &self,
         model: &dyn Model,
-        rates: impl FnOnce() -> Result<&'r Schedule, Error>,
         mut setup: Setup<'_>,
         name: &str,
-        run: impl FnOnce(Simulation<'_>) -> Result<Trajectory, SimulationError>,
-    ) -> Result<Simulated, Error> {
+    ) -> Result<Ready, Error> {
         let interval = self.checked_interval()?;
         setup.watch_ranges = self.validity.ranges == Response::Stop;
         setup.set(&self.parameters)?;
         let plan = self.plan(model, &mut setup, name)?;
         let undriven = plan.is_empty();
+        let mut options = self.options;
+        let is_opaque = |driven: &Driven| {
+            let mut u = vec![Cubic::default(); model.info().declared_inputs];
+            !driven.source.polynomials(0.0, &setup.initial, &mut u)
+        };
+        if self.driven.iter().any(is_opaque) {
+            // Nothing tells what a program computes between two rows: no step is longer than these are apart.
+            options.max_step = options.max_step.min(interval);
+        }
         let held_from = plan
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
         let wiring = plan.wiring(&setup, self.t_end)?;
-        let mut controller = wiring.controller(model, setup.parameters.clone(), self.t_end);
-        if self.method == Method::Taylor {
-            controller.expand(rates()?, model.info());
-        }
-        let simulation = Simulation {
+        Ok(Ready {
+            wiring,
             parameters: setup.parameters,
-            initial_state: setup.initial,
-            inputs: &controller,
-            span: [0.0, self.t_end],
-            method: self.method,
-            options: self.options,
-            sampling: Sampling::Every(interval),
-            extras: self.extras,
-            validity: self.validity,
-            ..Simulation::new(model)
-        };
-        let (trajectory, failure) = match run(simulation) {
-            Ok(trajectory) => {
-                let ended = trajectory.ending == Some(Ending::Stopped);
-                let last = trajectory.breaches.last().filter(|_| ended);
-                let reason = last.map(|breach| breach.describe_in_full(trajectory.info()));
-                let interrupted = matches!(trajectory.ending, Some(Ending::Event(_)));
-                let interrupted = interrupted.then(|| INTERRUPTED.to_owned());
-                (trajectory, reason.or(interrupted))
-            }
-            Err(error) => {
-                let reason = error.to_string();
-                match error {
-                    SimulationError::Integration { trajectory, .. } => (*trajectory, Some(reason)),
-                    other => return Err(other.into()),
-                }
-            }
-        };
-        Ok(Simulated {
-            trajectory,
-            failure,
+            initial: setup.initial,
+            interval,
+            options,
             undriven,
             held_from,
         })
+    }
+
+    /// The motion from a state.
+    pub(crate) fn simulation<'r>(
+        &self,
+        ready: &Ready,
+        model: &'r dyn Model,
+        inputs: &'r Controller<'_>,
+        initial_state: Vec<f64>,
+    ) -> Simulation<'r> {
+        Simulation {
+            parameters: ready.parameters.clone(),
+            initial_state,
+            inputs,
+            span: [0.0, self.t_end],
+            method: self.method,
+            options: ready.options,
+            sampling: Sampling::Every(ready.interval),
+            extras: self.extras,
+            validity: self.validity,
+            ..Simulation::new(model)
+        }
+    }
+
+    /// Integrates the equations of motion with `run`; `rates` gives the operations to be expanded if the method needs
+    /// them.
+    pub(crate) fn simulate<'r>(
+        &self,
+        model: &dyn Model,
+        rates: impl FnOnce() -> Result<&'r Schedule, Error>,
+        ready: &Ready,
+        run: impl FnOnce(Simulation<'_>) -> Result<Trajectory, SimulationError>,
+    ) -> Result<Simulated, Error> {
+        let mut controller = ready
+            .wiring
+            .controller(model, ready.parameters.clone(), self.t_end);
+        if self.method == Method::Taylor {
+            controller.expand(rates()?, model.info());
+        }
+        let simulation = self.simulation(ready, model, &controller, ready.initial.clone());
+        ready.simulated(run(simulation))
     }
 
     /// The sources of the inputs. Feedback laws come first: `initial` overrides their initial values.
@@ -286,4 +306,64 @@ impl Motion {
         }
         Ok(plan)
     }
+}
+
+/// A motion whose request is valid.
+pub(crate) struct Ready {
+    pub(crate) wiring: Wiring,
+    pub(crate) parameters: Vec<f64>,
+    pub(crate) initial: Vec<f64>,
+    pub(crate) interval: f64,
+    pub(crate) options: Options,
+    undriven: bool,
+    held_from: Option<f64>,
+}
+
+impl Ready {
+    /// What came of the motion.
+    pub(crate) fn simulated(
+        &self,
+        result: Result<Trajectory, SimulationError>,
+    ) -> Result<Simulated, Error> {
+        let (trajectory, failure) = match result {
+            Ok(trajectory) => {
+                let ended = trajectory.ending == Some(Ending::Stopped);
+                let last = trajectory.breaches.last().filter(|_| ended);
+                let reason = last.map(|breach| breach.describe_in_full(trajectory.info()));
+                let interrupted = matches!(trajectory.ending, Some(Ending::Event(_)));
+                let interrupted = interrupted.then(|| INTERRUPTED.to_owned());
+                (trajectory, reason.or(interrupted))
+            }
+            Err(error) => {
+                let reason = error.to_string();
+                match error {
+                    SimulationError::Integration { trajectory, .. } => (*trajectory, Some(reason)),
+                    other => return Err(other.into()),
+                }
+            }
+        };
+        Ok(Simulated {
+            undefined: undefined(&trajectory),
+            trajectory,
+            failure,
+            undriven: self.undriven,
+            held_from: self.held_from,
+        })
+    }
+}
+
+/// Which inputs, outputs and energies of a motion are no numbers, and from when on.
+fn undefined(trajectory: &Trajectory) -> Option<String> {
+    let one = |bad: &NotFinite| {
+        let name = &trajectory.columns()[bad.column].name;
+        let t = trajectory.times()[bad.first];
+        let rows = if bad.rows == 1 { "row" } else { "rows" };
+        format!(
+            "`{name}` is not a finite number in {} {rows}, first at t = {t} s",
+            bad.rows
+        )
+    };
+    let all = trajectory.not_finite();
+    let texts: Vec<String> = all.iter().map(one).collect();
+    (!texts.is_empty()).then(|| texts.join("; "))
 }

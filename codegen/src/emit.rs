@@ -17,6 +17,7 @@ mod model;
 mod picture;
 mod series;
 mod statements;
+mod switching;
 mod syntax;
 mod types;
 

@@ -6,11 +6,13 @@
 use std::sync::OnceLock;
 
 use appell_runtime::differences;
-use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
+use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo, Switching};
+use appell_runtime::real::Enclosure;
 use appell_runtime::series::Series;
+use appell_runtime::switching::Counts;
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, interpret_weighted, schedule};
+use crate::schedule::{Schedule, enclose, interpret_weighted, schedule};
 use crate::taylor::{InterpretedSeries, Lengths, expand};
 
 /// A model that interprets its schedules. Functions that the program lacks give NaN.
@@ -34,6 +36,13 @@ impl InterpretedModel {
         }
     }
 
+    /// The schedule of a function, if the program has it.
+    fn schedule(&self, kind: FunctionKind) -> Option<&Schedule> {
+        let mut functions = self.program.functions.iter().zip(&self.schedules);
+        let (function, lazy) = functions.find(|(function, _)| function.kind == kind)?;
+        Some(lazy.get_or_init(|| schedule(&self.program, function)))
+    }
+
     /// Fills each slice with the result of its name.
     fn evaluate(&self, kind: FunctionKind, at: At<'_>, wanted: &mut [(&str, &mut [f64])]) {
         self.evaluate_weighted(kind, at, &[], wanted);
@@ -46,14 +55,12 @@ impl InterpretedModel {
         weights: &[f64],
         wanted: &mut [(&str, &mut [f64])],
     ) {
-        let functions = self.program.functions.iter().zip(&self.schedules);
-        let Some((function, lazy)) = functions.into_iter().find(|(f, _)| f.kind == kind) else {
+        let Some(schedule) = self.schedule(kind) else {
             for (_, to) in wanted.iter_mut() {
                 to.fill(f64::NAN);
             }
             return;
         };
-        let schedule = lazy.get_or_init(|| schedule(&self.program, function));
         let results = interpret_weighted(schedule, at, weights);
         for (name, to) in wanted {
             match schedule.results.iter().position(|r| r.name == *name) {
@@ -205,21 +212,13 @@ impl Model for InterpretedModel {
     }
 
     fn series(&self) -> Option<&dyn Series> {
-        let functions = self.program.functions.iter().zip(&self.schedules);
-        let (function, lazy) = functions
-            .into_iter()
-            .find(|(f, _)| f.kind == FunctionKind::Rates)?;
-        let rates = lazy.get_or_init(|| schedule(&self.program, function));
+        let rates = self.schedule(FunctionKind::Rates)?;
         let expanded = || InterpretedSeries(expand(rates, Lengths::from(&self.program.info)));
         Some(self.series.get_or_init(expanded))
     }
 
-    fn switch_len(&self) -> usize {
-        self.program.switch_len()
-    }
-
-    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
-        self.evaluate(FunctionKind::Switches, at, &mut [("switches", switches)]);
+    fn switching(&self) -> Option<&dyn Switching> {
+        (!self.counts().is_none()).then_some(self)
     }
 
     fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
@@ -236,5 +235,25 @@ impl Model for InterpretedModel {
 
     fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
         self.evaluate(FunctionKind::Systems, at, &mut [("matrices", matrices)]);
+    }
+}
+
+impl Switching for InterpretedModel {
+    fn counts(&self) -> Counts {
+        self.program.switch_counts()
+    }
+
+    fn answers(&self, at: At<'_>, answers: &mut [f64]) {
+        self.evaluate(FunctionKind::Switches, at, &mut [("switches", answers)]);
+    }
+
+    fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
+        if let Some(schedule) = self.schedule(FunctionKind::TimeFunctions) {
+            enclose(schedule, time, p, functions);
+        }
+    }
+
+    fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
+        self.evaluate(FunctionKind::Crossings, at, &mut [("crossings", crossings)]);
     }
 }

@@ -1,6 +1,7 @@
 //! What the derivation hands to scheduling and emission: arguments, functions, expressions.
 
 use appell_runtime::model::{ModelInfo, Quantity};
+use appell_runtime::switching::Counts;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
 
@@ -35,14 +36,22 @@ impl Program {
 
     /// How many values time alone switches.
     pub fn switch_len(&self) -> usize {
-        let switches = self.function(FunctionKind::Switches);
-        switches.map_or(0, |function| {
-            function
-                .results
-                .iter()
-                .map(|array| array.entries.len())
-                .sum()
-        })
+        self.result_len(FunctionKind::Switches, "switches")
+    }
+
+    /// How many functions switch the equations.
+    pub fn switch_counts(&self) -> Counts {
+        Counts {
+            answers: self.switch_len(),
+            shapes: self.result_len(FunctionKind::TimeFunctions, "shapes"),
+            crossings: self.result_len(FunctionKind::Crossings, "crossings"),
+        }
+    }
+
+    fn result_len(&self, kind: FunctionKind, result: &str) -> usize {
+        let mut results = self.function(kind).into_iter().flat_map(|f| &f.results);
+        let array = results.find(|array| array.name == result);
+        array.map_or(0, |array| array.entries.len())
     }
 }
 
@@ -242,6 +251,11 @@ pub enum FunctionKind {
     Outputs,
     /// What time alone switches, where anything does: result `switches`.
     Switches,
+    /// Functions of time alone, where there are any: results `functions`, whose signs the switches are, and `shapes`,
+    /// which rise and fall.
+    TimeFunctions,
+    /// The functions whose zeros switch the equations by the state, where there are any: result `crossings`.
+    Crossings,
     /// What position constraints demand, where there are any: results `residual`, and `jacobian`
     /// by the coordinates.
     PositionConstraints,
@@ -289,7 +303,7 @@ impl Own {
 
 impl FunctionKind {
     /// All of them that the program of a model can have, in the order of emitted code.
-    pub const ALL: [Self; 22] = [
+    pub const ALL: [Self; 24] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -304,6 +318,8 @@ impl FunctionKind {
         Self::ConstraintForces,
         Self::Outputs,
         Self::Switches,
+        Self::TimeFunctions,
+        Self::Crossings,
         Self::PositionConstraints,
         Self::Contacts,
         Self::Systems,
@@ -316,7 +332,7 @@ impl FunctionKind {
 
     /// Those of every model. The others, which estimation asks for, are as long as all of these
     /// together.
-    pub const STANDARD: [Self; 19] = [
+    pub const STANDARD: [Self; 21] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
         Self::MassMatrix,
@@ -331,6 +347,8 @@ impl FunctionKind {
         Self::ConstraintForces,
         Self::Outputs,
         Self::Switches,
+        Self::TimeFunctions,
+        Self::Crossings,
         Self::PositionConstraints,
         Self::Contacts,
         Self::Systems,
@@ -349,7 +367,7 @@ impl FunctionKind {
 
     /// Those that a motion needs: of [`Self::STANDARD`], all but derivatives and what other functions
     /// return too.
-    pub const OF_MOTIONS: [Self; 11] = [
+    pub const OF_MOTIONS: [Self; 13] = [
         Self::AccelerationEnergy,
         Self::MassMatrixAndBias,
         Self::GeneralizedForces,
@@ -358,6 +376,8 @@ impl FunctionKind {
         Self::ConstraintForces,
         Self::Outputs,
         Self::Switches,
+        Self::TimeFunctions,
+        Self::Crossings,
         Self::PositionConstraints,
         Self::Contacts,
         Self::Systems,
@@ -452,6 +472,16 @@ impl FunctionKind {
                 "switches",
                 "Switches",
                 "Switching functions of time alone: 1 where a relation holds, 0 elsewhere; or a sign.",
+            ),
+            Self::TimeFunctions => (
+                "time_functions",
+                "TimeFunctions",
+                "Functions of time alone: those whose signs the switches are, and those that rise and fall.",
+            ),
+            Self::Crossings => (
+                "crossings",
+                "Crossings",
+                "Functions at whose zeros the state switches the equations.",
             ),
             Self::PositionConstraints => (
                 "position_constraints",

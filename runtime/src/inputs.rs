@@ -1,6 +1,6 @@
 //! What drives a model: inputs as functions of time and state.
 
-use crate::model::{Interpolation, ModelInfo, SignalTable};
+use crate::model::{Interpolation, ModelInfo, SignalTable, Switching};
 use crate::series::{Cubic, Series, differentiated};
 use crate::signal::{Signal, SignalError};
 
@@ -22,6 +22,11 @@ pub trait InputSource {
     fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
         let _ = (t, x, u);
         false
+    }
+
+    /// What switches the inputs at times that are not known in advance, where anything does.
+    fn switching(&self) -> Option<&dyn Switching> {
+        None
     }
 
     /// The equations of motion with the inputs that depend on the state put in, where this source has them.
@@ -183,6 +188,11 @@ impl<'a> ModelInputs<'a> {
             *u = differentiated(polynomial.unwrap_or([f64::NAN; 4]), order);
         }
         self.source.polynomials(t, x, declared)
+    }
+
+    /// What switches the declared inputs at times that are not known in advance.
+    pub fn switching(&self) -> Option<&dyn Switching> {
+        self.source.switching()
     }
 
     /// Times in s at which an input jumps or loses smoothness.

@@ -6,6 +6,7 @@
 //! - [`signal`]: tabulated functions of time;
 //! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
+//! - [`interval`]: bounds that prove that no jump of the equations is missed; [`switching`]: how many there may be;
 //! - [`linearise`]: A and B in the independent states;
 //! - [`positions`]: states consistent with position constraints;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
@@ -37,6 +38,8 @@ pub mod elementary;
 pub mod inputs;
 #[cfg(feature = "std")]
 pub mod integrate;
+#[cfg(feature = "std")]
+pub mod interval;
 pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;
@@ -52,9 +55,13 @@ pub mod signal;
 #[cfg(feature = "std")]
 pub mod simulate;
 #[cfg(feature = "std")]
+pub mod switching;
+#[cfg(feature = "std")]
 pub mod trajectory;
 mod vector;
 
+#[cfg(feature = "std")]
+pub use real::Enclosure;
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use real::Lanes;
 pub use real::{Dual, Real};

@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use crate::differences;
 use crate::lanes::{AtLanes, LANES, place_by_place};
+use crate::real::Enclosure;
 use crate::series::Series;
+use crate::switching::Counts;
 
 /// A text that is static in emitted models and owned in models made at run time.
 pub type Text = Cow<'static, str>;
@@ -436,22 +438,31 @@ pub trait Model: Sync {
         residual.fill(0.0);
         jacobian.fill(0.0);
     }
-    /// How many values [`Model::switches`] writes; most models have none.
-    fn switch_len(&self) -> usize {
-        0
-    }
     /// The equations with the recurrences of their Taylor coefficients, where the model has them; see
     /// [`Method::Taylor`](crate::simulate::Method::Taylor).
     fn series(&self) -> Option<&dyn Series> {
         None
     }
-    /// What time alone switches in the equations, such as the truth of `t < t_brake`: 1 or 0, or
-    /// a sign. Depends on time and parameters. An integrator ends a step at each jump, where the
-    /// rates jump or lose smoothness.
-    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
-        let _ = at;
-        switches.fill(0.0);
+    /// What switches the equations, where anything does: an integrator ends a step at each switch, where the rates
+    /// jump or bend.
+    fn switching(&self) -> Option<&dyn Switching> {
+        None
     }
+}
+
+/// Where equations, or inputs, jump or bend: at zeros of the differences that relations compare and of the arguments of
+/// signs and absolute values.
+pub trait Switching {
+    /// How many of each there are.
+    fn counts(&self) -> Counts;
+    /// The answers of what time alone decides, such as the truth of `t < t_brake`: 1 or 0, or a sign. `x` and `u`
+    /// do not matter.
+    fn answers(&self, at: At<'_>, answers: &mut [f64]);
+    /// Over an interval of time, the functions whose signs are the answers, followed by the other functions of
+    /// time alone that rise and fall.
+    fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]);
+    /// The functions whose signs the state or the inputs decide as well.
+    fn crossings(&self, at: At<'_>, crossings: &mut [f64]);
 }
 
 /// A model whose numbers have names, as those of emitted models do.

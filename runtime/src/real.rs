@@ -1,6 +1,8 @@
 //! The scalar of emitted code.
 
 mod dual;
+#[cfg(feature = "std")]
+mod enclosure;
 #[cfg(any(feature = "std", feature = "libm"))]
 mod float;
 #[cfg(any(feature = "std", feature = "libm"))]
@@ -9,6 +11,8 @@ mod functions;
 mod lanes;
 
 pub use dual::Dual;
+#[cfg(feature = "std")]
+pub use enclosure::Enclosure;
 #[cfg(any(feature = "std", feature = "libm"))]
 pub use functions::{Functions, Own, Standard};
 #[cfg(any(feature = "std", feature = "libm"))]

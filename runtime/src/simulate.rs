@@ -3,12 +3,13 @@
 mod describe;
 mod prepared;
 mod recorder;
+mod switches;
 mod validity;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    Cause, Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure, IntegrationError, Observer,
-    Options, Outcome, Rk4, Solver, Statistics, Taylor, Watch,
+    BlockMotion, Cause, Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure,
+    IntegrationError, Observer, Options, Outcome, Rk4, Solver, Statistics, Taylor, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::Inconsistent;
@@ -18,8 +19,7 @@ use crate::trajectory::{Extras, Trajectory};
 pub use describe::describe;
 use prepared::projection;
 pub use prepared::{Prepared, Viewer, observe_together};
-use recorder::Recorder;
-pub use recorder::Sampling;
+pub use recorder::{Recorder, Sampling};
 pub use validity::{Breach, Limit, Response, Validity};
 
 /// How the equations are integrated.
@@ -166,6 +166,68 @@ pub enum SimulationError {
     },
 }
 
+/// The motion that a recorder saw.
+fn recorded(
+    model: &dyn Model,
+    p: &[f64],
+    inputs: &ModelInputs<'_>,
+    extras: Extras,
+    (observed, mut recorder): (Observed, Recorder<'_>),
+) -> Result<Trajectory, SimulationError> {
+    recorder.finish(observed.t, &observed.state);
+    let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
+    let (times, mut states) = (recorder.times, recorder.states);
+    // Between steps the interpolant is as far off as the tolerances allow.
+    if let Some(mut projection) = projection(model, p, inputs) {
+        let rows = states.chunks_mut(observed.state.len().max(1));
+        for (&t, state) in times.iter().zip(rows) {
+            (projection.0)(t, state);
+        }
+    }
+    let mut motion = Trajectory::evaluate(model, p, times, &states, fill, extras);
+    motion.breaches = observed.breaches;
+    motion.events = observed.events;
+    motion.statistics = observed.statistics;
+    match observed.ending {
+        Ok(ending) => {
+            motion.ending = Some(ending);
+            Ok(motion)
+        }
+        Err(cause) => Err(SimulationError::Integration {
+            failure: Failure {
+                cause,
+                t: observed.t,
+                state: observed.state,
+                hits: motion.events.clone(),
+                statistics: motion.statistics,
+            },
+            trajectory: Box::new(motion),
+        }),
+    }
+}
+
+/// Integrates and records many simulations of one model together; see [`observe_together`].
+pub fn run_together<'w>(
+    prepared: &'w [Prepared<'w>],
+    sampling: Sampling,
+    extras: Extras,
+    integrate: impl FnOnce(
+        &mut [BlockMotion<'w, Recorder<'w>>],
+    ) -> Vec<Result<Outcome, IntegrationError>>,
+) -> Vec<Result<Trajectory, SimulationError>> {
+    let viewers = prepared.iter().map(|prepared| Viewer {
+        events: Vec::new(),
+        observer: Recorder::new(sampling, prepared.span(), prepared.start()),
+    });
+    let seen = observe_together(prepared, viewers.collect(), integrate);
+    let all = prepared.iter().zip(seen);
+    all.map(|(prepared, seen)| {
+        let (model, inputs) = (prepared.model, prepared.inputs);
+        recorded(model, prepared.p, inputs, extras, seen?)
+    })
+    .collect()
+}
+
 impl<'a> Simulation<'a> {
     /// Ten seconds from the spec's initial state with the spec's parameters and without inputs,
     /// recorded at the steps, with ranges watched.
@@ -192,41 +254,12 @@ impl<'a> Simulation<'a> {
         let (model, sampling, extras) = (self.model, self.sampling, self.extras);
         let (p, progress) = (self.parameters.clone(), self.progress.take());
         let inputs = ModelInputs::new(model.info(), self.inputs)?;
-        let (observed, mut recorder) = self.observed(&inputs, |span, x| {
+        let (observed, recorder) = self.observed(&inputs, |span, x| {
             let mut recorder = Recorder::new(sampling, span, x);
             recorder.progress = progress;
             recorder
         })?;
-        recorder.finish(observed.t, &observed.state);
-        let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
-        let (times, mut states) = (recorder.times, recorder.states);
-        // Between steps the interpolant is as far off as the tolerances allow.
-        if let Some(mut projection) = projection(model, &p, &inputs) {
-            let rows = states.chunks_mut(observed.state.len().max(1));
-            for (&t, state) in times.iter().zip(rows) {
-                (projection.0)(t, state);
-            }
-        }
-        let mut motion = Trajectory::evaluate(model, &p, times, &states, fill, extras);
-        motion.breaches = observed.breaches;
-        motion.events = observed.events;
-        motion.statistics = observed.statistics;
-        match observed.ending {
-            Ok(ending) => {
-                motion.ending = Some(ending);
-                Ok(motion)
-            }
-            Err(cause) => Err(SimulationError::Integration {
-                failure: Failure {
-                    cause,
-                    t: observed.t,
-                    state: observed.state,
-                    hits: motion.events.clone(),
-                    statistics: motion.statistics,
-                },
-                trajectory: Box::new(motion),
-            }),
-        }
+        recorded(model, &p, &inputs, extras, (observed, recorder))
     }
 
     /// Integrates and shows each step to an observer, who is made for the span and the state at its start; nothing is

@@ -40,6 +40,17 @@ impl Extras {
     };
 }
 
+/// A column with values that are infinite or no numbers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct NotFinite {
+    /// The column.
+    pub column: usize,
+    /// The first such row.
+    pub first: usize,
+    /// How many rows have such a value.
+    pub rows: usize,
+}
+
 /// Columns of [`Extras::energies`].
 const ENERGIES: usize = 3;
 
@@ -151,9 +162,35 @@ impl Trajectory {
         }
     }
 
+    /// The inputs, outputs and energies that are infinite or no numbers, as where an inverse cosine is taken of 1.01:
+    /// each by its column, with the first row and the number of rows.
+    pub fn not_finite(&self) -> Vec<NotFinite> {
+        let info = &self.info;
+        let outputs = usize::from(self.extras.outputs) * info.output_len();
+        let energies = usize::from(self.extras.energies) * ENERGIES;
+        let checked = info.state_len() + info.input_len() + outputs + energies;
+        let of_column = |column: usize| {
+            let bad = |row: &usize| !self.row(*row)[column].is_finite();
+            let mut rows = (0..self.len()).filter(bad);
+            let first = rows.next()?;
+            let rows = 1 + rows.count();
+            Some(NotFinite {
+                column,
+                first,
+                rows,
+            })
+        };
+        (0..checked).filter_map(of_column).collect()
+    }
+
     /// The model it belongs to.
     pub fn info(&self) -> &ModelInfo {
         &self.info
+    }
+
+    /// What is recorded besides states and inputs.
+    pub fn extras(&self) -> Extras {
+        self.extras
     }
 
     /// The parameters it was made with, in SI.

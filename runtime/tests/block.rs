@@ -38,10 +38,9 @@ fn span(lane: usize) -> [f64; 2] {
 
 fn watch(lane: usize) -> Watch<'static> {
     let mut watch = Watch {
-        switches: Some(Switches {
-            count: 1,
-            function: Box::new(move |t, on| on[0] = f64::from(t >= switching_time(lane))),
-        }),
+        switches: Some(Switches::of_time(1, move |t, on| {
+            on[0] = f64::from(t >= switching_time(lane))
+        })),
         ..Watch::default()
     };
     watch

@@ -322,10 +322,9 @@ fn steps_end_where_switches_change() {
     let above = |t: f64| t - t.floor() < 0.5;
     let wave = |t: f64, _: &[f64], rates: &mut [f64]| rates[0] = if above(t) { 1.0 } else { -1.0 };
     let watch = || Watch {
-        switches: Some(Switches {
-            count: 1,
-            function: Box::new(move |t, values| values[0] = f64::from(u8::from(above(t)))),
-        }),
+        switches: Some(Switches::of_time(1, move |t, values| {
+            values[0] = f64::from(u8::from(above(t)))
+        })),
         ..Watch::default()
     };
     let mut ends = Vec::new();

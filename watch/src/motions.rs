@@ -142,6 +142,7 @@ fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer 
     let Simulated {
         trajectory,
         failure,
+        undefined,
         ..
     } = good.model.simulate_while(&motion, go_on).map_err(wrong)?;
     let seconds = start.elapsed().as_secs_f64();
@@ -150,7 +151,7 @@ fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer 
     Ok(json!({
         "version": good.version,
         "seconds": seconds,
-        "ending": failure,
+        "ending": failure.or(undefined),
         "figure": figure,
         "film": film,
     }))

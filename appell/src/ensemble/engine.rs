@@ -537,7 +537,7 @@ fn reason(observed: &Observed, info: &ModelInfo) -> String {
         Cause::OutOfRange { component, .. } => format!("`{}` leaves its range", name(component)),
         Cause::StepTooSmall { .. } => "the step shrank to nothing".to_owned(),
         Cause::TooManySteps { .. } => "the limit of steps was reached".to_owned(),
-        Cause::Inconsistent => cause.to_string(),
+        Cause::Inconsistent | Cause::Chattering => cause.to_string(),
     }
 }
 

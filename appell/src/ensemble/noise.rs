@@ -6,6 +6,7 @@ use std::cell::Cell;
 use appell_ensemble::normal;
 use appell_ensemble::random::Stream;
 use appell_runtime::inputs::InputSource;
+use appell_runtime::model::Switching;
 use appell_runtime::series::Cubic;
 
 use crate::inputs::closed_loop::Onto;
@@ -158,6 +159,10 @@ impl InputSource for Noisy<'_> {
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
+    }
+
+    fn switching(&self) -> Option<&dyn Switching> {
+        self.controller.switching()
     }
 }
 

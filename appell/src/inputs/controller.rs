@@ -10,18 +10,19 @@ use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
 use appell_codegen::taylor::{Lengths, expand_under};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
-use appell_runtime::model::{At, Model, ModelInfo};
+use appell_runtime::model::{At, Model, ModelInfo, Switching};
 use appell_runtime::series::{Cubic, Series};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;
 use appell_spec::{Scope, Snippet, formula};
 use nalgebra::DVector;
 
-use crate::formula::{StateFunction, Workbench, switching_times};
+use crate::formula::{StateFunction, Workbench};
 use crate::inputs::by_model::ModelLaw;
 use crate::inputs::closed_loop::{ClosedLoop, Kind, Onto, Outside};
 use crate::inputs::feedback::{self, Aim, Feedback, Gains, Sampled};
 use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
+use crate::inputs::switching::InputSwitches;
 use crate::inputs::tabulated::Table;
 use crate::motion::Driven;
 use crate::setup::{Assignment, Setup, bracketed};
@@ -54,8 +55,8 @@ pub struct Wiring {
     scheduled: Vec<ScheduledLaw>,
     by_model: Vec<ModelLaw>,
     switching_times: Vec<f64>,
-    /// Expressions that may switch at times which depend on parameters.
-    switching: Vec<Expr>,
+    /// What switches the expressions.
+    switches: Option<InputSwitches>,
 }
 
 /// A discrete-time law.
@@ -81,7 +82,6 @@ pub struct Plan {
     recorded: Option<Table>,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
-    switching: Vec<Expr>,
     /// Inputs set by an expression or a recording.
     set: Vec<usize>,
 }
@@ -100,7 +100,6 @@ impl Plan {
             recorded: None,
             driven: Vec::new(),
             switching_times: Vec::new(),
-            switching: Vec::new(),
             set: Vec::new(),
         }
     }
@@ -133,7 +132,6 @@ impl Plan {
         self.exprs
             .push(lowered.ok_or("an expression divides by the number zero")?);
         self.slots.push(slot);
-        self.switching.push(expr.clone());
         Ok(())
     }
 
@@ -255,7 +253,6 @@ impl Plan {
                     self.slots.push(Slot::Followed(place, which, order));
                     value = Some(self.bench.rate(lowered));
                 }
-                self.switching.push(followed.desired.clone());
             }
         }
         self.by_model.push(ModelLaw {
@@ -269,6 +266,7 @@ impl Plan {
 
     /// The inputs as functions of time and state, for motions of at most `until` in s.
     pub fn wiring(self, setup: &Setup<'_>, until: f64) -> Result<Wiring, Error> {
+        let switches = InputSwitches::new(&self.bench, setup.info, &self.exprs)?;
         let function = self.bench.function(setup.info, self.exprs)?;
         let mut slots = self.slots;
         // Values beyond those of the function are zero.
@@ -299,7 +297,7 @@ impl Plan {
             scheduled: self.scheduled,
             by_model: self.by_model,
             switching_times: self.switching_times,
-            switching: self.switching,
+            switches,
         })
     }
 }
@@ -316,9 +314,6 @@ impl Wiring {
         until: f64,
     ) -> Controller<'w> {
         let mut times = self.switching_times.clone();
-        for expr in &self.switching {
-            switching_times(expr, &parameters, &mut times);
-        }
         let sampler = |sampling: Sampling| Sampler::new(sampling, until);
         let samplers = self.sampled.iter().map(|law| sampler(law.sampling));
         let samplers: Vec<Sampler> = samplers.collect();
@@ -529,6 +524,11 @@ impl InputSource for Controller<'_> {
 
     fn switching_times(&self) -> Vec<f64> {
         self.switching_times.clone()
+    }
+
+    fn switching(&self) -> Option<&dyn Switching> {
+        let switches = self.wiring.switches.as_ref();
+        switches.map(|switches| switches as &dyn Switching)
     }
 
     fn series(&self) -> Option<&dyn Series> {

@@ -168,9 +168,11 @@ impl Simulate {
         let Simulated {
             trajectory,
             failure,
+            undefined,
             undriven,
             held_from,
         } = simulated(&model, &motion)?;
+        let failure = failure.or(undefined);
 
         if let Some(from) = held_from {
             note(&format!(

@@ -8,6 +8,7 @@ use super::error::Error;
 use super::lanes;
 use super::layout::{blank_tokens, docs, escaped};
 use super::series;
+use super::switching;
 use super::syntax::{ident, known, path};
 use super::types::{Types, double};
 use crate::program::{FunctionKind, Layout, Program, Space};
@@ -265,6 +266,7 @@ pub(super) fn implementation(
     };
     let title = docs(&[format!("{title}{stop}")]);
     let helpers = helpers(types);
+    let [switching, switching_method] = switching::implementation(types, &name, runtime)?;
     let bodies = [
         method(types, FunctionKind::Rates, &["rates"])?,
         method(types, FunctionKind::Jacobians, &["rates", "a", "b"])?,
@@ -274,7 +276,7 @@ pub(super) fn implementation(
         method_or_nothing(types, FunctionKind::ConstraintResidual, "residual")?,
         method_or_nothing(types, FunctionKind::ConstraintForces, "forces")?,
         method_or_nothing(types, FunctionKind::Outputs, "outputs")?,
-        switches_methods(types)?,
+        switching_method,
         position_methods(types)?,
         provided(types, FunctionKind::Contacts, &["normals", "friction"])?,
         system_methods(types)?,
@@ -321,6 +323,7 @@ pub(super) fn implementation(
                 #in_lanes
                 #series_method
             }
+            #switching
             #named
         };
     })
@@ -392,7 +395,7 @@ fn write(types: &Types<'_>, layout: Layout, to: &TokenStream, from: &TokenStream
 }
 
 /// Writes the results of a function into slices, in their order.
-fn written(
+pub(super) fn written(
     types: &Types<'_>,
     kind: FunctionKind,
     slices: &[TokenStream],
@@ -509,23 +512,6 @@ fn energies_method(types: &Types<'_>) -> Result<TokenStream, Error> {
                 acceleration: #s #total,
             }
         }
-    })
-}
-
-/// What time alone switches; the trait has an answer for models without switches.
-fn switches_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
-    let Some(function) = types.program.function(FunctionKind::Switches) else {
-        return Ok(TokenStream::new());
-    };
-    let count = Literal::usize_unsuffixed(types.len(function.results[0].layout));
-    let method = method(types, FunctionKind::Switches, &["switches"])?;
-    let blank = blank_tokens();
-    Ok(quote! {
-        #blank
-        fn switch_len(&self) -> usize {
-            #count
-        }
-        #method
     })
 }
 

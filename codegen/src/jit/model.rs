@@ -6,15 +6,17 @@ use std::sync::{Arc, OnceLock};
 
 use appell_runtime::differences;
 use appell_runtime::lanes::{AtLanes, LANES};
-use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo};
+use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo, Switching};
+use appell_runtime::real::Enclosure;
 use appell_runtime::series::Series;
+use appell_runtime::switching::Counts;
 
 use super::host::Use;
 use super::on_demand::OnDemand;
 use super::series::JitSeries;
 use super::{JitError, Sizes, Target};
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, Tree};
+use crate::schedule::{Schedule, Tree, enclose};
 use crate::symbolic::Rational;
 use crate::taylor::{Lengths, expand};
 
@@ -107,6 +109,11 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
         FunctionKind::ConstraintForces => vec![("forces", 3 * info.reactions.len())],
         FunctionKind::Outputs => vec![("outputs", info.output_len())],
         FunctionKind::Switches => vec![("switches", program.switch_len())],
+        FunctionKind::TimeFunctions => {
+            let counts = program.switch_counts();
+            vec![("functions", counts.answers), ("shapes", counts.shapes)]
+        }
+        FunctionKind::Crossings => vec![("crossings", program.switch_counts().crossings)],
         FunctionKind::PositionConstraints => {
             let count = program.dependent.len();
             let coordinates = info.state_len() - info.speeds;
@@ -436,12 +443,8 @@ impl Model for JitModel {
         Some(series)
     }
 
-    fn switch_len(&self) -> usize {
-        self.program.switch_len()
-    }
-
-    fn switches(&self, at: At<'_>, switches: &mut [f64]) {
-        self.evaluate(FunctionKind::Switches, at, [switches]);
+    fn switching(&self) -> Option<&dyn Switching> {
+        (!self.counts().is_none()).then_some(self)
     }
 
     fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
@@ -457,6 +460,25 @@ impl Model for JitModel {
 
     fn systems(&self, at: At<'_>, matrices: &mut [f64]) {
         self.evaluate(FunctionKind::Systems, at, [matrices]);
+    }
+}
+
+impl Switching for JitModel {
+    fn counts(&self) -> Counts {
+        self.program.switch_counts()
+    }
+
+    fn answers(&self, at: At<'_>, answers: &mut [f64]) {
+        self.evaluate(FunctionKind::Switches, at, [answers]);
+    }
+
+    fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
+        let part = self.at(p).part(FunctionKind::TimeFunctions);
+        enclose(part.schedule(&self.program), time, p, functions);
+    }
+
+    fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
+        self.evaluate(FunctionKind::Crossings, at, [crossings]);
     }
 }
 
@@ -489,7 +511,9 @@ mod tests {
             Kind::ConstraintResidual => Kind::ConstraintForces,
             Kind::ConstraintForces => Kind::Outputs,
             Kind::Outputs => Kind::Switches,
-            Kind::Switches => Kind::PositionConstraints,
+            Kind::Switches => Kind::TimeFunctions,
+            Kind::TimeFunctions => Kind::Crossings,
+            Kind::Crossings => Kind::PositionConstraints,
             Kind::PositionConstraints => Kind::Contacts,
             Kind::Contacts => Kind::Systems,
             Kind::Systems => Kind::InverseDynamics,

@@ -19,7 +19,6 @@ use super::motion::Motion;
 use super::positions::Positions;
 use super::reactions;
 use super::recursion::Recursion;
-use super::switches::switches;
 use super::symbols::{Symbols, ids};
 use super::systems::systems;
 use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
@@ -42,6 +41,8 @@ pub fn program(
             kind,
             FunctionKind::Outputs
                 | FunctionKind::Switches
+                | FunctionKind::TimeFunctions
+                | FunctionKind::Crossings
                 | FunctionKind::PositionConstraints
                 | FunctionKind::Contacts
                 | FunctionKind::Systems
@@ -185,11 +186,8 @@ impl Derivation {
                         .with_names(names.clone(), columns.collect()),
                 ]
             }
-            FunctionKind::Switches => {
-                let rates = self.rates();
-                let switches = switches(&mut self.algebra.graph, &self.symbols, &rates);
-                let layout = Layout::List(switches.len());
-                vec![Array::new("switches", "Switches.", layout, switches)]
+            FunctionKind::Switches | FunctionKind::TimeFunctions | FunctionKind::Crossings => {
+                self.switch_arrays(kind)
             }
             FunctionKind::Contacts => self.surfaces(),
             FunctionKind::Systems => {
@@ -282,6 +280,8 @@ impl Derivation {
             | F::MassMatrix
             | F::GeneralizedForces
             | F::Switches
+            | F::TimeFunctions
+            | F::Crossings
             | F::PositionConstraints
             | F::Contacts
             | F::Systems => function,

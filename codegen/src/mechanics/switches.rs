@@ -1,40 +1,141 @@
-//! Jumps and kinks of the equations that time alone decides, such as those of `if(t < t_brake, …)`.
-//! An integrator has to end a step at each.
+//! Jumps and bends of the equations, such as those of `if(t < t_brake, …)` or `abs(v)`. An integrator has to end a
+//! step at each. What time alone decides it finds for certain, by bounds on functions of time.
 
+use rustc_hash::FxHashMap;
+
+use super::Derivation;
 use super::symbols::{Symbols, ids};
-use crate::symbolic::{Expr, Function, Graph, Node};
+use crate::program::{Array, FunctionKind, Layout};
+use crate::symbolic::{Expr, Function, Graph, Node, SymbolId};
 
-/// The relations and signs inside `roots` that depend on time and, at most, on parameters. A
-/// relation is 1 where it holds and 0 elsewhere; each value is constant between its jumps.
-pub fn switches(graph: &mut Graph, symbols: &Symbols, roots: &[Expr]) -> Vec<Expr> {
-    let time = ids(graph, &[symbols.time]);
-    let known = ids(
-        graph,
-        &[symbols.parameters.as_slice(), &[symbols.time, symbols.pi]].concat(),
-    );
-    let by_time = |graph: &Graph, operands: &[Expr]| {
-        let all = graph.in_order(operands);
-        let mut symbols = all.into_iter().filter_map(|e| graph.as_symbol(e));
-        operands.iter().any(|&e| graph.mentions(e, &time)) && symbols.all(|s| known.contains(&s))
-    };
-    let mut switches = Vec::new();
-    for expr in graph.in_order(roots) {
-        let switch = match *graph.node(expr) {
-            Node::Choice {
-                relation, compared, ..
-            } if by_time(graph, &compared) => {
-                graph.choice(relation, compared, [Graph::ONE, Graph::ZERO])
-            }
-            Node::Function(Function::Abs | Function::Sign, argument)
-                if by_time(graph, &[argument]) =>
-            {
-                graph.function(Function::Sign, argument)
-            }
-            _ => continue,
-        };
-        if graph.as_number(switch).is_none() && !switches.contains(&switch) {
-            switches.push(switch);
+/// What switches some expressions, and what it looks like in time.
+#[derive(Debug, Clone, Default)]
+pub struct Switches {
+    /// Relations and signs of time and parameters: 1 where a relation holds and 0 elsewhere, or a sign. Each is
+    /// constant between its jumps.
+    pub answers: Vec<Expr>,
+    /// For each of them the function whose sign it is: the difference that a relation compares, or what a sign or an
+    /// absolute value is taken of.
+    pub functions: Vec<Expr>,
+    /// Functions of time and parameters that rise and fall without a jump: sines, exponentials, powers.
+    pub shapes: Vec<Expr>,
+    /// The functions whose signs states or inputs decide as well.
+    pub crossings: Vec<Expr>,
+}
+
+/// What an expression depends on.
+#[derive(Debug, Clone, Copy, Default)]
+struct Nature {
+    by_time: bool,
+    by_others: bool,
+    jumps: bool,
+}
+
+impl Nature {
+    fn with(self, part: Self) -> Self {
+        Self {
+            by_time: self.by_time || part.by_time,
+            by_others: self.by_others || part.by_others,
+            jumps: self.jumps || part.jumps,
         }
     }
-    switches
+}
+
+/// What switches the values of `roots`.
+pub fn switches(graph: &mut Graph, symbols: &Symbols, roots: &[Expr]) -> Switches {
+    let time = ids(graph, &[symbols.time]);
+    let constants = ids(
+        graph,
+        &[symbols.parameters.as_slice(), &[symbols.pi]].concat(),
+    );
+    let of_symbol = |symbol: SymbolId| Nature {
+        by_time: time.contains(&symbol),
+        by_others: !time.contains(&symbol) && !constants.contains(&symbol),
+        jumps: false,
+    };
+    let mut natures: FxHashMap<Expr, Nature> = FxHashMap::default();
+    let mut all = Switches::default();
+    for expr in graph.in_order(roots) {
+        let mut nature = Nature::default();
+        let of_parts = |part: Expr| natures.get(&part).copied().unwrap_or_default();
+        graph.for_each_part(expr, |part| nature = nature.with(of_parts(part)));
+        match *graph.node(expr) {
+            Node::Symbol(symbol) => nature = of_symbol(symbol),
+            Node::Choice {
+                relation,
+                compared: [left, right],
+                branches,
+            } => {
+                let decides = of_parts(left).with(of_parts(right));
+                let is_extremum = [[left, right], [right, left]].contains(&branches);
+                nature.jumps |= !is_extremum;
+                let function = graph.sub(left, right);
+                let answer = graph.choice(relation, [left, right], [Graph::ONE, Graph::ZERO]);
+                all.add(graph, decides, function, answer);
+            }
+            Node::Function(kind @ (Function::Abs | Function::Sign), argument) => {
+                nature.jumps |= kind == Function::Sign;
+                let answer = graph.function(Function::Sign, argument);
+                all.add(graph, of_parts(argument), argument, answer);
+            }
+            Node::Atan2(..) => nature.jumps = true,
+            _ => {}
+        }
+        natures.insert(expr, nature);
+        if nature.by_time && !nature.by_others && !nature.jumps && is_shape(graph, expr) {
+            all.shapes.push(expr);
+        }
+    }
+    all
+}
+
+impl Derivation {
+    /// The results of a function that tells what switches the rates.
+    pub(super) fn switch_arrays(&mut self, kind: FunctionKind) -> Vec<Array> {
+        let rates = self.rates();
+        let all = switches(&mut self.algebra.graph, &self.symbols, &rates);
+        let list = |name: &'static str, heading: &'static str, entries: Vec<Expr>| {
+            Array::new(name, heading, Layout::List(entries.len()), entries)
+        };
+        match kind {
+            FunctionKind::TimeFunctions => vec![
+                list("functions", "Their signs switch.", all.functions),
+                list("shapes", "They rise and fall.", all.shapes),
+            ],
+            FunctionKind::Crossings => vec![list("crossings", "Crossings.", all.crossings)],
+            _ => vec![list("switches", "Switches.", all.answers)],
+        }
+    }
+}
+
+impl Switches {
+    /// Whether nothing switches, and nothing rises and falls with time.
+    pub fn is_empty(&self) -> bool {
+        self.answers.is_empty() && self.shapes.is_empty() && self.crossings.is_empty()
+    }
+
+    fn add(&mut self, graph: &mut Graph, decides: Nature, function: Expr, answer: Expr) {
+        if graph.as_number(function).is_some() || graph.as_number(answer).is_some() {
+            return;
+        }
+        if decides.by_others {
+            let opposite = graph.neg(function);
+            if !self.crossings.contains(&function) && !self.crossings.contains(&opposite) {
+                self.crossings.push(function);
+            }
+        } else if decides.by_time && !self.answers.contains(&answer) {
+            self.answers.push(answer);
+            self.functions.push(function);
+        }
+    }
+}
+
+/// Whether an expression may rise and fall faster than its parts.
+fn is_shape(graph: &Graph, expr: Expr) -> bool {
+    match graph.node(expr) {
+        Node::Function(function, _) => !matches!(function, Function::Abs | Function::Sign),
+        Node::Power(..) => true,
+        Node::Product(factors) => factors.iter().any(|factor| factor.exponent != 1),
+        _ => false,
+    }
 }

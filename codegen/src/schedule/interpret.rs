@@ -2,7 +2,7 @@
 
 use appell_runtime::dense::lu_solve_in_place;
 use appell_runtime::model::At;
-use appell_runtime::real::Real;
+use appell_runtime::real::{Enclosure, Real};
 
 use super::steps::{Argument, Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
@@ -23,34 +23,61 @@ pub fn interpret(schedule: &Schedule, t: f64, x: &[f64], u: &[f64], p: &[f64]) -
 ///
 /// As [`interpret`], and if there are fewer weights than the schedule uses.
 pub fn interpret_weighted(schedule: &Schedule, at: At<'_>, weights: &[f64]) -> Vec<Vec<f64>> {
-    let mut machine = Machine {
-        at,
-        weights,
-        values: vec![f64::NAN; schedule.names.len()],
-        matrices: Vec::new(),
+    let At { t, x, u, p } = at;
+    let solve = |matrix: &mut [f64], unknowns: &mut [f64]| {
+        lu_solve_in_place(matrix, unknowns, unknowns.len());
     };
-    for step in &schedule.steps {
-        machine.step(step);
-    }
-    let arrays = schedule.results.iter();
-    arrays.map(|array| machine.all(&array.entries)).collect()
+    Machine::new(schedule, t, [x, u, p, weights], solve).results(schedule)
 }
 
-struct Machine<'a> {
-    at: At<'a>,
-    weights: &'a [f64],
-    values: Vec<f64>,
+/// Bounds on the results over an interval of time, for functions of time and parameters, one array after the other.
+pub fn enclose(schedule: &Schedule, time: Enclosure, p: &[f64], bounds: &mut [Enclosure]) {
+    let p: Vec<Enclosure> = p.iter().map(|&p| Enclosure::constant(p)).collect();
+    let unknown = |_: &mut [Enclosure], unknowns: &mut [Enclosure]| {
+        unknowns.fill(Enclosure::UNKNOWN);
+    };
+    let results = Machine::new(schedule, time, [&[], &[], &p, &[]], unknown).results(schedule);
+    for (bound, found) in bounds.iter_mut().zip(results.iter().flatten()) {
+        *bound = *found;
+    }
+}
+
+struct Machine<'a, T, S> {
+    t: T,
+    /// States, inputs, parameters, weights.
+    arguments: [&'a [T]; 4],
+    values: Vec<T>,
     /// Matrices by factorisation. They are factorised anew with every right-hand side, which gives
     /// the same bits.
-    matrices: Vec<Vec<f64>>,
+    matrices: Vec<Vec<T>>,
+    /// Solves a system in place.
+    solve: S,
 }
 
-impl Machine<'_> {
-    fn set(&mut self, value: Value, number: f64) {
+impl<'a, T: Real, S: Fn(&mut [T], &mut [T])> Machine<'a, T, S> {
+    fn new(schedule: &Schedule, t: T, arguments: [&'a [T]; 4], solve: S) -> Self {
+        Self {
+            t,
+            arguments,
+            values: vec![T::constant(f64::NAN); schedule.names.len()],
+            matrices: Vec::new(),
+            solve,
+        }
+    }
+
+    fn results(mut self, schedule: &Schedule) -> Vec<Vec<T>> {
+        for step in &schedule.steps {
+            self.step(step);
+        }
+        let arrays = schedule.results.iter();
+        arrays.map(|array| self.all(&array.entries)).collect()
+    }
+
+    fn set(&mut self, value: Value, number: T) {
         self.values[value.0 as usize] = number;
     }
 
-    fn all(&self, trees: &[Tree]) -> Vec<f64> {
+    fn all(&self, trees: &[Tree]) -> Vec<T> {
         trees.iter().map(|tree| self.tree(tree)).collect()
     }
 
@@ -80,7 +107,7 @@ impl Machine<'_> {
             } => {
                 let mut matrix = self.matrices[*factorisation as usize].clone();
                 let mut unknowns = self.all(right);
-                lu_solve_in_place(&mut matrix, &mut unknowns, values.len());
+                (self.solve)(&mut matrix, &mut unknowns);
                 for (value, number) in values.iter().zip(unknowns) {
                     self.set(*value, number);
                 }
@@ -90,17 +117,18 @@ impl Machine<'_> {
     }
 
     // Trees are at most one printed line deep.
-    fn tree(&self, tree: &Tree) -> f64 {
+    fn tree(&self, tree: &Tree) -> T {
+        let [x, u, p, weights] = self.arguments;
         match tree {
             Tree::Value(value) => self.values[value.0 as usize],
-            Tree::Argument(Argument::Time) => self.at.t,
-            Tree::Argument(Argument::State(i)) => self.at.x[*i as usize],
-            Tree::Argument(Argument::Input(i)) => self.at.u[*i as usize],
-            Tree::Argument(Argument::Parameter(i)) => self.at.p[*i as usize],
+            Tree::Argument(Argument::Time) => self.t,
+            Tree::Argument(Argument::State(i)) => x[*i as usize],
+            Tree::Argument(Argument::Input(i)) => u[*i as usize],
+            Tree::Argument(Argument::Parameter(i)) => p[*i as usize],
             Tree::Argument(
                 Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i),
-            ) => self.weights[*i as usize],
-            Tree::Constant(value) => value.to_f64(),
+            ) => weights[*i as usize],
+            Tree::Constant(value) => T::constant(value.to_f64()),
             Tree::Negate(a) => -self.tree(a),
             Tree::Binary(operation, a, b) => {
                 let (a, b) = (self.tree(a), self.tree(b));
@@ -130,7 +158,7 @@ impl Machine<'_> {
     }
 }
 
-fn apply(function: Function, x: f64) -> f64 {
+fn apply<T: Real>(function: Function, x: T) -> T {
     match function {
         Function::Sin => Real::sin(x),
         Function::Cos => Real::cos(x),

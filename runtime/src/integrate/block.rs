@@ -371,15 +371,20 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             }
             let interior = within.then_some(&this.dense);
             lane.end = lane.watcher.accept(&ends, interior, lane.x);
+            let switched = lane.watcher.switched();
+            if switched.is_some() {
+                scatter(lane.x, l, &mut this.stages.x_new);
+            }
             let suggested = lane.stride.h * lane.steps.size.accepted(errors[l], powers[l]);
             // A step cut short to land says nothing against the longer one.
             let suggested = match lane.steps.next_h {
-                Some(h) if lane.stride.lands => suggested.max(h),
+                Some(h) if lane.stride.lands || switched.is_some() => suggested.max(h),
                 _ => suggested,
             };
             lane.steps.next_h = Some(suggested.min(options.max_step));
             lane.steps.is_guess = false;
-            (lane.t, lane.restart) = (lane.stride.t_new, lane.stride.lands);
+            let end = (lane.stride.t_new, lane.stride.lands);
+            (lane.t, lane.restart) = switched.map_or(end, |t| (t, true));
             lane.finish_at_end();
             true
         };

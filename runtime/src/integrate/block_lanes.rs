@@ -40,7 +40,7 @@ pub(super) struct Lane<'m, 'a, O, S> {
 impl<'m, 'a, O: Observer, S> Lane<'m, 'a, O, S> {
     pub(super) fn new(motion: usize, of: &'m mut BlockMotion<'a, O>, steps: S) -> Self {
         let t = of.span[0];
-        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span);
+        let mut watcher = Watcher::new(&mut of.watch, &mut of.observer, of.span).paced(t);
         let start = watcher.start(t, &of.x);
         let mut lane = Self {
             motion,

@@ -62,6 +62,12 @@ pub enum Cause {
         /// The step that would have been needed, in s.
         h: f64,
     },
+    /// The equations are switched to and fro without getting on.
+    #[error(
+        "the equations are switched to and fro without end: what they switch drives the motion back to where it is \
+         switched; smooth it, as `smooth_sign` does"
+    )]
+    Chattering,
     /// The limit on the number of steps was reached.
     #[error("the limit of {steps} steps was reached")]
     TooManySteps {

@@ -4,6 +4,7 @@ use super::dense_output::DenseOutput;
 use super::error::{Cause, IntegrationError};
 use super::options::check_span;
 use super::outcome::{Outcome, Statistics};
+use super::stops::Stride;
 use super::tableau::{Stages, Tableau};
 use super::watch::{End, Observer, Watch, Watcher};
 
@@ -100,17 +101,25 @@ impl Rk4 {
                 self.stages.evaluate_at_start(f, 0, t);
                 h = equal_part(watcher.stops.known_after(t).t - t, step);
             }
-            let stride = watcher.stops.stride(t, h);
-            let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
-            self.stages.step(&mut f, &TABLEAU, t, stride.h);
-            let projected = watcher.project(stride.t_new, self.stages.x_new_mut());
-            self.stages.evaluate_at_end(&mut f, new_rates, stride.t_new);
-            if !projected {
-                return End::failed(t, Cause::Inconsistent);
-            }
-            let not_finite = self.stages.rate_not_finite(new_rates);
-            if let Some(component) = not_finite.or_else(|| self.stages.state_not_finite()) {
-                return End::failed(t, Cause::NonFinite { component });
+            let mut stride = watcher.stops.stride(t, h);
+            let mut tries = 0;
+            loop {
+                if let Err(cause) = self.attempt(f, t, stride, watcher) {
+                    return End::failed(t, cause);
+                }
+                // No error shows that a step across a switch is wrong: steps come near it until it is at hand.
+                let ends = self.stages.ends([t, stride.t_new], new_rates);
+                if !watcher.stops.has_crossings() || tries == MOST_TRIES {
+                    break;
+                }
+                self.dense.set_hermite(&ends);
+                match watcher.switch_within(&ends, &self.dense) {
+                    Some(switch) if switch - t > AT_ONCE * h => {
+                        stride = Stride::to(t, t + NEARLY * (switch - t));
+                    }
+                    _ => break,
+                }
+                tries += 1;
             }
             *steps += 1;
             let ends = self.stages.ends([t, stride.t_new], new_rates);
@@ -121,12 +130,49 @@ impl Rk4 {
             if let Some(end) = watcher.accept(&ends, wanted.then_some(&self.dense), x) {
                 return end;
             }
+            let switched = watcher.switched();
+            if switched.is_some() {
+                self.stages.x_new_mut().copy_from_slice(x);
+            }
             self.stages.advance(new_rates);
-            (t, restart) = (stride.t_new, stride.lands);
+            (t, restart) = switched.map_or((stride.t_new, stride.lands), |t| (t, true));
         }
         End::finished(t)
     }
+
+    /// A step and the rates at its end.
+    fn attempt<F, O>(
+        &mut self,
+        f: &mut F,
+        t: f64,
+        stride: Stride,
+        watcher: &mut Watcher<'_, '_, O>,
+    ) -> Result<(), Cause>
+    where
+        F: FnMut(f64, &[f64], &mut [f64]),
+        O: Observer,
+    {
+        let new_rates = TABLEAU.new_rates();
+        let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
+        self.stages.step(&mut f, &TABLEAU, t, stride.h);
+        let projected = watcher.project(stride.t_new, self.stages.x_new_mut());
+        self.stages.evaluate_at_end(&mut f, new_rates, stride.t_new);
+        if !projected {
+            return Err(Cause::Inconsistent);
+        }
+        let not_finite = self.stages.rate_not_finite(new_rates);
+        match not_finite.or_else(|| self.stages.state_not_finite()) {
+            Some(component) => Err(Cause::NonFinite { component }),
+            None => Ok(()),
+        }
+    }
 }
+
+/// Tries to end a step before it is switched.
+const MOST_TRIES: usize = 12;
+/// How near to a switch it ends, and how near it may begin to pass it, in parts of the step.
+const NEARLY: f64 = 0.999;
+const AT_ONCE: f64 = 1e-9;
 
 /// The longest step that is not longer than `step` and divides `length`.
 fn equal_part(length: f64, step: f64) -> f64 {

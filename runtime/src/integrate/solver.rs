@@ -66,7 +66,7 @@ impl<P: EmbeddedPair> Solver<P> {
         self.stages.prepare(x, P::ALL_STAGES);
         self.dense.prepare(x.len(), P::INTERIOR_COEFFICIENTS);
         self.scale.resize(x.len(), 0.0);
-        let mut watcher = Watcher::new(watch, observer, span);
+        let mut watcher = Watcher::new(watch, observer, span).paced(span[0]);
         let (mut statistics, mut evaluations) = (Statistics::default(), 0);
         let mut counted = |t: f64, x: &[f64], rates: &mut [f64]| {
             evaluations += 1;
@@ -123,18 +123,22 @@ impl<P: EmbeddedPair> Solver<P> {
                 if let Some(end) = self.accept(&mut f, t, stride, watcher, x) {
                     return end;
                 }
+                let switched = watcher.switched();
+                if switched.is_some() {
+                    self.stages.x_new_mut().copy_from_slice(x);
+                }
                 self.stages.advance(P::TABLEAU.new_rates());
                 let [power] = powers(P::CONTROL, &[error]);
                 let suggested = stride.h * step_size.accepted(error, power);
                 // A step cut short to land says nothing against the longer one.
-                let suggested = if stride.lands {
+                let suggested = if stride.lands || switched.is_some() {
                     suggested.max(h)
                 } else {
                     suggested
                 };
                 next_h = Some(suggested.min(options.max_step));
                 is_guess = false;
-                (t, restart) = (stride.t_new, stride.lands);
+                (t, restart) = switched.map_or((stride.t_new, stride.lands), |t| (t, true));
             } else {
                 statistics.rejected += 1;
                 let [power] = powers(P::CONTROL, &[error]);

@@ -1,28 +1,8 @@
 //! Times at which a step has to end: the rates jump or lose smoothness there.
 
-/// Values that are constant between times which are not known in advance, such as the truth of
-/// `sin(w*t) < 0`.
-///
-/// The integrators look for changes at eighths of a step and end the step at the first of them;
-/// what changes and changes back between is not seen.
-pub struct Switches<'a> {
-    /// Number of values.
-    pub count: usize,
-    /// Writes the values at a time in s.
-    pub function: SwitchFunction<'a>,
-}
-
-/// Values at a time, boxed.
-pub type SwitchFunction<'a> = Box<dyn FnMut(f64, &mut [f64]) + 'a>;
-
-impl std::fmt::Debug for Switches<'_> {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        formatter
-            .debug_struct("Switches")
-            .field("count", &self.count)
-            .finish_non_exhaustive()
-    }
-}
+use super::pace::Pace;
+use super::switches::{SwitchSearch, Switches};
+use crate::real::Enclosure;
 
 /// Where a step has to end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -56,10 +36,15 @@ pub(super) struct Stride {
 impl Stride {
     /// No step at all.
     pub(super) fn none(t: f64) -> Self {
+        Self::to(t, t)
+    }
+
+    /// A step from one time to another.
+    pub(super) fn to(t: f64, t_new: f64) -> Self {
         Self {
-            h: 0.0,
-            t_new: t,
-            last: t,
+            h: t_new - t,
+            t_new,
+            last: t_new,
             lands: false,
         }
     }
@@ -70,17 +55,13 @@ impl Stride {
     }
 }
 
-/// Parts of a step between which changes are sought.
-const PARTS: u8 = 8;
-
 /// All times at which steps have to end.
 pub(super) struct Stops<'w, 'a> {
     /// The known ones after the start, increasing.
     times: Vec<f64>,
     end: f64,
-    switches: Option<&'w mut Switches<'a>>,
-    before: Vec<f64>,
-    after: Vec<f64>,
+    pub(super) switches: Option<(&'w mut Switches<'a>, SwitchSearch)>,
+    pace: Pace,
 }
 
 impl<'w, 'a> Stops<'w, 'a> {
@@ -92,14 +73,35 @@ impl<'w, 'a> Stops<'w, 'a> {
         let inside = |t: &f64| start < *t && *t <= end;
         let mut times: Vec<f64> = switching_times.iter().copied().filter(inside).collect();
         times.sort_by(f64::total_cmp);
-        let count = switches.as_ref().map_or(0, |switches| switches.count);
         Self {
             times,
             end,
-            switches,
-            before: vec![0.0; count],
-            after: vec![0.0; count],
+            switches: switches.map(|switches| {
+                let search = SwitchSearch::new(switches.counts);
+                (switches, search)
+            }),
+            pace: Pace::default(),
         }
+    }
+
+    /// Lets no step pass over what functions of time do.
+    pub(super) fn with_pace(mut self, start: f64) -> Self {
+        let Some((switches, _)) = &mut self.switches else {
+            return self;
+        };
+        let (first, count) = (switches.counts.answers, switches.counts.shapes);
+        if let Some(within) = switches.within.as_mut().filter(|_| count > 0) {
+            let mut all = vec![Enclosure::UNKNOWN; first + count];
+            let mut known = None;
+            self.pace = Pace::new([start, self.end], count, |i, part| {
+                if known != Some(part) {
+                    within(part, &mut all);
+                    known = Some(part);
+                }
+                all[first + i]
+            });
+        }
+        self
     }
 
     /// The first known stop after `t`: a switching time or the end of the interval.
@@ -116,6 +118,7 @@ impl<'w, 'a> Stops<'w, 'a> {
 
     /// A step from `t` of length `h`, or less where there is a stop before.
     pub(super) fn stride(&mut self, t: f64, h: f64) -> Stride {
+        let h = self.pace.longest(t, h);
         let known = self.known_after(t);
         // The step ends at the stop rather than a sliver before it.
         let known = (t + 1.01 * h >= known.t).then_some(known);
@@ -141,34 +144,22 @@ impl<'w, 'a> Stops<'w, 'a> {
         self.end
     }
 
+    /// Whether the state switches the equations.
+    pub(super) fn has_crossings(&self) -> bool {
+        let switches = self.switches.as_ref();
+        switches.is_some_and(|(_, search)| search.has_crossings())
+    }
+
+    /// Leaves switches by the state to whoever finds them otherwise.
+    pub(super) fn ignore_crossings(&mut self) {
+        if let Some((_, search)) = &mut self.switches {
+            search.ignore_crossings();
+        }
+    }
+
     /// The first change of the switches after `t` and not after `t_new`, to the last digit.
     fn change_within(&mut self, t: f64, t_new: f64) -> Option<Stop> {
-        let switches = self.switches.as_deref_mut()?;
-        let (before, after) = (&mut self.before, &mut self.after);
-        (switches.function)(t, before);
-        let mut changed = |s: f64| {
-            (switches.function)(s, after);
-            let bits = |value: &f64| value.to_bits();
-            !before.iter().map(bits).eq(after.iter().map(bits))
-        };
-        let part = |i: u8| match i {
-            PARTS => t_new,
-            _ => t + (t_new - t) * (f64::from(i) / f64::from(PARTS)),
-        };
-        let first = (1..=PARTS).find(|&i| changed(part(i)))?;
-        // Halving until no number lies between.
-        let (mut same, mut other) = (part(first - 1), part(first));
-        loop {
-            let middle = same + (other - same) / 2.0;
-            if middle <= same || middle >= other {
-                return Some(Stop::before(other));
-            }
-            let end = if changed(middle) {
-                &mut other
-            } else {
-                &mut same
-            };
-            *end = middle;
-        }
+        let (switches, search) = self.switches.as_mut()?;
+        search.of_time(switches, [t, t_new]).map(Stop::before)
     }
 }

@@ -101,7 +101,9 @@ impl Taylor {
         options.check(span)?;
         watch.check(x.len())?;
         self.prepare(equations, x, order(options))?;
-        let mut watcher = Watcher::new(watch, observer, span);
+        let mut watcher = Watcher::new(watch, observer, span).paced(span[0]);
+        // The guards of the series are the same functions.
+        watcher.stops.ignore_crossings();
         let mut statistics = Statistics::default();
         let end = match watcher.start(span[0], x) {
             Ok(()) => self.run(

@@ -5,7 +5,8 @@ use super::error::{Cause, Failure, IntegrationError};
 use super::events::{Crossings, Event, EventHit};
 use super::outcome::{Ending, Outcome, Statistics};
 use super::range::Range;
-use super::stops::{Stops, Switches};
+use super::stops::Stops;
+use super::switches::Switches;
 use std::ops::ControlFlow;
 
 /// What an integration has to look out for, besides the tolerances.
@@ -14,7 +15,7 @@ pub struct Watch<'a> {
     /// Times at which the rates jump or lose smoothness, in any order. A step ends exactly at
     /// each; the rates up to there are evaluated before it, those after at or after it.
     pub switching_times: &'a [f64],
-    /// Functions of time at whose jumps steps end as at switching times.
+    /// Functions of time and state at whose zeros the rates jump or bend: steps end there.
     pub switches: Option<Switches<'a>>,
     /// Leaving one of these is an error.
     pub ranges: &'a [Range],
@@ -125,7 +126,17 @@ pub(super) struct Watcher<'w, 'a, O> {
     observer: &'w mut O,
     crossings: Crossings,
     hits: Vec<EventHit>,
+    /// Where the state switched the equations in the last step, and the state and the rates there.
+    switched: Option<f64>,
+    at_switch: [Vec<f64>; 2],
+    /// Steps in a row that are hardly steps, since such a switch.
+    slivers: Option<usize>,
 }
+
+/// A step that is hardly one, in parts of the time.
+const SLIVER: f64 = 1e-9;
+/// So many of these in a row after a switch are one place that the motion does not leave.
+const MOST_SLIVERS: usize = 300;
 
 impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
     pub(super) fn new(watch: &'w mut Watch<'a>, observer: &'w mut O, span: [f64; 2]) -> Self {
@@ -137,7 +148,22 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             observer,
             crossings: Crossings::default(),
             hits: Vec::new(),
+            switched: None,
+            at_switch: Default::default(),
+            slivers: None,
         }
+    }
+
+    /// Lets no step pass over what functions of time do.
+    pub(super) fn paced(mut self, start: f64) -> Self {
+        self.stops = self.stops.with_pace(start);
+        self
+    }
+
+    /// Where the state switched the equations in the step that was accepted last. It ended there, and the
+    /// integration begins anew.
+    pub(super) fn switched(&self) -> Option<f64> {
+        self.switched
     }
 
     /// Takes the signs of the events at the start; tells if there is no start.
@@ -169,13 +195,60 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
     /// Whether the next call of `accept` needs the interpolant.
     pub(super) fn wants_interior(&self, ends: &Ends<'_>) -> bool {
         !self.events.is_empty()
+            || self.stops.has_crossings()
             || self.ranges.iter().any(|range| range.may_be_left(ends))
             || self.observer.wants_interior(ends.t[0], ends.t[1])
     }
 
-    /// Shows a step up to its first end: an event, a limit, or its own. `x` becomes the state
+    /// Shows a step up to its first end: an event, a limit, a switch, or its own. `x` becomes the state
     /// there. Returns the end of the integration if this is it.
     pub(super) fn accept(
+        &mut self,
+        ends: &Ends<'_>,
+        interior: Option<&DenseOutput>,
+        x: &mut [f64],
+    ) -> Option<End> {
+        self.switched = interior.and_then(|dense| self.switch_within(ends, dense));
+        let t = self.switched.unwrap_or(ends.t[1]);
+        let is_sliver = t - ends.t[0] <= SLIVER * t.abs().max(1.0);
+        let before = self.slivers.or(self.switched.map(|_| 0));
+        self.slivers = before.filter(|_| is_sliver).map(|slivers| slivers + 1);
+        let end = if self.switched.is_some() {
+            let at_switch = std::mem::take(&mut self.at_switch);
+            let [start, rates] = [ends.x[0], ends.rates[0]];
+            let cut = Ends {
+                t: [ends.t[0], t],
+                x: [start, &at_switch[0]],
+                rates: [rates, &at_switch[1]],
+            };
+            let end = self.show(&cut, interior, x);
+            self.at_switch = at_switch;
+            end
+        } else {
+            self.show(ends, interior, x)
+        };
+        let chatters = self.slivers.is_some_and(|slivers| slivers > MOST_SLIVERS);
+        end.or(chatters.then(|| End::failed(t, Cause::Chattering)))
+    }
+
+    /// Where the state first switches the equations within a step; the state and the rates are kept.
+    pub(super) fn switch_within(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
+        let (switches, search) = self.stops.switches.as_mut()?;
+        let (t, x) = search.of_state(switches, ends, dense)?;
+        let [state, rates] = &mut self.at_switch;
+        state.clear();
+        state.extend_from_slice(x);
+        rates.clear();
+        rates.extend((0..x.len()).map(|i| dense.component_and_slope(t, i).1));
+        if let Some(projection) = &mut self.projection {
+            // Where this fails, the next step does.
+            (projection.0)(t, state);
+        }
+        Some(t)
+    }
+
+    /// Shows a step up to an event or a limit within it.
+    fn show(
         &mut self,
         ends: &Ends<'_>,
         interior: Option<&DenseOutput>,

@@ -24,7 +24,7 @@ pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
         Cause::StepTooSmall { h } => format!(
             "the step shrank to {h:.1e} s: the motion is singular here, or too stiff for the method"
         ),
-        Cause::Inconsistent => failure.cause.to_string(),
+        Cause::Inconsistent | Cause::Chattering => failure.cause.to_string(),
         Cause::TooManySteps { steps } => format!("the limit of {steps} steps was reached"),
         Cause::OutOfRange { component, range } => match info.states.get(component) {
             Some(state) => {

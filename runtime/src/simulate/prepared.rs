@@ -1,13 +1,14 @@
 //! A simulation at its start, and what an integration of it means.
 
 use super::describe::describe_state;
+use super::switches::switches;
 use super::validity::Limits;
 use super::{Breach, Observed, Response, Simulation, SimulationError};
 use crate::condition::velocity_condition;
 use crate::inputs::ModelInputs;
 use crate::integrate::{
     BlockMotion, Ending, Event, Failure, IntegrationError, Observer, Outcome, Projection, Range,
-    Switches, Watch,
+    Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::{Moving, Positions};
@@ -90,7 +91,7 @@ impl<'a> Prepared<'a> {
         }
         Watch {
             switching_times: &self.switching_times,
-            switches: switches(self.model, self.p, &self.start),
+            switches: switches(self.model, self.p, self.inputs),
             ranges: &self.ranges,
             projection: projection(self.model, self.p, self.inputs),
             events,
@@ -245,15 +246,4 @@ pub(super) fn projection<'a>(
         let restored = positions.restore(model, t, x, &u, p, Moving::All);
         restored.is_ok()
     })))
-}
-
-/// What time alone switches in a model.
-fn switches<'a>(model: &'a dyn Model, p: &'a [f64], x: &'a [f64]) -> Option<Switches<'a>> {
-    // They depend neither on the state nor on the inputs, but every function has these arguments.
-    let u = vec![0.0; model.info().input_len()];
-    let count = model.switch_len();
-    (count > 0).then(|| Switches {
-        count,
-        function: Box::new(move |t, values| model.switches(At { t, x, u: &u, p }, values)),
-    })
 }

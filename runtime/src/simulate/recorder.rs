@@ -14,7 +14,7 @@ pub enum Sampling {
 }
 
 /// Collects times and states.
-pub(super) struct Recorder<'a> {
+pub struct Recorder<'a> {
     sampling: Sampling,
     span: [f64; 2],
     /// Number of the next sample on the grid.
@@ -27,6 +27,16 @@ pub(super) struct Recorder<'a> {
     x: Vec<f64>,
     /// Called with the time in s after each step.
     pub(super) progress: Option<Box<dyn FnMut(f64) + 'a>>,
+}
+
+impl std::fmt::Debug for Recorder<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("Recorder")
+            .field("sampling", &self.sampling)
+            .field("span", &self.span)
+            .finish_non_exhaustive()
+    }
 }
 
 impl Recorder<'_> {

@@ -130,7 +130,10 @@ impl BlockTaylor {
             let mut begin = |l: usize| {
                 let (motion, of) = waiting.next()?;
                 self.expansion.begin(l, &of.x, of.parameters);
-                Some(Lane::new(motion, of, Steps::new(options.first_step)))
+                let mut lane = Lane::new(motion, of, Steps::new(options.first_step));
+                // The guards of the series are the same functions.
+                lane.watcher.stops.ignore_crossings();
+                Some(lane)
             };
             let Some(beside) = refill(&mut lanes, &mut begin, &mut results) else {
                 break;

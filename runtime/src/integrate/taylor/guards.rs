@@ -1,9 +1,7 @@
 //! Where the equations of a series become others: a step ends there.
 
+use crate::integrate::sign_changes;
 use crate::series::Guard;
-
-/// Parts of a step between which changes are sought.
-const PARTS: u8 = 8;
 
 /// A change of an answer within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,8 +26,11 @@ pub(super) fn first_change(guards: &[Guard], coefficients: &[f64], h: f64) -> Op
         if terms().next().is_some_and(|now| now.abs() > most) {
             continue;
         }
-        let answer = |tau: f64| guard.answer(terms().rev().fold(0.0, |sum, term| term + tau * sum));
-        if let Some([before, after]) = change(answer, longest) {
+        let g = |tau: f64| terms().rev().fold(0.0, |sum, term| term + tau * sum);
+        let old = guard.answer(g(0.0));
+        let change =
+            sign_changes::first_change(g, |value| guard.answer(value) != old, [0.0, longest]);
+        if let Some([before, after]) = change {
             first = Some(Change {
                 guard: place,
                 before,
@@ -38,26 +39,6 @@ pub(super) fn first_change(guards: &[Guard], coefficients: &[f64], h: f64) -> Op
         }
     }
     first
-}
-
-/// Neighbouring times between which an answer changes for the first time, as far as eighths of a step tell.
-fn change(answer: impl Fn(f64) -> i8, h: f64) -> Option<[f64; 2]> {
-    let old = answer(0.0);
-    let part = |i: u8| h * (f64::from(i) / f64::from(PARTS));
-    let first = (1..=PARTS).find(|&i| answer(part(i)) != old)?;
-    let (mut before, mut after) = (part(first - 1), part(first));
-    loop {
-        let middle = before + (after - before) / 2.0;
-        if middle <= before || middle >= after {
-            return Some([before, after]);
-        }
-        let end = if answer(middle) == old {
-            &mut before
-        } else {
-            &mut after
-        };
-        *end = middle;
-    }
 }
 
 #[cfg(test)]

@@ -1,0 +1,201 @@
+//! Where a motion is switched: by time alone, which bounds on functions of time find for certain, and by its state.
+
+use super::dense_output::{DenseOutput, Ends};
+use super::sign_changes::{first_change, neighbours};
+use crate::real::Enclosure;
+use crate::switching::Counts;
+
+/// What switches the rates of a motion; see [`Switching`](crate::model::Switching).
+pub struct Switches<'a> {
+    /// How many functions there are.
+    pub counts: Counts,
+    /// Writes the answers of what time alone decides, at a time in s.
+    pub answers: SwitchFunction<'a>,
+    /// Writes bounds on functions of time between two times in s: those whose signs are the answers, then the others.
+    /// Without it answers are compared at eighths of a step.
+    pub within: Option<BoundFunction<'a>>,
+    /// Writes the functions of time and state whose signs decide.
+    pub crossings: CrossingFunction<'a>,
+}
+
+/// Values at a time, boxed.
+pub type SwitchFunction<'a> = Box<dyn FnMut(f64, &mut [f64]) + 'a>;
+/// Bounds between two times, boxed.
+pub type BoundFunction<'a> = Box<dyn FnMut([f64; 2], &mut [Enclosure]) + 'a>;
+/// Values at a time and a state, boxed.
+pub type CrossingFunction<'a> = Box<dyn FnMut(f64, &[f64], &mut [f64]) + 'a>;
+
+impl std::fmt::Debug for Switches<'_> {
+    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        formatter
+            .debug_struct("Switches")
+            .field("counts", &self.counts)
+            .finish_non_exhaustive()
+    }
+}
+
+impl<'a> Switches<'a> {
+    /// What time alone switches, without bounds.
+    pub fn of_time(count: usize, answers: impl FnMut(f64, &mut [f64]) + 'a) -> Self {
+        Self {
+            counts: Counts {
+                answers: count,
+                ..Counts::default()
+            },
+            answers: Box::new(answers),
+            within: None,
+            crossings: Box::new(|_, _, _| {}),
+        }
+    }
+}
+
+/// Parts of a step into which answers without bounds are divided.
+const PARTS: u8 = 8;
+/// Intervals that are looked at in one step; more only where bounds tell nothing.
+const MOST_INTERVALS: usize = 4096;
+/// The shortest of them, relative to the time: some spacings of numbers. Times below the second count as that.
+const SHORTEST: f64 = 8.0 * f64::EPSILON;
+const NEAR_ZERO: f64 = 1e-6;
+/// The time after which a function that begins at zero has a sign, in parts of the step.
+const SOON: f64 = 1e-9;
+
+/// The arrays in which switches are sought.
+#[derive(Debug, Default)]
+pub(super) struct SwitchSearch {
+    before: Vec<f64>,
+    after: Vec<f64>,
+    bounds: Vec<Enclosure>,
+    signs: Vec<f64>,
+    values: Vec<f64>,
+    x: Vec<f64>,
+}
+
+impl SwitchSearch {
+    pub(super) fn new(counts: Counts) -> Self {
+        Self {
+            before: vec![0.0; counts.answers],
+            after: vec![0.0; counts.answers],
+            bounds: vec![Enclosure::UNKNOWN; counts.answers + counts.shapes],
+            signs: vec![0.0; counts.crossings],
+            values: vec![0.0; counts.crossings],
+            x: Vec::new(),
+        }
+    }
+
+    /// Leaves switches by the state to whoever finds them otherwise.
+    pub(super) fn ignore_crossings(&mut self) {
+        self.signs.clear();
+    }
+
+    /// Whether the state switches the equations.
+    pub(super) fn has_crossings(&self) -> bool {
+        !self.signs.is_empty()
+    }
+
+    /// The first time after `t` and not after `t_new` at which an answer of time alone is another, to the last digit.
+    ///
+    /// Where bounds keep a function off zero there is none, and where they keep its slope off zero there is at most
+    /// one. What remains is halved.
+    pub(super) fn of_time(
+        &mut self,
+        switches: &mut Switches<'_>,
+        [t, t_new]: [f64; 2],
+    ) -> Option<f64> {
+        if self.before.is_empty() {
+            return None;
+        }
+        let count = self.before.len();
+        let (before, after) = (&mut self.before, &mut self.after);
+        (switches.answers)(t, before);
+        let mut changed = |s: f64| {
+            (switches.answers)(s, after);
+            let bits = |value: &f64| value.to_bits();
+            !before.iter().map(bits).eq(after.iter().map(bits))
+        };
+        let Some(within) = &mut switches.within else {
+            return by_parts(changed, [t, t_new]);
+        };
+        let mut waiting = vec![[t, t_new]];
+        for _ in 0..MOST_INTERVALS {
+            let Some([from, to]) = waiting.pop() else {
+                return None;
+            };
+            within([from, to], &mut self.bounds);
+            let functions = &self.bounds[..count];
+            let mut undecided = functions.iter().filter(|of| !of.keeps_its_sign());
+            if undecided.clone().next().is_none() {
+                continue;
+            }
+            let is_short = to - from <= SHORTEST * to.abs().max(NEAR_ZERO);
+            if is_short || undecided.all(Enclosure::is_monotonic) {
+                if changed(to) {
+                    return Some(neighbours(changed, [from, to])[1]);
+                }
+                continue;
+            }
+            let middle = f64::midpoint(from, to);
+            waiting.extend([[middle, to], [from, middle]]);
+        }
+        let from = waiting.last().map_or(t, |&[from, _]| from);
+        by_parts(changed, [from, t_new])
+    }
+
+    /// The first time within a step at which its interpolant switches the equations; `x` becomes the state there.
+    pub(super) fn of_state(
+        &mut self,
+        switches: &mut Switches<'_>,
+        ends: &Ends<'_>,
+        dense: &DenseOutput,
+    ) -> Option<(f64, &[f64])> {
+        if !self.has_crossings() {
+            return None;
+        }
+        let Self {
+            signs, values, x, ..
+        } = self;
+        x.resize(ends.x[0].len(), 0.0);
+        let crossings = &mut switches.crossings;
+        // Whoever begins at zero has the sign that follows.
+        crossings(ends.t[0], ends.x[0], signs);
+        let [t, t_new] = ends.t;
+        if signs.contains(&0.0) {
+            let soon = t + (t_new - t) * SOON;
+            dense.state(soon, x);
+            crossings(soon, x, values);
+            for (sign, value) in signs.iter_mut().zip(&*values) {
+                if *sign == 0.0 {
+                    *sign = *value;
+                }
+            }
+        }
+        let mut first: Option<f64> = None;
+        for (i, &sign) in signs.iter().enumerate() {
+            let g = |s: f64| {
+                dense.state(s, x);
+                crossings(s, x, values);
+                values[i]
+            };
+            let to = first.unwrap_or(t_new);
+            let change = first_change(g, |value| value * sign < 0.0, [t, to]);
+            first = change.map(|[_, other]| other).or(first);
+        }
+        let first = first?;
+        // As far beyond as rounding may hide it from the rates.
+        let t_new = (first + BEYOND * first.abs()).min(t_new);
+        dense.state(t_new, x);
+        Some((t_new, x))
+    }
+}
+
+/// Rounding of a state in the equations, relative to it.
+const BEYOND: f64 = 64.0 * f64::EPSILON;
+
+/// The first change that eighths of an interval show.
+fn by_parts(mut changed: impl FnMut(f64) -> bool, [from, to]: [f64; 2]) -> Option<f64> {
+    let part = |i: u8| match i {
+        PARTS => to,
+        _ => from + (to - from) * (f64::from(i) / f64::from(PARTS)),
+    };
+    let first = (1..=PARTS).find(|&i| changed(part(i)))?;
+    Some(neighbours(changed, [part(first - 1), part(first)])[1])
+}

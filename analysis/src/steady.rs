@@ -12,7 +12,8 @@ use nalgebra::DVector;
 
 use crate::point::Point;
 use crate::term::Term;
-use appell_runtime::model::{Model, ModelInfo};
+use appell_runtime::model::{Model, ModelInfo, Quantity};
+use appell_spectra::singular::Singular;
 use cyclic::{Structure, StructureError};
 use equations::SteadyEquations;
 use newton::{Missed, Zero};
@@ -96,7 +97,7 @@ pub enum SteadyError {
     },
     /// No steady motion was found.
     #[error(
-        "no steady motion satisfies the conditions: the best of {starts} starting points leaves {}; {}{}",
+        "no steady motion was found that satisfies the conditions: the best of {starts} starting points leaves {}; {}{}",
         list(.left), if *.conditions { "release one of the conditions or free an input" } else { "free an input" },
         if *.turning { PERIODIC } else { "" }
     )]
@@ -109,6 +110,15 @@ pub enum SteadyError {
         conditions: bool,
         /// Whether there are quaternions.
         turning: bool,
+    },
+    /// All steady motions that were found lie outside of declared ranges.
+    #[error(
+        "the steady motions that were found lie outside of declared ranges: {}; widen the range, or ignore the ranges",
+        .outside.join(", ")
+    )]
+    OutOfRange {
+        /// What is outside of which range.
+        outside: Vec<String>,
     },
     /// The conditions determine a family of motions.
     #[error(
@@ -140,6 +150,7 @@ pub struct SteadyProblem<'a> {
     base: Point,
     free: Vec<Term>,
     conditions: Vec<Condition>,
+    ignores_ranges: bool,
 }
 
 /// Solutions whose unknowns differ by less, in units of their scales, are the same: at a fold they
@@ -155,7 +166,13 @@ impl<'a> SteadyProblem<'a> {
             base,
             free: Vec::new(),
             conditions: Vec::new(),
+            ignores_ranges: false,
         })
+    }
+
+    /// Admits motions outside of the declared ranges of states.
+    pub fn ignore_ranges(&mut self) {
+        self.ignores_ranges = true;
     }
 
     /// The model.
@@ -327,56 +344,153 @@ impl<'a> SteadyProblem<'a> {
     /// left out.
     pub fn solve_all(&self, starts: usize) -> Result<Vec<SteadyMotion>, SteadyError> {
         let equations = self.equations();
+        let (found, nearest) = self.zeros(&equations, starts);
+        let motions = found.iter().map(|zero| self.motion(&equations, zero));
+        let (inside, outside): (Vec<SteadyMotion>, Vec<SteadyMotion>) =
+            motions.partition(|motion| self.in_range(&motion.point));
+        if !inside.is_empty() {
+            return Ok(inside);
+        }
+        if outside.is_empty() {
+            return Err(self.none(&equations, starts.max(1), &nearest));
+        }
+        let outside = outside.iter().map(|motion| self.passed(&motion.point));
+        let mut outside: Vec<String> = outside.collect();
+        outside.dedup();
+        Err(SteadyError::OutOfRange { outside })
+    }
+
+    /// What keeps steady motions out of [`Self::solve_all`]: which states are outside of their ranges, for each.
+    pub fn outside(&self, starts: usize) -> Vec<String> {
+        let equations = self.equations();
+        let (found, _) = self.zeros(&equations, starts);
+        let points = found.iter().map(|zero| equations.point(&zero.z));
+        let outside = points.filter(|point| !self.in_range(point));
+        let mut outside: Vec<String> = outside.map(|point| self.passed(&point)).collect();
+        outside.dedup();
+        outside
+    }
+
+    /// The zeros reached from the base and from further points, the nearest first, and the point that comes nearest
+    /// to being one.
+    fn zeros(&self, equations: &SteadyEquations<'_>, starts: usize) -> (Vec<Zero>, Missed) {
         let base = equations.unknowns_of(&self.base);
         let mut spread = Spread::new(base.len());
         let mut found: Vec<Zero> = Vec::new();
-        let mut nearest: Option<Missed> = None;
+        let mut nearest = Missed {
+            z: base.clone(),
+            residual: f64::INFINITY,
+        };
         for start in 0..starts.max(1) {
             let z = if start == 0 {
                 base.clone()
             } else {
-                self.start(&equations, &spread.next())
+                self.start(equations, &spread.next())
             };
-            let zero = newton::solve(&equations, &z).map(|mut zero| {
-                let mut point = equations.point(&zero.z);
-                let turning = &self.structure.turning;
-                turning.bring_near(&self.base.x, &mut point.x);
-                zero.z = equations.unknowns_of(&point);
-                zero
-            });
-            match zero {
-                Ok(zero) if self.in_range(&equations.point(&zero.z)) => {
+            match newton::solve(equations, &self.with_speeds(equations, z)) {
+                Ok(mut zero) => {
+                    let mut point = equations.point(&zero.z);
+                    let turning = &self.structure.turning;
+                    turning.bring_near(&self.base.x, &mut point.x);
+                    self.fold(&mut point);
+                    zero.z = equations.unknowns_of(&point);
                     let same = |other: &Zero| {
                         (&other.z - &zero.z).norm() <= SAME_MOTION * (1.0 + zero.z.norm())
-                            || other.family() > 0 && zero.family() > 0
+                            || self.are_one_family(equations, [other, &zero])
                     };
                     if !found.iter().any(same) {
                         found.push(zero);
                     }
                 }
-                Ok(_) => {}
-                Err(missed) => {
-                    if nearest
-                        .as_ref()
-                        .is_none_or(|n| missed.residual < n.residual)
-                    {
-                        nearest = Some(missed);
-                    }
-                }
+                Err(missed) if missed.residual < nearest.residual => nearest = missed,
+                Err(_) => {}
             }
         }
-        if found.is_empty() {
-            let nowhere = Missed {
-                z: base,
-                residual: f64::INFINITY,
-            };
-            return Err(self.none(&equations, starts.max(1), &nearest.unwrap_or(nowhere)));
-        }
         found.sort_by(|a, b| (&a.z - &base).norm().total_cmp(&(&b.z - &base).norm()));
-        Ok(found
-            .iter()
-            .map(|zero| self.motion(&equations, zero))
-            .collect())
+        (found, nearest)
+    }
+
+    /// Whether two motions belong to families, of which one motion is enough, on the same side of the ranges.
+    fn are_one_family(&self, equations: &SteadyEquations<'_>, zeros: [&Zero; 2]) -> bool {
+        let [first, second] = zeros.map(|zero| self.in_range(&equations.point(&zero.z)));
+        zeros.iter().all(|zero| zero.family() > 0) && first == second
+    }
+
+    /// Gives the speeds of a starting point values at which the conditions hold and the essential coordinates stand
+    /// still: linear equations for the speeds, as long as they are conditions on rates and on outputs linear in them.
+    /// Of many solutions the one nearest to the given speeds is taken.
+    fn with_speeds(&self, equations: &SteadyEquations<'_>, start: DVector<f64>) -> DVector<f64> {
+        /// Newton steps, for outputs that are not linear.
+        const STEPS: usize = 4;
+        /// Singular values that count as zero, relative to the largest.
+        const RANK: f64 = 1e-9;
+        use newton::Equations as _;
+        let speeds = self.model.info().speeds;
+        let is_speed = |term: &Term| matches!(term, Term::State(state) if *state < speeds);
+        let columns = equations.unknowns.iter().enumerate();
+        let columns: Vec<usize> = columns
+            .filter(|(_, t)| is_speed(t))
+            .map(|(i, _)| i)
+            .collect();
+        let dependent = |c: &Condition| matches!(c.term, Term::Rate(_) | Term::Output(_));
+        if columns.is_empty() || !self.conditions.iter().any(dependent) {
+            return start;
+        }
+        let mut z = start.clone();
+        for _ in 0..STEPS {
+            let (values, jacobian) = equations.evaluate(&z);
+            let essential = self.structure.essential.iter().enumerate();
+            let rates = essential.filter(|&(_, &s)| s >= speeds).map(|(row, _)| row);
+            let conditions = values.len() - self.conditions.len()..values.len();
+            let rows: Vec<usize> = rates.chain(conditions).collect();
+            let part = jacobian.select_rows(&rows).select_columns(&columns);
+            let weights = newton::weights(&part);
+            let target = -values.select_rows(&rows).component_mul(&weights);
+            if !target
+                .iter()
+                .chain(part.iter())
+                .all(|value| value.is_finite())
+            {
+                return start;
+            }
+            let singular = Singular::of(&newton::weighted(&part, &weights));
+            let step = singular.solve(&target, singular.rank(RANK));
+            for (&column, step) in columns.iter().zip(step.iter()) {
+                z[column] += step;
+            }
+        }
+        if z.iter().all(|value| value.is_finite()) {
+            z
+        } else {
+            start
+        }
+    }
+
+    /// Brings essential angles into one turn where the equations are the same after each turn.
+    fn fold(&self, point: &mut Point) {
+        /// Rates that differ by less, relative to the largest, are the same.
+        const SAME_RATES: f64 = 1e-9;
+        use std::f64::consts::TAU;
+        let info = self.model.info();
+        for &state in &self.structure.essential {
+            let turns = (point.x[state] / TAU).round();
+            let fixed = |c: &Condition| c.term == Term::State(state);
+            let is_angle = matches!(info.states[state].unit.as_ref(), "rad" | "deg");
+            if turns == 0.0 || !is_angle || self.conditions.iter().any(fixed) {
+                continue;
+            }
+            let mut folded = point.clone();
+            folded.x[state] -= TAU * turns;
+            let [before, after] = [&*point, &folded].map(|at| at.rates(self.model));
+            let largest = before
+                .iter()
+                .fold(1.0, |most, rate| f64::max(most, rate.abs()));
+            let mut rates = before.iter().zip(&after);
+            let is_same = rates.all(|(a, b)| (a - b).abs() <= SAME_RATES * largest);
+            if is_same && self.model.dependent_coordinates().is_empty() {
+                *point = folded;
+            }
+        }
     }
 
     /// The same, all of which must be isolated.
@@ -400,7 +514,11 @@ impl<'a> SteadyProblem<'a> {
         let equations = self.equations();
         let mut spread = Spread::new(equations.unknowns.len());
         let others = (1..starts).filter_map(|_| {
-            let zero = newton::solve(&equations, &self.start(&equations, &spread.next())).ok()?;
+            let zero = newton::solve(
+                &equations,
+                &self.with_speeds(&equations, self.start(&equations, &spread.next())),
+            )
+            .ok()?;
             let other = self.motion(&equations, &zero);
             self.in_range(&other.point).then_some(other)
         });
@@ -461,12 +579,34 @@ impl<'a> SteadyProblem<'a> {
     }
 
     pub(super) fn in_range(&self, point: &Point) -> bool {
+        self.ignores_ranges || self.beyond(point).next().is_none()
+    }
+
+    /// The essential states that are outside of their ranges.
+    fn beyond<'p>(&'p self, point: &'p Point) -> impl Iterator<Item = (&'p Quantity, f64)> {
         let states = &self.model.info().states;
-        let mut essential = self.structure.essential.iter();
-        essential.all(|&state| {
-            let [low, high] = states[state].range;
-            (low..=high).contains(&point.x[state])
+        let essential = self.structure.essential.iter();
+        let with_values = essential.map(|&state| (&states[state], point.x[state]));
+        with_values.filter(|(state, value)| {
+            let [low, high] = state.range;
+            !(low..=high).contains(value)
         })
+    }
+
+    /// The same for people.
+    fn passed(&self, point: &Point) -> String {
+        let one = |(state, value): (&Quantity, f64)| {
+            let [low, high] = state.range.map(|limit| state.to_unit(limit));
+            let value = state.to_unit(value);
+            format!(
+                "{} = {value:.6} {} (range {low} to {high})",
+                state.name, state.unit
+            )
+        };
+        self.beyond(point)
+            .map(one)
+            .collect::<Vec<_>>()
+            .join(" and ")
     }
 
     fn motion(&self, equations: &SteadyEquations<'_>, zero: &Zero) -> SteadyMotion {

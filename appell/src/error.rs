@@ -285,7 +285,9 @@ impl Error {
 
 fn of_steady(error: &SteadyError) -> Class {
     match error {
-        SteadyError::None { .. } | SteadyError::Structure(_) => Class::Computation,
+        SteadyError::None { .. } | SteadyError::OutOfRange { .. } | SteadyError::Structure(_) => {
+            Class::Computation
+        }
         _ => Class::Request,
     }
 }

@@ -10,6 +10,8 @@ mod model_laws;
 mod orientations;
 mod robots;
 mod spinning;
+mod steady;
 mod studies;
+mod switching;
 mod taylor;
 mod turning;

@@ -22,7 +22,12 @@ pub(crate) struct Question {
     set: Vec<Assignment>,
     /// Prescribe a state, input, output, or rate of an ignorable coordinate, such as theta=10deg;
     /// other inputs are zero
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        visible_alias = "at",
+        value_name = "NAME=VALUE",
+        allow_hyphen_values = true
+    )]
     fix: Vec<Assignment>,
     /// An input or parameter to solve for
     #[arg(long, value_name = "NAME")]
@@ -36,6 +41,9 @@ pub(crate) struct Question {
     /// Number of starting points of the search
     #[arg(long, value_name = "N", default_value_t = STARTS)]
     starts: usize,
+    /// Admit motions outside of the declared ranges of states
+    #[arg(long)]
+    ignore_ranges: bool,
     /// Write the motions, in the units of the spec; `-` is standard output
     #[arg(long, value_name = "FILE.csv")]
     pub(crate) csv: Option<PathBuf>,
@@ -88,6 +96,7 @@ impl Question {
             along: self.along.clone(),
             require: self.require.iter().map(|least| least.0.clone()).collect(),
             starts: self.starts,
+            ignore_ranges: self.ignore_ranges,
         };
         then(&model.resolve(&question)?, &setup)
     }

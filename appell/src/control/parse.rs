@@ -64,11 +64,10 @@ fn motion(
         ..Point::initial(model)
     };
     let mut problem = SteadyProblem::new(model, base)?;
-    for input in 0..setup.info.declared_inputs {
-        problem.free(Term::Input(input))?;
-    }
+    let mut given: Vec<Term> = scheduled.iter().map(|(term, _)| *term).collect();
     for fixed in assignments {
         let term = term(setup, Field::At, &fixed.name)?;
+        given.push(term);
         if scheduled.is_none_or(|(scheduled, _)| scheduled != term) {
             problem.fix(term, value_of(setup, term, Field::At, fixed)?)?;
         }
@@ -76,7 +75,15 @@ fn motion(
     if let Some((term @ (Term::State(_) | Term::Input(_)), value)) = scheduled {
         problem.fix(term, value)?;
     }
-    let found = problem.solve_isolated(STARTS)?;
+    // Inputs that are not given are zero where that determines a motion.
+    let found = problem.solve_isolated(STARTS).or_else(|_| {
+        for input in 0..setup.info.declared_inputs {
+            if !given.contains(&Term::Input(input)) {
+                problem.free(Term::Input(input))?;
+            }
+        }
+        problem.solve_isolated(STARTS)
+    })?;
     // The nearest comes first.
     let point = found.into_iter().next().map(|motion| motion.point);
     let point = point.unwrap_or_else(|| problem.base().clone());

@@ -27,6 +27,8 @@ pub struct Question {
     pub require: Vec<Assignment>,
     /// Number of starting points of the search.
     pub starts: usize,
+    /// Whether motions outside of the declared ranges of states are admitted.
+    pub ignore_ranges: bool,
 }
 
 /// A quantity with its first and last value.
@@ -80,6 +82,7 @@ impl Default for Question {
             along: None,
             require: Vec::new(),
             starts: STARTS,
+            ignore_ranges: false,
         }
     }
 }
@@ -138,13 +141,21 @@ impl Question {
             ..Point::initial(model)
         };
         let mut problem = SteadyProblem::new(model, point)?;
+        if self.ignore_ranges {
+            problem.ignore_ranges();
+        }
         for name in &self.free {
             problem.free(term(setup, Field::Free, name)?)?;
         }
         unique(&self.fix, Field::Fix)?;
         for fixed in &self.fix {
             let term = term(setup, Field::Fix, &fixed.name)?;
-            problem.fix(term, value_in_range(setup, term, Field::Fix, fixed)?)?;
+            let value = if self.ignore_ranges {
+                value_of(setup, term, Field::Fix, fixed)
+            } else {
+                value_in_range(setup, term, Field::Fix, fixed)
+            };
+            problem.fix(term, value?)?;
         }
         let along = self.along.as_ref();
         let along = along.map(|span| span.resolve(setup, Field::Along));

@@ -112,6 +112,12 @@ pub(crate) fn motions(asked: &Resolved<'_>, motions: &[(SteadyMotion, Stability)
         _ => format!("{count} steady motions\n"),
     };
     text += &table(&rows, 1..1 + shown.len());
+    for outside in asked.problem.outside(asked.starts) {
+        let _ = writeln!(
+            text,
+            "  one more outside of a range: {outside}; `--ignore-ranges` shows it"
+        );
+    }
     if count > shown.len() {
         let _ = writeln!(
             text,

@@ -60,7 +60,7 @@ impl Mechanism {
     pub(crate) fn has_none(self, given: &[(&str, f64)], starts: usize) -> Result<bool, Error> {
         match self.problem(given)?.solve_all(starts) {
             Ok(_) => Ok(false),
-            Err(SteadyError::None { .. }) => Ok(true),
+            Err(SteadyError::None { .. } | SteadyError::OutOfRange { .. }) => Ok(true),
             Err(error) => Err(computation(error)),
         }
     }
@@ -77,7 +77,9 @@ impl Mechanism {
         let traced = Branches::new(&problem, self.term(along)?, range, &[], options)
             .and_then(|branches| branches.trace(STARTS));
         match traced {
-            Err(BranchError::Steady(SteadyError::None { .. })) => Ok(Vec::new()),
+            Err(BranchError::Steady(SteadyError::None { .. } | SteadyError::OutOfRange { .. })) => {
+                Ok(Vec::new())
+            }
             other => other.map_err(computation),
         }
     }

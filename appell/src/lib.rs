@@ -6,7 +6,7 @@
 //! | call | command |
 //! |---|---|
 //! | [`Model::from_spec`], [`Model::shipped`], [`Model::find`] | `MODEL` of every command |
-//! | [`Model::simulate`] with a [`Motion`] | `appell simulate` |
+//! | [`Model::simulate`], [`Model::simulate_batch`] with a [`Motion`] | `appell simulate` |
 //! | [`Model::steady`] with a [`steady::Question`] | `appell steady`, `appell stability` |
 //! | [`Model::control`], [`Model::schedule`] with a [`control::Request`], [`Model::law`], [`Model::attraction`] | `appell control` |
 //! | [`Source::check`] | `appell check` |
@@ -28,6 +28,7 @@
 //! `appell-report`.
 
 pub mod base;
+mod batch;
 pub mod capture;
 pub mod cases;
 pub mod check;

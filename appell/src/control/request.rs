@@ -1,6 +1,6 @@
 //! A request for a controller, in texts with units.
 
-use appell_runtime::model::Model;
+use appell_runtime::model::{At, Model};
 
 use super::design::{self, Design, Goal, Method};
 use super::parse;
@@ -18,7 +18,8 @@ pub struct Request {
     pub at: Vec<Assignment>,
     /// The inputs that the law may use; empty for all.
     pub inputs: Vec<String>,
-    /// The states that are fed back; empty for a controllable set, coordinates first.
+    /// The states that are fed back, or outputs of the spec for the states that these depend on; empty for a
+    /// controllable set, coordinates first.
     pub outputs: Vec<String>,
     /// Closed-loop poles in 1/s, such as `-8,-2+3i,-2-3i`; a single one is used for all.
     pub poles: Option<String>,
@@ -81,7 +82,7 @@ impl Request {
     }
 
     /// The request with its names resolved.
-    pub fn resolve(&self, setup: &Setup<'_>) -> Result<Goal, Error> {
+    pub fn resolve(&self, model: &dyn Model, setup: &Setup<'_>) -> Result<Goal, Error> {
         let inputs = if self.inputs.is_empty() {
             (0..setup.info.declared_inputs).collect()
         } else {
@@ -93,9 +94,7 @@ impl Request {
             let message = "the mechanism has no input; declare one under `[inputs]` of the spec";
             return Err(Error::request(Field::Inputs, message));
         }
-        let outputs = parse::distinct(Field::Outputs, &self.outputs, |name| {
-            setup.state(Field::Outputs, name)
-        })?;
+        let outputs = fed_back(model, setup, &self.outputs)?;
         let method = match (&self.poles, &self.weights) {
             (Some(_), Some(_)) => {
                 let message = "a law has poles or weights, not both";
@@ -116,8 +115,62 @@ impl Request {
     /// The design for a model, with the values of its spec.
     pub(crate) fn design(&self, model: &dyn Model, mut setup: Setup<'_>) -> Result<Design, Error> {
         setup.set(&self.parameters)?;
-        let goal = self.resolve(&setup)?;
+        let goal = self.resolve(model, &setup)?;
         let at = parse::point(model, &mut setup, &self.at, None)?;
         design::design(model, &setup, &at, &goal)
     }
+}
+
+/// The states that are fed back: those of the list, and those on which outputs of the list depend.
+fn fed_back(model: &dyn Model, setup: &Setup<'_>, names: &[String]) -> Result<Vec<usize>, Error> {
+    let info = setup.info;
+    let mut states = Vec::new();
+    let mut from_outputs = Vec::new();
+    for name in names {
+        match info.output_index(name.trim()) {
+            Some(output) if info.state_index(name.trim()).is_none() => {
+                let of_output = dependences(model, setup, output);
+                if of_output.is_empty() {
+                    let message = format!("the output `{name}` depends on no state");
+                    return Err(Error::request(Field::Outputs, message));
+                }
+                from_outputs.extend(of_output);
+            }
+            _ => states.push(name.clone()),
+        }
+    }
+    let mut all = parse::distinct(Field::Outputs, &states, |name| {
+        setup.state(Field::Outputs, name)
+    })?;
+    for state in from_outputs {
+        if !all.contains(&state) {
+            all.push(state);
+        }
+    }
+    Ok(all)
+}
+
+/// The states on which an output depends near the initial state.
+fn dependences(model: &dyn Model, setup: &Setup<'_>, output: usize) -> Vec<usize> {
+    /// Departures from the initial state in SI: several, as a slope may vanish at one.
+    const DEPARTURES: [f64; 3] = [0.0, 0.013, -0.027];
+    let info = setup.info;
+    let (n, m, l) = (info.state_len(), info.input_len(), info.output_len());
+    let (mut y, mut c, mut d) = (vec![0.0; l], vec![0.0; l * n], vec![0.0; l * m]);
+    let u = vec![0.0; m];
+    let mut felt = vec![false; n];
+    for departure in DEPARTURES {
+        let x: Vec<f64> = setup.initial.iter().map(|x| x + departure).collect();
+        let at = At {
+            t: 0.0,
+            x: &x,
+            u: &u,
+            p: &setup.parameters,
+        };
+        model.output_jacobians(at, &mut y, &mut c, &mut d);
+        for (felt, slope) in felt.iter_mut().zip(&c[output * n..]) {
+            *felt |= *slope != 0.0;
+        }
+    }
+    (0..n).filter(|&state| felt[state]).collect()
 }

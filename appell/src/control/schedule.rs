@@ -27,7 +27,7 @@ impl Schedule {
         range: &Assignment,
     ) -> Result<Self, Error> {
         setup.set(&request.parameters)?;
-        let mut goal = request.resolve(&setup)?;
+        let mut goal = request.resolve(model, &setup)?;
         let values = parse::values(&mut setup, range)?;
         let mut designs: Vec<(f64, Design)> = Vec::new();
         for &value in &values.si {

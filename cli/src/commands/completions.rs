@@ -31,10 +31,30 @@ impl Completions {
             shell.write_registration(VARIABLE, "appell", "appell", "appell", &mut script)
         });
         match written {
-            Some(Ok(())) => output::print(&String::from_utf8_lossy(&script)),
+            Some(Ok(())) => output::print(&quoting(&String::from_utf8_lossy(&script))),
             _ => Err(Error::Usage(format!(
                 "there are no completions for `{name}`"
             ))),
         }
+    }
+}
+
+/// The script of bash, which would put names such as `$(reboot).toml` into the line as they are, with the candidates
+/// quoted; other shells quote them by themselves.
+fn quoting(script: &str) -> String {
+    const END: &str = "\n    fi\n}\n";
+    const QUOTED: &str = "
+    fi
+    local candidate place
+    for place in \"${!COMPREPLY[@]}\"; do
+        printf -v candidate %q \"${COMPREPLY[place]}\"
+        COMPREPLY[place]=$candidate
+    done
+}
+";
+    if script.contains("COMPREPLY") {
+        script.replacen(END, QUOTED, 1)
+    } else {
+        script.to_owned()
     }
 }

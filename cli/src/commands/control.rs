@@ -29,12 +29,18 @@ pub(crate) struct Control {
     set: Vec<Assignment>,
     /// A state or input on the steady motion, such as theta=5deg or u=2N, or a quantity that
     /// determines it: an output, or the rate of an ignorable coordinate
-    #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]
+    #[arg(
+        long,
+        visible_alias = "fix",
+        value_name = "NAME=VALUE",
+        allow_hyphen_values = true
+    )]
     at: Vec<Assignment>,
     /// The inputs that the law may use [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     inputs: Vec<String>,
-    /// The states that are fed back [default: a controllable set, coordinates first]
+    /// The states that are fed back; an output of the spec stands for the states that it depends on
+    /// [default: a controllable set, coordinates first]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     outputs: Vec<String>,
     /// Closed-loop poles in 1/s, such as -8,-8,-2+3i,-2-3i; a single one is used for all
@@ -78,6 +84,7 @@ pub(crate) struct Control {
     /// Duration of each of these motions
     #[arg(
         long,
+        visible_alias = "t-end-s",
         value_name = "S",
         default_value_t = 10.0,
         requires = "attraction"

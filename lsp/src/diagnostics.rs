@@ -1,7 +1,7 @@
 //! Findings of the spec and of its derivation, as an editor shows them.
 
 use appell_spec::diagnostic::MAX_SHOWN;
-use appell_spec::{Diagnostic, Severity};
+use appell_spec::{Diagnostic, Severity, visible};
 use lsp_types::{
     Diagnostic as Shown, DiagnosticRelatedInformation, DiagnosticSeverity, Location, NumberOrString,
 };
@@ -25,10 +25,11 @@ fn one(document: &Document, finding: &Diagnostic) -> Shown {
     };
     let help = finding.help.iter().map(|help| format!("\nhelp: {help}"));
     let message = format!("{}{words}{}", finding.message, help.collect::<String>());
+    let message = visible(&message).into_owned();
     let others = finding.labels.iter().skip(1);
     let others = others.map(|(span, words)| DiagnosticRelatedInformation {
         location: Location::new(document.uri.clone(), document.text.range(span)),
-        message: words.clone(),
+        message: visible(words).into_owned(),
     });
     let others: Vec<_> = others.collect();
     Shown {

@@ -7,6 +7,7 @@ use appell_spec::occurrences::{Namespace, Occurrence};
 use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind, Position};
 
 use crate::document::Document;
+use crate::markdown::{block, code, prose};
 
 /// Uses that are listed; of more, the number is given.
 const MOST_USES: usize = 8;
@@ -51,11 +52,11 @@ fn made(document: &Document, name: &Occurrence) -> Option<Vec<String>> {
     let mut all = described(document, "joints", joint);
     if let Some((section, item)) = definition(document.reading.expanded(), name) {
         let unit = item.unit("unit").map(|unit| unit.value.text.as_str());
-        let unit = unit.map_or_else(String::new, |unit| format!(", in {unit}"));
+        let unit = unit.map_or_else(String::new, |unit| format!(", in {}", prose(unit)));
         let title = format!(
-            "**{}** `{}`{unit}, made by the",
+            "**{}** {}{unit}, made by the",
             singular(section),
-            name.name
+            code(&name.name)
         );
         all.insert(0, title);
     }
@@ -74,16 +75,21 @@ fn singular(section: &str) -> &str {
 /// The name with its value, the sentence about it, and what else its table says.
 fn described(document: &Document, section: &str, item: &ItemAst) -> Vec<String> {
     let written = |span: &Span| written(document, span);
+    let plain = |span: &Span| prose(&written(span));
     let kind = item.kind.map(|kind| kind.word.replace('_', " "));
     let unit = item.unit("unit").map(|unit| unit.value.text.as_str());
     let value = match (item.number("value"), unit) {
-        (Some(value), Some(unit)) => format!(" = {} {unit}", written(&value.span)),
-        (Some(value), None) => format!(" = {}", written(&value.span)),
-        (None, Some(unit)) => format!(", in {unit}"),
+        (Some(value), Some(unit)) => format!(" = {} {}", plain(&value.span), prose(unit)),
+        (Some(value), None) => format!(" = {}", plain(&value.span)),
+        (None, Some(unit)) => format!(", in {}", prose(unit)),
         (None, None) => kind.map_or_else(String::new, |kind| format!(", {kind}")),
     };
-    let title = format!("**{}** `{}`{value}", singular(section), item.name.value);
-    let about = item.text("about").map(|about| about.value.to_owned());
+    let title = format!(
+        "**{}** {}{value}",
+        singular(section),
+        code(&item.name.value)
+    );
+    let about = item.text("about").map(|about| prose(about.value));
     let is_told = |entry: &Entry| {
         let is_value = entry.key.name == "value" && matches!(entry.value, ValueAst::Number(_));
         is_value || matches!(entry.key.name, "about" | "unit")
@@ -91,7 +97,7 @@ fn described(document: &Document, section: &str, item: &ItemAst) -> Vec<String> 
     let rest = item.entries.iter().filter(|entry| !is_told(entry));
     let rest = rest.map(|entry| format!("{} = {}", entry.key.name, written(&entry.span)));
     let rest: Vec<String> = rest.collect();
-    let rest = (!rest.is_empty()).then(|| format!("```toml\n{}\n```", rest.join("\n")));
+    let rest = (!rest.is_empty()).then(|| block(&rest));
     [Some(title), about, rest].into_iter().flatten().collect()
 }
 
@@ -121,7 +127,7 @@ fn uses(document: &Document, name: &Occurrence) -> Option<String> {
         .collect();
     places.dedup();
     let shown = places.iter().take(MOST_USES);
-    let shown: Vec<String> = shown.map(|place| format!("`{place}`")).collect();
+    let shown: Vec<String> = shown.map(|place| code(place)).collect();
     let more = match places.len().saturating_sub(MOST_USES) {
         0 => String::new(),
         more => format!(" and {more} more"),

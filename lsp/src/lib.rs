@@ -13,31 +13,31 @@ mod diagnostics;
 mod document;
 mod equations;
 mod hover;
+mod markdown;
 mod names;
 mod server;
+mod stream;
 mod text;
 mod worker;
 
-use lsp_server::{Connection, ProtocolError};
+use std::io::{self, BufRead, BufReader, Write};
 
 pub use server::serve;
 
-/// Why the server ends.
-#[derive(Debug, thiserror::Error)]
-pub enum Error {
-    /// The editor does not keep to the protocol.
-    #[error("the language server: {0}")]
-    Protocol(#[from] ProtocolError),
-    /// A stream fails.
-    #[error("the language server: {0}")]
-    Stream(#[from] std::io::Error),
+/// Serves an editor over standard input and output until it leaves.
+pub fn serve_stdio() -> io::Result<()> {
+    serve_streams(BufReader::new(io::stdin()), io::stdout())
 }
 
-/// Serves an editor over standard input and output until it leaves.
-pub fn serve_streams() -> Result<(), Error> {
-    let (connection, threads) = Connection::stdio();
+/// Serves an editor over two streams until it leaves.
+pub fn serve_streams(
+    from: impl BufRead + Send + 'static,
+    to: impl Write + Send + 'static,
+) -> io::Result<()> {
+    let (connection, writer) = stream::connect(from, to)?;
     serve(&connection)?;
     // The writer ends when nobody can send any more.
     drop(connection);
-    Ok(threads.join()?)
+    let written = writer.join();
+    written.unwrap_or_else(|_| Err(io::Error::other("the writer has ended early")))
 }

@@ -3,15 +3,16 @@
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 
+use appell_spec::shown;
 use crossbeam_channel::{Sender, never, select};
 use lsp_server::{Connection, ErrorCode, Message, Notification, Request, Response};
 use lsp_types::notification::{
-    DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, LogMessage,
+    DidChangeTextDocument, DidCloseTextDocument, DidOpenTextDocument, Exit, LogMessage,
     Notification as Told, PublishDiagnostics,
 };
 use lsp_types::request::{
-    Completion, GotoDefinition, HoverRequest, PrepareRenameRequest, References, Rename,
-    Request as Asked,
+    Completion, GotoDefinition, HoverRequest, Initialize, PrepareRenameRequest, References, Rename,
+    Request as Asked, Shutdown,
 };
 use lsp_types::{
     Diagnostic, LogMessageParams, MessageType, PublishDiagnosticsParams, ReferenceParams,
@@ -24,7 +25,7 @@ use serde_json::{Value, from_value, json};
 use crate::document::Document;
 use crate::text::Text;
 use crate::worker::{self, Job, What};
-use crate::{Error, completion, diagnostics, hover, names};
+use crate::{completion, diagnostics, hover, names};
 
 /// A request that makes sense and cannot be met, in the protocol's version 3.17.
 const REQUEST_FAILED: i32 = -32803;
@@ -41,27 +42,33 @@ fn capabilities() -> Value {
     })
 }
 
-/// Serves an editor until it leaves.
-pub fn serve(connection: &Connection) -> Result<(), Error> {
-    connection.initialize(capabilities())?;
+/// Where the protocol stands.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Phase {
+    /// Before `initialize`.
+    New,
+    Serving,
+    /// After `shutdown`.
+    Closing,
+}
+
+/// Serves an editor until it leaves. What is not its turn is refused, and the next message is read.
+pub fn serve(connection: &Connection) -> std::io::Result<()> {
     let (jobs, mut told) = worker::start()?;
     let mut server = Server {
         messages: connection.sender.clone(),
         jobs,
         documents: BTreeMap::new(),
         revision: 0,
+        phase: Phase::New,
     };
     loop {
         select! {
             recv(connection.receiver) -> message => match message {
-                Ok(Message::Request(request)) => {
-                    if connection.handle_shutdown(&request)? {
-                        return Ok(());
-                    }
-                    server.request(request);
-                }
-                Ok(Message::Notification(notification)) => server.notification(notification),
-                Ok(Message::Response(_)) => {}
+                Ok(Message::Request(request)) => server.request(request),
+                Ok(Message::Notification(told)) if told.method == Exit::METHOD => return Ok(()),
+                Ok(Message::Notification(told)) if server.phase == Phase::Serving => server.notification(told),
+                Ok(Message::Notification(_) | Message::Response(_)) => {}
                 Err(_) => return Ok(()),
             },
             recv(told) -> answer => match answer {
@@ -91,12 +98,13 @@ struct Server {
     documents: BTreeMap<String, Document>,
     /// Of the newest text; editors begin to count again when they open a file again.
     revision: u64,
+    phase: Phase,
 }
 
 impl Server {
-    fn request(&self, request: Request) {
+    fn request(&mut self, request: Request) {
         let Request { id, method, params } = request;
-        let answer = catch_unwind(AssertUnwindSafe(|| self.answer(&method, params)));
+        let answer = catch_unwind(AssertUnwindSafe(|| self.in_turn(&method, params)));
         let answer = match answer {
             Ok(Ok(result)) => Response::new_ok(id, result),
             Ok(Err((code, reason))) => Response::new_err(id, code, reason),
@@ -107,6 +115,29 @@ impl Server {
         };
         // An editor that has gone needs no answer.
         let _ = self.messages.send(answer.into());
+    }
+
+    /// The answer to a request in its phase of the protocol.
+    fn in_turn(&mut self, method: &str, params: Value) -> Result<Value, Refusal> {
+        match (self.phase, method) {
+            (Phase::New, Initialize::METHOD) => {
+                self.phase = Phase::Serving;
+                Ok(json!({ "capabilities": capabilities() }))
+            }
+            (Phase::New, _) => {
+                let reason = "`initialize` comes first".to_owned();
+                Err((ErrorCode::ServerNotInitialized as i32, reason))
+            }
+            (Phase::Serving, Shutdown::METHOD) => {
+                self.phase = Phase::Closing;
+                Ok(Value::Null)
+            }
+            (Phase::Closing, _) | (Phase::Serving, Initialize::METHOD) => {
+                let reason = format!("`{}` is not possible any more", shown(method));
+                Err((ErrorCode::InvalidRequest as i32, reason))
+            }
+            (Phase::Serving, _) => self.answer(method, params),
+        }
     }
 
     /// The answer to a question about a place; nothing where no spec is open.
@@ -120,7 +151,7 @@ impl Server {
             Completion::METHOD,
         ];
         if !offered.contains(&method) {
-            let reason = format!("no method `{method}`");
+            let reason = format!("no method `{}`", shown(method));
             return Err((ErrorCode::MethodNotFound as i32, reason));
         }
         let at: TextDocumentPositionParams = read(params.clone())?;

@@ -7,4 +7,5 @@ mod damaged;
 mod findings;
 mod joints;
 mod names;
+mod streams;
 mod told;

@@ -98,3 +98,19 @@ fn the_equations_of_the_newest_valid_text_stay_while_it_is_broken() {
     let spring = told(&mut editor, "spring =", 0);
     assert!(spring.contains("equations of motion"), "{spring}");
 }
+
+#[test]
+fn the_words_of_a_spec_are_no_markdown() {
+    let words = "stiffness of the spring";
+    let evil = "[click](https://evil.test) <b>x</b> ![i](y) `z`";
+    assert!(CART.contains(words));
+    let text = CART.replace(words, evil);
+    let mut editor = Editor::with(&text);
+    let at = (text.as_str(), "k =", 0);
+    let told = editor.ask_at("textDocument/hover", at, json!({}));
+    let told = told.expect("an answer")["contents"]["value"].to_string();
+    for mark in ["[click](", "<b>", "![i]", " `z`"] {
+        assert!(!told.contains(mark), "{told}");
+    }
+    assert!(told.contains("click"), "{told}");
+}

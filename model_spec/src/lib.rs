@@ -29,6 +29,7 @@ pub mod schema;
 mod starter;
 mod suggest;
 pub mod units;
+mod visible;
 
 pub use diagnostic::{Code, Diagnostic, Report, Severity};
 pub use mechanism::Mechanism;
@@ -36,6 +37,7 @@ pub use parse::is_forbidden;
 pub use resolve::{Scope, Snippet, formula, is_reserved};
 pub use starter::{NameError, starter};
 pub use suggest::{closest, did_you_mean, shown};
+pub use visible::visible;
 
 /// A mechanism that passed every check of this crate.
 #[derive(Debug, Clone)]

@@ -1,5 +1,7 @@
 //! "Did you mean": the closest of a list of words, and how a message says so.
 
+use crate::visible::visible_line;
+
 /// Longest part of a word that a message repeats, in characters.
 const MAX_SHOWN: usize = 80;
 /// Longest word worth comparing.
@@ -48,8 +50,8 @@ pub(crate) fn list<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
 
 /// A user's word, shortened for a message, on one line.
 pub fn shown(word: &str) -> String {
-    let seen = |c: char| if c.is_control() { '\u{fffd}' } else { c };
-    word.chars().take(MAX_SHOWN).map(seen).collect()
+    let first: String = word.chars().take(MAX_SHOWN).collect();
+    visible_line(&first).into_owned()
 }
 
 /// Edit distance with insertions, deletions, replacements and swaps of neighbours.

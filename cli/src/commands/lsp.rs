@@ -13,5 +13,6 @@ Examples:
 pub(crate) struct Lsp {}
 
 pub(super) fn run() -> Result<(), Error> {
-    appell_lsp::serve_streams().map_err(|error| Error::Computation(error.to_string()))
+    let served = appell_lsp::serve_stdio();
+    served.map_err(|cause| Error::Computation(format!("the language server: {cause}")))
 }

@@ -3,6 +3,7 @@
 use toml::de::{DeTable, DeValue};
 
 use crate::diagnostic::{Code, Diagnostic};
+use crate::visible::is_hidden;
 
 /// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
@@ -59,16 +60,9 @@ fn words(value: &DeValue<'_>) -> &'static str {
     }
 }
 
-/// Control characters, and marks that hide or reorder text.
+/// Hidden characters, except the carriage returns that end lines.
 pub fn is_forbidden(c: char) -> bool {
-    if matches!(c, ' '..='~' | '\n') {
-        // Almost all of every file.
-        return false;
-    }
-    (c.is_control() && !matches!(c, '\r' | '\t'))
-        || matches!(c,
-            '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
+    c != '\r' && is_hidden(c)
 }
 
 /// A sentence as the end of another one.

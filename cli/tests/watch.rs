@@ -161,6 +161,11 @@ fn a_broken_spec_shows_its_errors_and_the_last_good_motion() {
     folder.write("spec.toml", &text.replace("unit = \"kg\"", "unit = \"kq\""));
     browser.wait("document.body.classList.contains('broken')");
     assert_eq!(count(&mut browser, "#lines .finding.error"), 2);
+    // The list above the text leads to them.
+    assert_eq!(count(&mut browser, "#findings button.error"), 2);
+    browser.value("[...document.querySelectorAll('#findings button')].at(-1).click()");
+    let chosen = "document.querySelector('#lines [aria-selected=true] mark.error').textContent";
+    assert_eq!(browser.value(chosen), "kq");
     assert_eq!(
         browser.value("document.querySelector('#lines mark.error').textContent"),
         "kq"

@@ -23,6 +23,7 @@ use appell_spec::Mechanism;
 use maud::{PreEscaped, html};
 use serde_json::Value;
 
+pub use crate::drawing::film::FilmMaker;
 use crate::page_shell::PageShell;
 
 const STYLE: &str = include_str!("film/style.css");
@@ -60,7 +61,7 @@ pub fn page(
     motion: &Trajectory,
     ending: Option<&str>,
 ) -> Outcome<String> {
-    let data = data(mechanism, model, motion, ending)?;
+    let data = data(&FilmMaker::new(mechanism)?, model, motion, ending);
     // The text of a spec is escaped: without `<` in the data nothing can end the element.
     let data = data.to_string().replace('<', "\\u003c");
     Ok(around(&mechanism.title, STYLE, &data))
@@ -68,12 +69,12 @@ pub fn page(
 
 /// The data of the page of a motion, which a [`live_page`] is sent.
 pub fn data(
-    mechanism: &Mechanism,
+    maker: &FilmMaker,
     model: &dyn Model,
     motion: &Trajectory,
     ending: Option<&str>,
-) -> Outcome<Value> {
-    data::json(mechanism, model, motion, ending)
+) -> Value {
+    data::json(maker, model, motion, ending)
 }
 
 /// The page without a motion, for a frame in another page that sends it the [`data`] of one motion after

@@ -3,6 +3,7 @@
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use appell::Model;
+use appell_report::film::FilmMaker;
 use serde_json::Value;
 use tokio::sync::watch;
 
@@ -52,6 +53,8 @@ pub(crate) struct Good {
     /// The number of its text.
     pub(crate) version: u64,
     pub(crate) model: Arc<Model>,
+    /// Shows its motions.
+    pub(crate) films: Arc<FilmMaker>,
 }
 
 #[derive(Default)]

@@ -12,8 +12,10 @@
 //! | `board.rs` | the newest of everything, the last good model too |
 //! | `motions.rs` | motions with the values of the sliders, within bounds |
 //! | `server.rs`, `guard.rs` | answers to the page, and to nobody else |
+//! | `connections.rs` | connections, within bounds |
 
 mod board;
+mod connections;
 mod file;
 mod guard;
 mod knobs;

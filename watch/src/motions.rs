@@ -8,10 +8,11 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use appell::setup::Assignment;
-use appell::{IntegrationOptions, Model, Motion, Simulated};
+use appell::{IntegrationOptions, Motion, Simulated};
 use appell_report::figure::Figure;
 use appell_report::film;
 use appell_runtime::trajectory::Extras;
+use appell_spec::visible;
 use serde::Deserialize;
 use serde_json::{Value, json};
 use tokio::sync::oneshot;
@@ -136,7 +137,7 @@ impl Motions {
 fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer {
     let good = board.good();
     let good = good.ok_or_else(|| Refusal::Wrong("there is no model yet".to_owned()))?;
-    let wrong = |error: appell::Error| Refusal::Wrong(error.to_string());
+    let wrong = |error: appell::Error| Refusal::Wrong(line(&error));
     let motion = request.motion()?;
     let start = Instant::now();
     let Simulated {
@@ -146,7 +147,12 @@ fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer 
         ..
     } = good.model.simulate_while(&motion, go_on).map_err(wrong)?;
     let seconds = start.elapsed().as_secs_f64();
-    let film = film(&good.model, &trajectory, failure.as_deref())?;
+    let film = film::data(
+        &good.films,
+        good.model.equations(),
+        &trajectory,
+        failure.as_deref(),
+    );
     let figure = Figure::of_states_and_inputs(&trajectory).to_svg();
     Ok(json!({
         "version": good.version,
@@ -157,17 +163,27 @@ fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer 
     }))
 }
 
-fn film(
-    model: &Model,
-    trajectory: &appell::Trajectory,
-    ending: Option<&str>,
-) -> Result<Value, Refusal> {
-    let setup = model.setup();
-    let setup = setup.map_err(|error| Refusal::Wrong(error.to_string()))?;
-    film::data(&setup.mechanism, model.equations(), trajectory, ending).map_err(|findings| {
-        let messages = findings.iter().map(|finding| finding.message.as_str());
-        Refusal::Wrong(messages.collect::<Vec<_>>().join("; "))
-    })
+/// An error on one line, without the picture of its place: the page has a field of that name.
+fn line(error: &appell::Error) -> String {
+    match error {
+        appell::Error::Expression(error) => {
+            let diagnostics = error.diagnostics.iter().map(|diagnostic| {
+                let help = diagnostic.help.iter().map(|help| format!(" ({help})"));
+                visible(&diagnostic.message).into_owned() + &help.collect::<String>()
+            });
+            let told: Vec<String> = diagnostics.collect();
+            format!("{} = {}: {}", error.name, error.text, told.join("; "))
+        }
+        appell::Error::Several(all) => {
+            let lines: Vec<String> = all.iter().map(line).collect();
+            lines.join("; ")
+        }
+        other => {
+            let text = other.to_string();
+            let words: Vec<&str> = text.split_whitespace().collect();
+            words.join(" ")
+        }
+    }
 }
 
 impl Request {

@@ -8,7 +8,6 @@ use std::time::Duration;
 use appell_report::derivation::EQUATIONS;
 use appell_report::film::live_page;
 use appell_report::page_shell::PageShell;
-use axum::Router;
 use axum::body::Bytes;
 use axum::extract::{DefaultBodyLimit, Request, State};
 use axum::http::header::{
@@ -19,11 +18,13 @@ use axum::middleware::{self, Next};
 use axum::response::sse::{Event, KeepAlive, Sse};
 use axum::response::{IntoResponse, Response};
 use axum::routing::{get, post};
+use axum::{Extension, Router};
 use futures_util::stream::{self, Stream};
 use maud::{PreEscaped, html};
 use tokio::sync::Semaphore;
 
 use crate::board::Board;
+use crate::connections::{self, Admitted};
 use crate::guard::Guard;
 use crate::motions::{Motions, Refusal};
 use crate::worker::Inbox;
@@ -95,14 +96,23 @@ pub(crate) fn serve(
         .build()?;
     runtime.block_on(async {
         let listener = tokio::net::TcpListener::from_std(listener)?;
-        axum::serve(listener, routes).await
+        connections::accept(&listener, &routes).await;
+        Ok(())
     })
 }
 
 /// Admits a request and answers it in time.
-async fn guarded(State(shared): State<Shared>, request: Request, next: Next) -> Response {
-    let admitted = shared.guard.check(request.uri().path(), request.headers());
-    let mut response = match admitted {
+async fn guarded(
+    State(shared): State<Shared>,
+    Extension(admitted): Extension<Admitted>,
+    request: Request,
+    next: Next,
+) -> Response {
+    let checked = shared.guard.check(request.uri().path(), request.headers());
+    if checked.is_ok() {
+        admitted.set();
+    }
+    let mut response = match checked {
         Err(status) => status.into_response(),
         Ok(()) => tokio::time::timeout(PATIENCE, next.run(request))
             .await

@@ -11,8 +11,10 @@ use appell::{Diagnostic, Model, Severity, Source};
 use appell_codegen::{Derived, derived};
 use appell_report::derivation::{self, Page, Stage};
 use appell_report::drawing::drawing;
+use appell_report::film::FilmMaker;
 use appell_runtime::model::At;
 use appell_spec::diagnostic::MAX_SHOWN;
+use appell_spec::visible;
 use serde_json::{Value, json};
 
 use crate::board::{Board, Good, Part};
@@ -203,8 +205,13 @@ impl Job<'_> {
             text: text.to_owned(),
             shipped: None,
         };
-        match Model::of_motions(source, derived) {
-            Ok(model) => {
+        let films = FilmMaker::new(&derived.mechanism).map_err(|findings| {
+            let messages = findings.iter().map(|finding| finding.message.as_str());
+            messages.collect::<Vec<_>>().join("; ")
+        });
+        let model = Model::of_motions(source, derived).map_err(|error| error.to_string());
+        match films.and_then(|films| Ok((films, model?))) {
+            Ok((films, model)) => {
                 let knobs = knobs(model.info());
                 let shown =
                     json!({ "title": model.info().title, "note": model.note(), "knobs": knobs });
@@ -212,11 +219,12 @@ impl Job<'_> {
                 self.board.keep(Good {
                     version: self.version,
                     model: Arc::clone(&model),
+                    films: Arc::new(films),
                 });
                 self.write(Part::Model, shown);
                 prepare(&model);
             }
-            Err(error) => self.refuse(&error.to_string()),
+            Err(reason) => self.refuse(&reason),
         }
     }
 
@@ -245,7 +253,8 @@ fn prepare(model: &Model) {
 
 fn shown(places: &Places<'_>, finding: &Diagnostic) -> Value {
     let labels = finding.labels.iter();
-    let labels = labels.map(|(span, words)| json!({ "at": places.range(span), "words": words }));
+    let labels =
+        labels.map(|(span, words)| json!({ "at": places.range(span), "words": visible(words) }));
     json!({
         "severity": match finding.severity {
             Severity::Error => "error",
@@ -253,8 +262,8 @@ fn shown(places: &Places<'_>, finding: &Diagnostic) -> Value {
             Severity::Note => "note",
         },
         "code": finding.code.text(),
-        "message": finding.message,
-        "help": finding.help,
+        "message": visible(&finding.message),
+        "help": finding.help.as_deref().map(visible),
         "places": labels.collect::<Vec<_>>(),
     })
 }

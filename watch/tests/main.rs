@@ -3,6 +3,7 @@
 mod client;
 
 mod access;
+mod crowd;
 mod hostile;
 mod motions;
 mod saving;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use appell::source;
 use appell_watch::Watch as Server;
 
 use crate::failure::Error;
@@ -25,19 +26,27 @@ pub(crate) struct Watch {
 
 impl Watch {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let server = Server::start(&self.spec, self.port).map_err(failure)?;
+        let server = Server::start(&self.spec, self.port).map_err(|error| self.failure(error))?;
         output::print(&format!("{}\n", server.url()))?;
-        server.serve().map_err(failure)
+        server.serve().map_err(|error| self.failure(error))
     }
-}
 
-fn failure(error: appell_watch::Error) -> Error {
-    match error {
-        appell_watch::Error::File { path, cause } => Error::Library(appell::Error::File {
-            doing: "read",
-            path,
-            cause,
-        }),
-        other => Error::Computation(other.to_string()),
+    fn failure(&self, error: appell_watch::Error) -> Error {
+        let name = self.spec.to_string_lossy();
+        match error {
+            // What is followed is a file.
+            appell_watch::Error::File { .. } if source::names().any(|shipped| shipped == name) => {
+                Error::Usage(format!(
+                    "`{name}` is a shipped mechanism, and a page follows a file that you edit: write its spec first\n  \
+                     appell derive {name} --format spec --out {name}.toml\n  appell watch {name}.toml"
+                ))
+            }
+            appell_watch::Error::File { path, cause } => Error::Library(appell::Error::File {
+                doing: "read",
+                path,
+                cause,
+            }),
+            other => Error::Computation(other.to_string()),
+        }
     }
 }

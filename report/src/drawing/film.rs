@@ -72,6 +72,7 @@ pub enum Shape {
 }
 
 /// A force that an arrow shows.
+#[derive(Clone, Copy)]
 pub struct Force {
     /// Its origin.
     pub kind: ForceKind,
@@ -90,85 +91,110 @@ pub enum ForceKind {
     Weight,
 }
 
-/// Follows a motion along some of its rows. `model` is that of the motion.
-pub fn film(
-    mechanism: &Mechanism,
-    model: &dyn Model,
-    motion: &Trajectory,
-    rows: &[usize],
-) -> Outcome<Film> {
-    let mut graph = Graph::new();
-    let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, mechanism, &symbols);
-    let kinematics = Kinematics::new(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &symbols.rates,
-        &[],
-        Effort::Plain,
-    )?;
-    let placement = Placement::new(&mut algebra, mechanism, &symbols, &kinematics)?;
-    let flat_across = placement.flat_across(&mut algebra);
-    let applied = applied(&mut algebra, mechanism, &symbols, &kinematics)?;
-    let reactions = reactions(mechanism, model);
+/// The places and forces of a mechanism as expressions: derived once, evaluated for every motion.
+pub struct FilmMaker {
+    pub(crate) mechanism: Mechanism,
+    graph: Graph,
+    symbols: Symbols,
+    placement: Placement,
+    flat_across: Option<usize>,
+    applied: Vec<(Force, Vec3)>,
+}
 
-    let graph = &algebra.graph;
-    let arrows: Vec<Expr> = applied.iter().flat_map(|(_, force)| *force).collect();
-    let all = [placement.point_exprs(), placement.frame_exprs(), &arrows].concat();
-    let mut evaluation = Evaluation::new(graph, &all);
-    let mut values = Values::new(graph, &symbols, &all, model, motion);
-    let mut film = Film {
-        view: {
-            let view = View::of(mechanism, flat_across);
-            [view.right, view.up, view.floor[0], view.vertical]
-        },
-        flat_across,
-        contacts: contacts(mechanism),
-        links: link::links(mechanism).collect(),
-        seats: mechanism
-            .frames
-            .ids()
-            .map(|frame| link::seat(mechanism, frame))
-            .collect(),
-        shapes: Vec::new(),
-        forces: Vec::new(),
-        positions: Vec::new(),
-        turns: Vec::new(),
-        arrows: Vec::new(),
-    };
-    let mut forces = vec![0.0; 3 * model.info().reactions.len()];
-    for (count, &row) in rows.iter().enumerate() {
-        let at = values.at(row);
-        let values = &values.of_symbols;
-        if count == 0 {
-            let scene = Scene::at(&placement, graph, values, flat_across);
-            film.shapes = shapes(mechanism, &scene);
-        }
-        evaluation.compute(values);
-        let of = |exprs: &[Expr]| -> Vec<f64> { exprs.iter().map(|&e| evaluation.of(e)).collect() };
-        for place in &points(&of(placement.point_exprs())) {
-            film.positions.extend(place.unwrap_or([f64::NAN; 3]));
-        }
-        for axes in &frames(&of(placement.frame_exprs())) {
-            film.turns.extend(axes.map_or([f64::NAN; 4], quaternion));
-        }
-        let forces = motion.reactions(row).unwrap_or_else(|| {
-            model.constraint_forces(at, &mut forces);
-            &forces
-        });
-        for (index, _) in &reactions {
-            film.arrows.extend(&forces[3 * index..][..3]);
-        }
-        for (_, force) in &applied {
-            film.arrows.extend(of(force));
-        }
+impl FilmMaker {
+    /// Derives the expressions.
+    pub fn new(mechanism: &Mechanism) -> Outcome<Self> {
+        let mut graph = Graph::new();
+        let symbols = Symbols::new(&mut graph, mechanism);
+        let mut algebra = Algebra::new(graph, mechanism, &symbols);
+        let kinematics = Kinematics::new(
+            &mut algebra,
+            mechanism,
+            &symbols,
+            &symbols.rates,
+            &[],
+            Effort::Plain,
+        )?;
+        let placement = Placement::new(&mut algebra, mechanism, &symbols, &kinematics)?;
+        let flat_across = placement.flat_across(&mut algebra);
+        let applied = applied(&mut algebra, mechanism, &symbols, &kinematics)?;
+        Ok(Self {
+            mechanism: mechanism.clone(),
+            graph: algebra.graph,
+            symbols,
+            placement,
+            flat_across,
+            applied,
+        })
     }
-    let named = reactions.into_iter().map(|(_, force)| force);
-    film.forces = named
-        .chain(applied.into_iter().map(|(force, _)| force))
-        .collect();
-    Ok(film)
+
+    /// Follows a motion along some of its rows. `model` is that of the motion.
+    pub fn film(&self, model: &dyn Model, motion: &Trajectory, rows: &[usize]) -> Film {
+        let Self {
+            mechanism,
+            graph,
+            placement,
+            applied,
+            ..
+        } = self;
+        let reactions = reactions(mechanism, model);
+        let arrows: Vec<Expr> = applied.iter().flat_map(|(_, force)| *force).collect();
+        let all = [placement.point_exprs(), placement.frame_exprs(), &arrows].concat();
+        let mut evaluation = Evaluation::new(graph, &all);
+        let mut values = Values::new(graph, &self.symbols, &all, model, motion);
+        let mut film = Film {
+            view: {
+                let view = View::of(mechanism, self.flat_across);
+                [view.right, view.up, view.floor[0], view.vertical]
+            },
+            flat_across: self.flat_across,
+            contacts: contacts(mechanism),
+            links: link::links(mechanism).collect(),
+            seats: mechanism
+                .frames
+                .ids()
+                .map(|frame| link::seat(mechanism, frame))
+                .collect(),
+            shapes: Vec::new(),
+            forces: Vec::new(),
+            positions: Vec::new(),
+            turns: Vec::new(),
+            arrows: Vec::new(),
+        };
+        let mut forces = vec![0.0; 3 * model.info().reactions.len()];
+        for (count, &row) in rows.iter().enumerate() {
+            let at = values.at(row);
+            let values = &values.of_symbols;
+            if count == 0 {
+                let scene = Scene::at(placement, graph, values, self.flat_across);
+                film.shapes = shapes(mechanism, &scene);
+            }
+            evaluation.compute(values);
+            let of =
+                |exprs: &[Expr]| -> Vec<f64> { exprs.iter().map(|&e| evaluation.of(e)).collect() };
+            for place in &points(&of(placement.point_exprs())) {
+                film.positions.extend(place.unwrap_or([f64::NAN; 3]));
+            }
+            for axes in &frames(&of(placement.frame_exprs())) {
+                film.turns.extend(axes.map_or([f64::NAN; 4], quaternion));
+            }
+            let forces = motion.reactions(row).unwrap_or_else(|| {
+                model.constraint_forces(at, &mut forces);
+                &forces
+            });
+            for (index, _) in &reactions {
+                film.arrows.extend(&forces[3 * index..][..3]);
+            }
+            for (_, force) in applied {
+                film.arrows.extend(of(force));
+            }
+        }
+        let named = reactions.into_iter().map(|(_, force)| force);
+        film.forces = named
+            .chain(applied.iter().map(|(force, _)| *force))
+            .collect();
+        film
+    }
 }
 
 /// Points at which constraints hold bodies.

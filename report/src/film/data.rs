@@ -1,13 +1,12 @@
 //! The data of the page as JSON: names and shapes as text, time series packed.
 
-use appell_codegen::mechanics::finding::Outcome;
 use appell_runtime::Trajectory;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
 use serde_json::{Value, json};
 
-use crate::drawing::film::{Film, Force, ForceKind, Shape, film};
+use crate::drawing::film::{Film, FilmMaker, Force, ForceKind, Shape};
 use crate::drawing::link::{Link, LinkKind};
 
 /// Largest number of rows; larger pages open slowly.
@@ -15,13 +14,14 @@ const MOST_ROWS: usize = 12_000;
 
 /// The animation of a motion with the values of its columns.
 pub(super) fn json(
-    mechanism: &Mechanism,
+    maker: &FilmMaker,
     model: &dyn Model,
     motion: &Trajectory,
     ending: Option<&str>,
-) -> Outcome<Value> {
+) -> Value {
     let rows = thinned(motion.len());
-    let film = film(mechanism, model, motion, &rows)?;
+    let mechanism = &maker.mechanism;
+    let film = maker.film(model, motion, &rows);
     let times = rows.iter().map(|&row| motion.times()[row]);
     let info = motion.info();
     let columns = motion.columns();
@@ -41,7 +41,7 @@ pub(super) fn json(
         .map(|breach| json!({ "t": breach.t, "what": breach.describe(info) }));
     let [right, up, floor, vertical] = film.view;
     let flat = film.flat_across.is_some();
-    Ok(json!({
+    json!({
         "title": mechanism.title,
         "source": mechanism.source,
         "ending": ending,
@@ -59,7 +59,7 @@ pub(super) fn json(
         "turns": packed(film.turns.iter().copied()),
         "arrows": packed(film.arrows.iter().copied()),
         "values": packed(values),
-    }))
+    })
 }
 
 /// All rows, or every second, third … and the last.

@@ -52,9 +52,9 @@ class Spec {
     this.list.scrollTop = place;
   }
 
-  /** Errors, warnings and notes, each below its line; those without a place above the text. */
+  /** Errors, warnings and notes: a list above the text that leads to the lines, and each below its line. */
   find(list) {
-    at("general").replaceChildren();
+    at("findings").replaceChildren();
     const marks = new Map();
     const notes = new Map();
     for (const finding of list) {
@@ -68,8 +68,9 @@ class Spec {
         }
       });
       const line = finding.places[0]?.at[0][0];
-      if (this.rows[line - 1]) notes.set(line, [...(notes.get(line) ?? []), finding]);
-      else told(at("general"), "li", finding);
+      const place = this.rows[line - 1] && line;
+      if (place) notes.set(place, [...(notes.get(place) ?? []), finding]);
+      this.entry(finding, place);
     }
     this.rows.forEach((row, index) => {
       const line = index + 1;
@@ -78,6 +79,30 @@ class Spec {
       for (const finding of notes.get(line) ?? []) told(row, "div", finding);
       row.toggleAttribute("data-marked", marks.has(line));
     });
+  }
+
+  /** An entry of the list; a click on it leads to its line. */
+  entry(finding, line) {
+    const entry = element(at("findings"), "li");
+    if (!line) {
+      told(entry, "div", finding);
+      return;
+    }
+    const { severity, message } = finding;
+    const button = element(entry, "button", "", `finding ${severity}`);
+    button.type = "button";
+    element(button, "b", `${severity} in line ${line} `);
+    button.append(message);
+    button.addEventListener("click", () => this.lead(line));
+  }
+
+  /** Scrolls to a line and what is said below it. */
+  lead(line) {
+    const row = this.rows[line - 1];
+    if (!row) return;
+    this.mark([line], { current: line });
+    row.scrollIntoView({ block: "center" });
+    this.list.focus({ preventScroll: true });
   }
 
   /** All lines of the items that begin at these lines. */

@@ -1,0 +1,71 @@
+//! Connections: whoever says nothing is let go, and a crowd does not keep the page out.
+
+use std::collections::VecDeque;
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Duration;
+
+use axum::{Extension, Router};
+use hyper::server::conn::http1;
+use hyper_util::rt::{TokioIo, TokioTimer};
+use hyper_util::service::TowerToHyperService;
+use tokio::net::{TcpListener, TcpStream};
+use tokio::task::AbortHandle;
+
+/// Whoever takes longer for the head of a request is let go.
+const HEAD: Duration = Duration::from_secs(5);
+/// Open connections.
+const MOST: usize = 128;
+/// After an error of the operating system, such as too many open files.
+const PAUSE: Duration = Duration::from_millis(100);
+
+/// Whether a request on a connection has shown the secret.
+#[derive(Clone, Default)]
+pub(crate) struct Admitted(Arc<AtomicBool>);
+
+impl Admitted {
+    pub(crate) fn set(&self) {
+        self.0.store(true, Ordering::Relaxed);
+    }
+
+    fn is_set(&self) -> bool {
+        self.0.load(Ordering::Relaxed)
+    }
+}
+
+struct Connection {
+    task: AbortHandle,
+    admitted: Admitted,
+}
+
+/// Answers connections until the process ends. Of too many, the oldest gives way that has not shown the secret.
+pub(crate) async fn accept(listener: &TcpListener, routes: &Router) {
+    let mut open = VecDeque::new();
+    loop {
+        let Ok((stream, _)) = listener.accept().await else {
+            tokio::time::sleep(PAUSE).await;
+            continue;
+        };
+        open.retain(|one: &Connection| !one.task.is_finished());
+        if open.len() >= MOST {
+            let strangers = open.iter().position(|one| !one.admitted.is_set());
+            match strangers.and_then(|at| open.remove(at)) {
+                Some(oldest) => oldest.task.abort(),
+                None => continue,
+            }
+        }
+        let admitted = Admitted::default();
+        let routes = routes.clone().layer(Extension(admitted.clone()));
+        let task = tokio::spawn(serve(stream, routes)).abort_handle();
+        open.push_back(Connection { task, admitted });
+    }
+}
+
+async fn serve(stream: TcpStream, routes: Router) {
+    let mut http = http1::Builder::new();
+    http.timer(TokioTimer::new()).header_read_timeout(HEAD);
+    // A connection that breaks concerns nobody else.
+    let _ = http
+        .serve_connection(TokioIo::new(stream), TowerToHyperService::new(routes))
+        .await;
+}

@@ -7,10 +7,10 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    before_sentence, divided, doubts, hinted, imperfections, is_determined, joined, law_sentence,
-    left_of_forces, left_out, percent, refit_sentence, said, sentence, short,
+    Headline, before_sentence, divided, doubts, hinted, imperfections, is_determined, joined,
+    law_sentence, left_of_forces, left_out, percent, said, share, short, values,
 };
-use appell_report::text::{number, with_unit};
+use appell_report::text::number;
 
 /// Widest cell of a table that others are aligned with.
 const WIDEST: usize = 60;
@@ -28,8 +28,25 @@ pub(crate) struct Apply {
 /// The summary, about ten lines.
 pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> String {
     let mut text = String::new();
+    let Headline {
+        cause,
+        sizes,
+        change,
+        applied,
+        error,
+    } = Headline::of(report);
     // Writing to a string cannot fail.
-    let _ = writeln!(text, "{}: {}", report.mechanism, sentence(report));
+    let _ = writeln!(text, "{}: {cause}", report.mechanism);
+    if !sizes.is_empty() {
+        let _ = writeln!(text, "  size      {} (± 95 %)", sizes.join(", "));
+    }
+    let _ = writeln!(text, "  change    {change}");
+    if let Some(number) = applied {
+        commands(&mut text, report, number, apply);
+    }
+    if let Some(error) = error {
+        let _ = writeln!(text, "  error     {error}");
+    }
     if let Some(change) = &report.change {
         let _ = writeln!(text, "  before    {}", before_sentence(change));
     }
@@ -97,7 +114,6 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     if let Some(path) = next {
         let _ = writeln!(text, "            written to {}", path.display());
     }
-    what_next(&mut text, report, apply);
     if let Some(rows) = left_out(report) {
         let _ = writeln!(text, "  rows      {rows}");
     }
@@ -122,39 +138,19 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     text
 }
 
-/// What the verdict asks for.
-fn what_next(text: &mut String, report: &Report, apply: &Apply) {
-    match report.verdict {
-        GapVerdict::Ambiguous => {
-            let motion = match report.experiment {
-                Some(_) => "that experiment",
-                None => "other motions",
-            };
-            let command = &apply.command;
-            // Writing to a string cannot fail.
-            let _ = writeln!(
-                text,
-                "  then      record {motion}, and diagnose again with the recording before anything is applied: \
-                 {command}"
-            );
-        }
-        GapVerdict::Explained => next_steps(text, "", apply),
-        GapVerdict::NoGap if refit_sentence(report).is_some() => {
-            next_steps(text, "take the parameters over: ", apply);
-        }
-        GapVerdict::NoGap | GapVerdict::Unexplained => {}
-    }
-}
-
-/// The commands that write what was found into the spec.
-fn next_steps(text: &mut String, why: &str, apply: &Apply) {
-    let mut what = "next";
+/// The commands that write a hypothesis into the spec.
+fn commands(text: &mut String, report: &Report, number: usize, apply: &Apply) {
+    let is_tied = report.verdict == GapVerdict::Ambiguous;
+    let before = apply.before.iter().filter(|_| !is_tied);
     // Writing to a string cannot fail.
-    for command in apply.before.iter().chain([&apply.command]) {
-        let why = if what == "next" { why } else { "" };
-        let _ = writeln!(text, "  {what:9} {why}{command}");
-        what = "";
+    for command in before {
+        let _ = writeln!(text, "            {command}");
     }
+    let hypothesis = match number {
+        1 => String::new(),
+        number => format!(" --hypothesis {number}"),
+    };
+    let _ = writeln!(text, "            {}{hypothesis}", apply.command);
 }
 
 /// The table of several rigs.
@@ -227,11 +223,11 @@ fn how_far(report: &Report) -> String {
         format!(
             "  how far   error {} s ahead: nominal {}, re-fitted {}, with effect {}, floor {} (relative to the \
              noise)\n",
-            number(far.horizon_s),
-            number(far.nominal),
-            number(far.refitted),
-            number(far.with_effect),
-            number(far.noise_floor),
+            short(far.horizon_s),
+            short(far.nominal),
+            short(far.refitted),
+            short(far.with_effect),
+            short(far.noise_floor),
         )
     };
     let is_other = |ahead: &&Ahead| {
@@ -243,20 +239,21 @@ fn how_far(report: &Report) -> String {
         let _ = writeln!(
             text,
             "            {} s ahead: nominal {}, re-fitted {}, with effect {}",
-            number(ahead.horizon),
-            number(ahead.nominal),
-            number(ahead.refitted),
-            number(ahead.with_effect),
+            short(ahead.horizon),
+            short(ahead.nominal),
+            short(ahead.refitted),
+            short(ahead.with_effect),
         );
     }
-    let [low, high] = far.closed_ci95.map(percent);
     let _ = if is_determined(far.closed, far.closed_ci95) {
-        let (closed, refitted) = (percent(far.closed), percent(far.closed_vs_refitted));
+        let closed = share(far.closed, far.closed_ci95);
+        let refitted = percent(far.closed_vs_refitted);
         writeln!(
             text,
-            "            closed {closed} [{low}, {high}], against the re-fitted model {refitted}"
+            "            closed {closed} of the gap; of the gap that re-fitted parameters leave, {refitted}"
         )
     } else {
+        let [low, high] = far.closed_ci95.map(percent);
         writeln!(
             text,
             "            what is closed is not determined: the held-out runs leave it between {low} and {high}"
@@ -275,18 +272,6 @@ fn how_far(report: &Report) -> String {
 }
 
 fn line(report: &Report, hypothesis: &Hypothesis) -> String {
-    let values: Vec<String> = hypothesis
-        .parameters
-        .iter()
-        .map(|value| {
-            let short = value.name.rsplit('.').next().unwrap_or_default();
-            let mut size = number(value.value);
-            if value.std.is_finite() {
-                size = format!("{size} ± {}", number(value.std));
-            }
-            format!("{short} = {}", with_unit(&size, &value.unit))
-        })
-        .collect();
     let probability = match &hypothesis.same_as {
         Some(_) => "the same".to_owned(),
         None => format!("{:6.1} %", 100.0 * hypothesis.probability),
@@ -294,7 +279,7 @@ fn line(report: &Report, hypothesis: &Hypothesis) -> String {
     format!(
         "{probability}  {}  {}",
         said(report, hypothesis),
-        values.join(", ")
+        values(hypothesis).join(", ")
     )
 }
 

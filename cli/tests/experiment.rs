@@ -23,9 +23,9 @@ fn a_tie_is_separated_by_the_experiment_that_was_proposed() {
     assert!(headline.matches(" = ").count() >= 2, "{headline}");
     let next = told.find("  next      ").expect("an experiment");
     let then = told
-        .find("  then      record that experiment")
+        .find("  change    nothing yet: record the experiment below")
         .expect("an order");
-    assert!(next < then, "{told}");
+    assert!(then < next, "{told}");
     let experiment = &report["experiment"];
     assert_eq!(experiment["file"], "experiment.csv");
     let (now, then) = (

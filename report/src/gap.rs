@@ -1,6 +1,6 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`page()`] sets [`words`], [`plots`] and [`elements`]; [`budget`] divides the gap, [`forces`] tells it where
+//! [`headline`] says what it comes to, [`page()`] sets [`words`], [`plots`] and [`elements`]; [`budget`] divides the gap, [`forces`] tells it where
 //! forces judge, [`law`] shows what was
 //! measured of the rest, [`doubt`] suspects unit errors, [`numbers`] writes values with their uncertainty.
 
@@ -8,6 +8,7 @@ mod budget;
 mod doubt;
 mod elements;
 mod forces;
+mod headline;
 mod law;
 mod numbers;
 mod page;
@@ -17,8 +18,9 @@ mod words;
 pub use budget::divided;
 pub use doubt::doubts;
 pub use forces::left_of_forces;
+pub use headline::{Headline, values};
 pub use law::law_sentence;
-pub use numbers::{is_determined, percent};
+pub use numbers::{is_determined, percent, share};
 pub use page::page;
 pub use words::{
     before_sentence, hinted, imperfections, joined, left_out, refit_sentence, said, sentence,

@@ -4,7 +4,7 @@ use appell_gap::diagnose::{HowFar, Report, Share};
 use maud::{Markup, html};
 
 use super::elements::{bare_bar, code, table};
-use super::numbers::{is_determined, percent};
+use super::numbers::{is_determined, percent, share};
 
 /// `coulomb_friction@theta 66 % [24 %, 77 %], ... ; 8 % [4 %, 9 %] stays`, the largest part first; `None` where no
 /// run was held out.
@@ -13,10 +13,7 @@ pub fn divided(report: &Report) -> Option<String> {
     let (stays, mut parts): (Vec<&Share>, Vec<&Share>) =
         far.budget.iter().partition(|part| part.is_rest());
     parts.sort_by(|a, b| b.closed.total_cmp(&a.closed));
-    let told = |part: &Share| {
-        let [low, high] = part.interval.map(percent);
-        format!("{} [{low}, {high}]", percent(part.closed))
-    };
+    let told = |part: &Share| share(part.closed, part.interval);
     let parts = parts.into_iter().map(|part| {
         let small = if part.is_material {
             ""
@@ -48,7 +45,6 @@ fn name(part: &Share) -> &str {
 /// The table, with a bar for each part.
 pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
     let rows = far.budget.iter().map(|part| {
-        let [low, high] = part.interval.map(percent);
         let added = !(part.is_refit() || part.is_rest());
         [
             if part.is_effect() {
@@ -58,7 +54,7 @@ pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
             },
             bare_bar(part.closed),
             html! {
-                (percent(part.closed)) " [" (low) ", " (high) "]"
+                (share(part.closed, part.interval))
                 @if part.is_refit() && far.refitted > far.nominal {
                     span class="faint" { " worse than as stated: no base" }
                 }
@@ -87,9 +83,8 @@ pub(super) fn closes(far: &HowFar) -> Markup {
     let [low, high] = far.closed_ci95.map(percent);
     html! {
         @if is_determined(far.closed, far.closed_ci95) {
-            "The gap closes by " b { (percent(far.closed)) } ", with 95 % between " (low) " and " (high)
-            "; against the model with re-fitted parameters by "
-            b { (percent(far.closed_vs_refitted)) } ". "
+            "Of the gap of the model as stated " b { (percent(far.closed)) } " closes, with 95 % between " (low) " and "
+            (high) "; of the gap that re-fitted parameters leave, " b { (percent(far.closed_vs_refitted)) } ". "
         } @else {
             "The held-out runs leave it open what closes: between " (low) " and " (high) ". "
         }

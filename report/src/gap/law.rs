@@ -1,10 +1,10 @@
 //! A measured law: a figure with its band, the forms that come near to it, and a sentence.
 
-use appell_gap::diagnose::{Law, Report, Share};
+use appell_gap::diagnose::{Hypothesis, Law, Report, Share};
 use maud::{Markup, html};
 
 use super::elements::{code, figure, table};
-use super::numbers::percent;
+use super::numbers::{percent, share};
 use crate::figure::{Layer, Look, Plot, Series};
 use crate::text::short;
 
@@ -19,14 +19,13 @@ pub fn law_sentence(report: &Report) -> Option<String> {
         if part.closed <= 0.0 {
             return "; measured, it does not better predictions of held-out runs".to_owned();
         }
-        let [low, high] = part.interval.map(percent);
-        let closed = percent(part.closed);
-        format!("; measured, it closes {closed} [{low}, {high}] of the gap")
+        let closed = share(part.closed, part.interval);
+        format!("; measured, it closes {closed} of the gap")
     });
-    let form = law.forms.first().map(|form| {
-        let share = percent(form.share.min(1.0));
-        format!("; {} is {share} of it", form.text)
-    });
+    let form = law
+        .forms
+        .first()
+        .map(|form| format!("; {} is {} of it", form.text, percent(form.share)));
     Some(format!(
         "a force in the equation of {} that depends on {}{}{}",
         law.equation,
@@ -36,9 +35,16 @@ pub fn law_sentence(report: &Report) -> Option<String> {
     ))
 }
 
-/// Whether a law was measured, and nothing speaks against writing it into the spec.
-pub(super) fn predicts(report: &Report) -> bool {
-    report.law.is_some() && part(report).is_none_or(|part| part.closed > 0.0)
+/// The number of the hypothesis with which `appell apply` writes the measured law, where it does and nothing speaks
+/// against it.
+pub(super) fn written(report: &Report) -> Option<usize> {
+    let betters = part(report).is_none_or(|part| part.closed > 0.0);
+    report.law.as_ref().filter(|_| betters)?;
+    let holds = |one: &Hypothesis| {
+        let changes = one.changes.as_ref();
+        one.is_unknown() && changes.is_some_and(|changes| !changes.items.trim().is_empty())
+    };
+    Some(report.which.iter().position(holds)? + 1)
 }
 
 fn part(report: &Report) -> Option<&Share> {
@@ -54,7 +60,7 @@ pub(super) fn law(report: &Report) -> Markup {
     let rows = law.forms.iter().map(|form| {
         [
             code(&form.text),
-            html! { (percent(form.share.min(1.0))) },
+            html! { (percent(form.share)) },
             html! { (short(form.log_bayes_factor)) },
         ]
     });
@@ -63,7 +69,11 @@ pub(super) fn law(report: &Report) -> Markup {
         @if let Some(sentence) = law_sentence(report) {
             p {
                 "It is " (sentence) "."
-                @if predicts(report) { " " code { "appell apply" } " writes it into the spec." }
+                @match written(report) {
+                    Some(1) => { " " code { "appell apply" } " writes it into the spec." }
+                    Some(number) => { " " code { "appell apply" } ", given hypothesis " (number) ", writes it into the spec." }
+                    None => { " " code { "appell apply" } " does not write it." }
+                }
             }
         }
         (figure(curve(law), "The law and its band of two standard deviations, found in the training runs. Elsewhere \

@@ -18,11 +18,25 @@ pub(super) fn measured(value: f64, std: f64) -> String {
     format!("({value:.decimals$} ± {std:.decimals$})e{power}")
 }
 
-/// `97.6 %`
+/// A value with half of its 95 % interval.
+pub(super) fn bounded(value: f64, std: f64) -> String {
+    /// The 97.5 % quantile of the normal distribution.
+    const QUANTILE: f64 = 1.959_964;
+    measured(value, QUANTILE * std)
+}
+
+/// `97.6 % [94.0 %, 100.0 %]`: a share with its interval.
+pub fn share(part: f64, interval: [f64; 2]) -> String {
+    let [low, high] = interval.map(percent);
+    format!("{} [{low}, {high}]", percent(part))
+}
+
+/// `97.6 %`. Predictions may end below the noise floor that was expected: nothing is more than all there is.
 pub fn percent(part: f64) -> String {
     if part.is_nan() {
         return "an unknown part".to_owned();
     }
+    let part = part.min(1.0);
     // No zero with a sign.
     let thousandths = (1000.0 * part).round() + 0.0;
     format!("{:.1} %", thousandths / 10.0)
@@ -55,12 +69,14 @@ mod tests {
         assert_eq!(measured(0.41234, 0.0213), "0.412 ± 0.021");
         assert_eq!(measured(4.5e-4, 6.283e-5), "(4.50 ± 0.63)e-4");
         assert_eq!(measured(12.0, f64::NAN), "12.0");
+        assert_eq!(bounded(0.41234, 0.0213), "0.412 ± 0.042");
     }
 
     #[test]
     fn a_part_that_rounds_to_nothing_has_no_sign() {
         assert_eq!(percent(-4e-4), "0.0 %");
         assert_eq!(percent(-0.976), "-97.6 %");
+        assert_eq!(share(1.01, [0.9, 1.271]), "100.0 % [90.0 %, 100.0 %]");
         assert_eq!(part_of_all(-0.008), "nothing");
         assert_eq!(part_of_all(1.271), "all");
         assert_eq!(part_of_all(0.948), "94.8 %");

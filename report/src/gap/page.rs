@@ -3,7 +3,7 @@
 use std::collections::BTreeSet;
 
 use appell_codegen::{Derived, derived};
-use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Value, Where};
+use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Share, Where};
 use appell_recordings::{DataSet, Part};
 use maud::{Markup, html};
 
@@ -11,12 +11,12 @@ use super::budget::{budget, closes};
 use super::doubt::doubts;
 use super::elements::{bar, capital, code, figure, separated, table};
 use super::forces;
-use super::law::{law, predicts};
-use super::numbers::{is_determined, measured, percent};
+use super::headline::{Headline, values};
+use super::law::law;
+use super::numbers::{is_determined, percent};
 use super::plots;
 use super::words::{
-    alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, refit_sentence,
-    said, statement,
+    alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, said, statement,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
@@ -51,33 +51,22 @@ pub fn page(set: &DataSet, report: &Report) -> String {
     })
 }
 
-/// Below the verdict: sizes, how sure it is, and what it is worth.
+/// Below the verdict: size, change, error, and how sure it is.
 fn reading(report: &Report) -> Markup {
-    let is_named = matches!(
-        report.verdict,
-        GapVerdict::Explained | GapVerdict::Ambiguous
-    );
-    let top = report.which.iter().find(|h| !h.parameters.is_empty());
-    let Some(top) = top.filter(|_| is_named) else {
-        return html! {};
-    };
-    let budget = report.how_far.iter().flat_map(|far| &far.budget);
-    let slight: Vec<&str> = (budget.filter(|part| part.is_effect() && !part.is_material))
-        .map(|part| part.name.as_str())
-        .collect();
-    let is_slight = |value: &Value| {
-        let effect = value.name.rsplit_once('.').map(|(effect, _)| effect);
-        effect.is_some_and(|effect| slight.contains(&effect))
-    };
-    let weighty = top.parameters.iter().filter(|value| !is_slight(value));
-    let sizes: Vec<String> = weighty.map(|value| size(top, value)).collect();
+    let Headline {
+        sizes,
+        change,
+        error,
+        ..
+    } = Headline::of(report);
     html! {
         ul class="reading" {
             @if !sizes.is_empty() {
-                li { (separated(&sizes, |size| html! { (size) }, &html! { ", " })) "." }
+                li { b { "Size" } " (± 95 %): " (separated(&sizes, |size| html! { (size) }, &html! { ", " })) "." }
             }
-            @if !slight.is_empty() {
-                li { "Fitted as well, and of no weight for predictions: " (separated(&slight, |effect| code(effect), &html! { ", " })) "." }
+            li { b { "What to change" } ": " (change.replace('`', "")) "." }
+            @if let Some(error) = error {
+                li { b { "Error" } ", " (error) "." }
             }
             @if let Some((probability, same, rivals)) = alternatives(report) {
                 li { "Probability " (percent_of(probability)) "."
@@ -86,47 +75,31 @@ fn reading(report: &Report) -> Markup {
                 @if !rivals.is_empty() { " Not ruled out: " (separated(&rivals, |one| code(one), &html! { ", " })) "." } }
             }
             @if let Some(far) = &report.how_far {
-                li { (worth(far)) }
+                @if let Some(note) = worth(far) { li { (note) } }
             }
         }
     }
 }
 
-/// What the leading hypothesis is worth on held-out runs.
-fn worth(far: &HowFar) -> String {
-    let [low, high] = far.closed_ci95.map(percent);
-    if !is_determined(far.closed, far.closed_ci95) {
-        return format!(
-            "What it closes is not determined: the held-out runs leave it between {low} and {high}."
+/// What speaks against the leading hypothesis on held-out runs.
+fn worth(far: &HowFar) -> Option<&'static str> {
+    if far.is_worse {
+        return Some(
+            "Predictions become worse with it: the fit does not generalise to the held-out runs.",
         );
     }
-    let mut text = format!(
-        "On held-out runs it closes {} [{low}, {high}] of the gap, and {} of the gap that remains after re-fitting the \
-         parameters.",
-        percent(far.closed),
-        percent(far.closed_vs_refitted),
-    );
+    if !is_determined(far.closed, far.closed_ci95) {
+        return None;
+    }
     if far.closed_ci95[0] <= 0.0 {
-        text += " The interval includes zero: these runs leave it open whether it closes anything.";
+        return Some(
+            "The interval of what closes includes zero: these runs leave it open whether anything does.",
+        );
     }
-    if far.is_worse {
-        text += " Predictions become worse with it: the fit does not generalise to these runs.";
-    } else if far.with_effect > (1.0 - MATTERS) * far.refitted {
-        text += " The effect is significant but unimportant: predictions hardly improve.";
-    }
-    text
-}
-
-/// `force = 0.412 ± 0.021 N`
-fn size(hypothesis: &Hypothesis, value: &Value) -> String {
-    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
-    let number = with_unit(&measured(value.value, value.std), &value.unit);
-    // Values of several effects may share a name.
-    let site = effect
-        .split_once('@')
-        .filter(|_| hypothesis.effects.len() > 1);
-    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
-    format!("{}{site} = {number}", short.replace('_', " "))
+    let is_slight =
+        far.budget.iter().any(Share::is_effect) && far.with_effect > (1.0 - MATTERS) * far.refitted;
+    is_slight
+        .then_some("Beyond re-fitted parameters, predictions of the held-out runs hardly improve.")
 }
 
 fn place(set: &DataSet, report: &Report) -> Markup {
@@ -229,28 +202,13 @@ fn equations(set: &DataSet, place: &Where) -> Markup {
             html! { (code(&equation.name)) br; span class="faint" { (about) } },
             bar(equation.share),
             html! { (short(equation.rms)) " " (equation.unit) },
-            html! { (p_value(equation.p_value)) },
         ]
     });
-    let heading = [
-        "equation of",
-        "share of the gap",
-        "missing force (rms)",
-        "p-value",
-    ];
+    let heading = ["equation of", "share of the gap", "missing force (rms)"];
     html! {
         @if !place.equations.is_empty() {
             (table(heading, rows, 2))
         }
-    }
-}
-
-/// A probability that is not zero, though its number may be.
-fn p_value(value: f64) -> String {
-    if value > 0.0 {
-        short(value)
-    } else {
-        "< 1e-300".to_owned()
     }
 }
 
@@ -294,11 +252,7 @@ fn hypotheses(report: &Report, list: &[&Hypothesis]) -> Markup {
             }
             Some(_) => code(&joined(&hypothesis.effects)),
         };
-        let sizes = hypothesis
-            .parameters
-            .iter()
-            .map(|value| size(hypothesis, value));
-        let sizes: Vec<String> = sizes.collect();
+        let sizes = values(hypothesis);
         let bayes = hypothesis.log_bayes_factor.map_or_else(String::new, short);
         let probability = match &hypothesis.same_as {
             Some(_) => html! { span class="faint" { "the same" } },
@@ -312,7 +266,7 @@ fn hypotheses(report: &Report, list: &[&Hypothesis]) -> Markup {
     });
     let heading = [
         "probability",
-        "hypothesis, values ± 1 standard deviation",
+        "hypothesis, values ± 95 %",
         "log Bayes factor",
     ];
     table(heading, rows, 2)
@@ -444,58 +398,14 @@ fn closed(far: &HowFar) -> Markup {
     }
 }
 
-fn is_alternative(hypothesis: &Hypothesis) -> bool {
-    let mut effects = hypothesis.effects.iter();
-    effects.any(|effect| effect.starts_with("alternative:"))
-}
-
 /// Recommended actions.
 fn next(set: &DataSet, report: &Report) -> Markup {
-    let advice = match report.verdict {
-        GapVerdict::NoGap if refit_sentence(report).is_some() => html! {
-            p {
-                "Take the parameters over: " code { "appell apply" } " writes those of the report that "
-                code { "appell diagnose" } " writes as JSON into the spec."
-            }
-        },
-        GapVerdict::NoGap => html! {
-            p {
-                "Nothing has to be added to the model. The table below tells how small an effect these \
-                 recordings would have shown."
-            }
-        },
-        _ if is_alternative(&report.which[0]) => html! {
-            p { "Adopt the alternative model and repeat the diagnosis with it." }
-        },
-        GapVerdict::Ambiguous => html! {
-            p {
-                "Tell the tied hypotheses apart before one of them is written into the spec: record "
-                @if report.experiment.is_some() { "the experiment below" } @else { "other motions" }
-                ", diagnose again with the recording, and then use " code { "appell apply" } "."
-            }
-        },
-        GapVerdict::Explained => html! {
-            p {
-                "Write the effect into the spec: " code { "appell apply" } " reads the report that "
-                code { "appell diagnose" } " writes as JSON."
-            }
-        },
-        GapVerdict::Unexplained if predicts(report) => html! {
-            p {
-                code { "appell apply" } " writes the measured force into the spec; diagnose the result again, and \
-                 look for what the force comes from."
-            }
-        },
-        GapVerdict::Unexplained => html! {
-            p {
-                "Describe the dependence of the missing force as an effect in the spec language and pass \
-                 it to " code { "appell diagnose" } " in addition to the library of effects."
-            }
-        },
-    };
     html! {
         h2 { "Next" }
-        (advice)
+        p { (capital(&Headline::of(report).change.replace('`', ""))) "." }
+        @if report.verdict == GapVerdict::NoGap && !report.detectable.is_empty() {
+            p { "The table below tells how small an effect these recordings would have shown." }
+        }
         @if let Some(experiment) = &report.experiment {
             @let [first, second] = experiment.separates.each_ref().map(|side| code(&joined(side)));
             p {

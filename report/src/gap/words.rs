@@ -1,8 +1,8 @@
 //! The statements of a gap report.
 
-use appell_gap::diagnose::{Change, GapVerdict, Hint, HowFar, Hypothesis, Report, Share};
+use appell_gap::diagnose::{Change, GapVerdict, Hint, HowFar, Hypothesis, Left, Report, Share};
 
-use super::numbers::{measured, part_of_all, percent};
+use super::numbers::{bounded, measured, part_of_all, percent};
 use crate::text::with_unit;
 
 /// The verdict in one sentence, with the alternatives.
@@ -60,25 +60,24 @@ pub(super) fn next_best(report: &Report) -> Option<String> {
 /// `, delay = 0.012 ± 0.001 s`
 fn values(hypothesis: &Hypothesis) -> String {
     let values = hypothesis.parameters.iter().map(|value| {
-        let number = with_unit(&measured(value.value, value.std), &value.unit);
+        let number = with_unit(&bounded(value.value, value.std), &value.unit);
         let name = value.name.rsplit('.').next().unwrap_or_default();
         format!(", {} = {number}", name.replace('_', " "))
     });
     values.collect()
 }
 
-/// `m = 1.35 ± 0.01 kg (stated 1 kg)`: parameters that differ from what is stated beyond doubt.
-fn moved(report: &Report) -> Vec<String> {
+/// `m = 1.35 ± 0.02 kg (stated 1 kg)`: parameters that differ from what is stated beyond doubt.
+pub(super) fn moved(hypothesis: Option<&Hypothesis>) -> Vec<String> {
     /// Standard deviations beyond which a parameter has moved.
     const BEYOND: f64 = 3.0;
-    let plain = report.which.iter().find(|one| one.effects.is_empty());
-    let changes = plain.and_then(|one| one.changes.as_ref());
+    let changes = hypothesis.and_then(|one| one.changes.as_ref());
     let parameters = changes.iter().flat_map(|changes| &changes.parameters);
     let moved = parameters.filter_map(|one| {
         let std = one.std?;
         let has_moved = (one.value - one.stated).abs() > BEYOND * std;
         has_moved.then(|| {
-            let value = with_unit(&measured(one.value, std), &one.unit);
+            let value = with_unit(&bounded(one.value, std), &one.unit);
             let stated = with_unit(&as_written(one.stated), &one.unit);
             format!("{} = {value} (stated {stated})", one.name)
         })
@@ -94,10 +93,23 @@ fn as_written(value: f64) -> String {
 
 /// The parameters that moved, where predictions need them.
 pub fn refit_sentence(report: &Report) -> Option<String> {
+    let plain = report.which.iter().find(|one| one.effects.is_empty());
+    let moved = moved(plain);
+    (needs_refit(report) && !moved.is_empty()).then(|| moved.join(", "))
+}
+
+/// Whether predictions need re-fitted parameters.
+pub(super) fn needs_refit(report: &Report) -> bool {
     let far = report.how_far.as_ref();
-    let is_needed = far.is_none_or(|far| refitted(&far.budget).is_some());
-    let moved = moved(report);
-    (is_needed && !moved.is_empty()).then(|| moved.join(", "))
+    far.is_none_or(|far| refitted(&far.budget).is_some())
+}
+
+/// The parameter that an effect is the wrong value of, if it is one.
+pub(super) fn parameter<'e>(hypothesis: &Hypothesis, effect: &'e str) -> Option<&'e str> {
+    let (_, site) = effect.split_once('@')?;
+    let changes = hypothesis.changes.as_ref()?;
+    let mut parameters = changes.parameters.iter();
+    parameters.any(|one| one.name == site).then_some(site)
 }
 
 /// Where several hypotheses may be true: the probability of the leading one, those that say the same of every motion,
@@ -162,55 +174,77 @@ pub(super) fn statement(report: &Report) -> String {
             ),
         },
         GapVerdict::Unexplained => {
-            let left = report.left.as_ref().map(|left| format!(": {}", left.about));
-            let left = left.unwrap_or_default();
-            if let Some(shares) = shares(report) {
-                return format!("{shares}; no effect of the library explains the rest{left}");
-            }
             let law = law_share(report).unwrap_or_default();
-            format!("there is a gap that no effect of the library explains{left}{law}")
+            match shares(report) {
+                // The law stands among the shares.
+                Some(shares) if !law.is_empty() => {
+                    let left = report.left.as_ref().map_or("", |left| &left.about);
+                    format!("{shares}; the law, which no effect of the library has, is {left}")
+                }
+                Some(shares) => unnamed(report, Some(shares)),
+                None => unnamed(report, refitted_share(report)) + &law,
+            }
         }
     }
 }
 
-/// `; measured, it closes 90 % of the gap`, or of what re-fitted parameters leave.
+/// `re-fitted parameters close 98 % of the gap`, where they matter.
+fn refitted_share(report: &Report) -> Option<String> {
+    let refit = refitted(&report.how_far.as_ref()?.budget)?;
+    let closed = percent(refit.closed);
+    Some(format!("re-fitted parameters close {closed} of the gap"))
+}
+
+/// What no effect of the library explains, beside the parts that something closes.
+fn unnamed(report: &Report, shares: Option<String>) -> String {
+    let left = report.left.as_ref();
+    let is_sure = left.is_none_or(Left::is_there);
+    let left = left.map(|left| left.about.as_str()).unwrap_or_default();
+    let left = if left.is_empty() {
+        String::new()
+    } else {
+        format!(": {left}")
+    };
+    if is_sure {
+        return match shares {
+            Some(shares) => format!("{shares}; no effect of the library explains the rest{left}"),
+            None => format!("there is a gap that no effect of the library explains{left}"),
+        };
+    }
+    let probability = report.which.iter().find(|one| one.is_unknown());
+    let probability = probability.map_or(f64::NAN, |one| one.probability);
+    let before = shares.map_or_else(String::new, |shares| format!("{shares}; "));
+    let sure = percent_of(probability);
+    format!(
+        "{before}the recordings leave it open (probability {sure}) whether something is missing that the library lacks{left}"
+    )
+}
+
+/// `; measured, it closes 90 % of the gap`
 fn law_share(report: &Report) -> Option<String> {
     let budget = &report.how_far.as_ref()?.budget;
-    let law = budget
-        .iter()
-        .find(|part| part.is_law() && part.is_material)?;
-    Some(match refitted(budget) {
-        Some(refit) => {
-            let (closed, rest) = (percent(refit.closed), law.closed / (1.0 - refit.closed));
-            let rest = part_of_all(rest);
-            format!(
-                "; measured, it closes {rest} of what re-fitted parameters leave, which close {closed} of the gap"
-            )
-        }
-        None => format!(
-            "; measured, it closes {} of the gap",
-            part_of_all(law.closed)
-        ),
-    })
+    let mut law = budget.iter();
+    let law = law.find(|part| part.is_law() && part.is_material)?;
+    Some(format!(
+        "; measured, it closes {} of the gap",
+        part_of_all(law.closed)
+    ))
 }
 
 /// The part of the re-fitted parameters, where it matters.
-fn refitted(budget: &[Share]) -> Option<&Share> {
+pub(super) fn refitted(budget: &[Share]) -> Option<&Share> {
     let mut budget = budget.iter();
     budget.find(|part| part.is_refit() && part.is_material)
 }
 
-/// What the material effects close of the gap, the largest share first, and what stays; beside re-fitted parameters
-/// that matter, of what these leave.
+/// What re-fitted parameters and the material effects close of the gap, the largest share first, and what stays: all of
+/// them parts of the same whole, the gap of the model as stated.
 fn shares(report: &Report) -> Option<String> {
     let budget = &report.how_far.as_ref()?.budget;
     let (mut material, others): (Vec<&Share>, Vec<&Share>) =
         (budget.iter().filter(|part| part.is_effect())).partition(|part| part.is_material);
     material.sort_by(|a, b| b.closed.total_cmp(&a.closed));
     let refit = refitted(budget);
-    let left = 1.0 - refit.map_or(0.0, |part| part.closed);
-    let of = |part: &Share| percent(part.closed / left);
-    let rest = |part: &Share| part_of_all(part.closed / left);
     let about = |part: &&Share| {
         let mut found = report.found.iter();
         let found = found.find(|found| found.effect == part.name);
@@ -218,41 +252,51 @@ fn shares(report: &Report) -> Option<String> {
     };
     let names: Vec<String> = material.iter().map(about).collect();
     let (names, all) = (names.join(" and "), material.iter().chain(&others));
-    let sum = part_of_all(all.map(|part| part.closed).sum::<f64>() / left);
-    let (before, whole) = match refit {
-        Some(part) => {
-            let closed = percent(part.closed);
-            (
-                format!("re-fitted parameters close {closed} of the gap; "),
-                "the rest",
-            )
-        }
-        None => (String::new(), "the gap"),
-    };
+    let sum = part_of_all(all.map(|part| part.closed).sum());
+    let before = refit.map_or_else(String::new, |part| {
+        let closed = percent(part.closed);
+        format!("re-fitted parameters close {closed} of the gap; ")
+    });
     let mut text = match material.as_slice() {
         [] if others.is_empty() || before.is_empty() => return None,
         [] => {
             let names: Vec<String> = others.iter().map(about).collect();
-            let matter = if names.len() > 1 { "matter" } else { "matters" };
+            let is_parameter = |part: &&Share| {
+                leading(report).is_some_and(|first| parameter(first, &part.name).is_some())
+            };
+            if let Some(refit) = refit.filter(|_| others.iter().all(is_parameter)) {
+                let (names, closed) = (names.join(" and "), percent(refit.closed));
+                return Some(format!(
+                    "{names}: re-fitted together with the others it closes {closed} of the gap"
+                ));
+            }
+            let depend = "predictions of the held-out runs hardly change with";
+            let them = if names.len() > 1 { "them" } else { "it" };
+            let are = if names.len() > 1 { "are" } else { "is" };
             let names = names.join(" and ");
-            return Some(format!("{before}{names} hardly {matter} for predictions"));
+            return Some(format!(
+                "{before}{names} {are} there as well, but {depend} {them}"
+            ));
         }
         [one] if others.is_empty() => {
-            let [low, high] = one.interval.map(|end| percent(end / left));
-            let open = unsettled(one.interval, left);
-            format!("{before}{names} closes {sum} [{low}, {high}] of {whole}{open}")
+            let [low, high] = one.interval.map(percent);
+            let open = unsettled(one.interval);
+            format!("{before}{names} closes {sum} [{low}, {high}] of the gap{open}")
         }
-        [_] => format!("{before}{names} closes {sum} of {whole}"),
+        [_] => format!("{before}{names} closes {sum} of the gap"),
         several => {
-            let each: Vec<String> = several.iter().map(|part| of(part)).collect();
+            let each: Vec<String> = several.iter().map(|part| percent(part.closed)).collect();
             let each = each.join(", ");
-            format!("{before}{names} close {sum} ({each}) of {whole}")
+            format!("{before}{names} close {sum} ({each}) of the gap")
         }
     };
     let tail = budget.iter().filter_map(|part| {
         let is_told = part.is_law() && part.is_material;
-        let law = is_told.then(|| format!("; a measured law {}", of(part)));
-        law.or_else(|| part.is_rest().then(|| format!("; {} stays", rest(part))))
+        let law = is_told.then(|| format!("; a measured law {}", percent(part.closed)));
+        law.or_else(|| {
+            let rest = part_of_all(part.closed);
+            part.is_rest().then(|| format!("; {rest} stays"))
+        })
     });
     text.extend(tail);
     text.extend(report.how_far.as_ref().and_then(far_from_floor));
@@ -271,10 +315,10 @@ fn far_from_floor(far: &HowFar) -> Option<String> {
 }
 
 /// What an interval that bounds a share hardly or not at all means.
-fn unsettled([low, high]: [f64; 2], whole: f64) -> &'static str {
+fn unsettled([low, high]: [f64; 2]) -> &'static str {
     if low <= 0.0 {
         ", an interval in which the held-out runs leave it open whether it closes anything"
-    } else if high - low > whole {
+    } else if high - low > 1.0 {
         ", an interval so wide that the held-out runs hardly bound the share"
     } else {
         ""
@@ -339,7 +383,7 @@ pub(super) fn percent_of(probability: f64) -> String {
 }
 
 /// The most probable hypothesis of the library.
-fn leading(report: &Report) -> Option<&Hypothesis> {
+pub(super) fn leading(report: &Report) -> Option<&Hypothesis> {
     report.which.iter().find(|one| one.effects != ["unknown"])
 }
 

@@ -1,0 +1,228 @@
+//! The first lines of a report: the cause, its size, what to change, the error before and after.
+
+use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Value};
+
+use super::law::written;
+use super::numbers::{bounded, is_determined, percent, share};
+use super::words::{leading, moved, needs_refit, parameter, refit_sentence, refitted, sentence};
+use crate::text::{horizon, short, with_unit};
+
+/// What stands above everything else.
+pub struct Headline {
+    /// The cause, in a sentence.
+    pub cause: String,
+    /// Sizes, each with its 95 % interval; parameters with their stated values.
+    pub sizes: Vec<String>,
+    /// What to change.
+    pub change: String,
+    /// The number of the hypothesis to apply, if one is.
+    pub applied: Option<usize>,
+    /// Errors of the model as stated and with the cause; nothing where no run was held out.
+    pub error: Option<String>,
+}
+
+impl Headline {
+    /// Of a report.
+    pub fn of(report: &Report) -> Self {
+        Self {
+            cause: cause(report),
+            sizes: sizes(report),
+            change: change(report, applied(report)),
+            applied: applied(report),
+            error: report.how_far.as_ref().map(|far| error(report, far)),
+        }
+    }
+}
+
+/// The verdict; sizes follow below it.
+fn cause(report: &Report) -> String {
+    if report.verdict == GapVerdict::NoGap && refit_sentence(report).is_some() {
+        return "no gap beyond measurement and process noise once parameters are re-fitted"
+            .to_owned();
+    }
+    sentence(report)
+}
+
+/// Those of the leading effects, and parameters that moved where predictions need them.
+fn sizes(report: &Report) -> Vec<String> {
+    let mut budget_effects = report.how_far.iter().flat_map(|far| &far.budget);
+    let is_named = match report.verdict {
+        GapVerdict::Explained | GapVerdict::Ambiguous => true,
+        GapVerdict::NoGap => false,
+        // Those that stand in the sentence beside what the library lacks.
+        GapVerdict::Unexplained => budget_effects.any(|part| part.is_effect() && part.is_material),
+    };
+    let budget = report.how_far.iter().flat_map(|far| &far.budget);
+    let slight: Vec<&str> = (budget.filter(|part| part.is_effect() && !part.is_material))
+        .map(|part| part.name.as_str())
+        .collect();
+    let first = leading(report).filter(|_| is_named);
+    let Some(first) = first else {
+        return refit_sentence(report).into_iter().collect();
+    };
+    // A wrong parameter stands among those that moved.
+    let parameters = if needs_refit(report) {
+        moved(Some(first))
+    } else {
+        Vec::new()
+    };
+    let is_own = |value: &&Value| {
+        let effect = value.name.rsplit_once('.').map(|(effect, _)| effect);
+        let name = effect.and_then(|effect| parameter(first, effect));
+        let name = name.map(|name| format!("{name} = "));
+        name.is_none_or(|name| !parameters.iter().any(|one| one.starts_with(&name)))
+    };
+    let effects = first.parameters.iter().filter(is_own);
+    let effects = effects.map(|value| {
+        let effect = value.name.rsplit_once('.').map(|(effect, _)| effect);
+        let is_slight = effect.is_some_and(|effect| slight.contains(&effect));
+        let weight = if is_slight {
+            " (predictions hardly change with it)"
+        } else {
+            ""
+        };
+        size(first, value) + weight
+    });
+    let mut sizes: Vec<String> = effects.collect();
+    sizes.extend(parameters);
+    sizes
+}
+
+/// The values of a hypothesis, each with half of its 95 % interval.
+pub fn values(hypothesis: &Hypothesis) -> Vec<String> {
+    let values = hypothesis.parameters.iter();
+    values.map(|value| size(hypothesis, value)).collect()
+}
+
+/// `force = 0.412 ± 0.041 N`
+fn size(hypothesis: &Hypothesis, value: &Value) -> String {
+    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
+    let number = with_unit(&bounded(value.value, value.std), &value.unit);
+    // Values of several effects may share a name.
+    let site = effect
+        .split_once('@')
+        .filter(|_| hypothesis.effects.len() > 1);
+    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
+    format!("{}{site} = {number}", short.replace('_', " "))
+}
+
+/// What the verdict asks for.
+fn change(report: &Report, applied: Option<usize>) -> String {
+    let first = report.which.first();
+    let is_alternative = |one: &Hypothesis| {
+        let mut effects = one.effects.iter();
+        effects.any(|effect| effect.starts_with("alternative:"))
+    };
+    match report.verdict {
+        _ if first.is_some_and(is_alternative) => {
+            "adopt the alternative model and repeat the diagnosis with it".to_owned()
+        }
+        GapVerdict::NoGap if applied.is_some() => {
+            "take the parameters over (`appell apply`)".to_owned()
+        }
+        GapVerdict::NoGap => "nothing".to_owned(),
+        GapVerdict::Ambiguous => {
+            let motion = match report.experiment {
+                Some(_) => "the experiment below",
+                None => "other motions",
+            };
+            format!(
+                "nothing yet: record {motion}, and diagnose again with the recording before `appell apply`"
+            )
+        }
+        GapVerdict::Explained => explained(first),
+        GapVerdict::Unexplained => {
+            let own = "describe what is missing as an effect of your own, and diagnose with it";
+            let command = match applied {
+                None => return own.to_owned(),
+                Some(1) => "`appell apply`".to_owned(),
+                Some(number) => format!("`appell apply`, given hypothesis {number},"),
+            };
+            if written(report) == applied {
+                format!(
+                    "{command} writes the measured force into the spec; look for what it comes from"
+                )
+            } else {
+                format!("{command} writes the fitted parameters into the spec; {own}")
+            }
+        }
+    }
+}
+
+/// The number of the hypothesis that `appell apply` should write, if it should write one.
+fn applied(report: &Report) -> Option<usize> {
+    let refits = refit_sentence(report).is_some();
+    match report.verdict {
+        GapVerdict::Explained | GapVerdict::Ambiguous => Some(1),
+        GapVerdict::NoGap => refits.then_some(1),
+        GapVerdict::Unexplained => written(report).or_else(|| {
+            let is_plain = |one: &Hypothesis| one.effects.is_empty() && one.changes.is_some();
+            let at = report.which.iter().position(is_plain)?;
+            refits.then_some(at + 1)
+        }),
+    }
+}
+
+/// Effects that a spec can hold are written, the others belong elsewhere.
+fn explained(first: Option<&Hypothesis>) -> String {
+    let Some(changes) = first.and_then(|first| first.changes.as_ref()) else {
+        return "add the effect to the spec (`appell apply`)".to_owned();
+    };
+    let adds = !(changes.items.trim().is_empty() && changes.inputs.is_empty());
+    let elsewhere = changes.signal_effects.iter();
+    let elsewhere = elsewhere.filter(|one| one.output.is_none());
+    let mut names: Vec<String> = elsewhere.map(|one| one.effect.clone()).collect();
+    names.dedup();
+    if names.is_empty() {
+        let what = if adds {
+            "add the effect to the spec (`appell apply`)"
+        } else {
+            "write the fitted parameters into the spec (`appell apply`)"
+        };
+        return what.to_owned();
+    }
+    let what = if adds {
+        "add to the spec what a spec can hold"
+    } else {
+        "nothing in the equations"
+    };
+    let belong = if names.len() > 1 { "belong" } else { "belongs" };
+    let names = names.join(", ");
+    format!("{what}; {names} {belong} elsewhere, `appell apply` says where")
+}
+
+/// Before and after, and what closes.
+fn error(report: &Report, far: &HowFar) -> String {
+    let what = if report.is_by_forces {
+        "forces missed on held-out runs".to_owned()
+    } else {
+        format!("{} ahead on held-out runs", horizon(far.horizon_s))
+    };
+    let (before, after, floor) = (far.nominal, far.with_effect, far.noise_floor);
+    let mut text = format!(
+        "{what}: {} -> {} times the noise (floor {})",
+        short(before),
+        short(after),
+        short(floor)
+    );
+    if is_determined(far.closed, far.closed_ci95) {
+        text += &format!("; {} of the gap closes", share(far.closed, far.closed_ci95));
+    } else {
+        text += "; these runs do not determine how much of the gap closes";
+    }
+    let refit = refitted(&far.budget);
+    if let Some(refit) = refit.filter(|_| !is_refit_alone(far)) {
+        text += &format!(", {} by re-fitted parameters alone", percent(refit.closed));
+    }
+    if far.is_worse {
+        text += "; worse than with re-fitted parameters alone";
+    }
+    text
+}
+
+/// Whether nothing is added to re-fitted parameters.
+fn is_refit_alone(far: &HowFar) -> bool {
+    !far.budget
+        .iter()
+        .any(|part| part.is_effect() || part.is_law())
+}

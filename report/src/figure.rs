@@ -26,7 +26,7 @@ pub use scatter::Scatter;
 pub use surface::{Patch, Path, Surface};
 pub use tornado::{Lever, Tornado};
 
-use crate::svg::{Document, Element, path, text};
+use crate::svg::{Document, Element, path, text, title};
 use std::fmt::Write as _;
 
 /// A line.
@@ -231,7 +231,7 @@ impl Figure {
 
         let mut svg = Document::new([WIDTH, height], &[STYLE]);
         if !self.title.is_empty() {
-            svg.put(&text([LEFT, 22.0]).with("class", "title").text(&self.title));
+            svg.put(&title([LEFT, 22.0], WIDTH - LEFT - RIGHT, &self.title));
         }
         for (i, (panel, y_axis)) in self.panels.iter().zip(&y_axes).enumerate() {
             let area = Area {

@@ -73,6 +73,59 @@ pub fn text([x, y]: [f64; 2]) -> Element {
     Element::new("text").lengths([("x", x), ("y", y)])
 }
 
+/// Size of a title, as the styles have it, and the smallest one in pixels.
+const TITLE_SIZE: f64 = 15.0;
+const SMALLEST_TITLE: f64 = 10.0;
+
+/// A title that ends within its room: one that is long has smaller letters; of one that is longer, the beginning is
+/// shown, and the whole as a tooltip.
+pub fn title(place: [f64; 2], room: f64, content: &str) -> String {
+    /// The font may be bold.
+    const BOLD: f64 = 1.1;
+    let width = BOLD * width(content, TITLE_SIZE);
+    let text = text(place).with("class", "title");
+    if width <= room {
+        return text.text(content);
+    }
+    let size = (TITLE_SIZE * room / width).max(SMALLEST_TITLE);
+    let text = text.with("style", format_args!("font-size:{size:.1}px"));
+    shortened(text, content, size, room / BOLD)
+}
+
+/// A text that ends within its room: of a longer one, the beginning is shown, and the whole as a tooltip.
+pub fn shortened(element: Element, content: &str, size: f64, room: f64) -> String {
+    if width(content, size) <= room {
+        return element.text(content);
+    }
+    let mut shown = String::new();
+    let rest = room - width("…", size);
+    for letter in content.chars() {
+        shown.push(letter);
+        if width(&shown, size) > rest {
+            shown.pop();
+            break;
+        }
+    }
+    let whole = Element::new("title").text(content);
+    let shown = escaped(shown.trim_end());
+    format!("{}>{whole}{shown}…</{}>", element.start, element.name)
+}
+
+/// About the width of a text in pixels, in a wide font.
+pub fn width(text: &str, size: f64) -> f64 {
+    let ems = text.chars().map(|letter| match letter {
+        'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '!' | '|' | '\'' | ' ' => 0.35,
+        't' | 'f' | 'r' | '(' | ')' | '[' | ']' | '-' | '/' => 0.42,
+        'm' | 'w' | 'M' | 'W' | '@' | '%' | '—' => 1.0,
+        'A'..='Z' => 0.75,
+        ' '..='~' => 0.64,
+        // Writing systems with wide letters.
+        '\u{1100}'.. => 1.0,
+        _ => 0.7,
+    });
+    ems.sum::<f64>() * size
+}
+
 /// Corners as a path.
 pub fn polyline(corners: impl IntoIterator<Item = [f64; 2]>) -> String {
     let mut line = String::new();
@@ -123,5 +176,27 @@ impl Document {
     /// The document as text.
     pub fn finish(self) -> String {
         self.0 + "</svg>\n"
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_title_is_smaller_and_a_longer_one_is_cut() {
+        let shown = |letters: usize| title([0.0, 0.0], 720.0, &"a".repeat(letters));
+        assert!(!shown(50).contains("style"));
+        let smaller = shown(90);
+        assert!(
+            smaller.contains("font-size:1") && !smaller.contains('…'),
+            "{smaller}"
+        );
+        let cut = shown(500);
+        assert!(
+            cut.contains("font-size:10.0px") && cut.contains("…</text>"),
+            "{cut}"
+        );
+        assert!(cut.contains(&format!("<title>{}</title>", "a".repeat(500))));
     }
 }

@@ -45,6 +45,9 @@ const POINT_RADIUS: f64 = 3.5;
 const MASS_RADIUS: f64 = 6.0;
 /// Distance of title and legend from the left and right edge.
 const EDGE: f64 = 20.0;
+/// Size of texts, and their distance from all edges.
+const TEXT_SIZE: f64 = 12.0;
+const PAD: f64 = 4.0;
 /// Baselines of title and caption.
 const TITLE_LINE: f64 = 26.0;
 const CAPTION_LINE: f64 = 46.0;
@@ -81,6 +84,8 @@ struct Sheet<'a> {
     scale: f64,
     /// The point at the upper left corner of the drawing.
     corner: [f64; 2],
+    /// Height of the sheet in pixels.
+    height: f64,
     svg: Document,
 }
 
@@ -129,9 +134,11 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, marked: &[&str], given: 
             left - slack[0] / 2.0 / scale,
             high + (HEAD + slack[1] / 2.0) / scale,
         ],
+        height,
         svg: Document::new([WIDTH, height], &[STYLE, DRAWING_STYLE]),
     };
-    sheet.text([EDGE, TITLE_LINE], "title", "start", &mechanism.title);
+    let title = svg::title([EDGE, TITLE_LINE], WIDTH - 2.0 * EDGE, &mechanism.title);
+    sheet.svg.put(&title);
     sheet.text(
         [EDGE, CAPTION_LINE],
         "small soft",
@@ -222,10 +229,21 @@ impl Sheet<'_> {
         ]
     }
 
-    fn text(&mut self, place: [f64; 2], class: &str, anchor: &str, content: &str) {
-        let text = svg::text(place).with("class", class);
+    /// A text, moved into the sheet where it would cross an edge.
+    fn text(&mut self, [x, y]: [f64; 2], class: &str, anchor: &str, content: &str) {
+        let room = WIDTH - 2.0 * PAD;
+        let width = svg::width(content, TEXT_SIZE).min(room);
+        let before = match anchor {
+            "start" => 0.0,
+            "middle" => width / 2.0,
+            _ => width,
+        };
+        let x = x.clamp(PAD + before, WIDTH - PAD - width + before);
+        let y = y.clamp(TEXT_SIZE, self.height - PAD);
+        let text = svg::text([x, y]).with("class", class);
+        let text = text.with("text-anchor", anchor);
         self.svg
-            .put(&text.with("text-anchor", anchor).text(content));
+            .put(&svg::shortened(text, content, TEXT_SIZE, room));
     }
 
     fn path(&mut self, class: &str, places: &[[f64; 2]], about: &str) {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::axis::Axis;
 use super::{Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH};
-use crate::svg::{Document, Element, path, text};
+use crate::svg::{Document, Element, path, text, title};
 
 /// Kinds at the points of a grid over two quantities, and curves.
 #[derive(Debug, Clone, PartialEq)]
@@ -116,7 +116,7 @@ impl Map {
         };
         let height = area.top + HEIGHT + FOOTER_HEIGHT;
         let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS]);
-        svg.put(&text([LEFT, 22.0]).with("class", "title").text(&self.title));
+        svg.put(&title([LEFT, 22.0], WIDTH - LEFT - RIGHT, &self.title));
         let samples = kinds.map(|(kind, name)| (Sample::Kind(kind), name));
         let samples =
             samples.chain(labelled.map(|curve| (Sample::Curve(curve), &curve.line.label)));

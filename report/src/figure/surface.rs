@@ -73,7 +73,7 @@ impl Surface {
     pub fn to_svg(&self) -> String {
         let height = TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT;
         let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS, SOLID]);
-        svg.put(&text([LEFT, 22.0]).with("class", "title").text(&self.title));
+        svg.put(&svg::title([LEFT, 22.0], WIDTH - 2.0 * LEFT, &self.title));
         let named = self
             .kinds
             .iter()

@@ -18,6 +18,7 @@
 //! | [`recording::read`], [`Model::identify`] | `appell recording`, `appell identify` |
 //! | [`Model::inverse`] | `appell inverse` |
 //! | [`diagnose()`], [`diagnosis::Library`] | `appell diagnose` |
+//! | [`effects::library`], [`effects::Example`] | `appell effects` |
 //! | [`sample::rig`], [`sample::robot`] | `appell sample` |
 //! | [`robot::read`], [`robot::import`] | `appell import` |
 //! | [`ensemble::Ensemble`] | `appell ensemble` |
@@ -37,6 +38,7 @@ mod conditions;
 pub mod control;
 pub mod derivation;
 pub mod diagnosis;
+pub mod effects;
 pub mod engine;
 pub mod ensemble;
 mod error;

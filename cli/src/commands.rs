@@ -9,6 +9,7 @@ mod demo;
 mod derive;
 mod diagnose;
 mod draw;
+mod effects;
 mod ensemble;
 mod evaluate;
 mod export;
@@ -64,6 +65,7 @@ pub(crate) enum Command {
     Base(base::Base),
     Motion(motion::Motion),
     Diagnose(diagnose::Diagnose),
+    Effects(effects::Effects),
     Apply(apply::Apply),
     Steady(steady::Steady),
     Stability(stability::StabilityCommand),
@@ -97,6 +99,7 @@ pub(crate) fn run(command: Command) -> Result<(), Error> {
         Command::Base(command) => command.run(),
         Command::Motion(command) => command.run(),
         Command::Diagnose(command) => command.run(),
+        Command::Effects(command) => command.run(),
         Command::Apply(command) => command.run(),
         Command::Steady(command) => command.run(),
         Command::Stability(command) => command.run(),

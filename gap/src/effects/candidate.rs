@@ -113,6 +113,11 @@ impl Candidate {
         format!("{}@{}", self.kind, self.site)
     }
 
+    /// What it adds to a spec, its sizes at zero.
+    pub fn items(&self) -> &str {
+        &self.items
+    }
+
     /// A force beside a pseudo-velocity that is no effect of the library: `force` in the language of a spec, where
     /// `{law}` stands before the names of its numbers. Each of these has a unit, and what is known beforehand.
     pub(crate) fn measured(

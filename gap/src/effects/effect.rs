@@ -168,6 +168,24 @@ impl Effect {
         &self.text
     }
 
+    /// The sentences at the top of its file, which state its law.
+    pub fn law(&self) -> String {
+        let lines = self.heading().take_while(|line| !line.is_empty());
+        let lines: Vec<&str> = lines.map(str::trim).collect();
+        lines.join(" ")
+    }
+
+    /// The drawing below them, in letters.
+    pub fn picture(&self) -> String {
+        let lines = self.heading().skip_while(|line| !line.is_empty()).skip(1);
+        lines.collect::<Vec<_>>().join("\n")
+    }
+
+    /// Comments at the top of its file.
+    fn heading(&self) -> impl Iterator<Item = &str> {
+        self.text.lines().map_while(|line| line.strip_prefix('#'))
+    }
+
     fn parsed(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
         let (mut fields, table) = Fields::new(file, text);
         let table = table.get_ref();

@@ -40,41 +40,66 @@ pub enum SiteKind {
     Channel,
 }
 
-const WORDS: [(&str, SiteKind); 13] = [
-    ("coordinate", SiteKind::Coordinate),
-    ("slider", SiteKind::Slider),
-    ("hinge", SiteKind::Hinge),
-    ("driven_slider", SiteKind::DrivenSlider),
-    ("driven_hinge", SiteKind::DrivenHinge),
-    ("body", SiteKind::Body),
-    ("rigid_body", SiteKind::RigidBody),
-    ("wheel", SiteKind::Wheel),
-    ("contact", SiteKind::Contact),
-    ("gravity", SiteKind::Gravity),
-    ("parameter", SiteKind::Parameter),
-    ("input", SiteKind::Input),
-    ("channel", SiteKind::Channel),
+/// Word, kind, and what it is.
+const WORDS: [(&str, SiteKind, &str); 13] = [
+    (
+        "coordinate",
+        SiteKind::Coordinate,
+        "length or angle that is not prescribed",
+    ),
+    ("slider", SiteKind::Slider, "length that is not prescribed"),
+    ("hinge", SiteKind::Hinge, "angle that is not prescribed"),
+    (
+        "driven_slider",
+        SiteKind::DrivenSlider,
+        "length that inputs drive, its rate a pseudo-velocity",
+    ),
+    (
+        "driven_hinge",
+        SiteKind::DrivenHinge,
+        "angle that inputs drive, its rate a pseudo-velocity",
+    ),
+    ("body", SiteKind::Body, "body"),
+    ("rigid_body", SiteKind::RigidBody, "body with a frame"),
+    ("wheel", SiteKind::Wheel, "body that rolls"),
+    ("contact", SiteKind::Contact, "rolling contact"),
+    ("gravity", SiteKind::Gravity, "weight"),
+    (
+        "parameter",
+        SiteKind::Parameter,
+        "parameter with a tolerance",
+    ),
+    ("input", SiteKind::Input, "input that was used"),
+    ("channel", SiteKind::Channel, "measured column"),
 ];
 
 impl SiteKind {
     pub(super) fn of(word: &str) -> Option<Self> {
-        let found = WORDS.iter().find(|(own, _)| *own == word);
-        found.map(|(_, kind)| *kind)
+        let found = WORDS.iter().find(|(own, ..)| *own == word);
+        found.map(|(_, kind, _)| *kind)
     }
 
     #[cfg(test)]
     pub(super) fn all() -> impl Iterator<Item = Self> {
-        WORDS.into_iter().map(|(_, kind)| kind)
+        WORDS.into_iter().map(|(_, kind, _)| kind)
     }
 
     pub(super) fn kinds() -> String {
-        WORDS.map(|(word, _)| word).join(", ")
+        WORDS.map(|(word, ..)| word).join(", ")
     }
 
     /// Its word.
-    pub(super) fn word(self) -> &'static str {
-        let found = WORDS.iter().find(|(_, kind)| *kind == self);
-        found.map_or("", |(word, _)| word)
+    pub fn word(self) -> &'static str {
+        self.row().map_or("", |(word, ..)| word)
+    }
+
+    /// What each is, in words.
+    pub fn about(self) -> &'static str {
+        self.row().map_or("", |(.., about)| about)
+    }
+
+    fn row(self) -> Option<&'static (&'static str, Self, &'static str)> {
+        WORDS.iter().find(|(_, kind, _)| *kind == self)
     }
 
     /// Lists of words that stand for something at such a place, beside `effect` and `site`.

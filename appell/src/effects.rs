@@ -1,0 +1,173 @@
+//! The library of effects for readers: what each says, where it acts, and how a spec has it.
+
+use std::fmt::Write as _;
+
+use appell_gap::effects::{Candidate, Scales, candidates, shipped};
+use appell_models::ALL;
+use appell_recordings::Spec;
+use appell_report::text::table;
+use serde_json::{Value, json};
+
+use crate::diagnosis::Effect;
+use crate::source::Source;
+use crate::{Error, Field, Mechanism};
+
+/// An effect in a mechanism.
+pub struct Example {
+    /// The effect.
+    pub effect: Effect,
+    /// The mechanism.
+    pub mechanism: String,
+    /// The sites there, as reports name them.
+    pub sites: Vec<String>,
+    /// What the first of them adds to the spec; empty where a spec cannot express it.
+    pub items: String,
+}
+
+/// The shipped effects.
+pub fn library() -> Result<Vec<Effect>, Error> {
+    Ok(shipped()?)
+}
+
+/// One effect; those of one name differ by their sites.
+pub fn named(name: &str) -> Result<Vec<Effect>, Error> {
+    let all = library()?;
+    let names: Vec<String> = all.iter().map(|effect| effect.name.clone()).collect();
+    let own: Vec<Effect> = all.into_iter().filter(|one| one.name == name).collect();
+    if own.is_empty() {
+        let known = names.iter().map(String::as_str);
+        let help =
+            appell_spec::did_you_mean(name, known, || "`appell effects` lists them".to_owned());
+        let message = format!("there is no effect `{}`; {help}", appell_spec::shown(name));
+        return Err(Error::request(Field::Effects, message));
+    }
+    Ok(own)
+}
+
+/// The library as a table.
+pub fn overview(effects: &[Effect]) -> String {
+    let heading = ["effect", "family", "sites", "law"].map(str::to_owned);
+    let rows = effects.iter().map(|effect| {
+        let law = effect.law();
+        let first = law
+            .split_once(". ")
+            .map_or(law.as_str(), |(first, _)| first);
+        [
+            effect.name.clone(),
+            effect.family.word().to_owned(),
+            effect.site.word().replace('_', " "),
+            first.trim_end_matches('.').to_owned(),
+        ]
+    });
+    let rows: Vec<Vec<String>> = std::iter::once(heading)
+        .chain(rows)
+        .map(|row| row.to_vec())
+        .collect();
+    table(&rows, 0..0)
+}
+
+impl Example {
+    /// In a mechanism; by default in the first shipped one that has a site for it.
+    pub fn new(effect: Effect, model: Option<&str>) -> Result<Self, Error> {
+        if let Some(model) = model {
+            return Self::of(effect, &Source::find(model)?);
+        }
+        let mut last = None;
+        for shipped in ALL {
+            let example = Self::of(effect.clone(), &Source::shipped(shipped.name)?)?;
+            if !example.sites.is_empty() {
+                return Ok(example);
+            }
+            last = Some(example);
+        }
+        last.ok_or_else(|| Error::request(Field::Model, "no mechanism is shipped"))
+    }
+
+    fn of(effect: Effect, source: &Source) -> Result<Self, Error> {
+        let mechanism = source.mechanism()?;
+        let spec = Spec {
+            file: source.file.clone(),
+            text: source.text.clone(),
+        };
+        let scales = magnitudes(&mechanism);
+        let effects = std::slice::from_ref(&effect);
+        let all = candidates(&mechanism, &spec, effects, &scales).map_err(Error::computation)?;
+        let mut sites: Vec<String> = all.iter().map(Candidate::name).collect();
+        sites.dedup();
+        let items = all.first().map(|one| one.items().to_owned());
+        Ok(Self {
+            effect,
+            mechanism: mechanism.name,
+            sites,
+            items: items.unwrap_or_default(),
+        })
+    }
+
+    /// All of it.
+    pub fn text(&self) -> String {
+        let effect = &self.effect;
+        let mut text = format!("{}, {} effect\n\n", effect.name, effect.family.word());
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "{}", effect.law());
+        let picture = effect.picture();
+        if !picture.is_empty() {
+            let _ = writeln!(text, "\n{picture}");
+        }
+        let _ = writeln!(
+            text,
+            "\nSites: each {}. In {}: {}",
+            effect.site.about(),
+            self.mechanism,
+            if self.sites.is_empty() {
+                "none".to_owned()
+            } else {
+                self.sites.join(", ")
+            }
+        );
+        let Some(first) = self.sites.first() else {
+            return text;
+        };
+        if self.items.trim().is_empty() {
+            text += "A spec cannot express it: it acts on signals or values of a rig, and `appell apply` says where it \
+                     belongs.\n";
+        } else {
+            let _ = writeln!(
+                text,
+                "\nIn a spec, {first} is (sizes at zero, where `appell apply` writes those that it found):\n\n{}",
+                self.items.trim()
+            );
+        }
+        text += "\n`appell diagnose` looks for it wherever it has a site.\n";
+        text
+    }
+
+    /// The same for programs.
+    pub fn json(&self) -> Value {
+        let effect = &self.effect;
+        json!({
+            "name": effect.name,
+            "family": effect.family.word(),
+            "site": effect.site.word(),
+            "sites": effect.site.about(),
+            "about": effect.about,
+            "law": effect.law(),
+            "picture": effect.picture(),
+            "example": { "mechanism": self.mechanism, "sites": self.sites, "items": self.items },
+        })
+    }
+}
+
+/// Magnitudes of recordings that there are none of: ones.
+fn magnitudes(mechanism: &Mechanism) -> Scales {
+    /// As a diagnosis has it for slow motions.
+    const NARROW: f64 = 0.005;
+    let coordinates = mechanism.coordinates.iter().count();
+    let channels = mechanism.coordinates.iter();
+    Scales {
+        rates: vec![1.0; coordinates],
+        narrow: vec![NARROW; coordinates],
+        largest: vec![1.0; mechanism.inputs.iter().count()],
+        channels: channels.map(|one| one.label.name.clone()).collect(),
+        uncertain: (0..mechanism.parameters.iter().count()).collect(),
+    }
+}

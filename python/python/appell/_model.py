@@ -153,7 +153,10 @@ class Model(_appell.Model):
 
     @cached_property
     def _scales(self) -> dict[str, float]:
-        return {name: quantity.scale for name, quantity in self.quantities.items()}
+        """SI units in one of the spec, by name; a rate, `psi_dot` or `dot(psi)`, has that of its coordinate."""
+        scales = {name: quantity.scale for name, quantity in self.quantities.items()}
+        rates = {rate: scales[q] for q in self.coordinates for rate in (f"{q}_dot", f"dot({q})")}
+        return rates | scales
 
     # Vectors
 

@@ -13,7 +13,7 @@ use appell_gap::inverse::RelationError;
 use appell_recordings::DataError;
 use appell_runtime::signal::SignalError;
 use appell_runtime::simulate::SimulationError;
-use appell_spec::{Diagnostic, Report};
+use appell_spec::{Diagnostic, Report, visible};
 
 use crate::control::DesignError;
 use crate::field::Field;
@@ -24,7 +24,7 @@ use crate::fmu::FmuError;
 #[non_exhaustive]
 pub enum Error {
     /// The request names something that does not exist, or is inconsistent.
-    #[error("{field}: {message}")]
+    #[error("{field}: {}", visible(message))]
     Request {
         /// The part that is wrong.
         field: Field,
@@ -38,7 +38,7 @@ pub enum Error {
     #[error("{}", .0.plain())]
     Report(Box<Report>),
     /// A file is wrong as a whole.
-    #[error("{file}: {message}")]
+    #[error("{}: {}", visible(file), visible(message))]
     Data {
         /// The file.
         file: String,
@@ -46,7 +46,7 @@ pub enum Error {
         message: String,
     },
     /// A file cannot be read or written.
-    #[error("cannot {doing} {}: {cause}", path.display())]
+    #[error("cannot {doing} {}: {cause}", visible(&path.to_string_lossy()))]
     File {
         /// `read` or `write`.
         doing: &'static str,
@@ -60,10 +60,10 @@ pub enum Error {
     #[error(transparent)]
     Unreadable(FileError),
     /// Recordings cannot be used.
-    #[error(transparent)]
-    Recording(DataError),
+    #[error("{}", visible(&.0.to_string()))]
+    Recording(#[source] DataError),
     /// A table of inputs is not a function of time.
-    #[error("{file}: {source}")]
+    #[error("{}: {source}", visible(file))]
     Table {
         /// The file.
         file: String,
@@ -92,7 +92,7 @@ pub enum Error {
     #[error(transparent)]
     Design(Box<DesignError>),
     /// A failure at one value of a schedule.
-    #[error("at {place}: {source}")]
+    #[error("at {}: {source}", visible(place))]
     At {
         /// The quantity with its value.
         place: String,
@@ -118,8 +118,8 @@ pub enum Error {
     #[error("the result is not JSON: {0}")]
     Json(#[from] serde_json::Error),
     /// Another computation failed.
-    #[error(transparent)]
-    Computation(Box<dyn std::error::Error + Send + Sync>),
+    #[error("{}", visible(&.0.to_string()))]
+    Computation(#[source] Box<dyn std::error::Error + Send + Sync>),
     /// Several failures.
     #[error("{}", plain(.0))]
     Several(Vec<Error>),

@@ -92,3 +92,21 @@ fn no_error_names_a_flag() {
         assert!(!flags.any(is_flag), "{text}");
     }
 }
+
+#[test]
+fn foreign_texts_in_errors_command_no_terminal() {
+    let evil = "a\u{202e}\u{1b}[2J.toml";
+    let errors = [
+        Model::from_file(Path::new(evil)).err().unwrap(),
+        Model::find(evil).err().unwrap(),
+        Error::data(evil, evil),
+        Error::request(Field::Study, evil),
+        Error::computation(evil),
+        Model::from_spec(evil).err().unwrap(),
+    ];
+    for error in errors {
+        let told = error.to_string();
+        assert!(!told.contains(['\u{202e}', '\u{1b}']), "{told:?}");
+        assert!(told.contains("\\u{202e}"), "{told}");
+    }
+}

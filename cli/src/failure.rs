@@ -1,9 +1,10 @@
 //! Failures on standard error, and the exit status.
 
+use std::borrow::Cow;
 use std::io::{IsTerminal, Write as _};
 
 use appell::{Class, Field};
-use appell_spec::Report;
+use appell_spec::{Report, visible};
 
 use crate::flags::flag;
 
@@ -44,28 +45,38 @@ pub(crate) fn status(error: &Error) -> u8 {
     }
 }
 
+/// Ends with what clap says of the arguments; those that hide something are shown without colours.
+pub(crate) fn usage(error: &clap::Error) -> ! {
+    let text = error.to_string();
+    if let Cow::Owned(text) = visible(&text) {
+        to_stderr(&text);
+        std::process::exit(error.exit_code());
+    }
+    error.exit()
+}
+
 /// Prints a failure on standard error.
 pub(crate) fn print(error: &Error) {
-    tell(&format!("{}\n", message(error)));
+    to_stderr(&format!("{}\n", message(error)));
 }
 
 fn message(error: &Error) -> String {
     match error {
         Error::Library(error) => of_library(error),
         Error::Several(all) => all.iter().map(message).collect::<Vec<_>>().join("\n\n"),
-        other => format!("error: {other}"),
+        other => format!("error: {}", visible(&other.to_string())),
     }
 }
 
 fn of_library(error: &appell::Error) -> String {
     match error {
-        appell::Error::Report(report) => shown(report).trim_end().to_owned(),
+        appell::Error::Report(report) => shown(report),
         appell::Error::Expression(error) => {
             let report = error.report(&format!("{} {}", name(error.field), error.name));
-            shown(&report).trim_end().to_owned()
+            shown(&report)
         }
         appell::Error::Several(all) => all.iter().map(of_library).collect::<Vec<_>>().join("\n\n"),
-        other => format!("error: {}", worded(other)),
+        other => format!("error: {}", visible(&worded(other))),
     }
 }
 
@@ -94,9 +105,9 @@ fn name(field: Field) -> &'static str {
     flag(field).unwrap_or_else(|| field.name())
 }
 
-/// Writes to standard error; if that is closed, only the exit status remains.
+/// Writes to standard error, hidden characters of foreign texts visibly.
 pub(crate) fn tell(text: &str) {
-    let _ = std::io::stderr().write_all(text.as_bytes());
+    to_stderr(&visible(text));
 }
 
 /// Prints a note that changes no result.
@@ -104,12 +115,23 @@ pub(crate) fn note(text: &str) {
     tell(&format!("note: {text}\n"));
 }
 
-/// A report, in colour on a terminal.
-pub(crate) fn shown(report: &Report) -> String {
+/// Prints a report on standard error.
+pub(crate) fn report(report: &Report) {
+    to_stderr(&(shown(report) + "\n"));
+}
+
+/// If standard error is closed, only the exit status remains.
+fn to_stderr(text: &str) {
+    let _ = std::io::stderr().write_all(text.as_bytes());
+}
+
+/// A report, in colour on a terminal. It writes foreign texts visibly itself.
+fn shown(report: &Report) -> String {
     let wanted = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
-    if wanted {
+    let text = if wanted {
         report.coloured()
     } else {
         report.plain()
-    }
+    };
+    text.trim_end().to_owned()
 }

@@ -33,7 +33,8 @@ static ALLOCATOR: MiMalloc = MiMalloc;
 fn main() -> ExitCode {
     CompleteEnv::with_factory(completion::command).complete();
     interrupt::install();
-    match run(&Arguments::command().get_matches()) {
+    let given = Arguments::command().try_get_matches();
+    match run(&given.unwrap_or_else(|error| failure::usage(&error))) {
         Ok(()) => ExitCode::SUCCESS,
         Err(failure) => {
             failure::print(&failure);

@@ -4,12 +4,16 @@ use std::path::PathBuf;
 
 use crate::failure::Error;
 use appell::files;
+use appell_spec::visible;
+use console::Term;
 
 use crate::failure::tell;
 
-/// Writes to standard output.
+/// Writes to standard output, hidden characters of foreign texts visibly.
 pub(crate) fn print(text: &str) -> Result<(), Error> {
-    Ok(files::to_stdout(|to| to.write_all(text.as_bytes()))?)
+    Ok(files::to_stdout(|to| {
+        to.write_all(visible(text).as_bytes())
+    })?)
 }
 
 /// Writes to standard output, or to standard error if one of the files is standard output.
@@ -20,6 +24,12 @@ pub(crate) fn print_beside(text: &str, files: &[&Option<PathBuf>]) -> Result<(),
         return Ok(());
     }
     print(text)
+}
+
+/// The width of the terminal that shows standard output, if one does.
+pub(crate) fn columns() -> Option<usize> {
+    let (_, columns) = Term::stdout().size_checked()?;
+    Some(columns.into())
 }
 
 /// A word of a command, in quotes where a shell would take it apart or expand it.

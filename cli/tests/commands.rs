@@ -388,3 +388,61 @@ fn completions_exist_for_shells() {
             .contains("COMPLETE")
     );
 }
+
+#[test]
+fn a_page_of_a_shipped_mechanism_begins_with_its_spec() {
+    let folder = Folder::new();
+    let command = "appell derive pendulum --format spec --out pendulum.toml";
+    folder.fails(2, &["watch", "pendulum"], &[command, "appell watch"]);
+    folder.done(&command.split(' ').skip(1).collect::<Vec<_>>());
+    folder.done(&["check", "pendulum.toml"]);
+}
+
+#[test]
+fn every_effect_has_a_law_a_picture_sites_and_an_example() {
+    let folder = Folder::new();
+    let told = folder.done(&["effects", "--json", "effects.json"]).stdout;
+    let effects = folder.json("effects.json");
+    let effects = effects["effects"].as_array().expect("a list");
+    assert!(effects.len() > 20);
+    for effect in effects {
+        assert!(told.contains(effect["name"].as_str().expect("a name")));
+        for key in ["law", "picture", "sites"] {
+            assert_ne!(effect[key], "", "{effect}");
+        }
+        assert_ne!(
+            effect["example"]["sites"],
+            serde_json::json!([]),
+            "{effect}"
+        );
+    }
+    let told = folder
+        .done(&["effects", "spring", "--model", "pendulum"])
+        .stdout;
+    for says in ["F = -k q", "spring@theta", "kind = \"generalized\"", "\\ |"] {
+        assert!(told.contains(says), "{told}");
+    }
+    folder.fails(2, &["effects", "sprnig"], &["did you mean `spring`?"]);
+}
+
+#[test]
+fn names_of_others_command_no_terminal() {
+    let folder = Folder::new();
+    let (evil, shown) = ("a\u{1b}[2J\u{202e}", "a\\u{1b}[2J\\u{202e}");
+    let manifest = "mechanism = \"a\\u001b[2J\\u202e\"\n[channels]\n[runs]\nfit = [\"run.csv\"]\n";
+    folder.write("recording.toml", manifest);
+    let spec = format!("{evil}.toml");
+    folder.write(&spec, &format!("[mechanism]\nname = \"{evil}\"\n"));
+    // Commands to the terminal are left out of what is said about flags.
+    let flag = "a\\u{202e}";
+    let cases: [(i32, &[&str], &str); 4] = [
+        (3, &["check", &spec], shown),
+        (2, &["check", evil], shown),
+        (3, &["recording", "."], shown),
+        (2, &["new", "one", evil], flag),
+    ];
+    for (status, arguments, says) in cases {
+        let told = folder.fails(status, arguments, &[says]).stderr;
+        assert!(!told.contains(['\u{1b}', '\u{202e}']), "{told:?}");
+    }
+}

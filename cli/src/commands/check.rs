@@ -8,7 +8,7 @@ use appell::setup::Assignment;
 use appell::{Source, files};
 use serde_json::{Value, json};
 
-use crate::failure::{Error, shown, tell};
+use crate::failure::{self, Error};
 use crate::{output, progress};
 
 /// Validates specs and summarises the mechanisms they describe.
@@ -93,7 +93,7 @@ impl Check {
             }
         }
         if !checked.warnings().diagnostics().is_empty() {
-            tell(&(shown(checked.warnings()).trim_end().to_owned() + "\n"));
+            failure::report(checked.warnings());
         }
         let typed = (!self.equations.is_empty()).then(|| source.compare(&self.equations));
         let typed = typed.transpose()?;

@@ -7,7 +7,7 @@ use appell::robot::{self, Imported, LeftOut, Letters, Lock, Options, Without};
 use appell::{Severity, files};
 
 use crate::destinations::extension;
-use crate::failure::{Error, shown, tell};
+use crate::failure::{self, Error, tell};
 use crate::output::{self, shell};
 
 /// Most lines of the file that are named for one kind of element.
@@ -104,7 +104,8 @@ impl Import {
         for warnings in &robot.warnings {
             let mut findings = warnings.diagnostics().iter();
             if findings.any(|finding| finding.severity != Severity::Note) {
-                tell(&format!("{}\n\n", shown(warnings).trim_end()));
+                failure::report(warnings);
+                tell("\n");
             }
         }
         if !robot.left_out.is_empty() {

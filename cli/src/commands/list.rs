@@ -86,12 +86,10 @@ impl List {
                 info.title.to_string(),
             ]);
         }
-        let used: usize = (0..3).map(|column| width(&rows, column) + GAP).sum();
-        let room = WIDTH - used - GAP;
-        for row in &mut rows {
-            row[3] = cut(&row[3], room);
+        if let Some(columns) = output::columns() {
+            fit(&mut rows, columns);
         }
-        let note = "`--json` has sources, names and costs\n";
+        let note = "`--json` has sources, names and costs; `appell effects` lists what a diagnosis looks for\n";
         output::print(&(table(&rows, 1..2) + note))
     }
 }
@@ -124,9 +122,21 @@ fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) ->
     }
 }
 
-/// Columns of a terminal, and those between two columns of a table.
-const WIDTH: usize = 80;
-const GAP: usize = 2;
+/// Cuts the last column where a table is wider than a terminal.
+fn fit(rows: &mut [Vec<String>], columns: usize) {
+    /// Between two columns of a table.
+    const GAP: usize = 2;
+    /// A title that is shorter says nothing.
+    const LEAST: usize = 12;
+    let Some(last) = rows.first().and_then(|row| row.len().checked_sub(1)) else {
+        return;
+    };
+    let used: usize = (0..last).map(|column| width(rows, column) + GAP).sum();
+    let room = columns.saturating_sub(used + GAP).max(LEAST);
+    for row in rows {
+        row[last] = cut(&row[last], room);
+    }
+}
 
 fn width(rows: &[Vec<String>], column: usize) -> usize {
     let widths = rows.iter().map(|row| row[column].chars().count());
@@ -195,4 +205,27 @@ fn entry(shipped: &Shipped) -> Result<Value, Error> {
         "outputs": names(&info.outputs),
         "operations": costs,
     }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_list_fits_the_terminal() {
+        let title = "a title of forty letters, more or less";
+        let row = || {
+            ["mechanism", "3", "rolling", title]
+                .map(str::to_owned)
+                .to_vec()
+        };
+        for columns in [20, 50, 60, 200] {
+            let mut rows = vec![row(), row()];
+            fit(&mut rows, columns);
+            let text = table(&rows, 1..2);
+            let widest = text.lines().map(|line| line.chars().count()).max();
+            assert!(widest <= Some(columns.max(42)), "{text}");
+            assert_eq!(text.contains(title), columns == 200, "{text}");
+        }
+    }
 }

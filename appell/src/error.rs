@@ -275,7 +275,6 @@ impl Error {
     pub fn remedy(&self) -> Option<Field> {
         match self {
             Self::Identify(IdentifyError::NothingFree) => Some(Field::Free),
-            Self::Identify(error) if !advice(error).is_empty() => Some(Field::Start),
             Self::Fmu(error) if error.is_about_machine_code() => Some(Field::Sources),
             Self::At { source, .. } => source.remedy(),
             _ => None,
@@ -332,7 +331,8 @@ fn of_diagnosis(error: &DiagnoseError) -> Class {
 fn advice(error: &IdentifyError) -> &'static str {
     match error {
         IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {
-            "; if the nominal parameters are far off, start from multiple shooting"
+            "; neither the parameters of the rig nor multiple shooting led to an optimum: state parameters nearer to the \
+             truth, or estimate fewer"
         }
         _ => "",
     }
@@ -405,7 +405,7 @@ impl From<DataError> for Error {
     fn from(error: DataError) -> Self {
         match error {
             DataError::Report(report) => Self::Report(report),
-            DataError::File { path, cause } => Self::reading(&path)(cause),
+            DataError::File(error) => error.into(),
             DataError::Several(errors) => {
                 Self::Several(errors.into_iter().map(Self::from).collect())
             }

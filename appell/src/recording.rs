@@ -1,12 +1,13 @@
 //! Recordings: reading, and warnings about the data.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use appell_gap::units;
 use appell_models::ALL;
 use appell_recordings::MANIFEST;
 pub use appell_recordings::{
-    Channel, DataError, DataSet, Finding, FindingKind, Measured, Parameter, Part, Role, Run, Spec,
+    Channel, DataError, DataSet, Finding, FindingKind, Frame, Measured, Parameter, Part, Role, Run,
+    Spec,
 };
 use appell_report::recording::sentence;
 use appell_report::text::number;
@@ -26,11 +27,46 @@ pub fn read_of(source: &Source, paths: &[PathBuf]) -> Result<DataSet, Error> {
     read_with(paths, Some(source))
 }
 
-fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
-    let spec = source.map(|source| Spec {
+/// Recordings in memory. Without a description, the text of a `recording.toml` with its path, columns have the names
+/// and units of the mechanism.
+pub fn read_frames(
+    frames: &[Frame],
+    description: Option<(&Path, &str)>,
+    model: Option<&str>,
+) -> Result<DataSet, Error> {
+    let spec = model.map(Source::find).transpose()?;
+    let spec = spec.as_ref().map(spec_of);
+    with_doubts(match (description, spec) {
+        (Some(described), spec) => {
+            appell_recordings::read_frames(described, frames, &library(), spec)?
+        }
+        (None, Some(spec)) => appell_recordings::read_bare_frames(spec, frames)?,
+        (None, None) => return Err(Error::request(Field::Recordings, UNNAMED)),
+    })
+}
+
+/// What columns without a description lack.
+const UNNAMED: &str = "CSV files and data frames need the mechanism whose names their columns have; name a shipped one \
+                       or a spec";
+
+fn spec_of(source: &Source) -> Spec {
+    Spec {
         file: source.file.clone(),
         text: source.text.clone(),
+    }
+}
+
+/// The shipped mechanisms.
+fn library() -> Vec<(&'static str, Spec)> {
+    let shipped = ALL.iter().map(|shipped| {
+        let (file, text) = (shipped.file.to_owned(), shipped.spec.to_owned());
+        (shipped.name, Spec { file, text })
     });
+    shipped.collect()
+}
+
+fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
+    let spec = source.map(spec_of);
     if let Some(path) = paths.iter().find(|path| !path.exists()) {
         let message = format!("there is no folder or file `{}`", path.display());
         return Err(Error::request(Field::Recordings, message));
@@ -38,27 +74,24 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
     let described = |path: &PathBuf| path.is_dir() || path.ends_with(MANIFEST);
     match (paths, spec) {
         ([folder], spec) if described(folder) => {
-            let shipped = ALL.iter().map(|shipped| {
-                let (file, text) = (shipped.file.to_owned(), shipped.spec.to_owned());
-                (shipped.name, Spec { file, text })
-            });
-            let library: Vec<(&str, Spec)> = shipped.collect();
-            with_doubts(appell_recordings::read(folder, &library, spec)?)
+            with_doubts(appell_recordings::read(folder, &library(), spec)?)
         }
         (paths, _) if paths.iter().any(described) => Err(Error::request(
             Field::Recordings,
             "give one data set, or CSV files and their mechanism",
         )),
         (paths, Some(spec)) => with_doubts(appell_recordings::read_bare(spec, paths)?),
-        (_, None) => Err(Error::request(
-            Field::Recordings,
-            "CSV files need the mechanism whose names their columns have; name a shipped one or a spec",
-        )),
+        (_, None) => Err(Error::request(Field::Recordings, UNNAMED)),
     }
 }
 
 /// The data set with warnings about units.
 fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
+    // Motions by a wrong clock tell nothing of units.
+    let is_slow = |finding: &Finding| finding.kind == FindingKind::SlowClock;
+    if set.findings.iter().any(is_slow) {
+        return Ok(set);
+    }
     let mut shipped = ALL.iter();
     let source = Source {
         file: set.spec.file.clone(),
@@ -92,7 +125,18 @@ pub fn check(set: &DataSet) -> Result<(), Error> {
         let run = set.runs.first().map_or("", |run| &run.name);
         return Err(Error::data(run, message));
     }
+    check_rows(set)?;
     check_units(set)
+}
+
+/// Refuses runs that are too short for any estimate.
+fn check_rows(set: &DataSet) -> Result<(), Error> {
+    let mut findings = set.findings.iter();
+    let short = findings.find(|finding| finding.kind == FindingKind::FewRows);
+    short.map_or(Ok(()), |finding| {
+        let run = finding.run.as_deref().unwrap_or_default();
+        Err(Error::data(run, &finding.message))
+    })
 }
 
 /// Refuses times that are hardly in seconds, and channels whose unit the motion contradicts.

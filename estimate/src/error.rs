@@ -73,6 +73,18 @@ pub enum EstimateError {
         /// What is missing.
         what: &'static str,
     },
+    /// Recordings whose rows lie far apart, or that are long.
+    #[error(
+        "the recordings take {steps:.1e} steps of the filter, which need {:.0} GB; are the times in the unit that is \
+         stated? Leave out rows, or cut runs at their gaps",
+        bytes / 1e9
+    )]
+    TooManySteps {
+        /// Steps of all recordings.
+        steps: f64,
+        /// Memory for them.
+        bytes: f64,
+    },
     /// A wrong number of values.
     #[error("{found} values were given, {expected} are needed")]
     ValueCount {

@@ -13,10 +13,14 @@ use crate::kalman::filter::{Innovation, Pass};
 use crate::matrix::add;
 use crate::motion::plant::{Plant, StateSpace};
 use crate::motion::timeline::{Action, timeline};
+use crate::motion::transition::stages_len;
 use crate::parallel::in_parallel;
 
 /// Rows for which no thread is worth its start.
 const FEW_ROWS: usize = 200;
+
+/// Largest memory of the tapes of all recordings in bytes, 16 GiB; more indicates a wrong unit of the times.
+const MOST_BYTES: f64 = (1_u64 << 34) as f64;
 
 /// A setup with recordings: functions of the values that [`Layout`] lists.
 pub struct Estimation<'a> {
@@ -33,6 +37,7 @@ impl<'a> Estimation<'a> {
     /// Checks that setup and recordings are consistent.
     pub fn new(setup: &'a Setup<'a>, recordings: &'a [Recording]) -> Result<Self, EstimateError> {
         setup.check(recordings)?;
+        fits_in_memory(setup, recordings)?;
         let plant = Plant::new(setup)?;
         Ok(Self {
             setup,
@@ -363,4 +368,19 @@ fn first_reading(recording: &Recording, channel: usize) -> f64 {
     let rows = 0..recording.times().len();
     let mut readings = rows.map(|row| recording.measured(row)[channel]);
     readings.find(|reading| !reading.is_nan()).unwrap_or(0.0)
+}
+
+/// Checks the length of the tapes.
+fn fits_in_memory(setup: &Setup<'_>, recordings: &[Recording]) -> Result<(), EstimateError> {
+    let steps = |recording: &Recording| {
+        let times = recording.times();
+        let length = times[times.len() - 1] - times[0];
+        (length / setup.longest_step).max(times.len() as f64)
+    };
+    let steps: f64 = recordings.iter().map(steps).sum();
+    let bytes = steps * (size_of::<f64>() * stages_len(setup.state_len())) as f64;
+    if bytes > MOST_BYTES {
+        return Err(EstimateError::TooManySteps { steps, bytes });
+    }
+    Ok(())
 }

@@ -2,6 +2,7 @@
 //!
 //! | file | idea |
 //! |---|---|
+//! | `command.rs` | the inputs between rows |
 //! | `closure.rs` | closed loops, whose coordinates depend on each other |
 //! | `plant.rs` | the equations at one point, with their Jacobians |
 //! | `sensors.rs` | lagging channels: filters of what they measure |
@@ -9,6 +10,7 @@
 //! | `transition.rs` | one step and its transition matrix; step control |
 
 pub(crate) mod closure;
+pub(crate) mod command;
 pub(crate) mod plant;
 mod sensors;
 pub(crate) mod timeline;

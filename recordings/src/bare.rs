@@ -6,11 +6,11 @@ use appell_spec::Mechanism;
 
 use crate::channel::{Channel, Measured, Role};
 use crate::clock::Sampling;
+use crate::frame::{Frame, Source};
 use crate::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
 use crate::stretches;
-use crate::{
-    DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, format, noise, run,
-};
+use crate::time::Stated;
+use crate::{DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, noise, run};
 
 /// Held-out fraction: the last third of several runs, or of one.
 const HELD_OUT: usize = 3;
@@ -20,15 +20,26 @@ const APART: f64 = 1.0;
 /// Reads CSV files whose columns have the names and units of the spec. The last third of the files is
 /// held out; of a single one its last third, after a second.
 pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
+    let sources: Vec<Source<'_>> = files.iter().cloned().map(Source::File).collect();
+    assemble(spec, &sources)
+}
+
+/// The same of runs in memory.
+pub fn read_bare_frames(spec: Spec, frames: &[Frame]) -> Result<DataSet, DataError> {
+    let sources: Vec<Source<'_>> = frames.iter().map(Source::Frame).collect();
+    assemble(spec, &sources)
+}
+
+fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
     let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
     let Some(first) = files.first() else {
         return Err(DataError::whole(spec.file, "there is no recording"));
     };
     if files.len() > MAX_RUNS {
         let message = format!("a data set has at most {MAX_RUNS} runs");
-        return Err(DataError::whole(first.to_string_lossy(), message));
+        return Err(DataError::whole(first.name(), message));
     }
-    let channels = channels(&format::header(first)?, &mechanism);
+    let channels = channels(&first.header()?, &mechanism);
     if !channels.iter().any(Channel::is_measured) {
         let message = format!(
             "no column is a quantity of `{}`; it has {}; describe columns with other names and units in \
@@ -36,7 +47,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
             mechanism.name,
             Measured::names(&mechanism).join(", ")
         );
-        return Err(DataError::whole(first.to_string_lossy(), message));
+        return Err(DataError::whole(first.name(), message));
     }
     let held_out = match files.len() {
         1 => 0,
@@ -44,18 +55,21 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
     };
     let (mut runs, mut findings, mut errors) = (Vec::new(), Vec::new(), Vec::new());
     let mut budget = MAX_NUMBERS;
-    for (index, path) in files.iter().enumerate() {
+    for (index, source) in files.iter().enumerate() {
         let part = if index + held_out < files.len() {
             Part::Fit
         } else {
             Part::Test
         };
-        match format::read(path, None, &channels, &mut budget) {
+        match source.read(&Stated::default(), &channels, &mut budget) {
             Ok(table) => {
-                let name = path.to_string_lossy().into_owned();
-                let run = run::read(name, part, table, &channels, &mut findings);
-                findings.extend(run.sampling.doubt().map(|doubt| doubt.in_run(&run.name)));
-                runs.push(run);
+                runs.push(run::read(
+                    source.name(),
+                    part,
+                    table,
+                    &channels,
+                    &mut findings,
+                ));
             }
             Err(error) => errors.push(error),
         }
@@ -86,6 +100,7 @@ pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
     };
     noise::find(&mut set);
     set.tell_what_lacks();
+    set.tell_smooth_inputs();
     set.findings.sort_by_key(Finding::order);
     Ok(set)
 }

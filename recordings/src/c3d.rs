@@ -14,8 +14,9 @@
 use std::path::Path;
 
 use crate::DataError;
-use crate::clock::TIME;
-use crate::table::{Columns, Wanted, bytes, too_many};
+use crate::limits::MAX_BYTES;
+use crate::table::{Columns, OwnClock, Wanted, too_many};
+use crate::time::TIME;
 
 /// Bytes of a block.
 const BLOCK: usize = 512;
@@ -26,7 +27,7 @@ type Name = (&'static str, &'static str);
 
 /// Reads a file; `budget` is the most numbers of all columns together.
 pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
-    let bytes = bytes(path)?;
+    let bytes = appell_files::read(path, MAX_BYTES)?;
     let place = path.to_string_lossy();
     let file = File::of(&bytes).ok_or_else(|| {
         let message = "this is no C3D file, or it is cut off in its header or parameters";
@@ -242,6 +243,7 @@ impl<'b> File<'b> {
         let mut columns = Columns {
             names: vec![TIME.to_owned()],
             values: vec![Vec::new()],
+            clock: OwnClock::Column,
             findings: Vec::new(),
         };
         let mut left = budget;

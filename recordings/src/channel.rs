@@ -1,7 +1,7 @@
 //! Kind of a column.
 
 use appell_spec::Mechanism;
-use appell_spec::mechanism::{CoordinateId, InputId, Label, OutputId, SpeedId};
+use appell_spec::mechanism::{CoordinateId, InputId, Interpolation, Label, OutputId, SpeedId};
 use appell_spec::units::Unit;
 
 use crate::level::Noise;
@@ -19,6 +19,8 @@ pub struct Channel {
     pub unit_at: Option<(String, usize, usize)>,
     /// Whether the description vouches for the unit.
     pub unit_checked: bool,
+    /// How an input runs between rows, where it is stated: held or along lines.
+    pub interpolation: Option<Interpolation>,
     /// Noise level as stated, in SI.
     pub stated_noise: Option<f64>,
     /// Noise level that is used; `None` for inputs, for unused columns, and if unknown.
@@ -105,6 +107,7 @@ impl Channel {
             unit,
             unit_at: None,
             unit_checked: false,
+            interpolation: None,
             stated_noise,
             noise: None,
         }

@@ -1,13 +1,11 @@
 //! Increasing times: rows in order, lengths of steps, gaps.
 
-use appell_spec::{Code, Diagnostic, Report};
+use appell_spec::{Code, Diagnostic, Report, shown};
 
 use crate::finding::{counted, listed};
 use crate::limits::MAX_LEFT_OUT;
+use crate::time::{self, TIME};
 use crate::{DataError, Finding, FindingKind};
-
-/// The column of the times.
-pub(crate) const TIME: &str = "t";
 
 /// Length of a step, relative to the median, beyond which it is a gap.
 const GAP: f64 = 5.0;
@@ -133,8 +131,8 @@ impl Sampling {
         }
     }
 
-    /// Whether the times look like those of another unit than seconds.
-    pub(crate) fn doubt(&self) -> Option<Finding> {
+    /// Whether the times of a column look like those of another unit than seconds.
+    pub(crate) fn doubt(&self, column: &str) -> Option<Finding> {
         // Of the units of loggers the one in which rows come at 1 Hz to 1 kHz.
         let unit = match self.step {
             step if step < SLOW => return None,
@@ -142,14 +140,20 @@ impl Sampling {
             step if step < 1e6 * SLOW => "us",
             _ => "ns",
         };
+        let line = |unit: &str| match column {
+            TIME => format!("`{TIME} = {{ unit = \"{unit}\" }}`"),
+            other => time::line(other, unit),
+        };
         let message = format!(
-            "a row every {} s ({} Hz): `t` is read in seconds; if these are {unit}, write `t = {{ unit = \"{unit}\" }}` \
-             in `[channels]` of recording.toml, or convert them; if they are seconds, write \
-             `t = {{ unit = \"s\" }}`",
+            "a row every {} s ({} Hz): `{}` is read in seconds; if these are {unit}, write {} in `[channels]` of \
+             recording.toml, or convert them; if they are seconds, write {}",
             (1e3 * self.step).round() / 1e3,
-            (1e3 / self.step).round() / 1e3
+            (1e3 / self.step).round() / 1e3,
+            shown(column),
+            line(unit),
+            line("s")
         );
-        Some(Finding::new(FindingKind::SlowClock, message).of_channel(TIME))
+        Some(Finding::new(FindingKind::SlowClock, message).of_channel(column))
     }
 
     pub(crate) fn findings(&self) -> Option<Finding> {

@@ -5,25 +5,26 @@ use std::io::{BufRead, BufReader, Read as _};
 use std::ops::Range;
 use std::path::Path;
 
+use appell_files::FileError;
 use appell_spec::expr::Span;
 use appell_spec::{Code, Diagnostic, Report, closest, shown};
 
 use crate::channel::Channel;
-use crate::clock::{Clock, TIME};
+use crate::clock::Clock;
 use crate::finding::listed;
-use crate::limits::{MAX_LINE, MAX_MISTAKES};
-use crate::table::{Table, checked, regular, too_many};
+use crate::limits::{MAX_FILE, MAX_LINE, MAX_MISTAKES};
+use crate::table::{Table, checked, too_many};
+use crate::time::{NoTime, Stated, TimeColumn};
 use crate::{DataError, Finding, FindingKind, motive};
 
-/// Reads the columns of the channels and the times, whose unit is `time_unit` s. `budget` counts down the
-/// numbers that may still come.
+/// Reads the columns of the channels and the times. `budget` counts down the numbers that may still come.
 pub(crate) fn read(
     path: &Path,
-    time_unit: f64,
+    time: &Stated,
     channels: &[Channel],
     budget: &mut usize,
 ) -> Result<Table, DataError> {
-    open(path)?.table(time_unit, channels, budget)
+    open(path)?.table(time, channels, budget)
 }
 
 /// The names of the columns.
@@ -32,12 +33,7 @@ pub(crate) fn header(path: &Path) -> Result<Vec<String>, DataError> {
 }
 
 fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
-    let failed = |cause| DataError::File {
-        path: path.to_owned(),
-        cause,
-    };
-    regular(path)?;
-    let file = File::open(path).map_err(failed)?;
+    let file = appell_files::open(path, MAX_FILE)?;
     Ok(CsvFile {
         rows: Rows::new(path, BufReader::new(file))?,
         mistakes: Vec::new(),
@@ -153,15 +149,14 @@ impl<R: BufRead> CsvFile<R> {
 
     fn table(
         mut self,
-        time_unit: f64,
+        time: &Stated,
         channels: &[Channel],
         budget: &mut usize,
     ) -> Result<Table, DataError> {
         let mut findings = Vec::new();
-        let places = self.places(channels, &mut findings);
-        if !self.mistakes.is_empty() {
+        let Some(places) = self.places(time, channels, &mut findings) else {
             return Err(DataError::several(self.mistakes));
-        }
+        };
         let mut clock = Clock::default();
         let mut times = Vec::new();
         let mut columns: Vec<Vec<f64>> = vec![Vec::new(); channels.len()];
@@ -178,7 +173,7 @@ impl<R: BufRead> CsvFile<R> {
                 }
                 continue;
             }
-            let t = self.number(places.time, time_unit);
+            let t = self.number(places.time.index, places.time.scale());
             read.clear();
             for (place, channel) in places.channels.iter().zip(channels) {
                 read.push(self.number(*place, channel.unit.scale));
@@ -199,13 +194,25 @@ impl<R: BufRead> CsvFile<R> {
         }
         let file = &*self.rows.lines.file;
         findings.extend(clock.findings(file)?);
-        checked(file, channels, times, columns, findings)
+        checked(file, (&places.time, times), channels, columns, findings)
     }
 
-    /// Where the time and the channels stand.
-    fn places(&mut self, channels: &[Channel], findings: &mut Vec<Finding>) -> Places {
+    /// Where the time and the channels stand; nothing where one is missing.
+    fn places(
+        &mut self,
+        time: &Stated,
+        channels: &[Channel],
+        findings: &mut Vec<Finding>,
+    ) -> Option<Places> {
         let header = self.rows.header.clone();
         let line = self.rows.line();
+        let time = match time.find(&header, channels) {
+            Ok(time) => Some(time),
+            Err(NoTime { message, help }) => {
+                self.tell(Code::MissingKey, message, line.clone(), Some(help));
+                None
+            }
+        };
         let mut place = |name: &str, help: &str| {
             let mut at = (0..header.len()).filter(|&i| header[i] == name);
             match (at.next(), at.next()) {
@@ -225,10 +232,13 @@ impl<R: BufRead> CsvFile<R> {
                 }
             }
         };
-        let time = place(TIME, "name the column of times in seconds `t`");
+        if let Some(time) = &time {
+            place(&time.name, "");
+        }
         let about = "every run has a column for each line of `[channels]`";
         let channels: Vec<usize> = channels.iter().map(|c| place(&c.column, about)).collect();
-        let unknown = (0..header.len()).filter(|i| *i != time && !channels.contains(i));
+        let time = time.filter(|_| self.mistakes.is_empty())?;
+        let unknown = (0..header.len()).filter(|i| *i != time.index && !channels.contains(i));
         let unknown: Vec<String> = unknown.map(|i| shown(&header[i])).collect();
         if !unknown.is_empty() {
             let message = format!(
@@ -237,7 +247,7 @@ impl<R: BufRead> CsvFile<R> {
             );
             findings.push(Finding::new(FindingKind::UnknownColumn, message));
         }
-        Places { time, channels }
+        Some(Places { time, channels })
     }
 
     /// The number in a cell in SI, NaN where it is missing; tells where there is something else.
@@ -265,7 +275,7 @@ impl<R: BufRead> CsvFile<R> {
 const MISSING: [&str; 4] = ["", "na", "n/a", "null"];
 
 struct Places {
-    time: usize,
+    time: TimeColumn,
     channels: Vec<usize>,
 }
 
@@ -301,7 +311,7 @@ impl<R: BufRead> Lines<R> {
             self.bytes.clear();
             let mut limited = self.reader.by_ref().take(MAX_LINE as u64 + 1);
             let read = limited.read_until(b'\n', &mut self.bytes);
-            read.map_err(|cause| DataError::File {
+            read.map_err(|cause| FileError::System {
                 path: (&self.file).into(),
                 cause,
             })?;

@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use appell_files::FileError;
 use appell_spec::Report;
 
 /// Why a data set cannot be read.
@@ -10,14 +11,9 @@ pub enum DataError {
     /// Errors in a file, with their positions.
     #[error("{0}")]
     Report(Box<Report>),
-    /// A file cannot be opened or read.
-    #[error("cannot read {}: {cause}", path.display())]
-    File {
-        /// The file.
-        path: PathBuf,
-        /// Error of the system.
-        cause: std::io::Error,
-    },
+    /// A file is not opened, or cannot be read.
+    #[error(transparent)]
+    File(#[from] FileError),
     /// A folder without a description.
     #[error(
         "{} holds no recording.toml; write one, or name the mechanism and the CSV files themselves",

@@ -11,6 +11,8 @@ pub enum FindingKind {
     BackwardTime,
     /// Rows without a time; omitted.
     MissingTime,
+    /// A run too short for an estimate.
+    FewRows,
     /// A truncated last line; omitted.
     CutOff,
     /// Rows so far apart that times are probably not in seconds.
@@ -25,6 +27,8 @@ pub enum FindingKind {
     Dropouts,
     /// Missing inputs; the previous value is held.
     HeldInput,
+    /// An input that may have been sampled from a continuous signal.
+    SmoothInput,
     /// A wrapped angle; unwrapped.
     Unwrapped,
     /// A column that the data set does not describe; ignored.
@@ -54,6 +58,7 @@ impl FindingKind {
             Self::RepeatedTime => "repeated-time",
             Self::BackwardTime => "backward-time",
             Self::MissingTime => "missing-time",
+            Self::FewRows => "few-rows",
             Self::CutOff => "cut-off",
             Self::SlowClock => "slow-clock",
             Self::Unit => "unit",
@@ -61,6 +66,7 @@ impl FindingKind {
             Self::Cut => "cut",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
+            Self::SmoothInput => "smooth-input",
             Self::Unwrapped => "unwrapped",
             Self::UnknownColumn => "unknown-column",
             Self::Constant => "constant",
@@ -79,6 +85,7 @@ impl FindingKind {
         match self {
             Self::BackwardTime
             | Self::MissingTime
+            | Self::FewRows
             | Self::SlowClock
             | Self::Unit
             | Self::Constant
@@ -92,6 +99,7 @@ impl FindingKind {
             | Self::Gap
             | Self::Cut
             | Self::Dropouts
+            | Self::SmoothInput
             | Self::Unwrapped
             | Self::UnknownColumn
             | Self::Quantised

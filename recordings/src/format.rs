@@ -2,12 +2,10 @@
 
 use std::path::Path;
 
-use appell_spec::units::Unit;
-
 use crate::channel::Channel;
-use crate::clock::TIME;
-use crate::limits::MAX_NUMBERS;
+use crate::limits::{MAX_BYTES, MAX_NUMBERS};
 use crate::table::{Columns, Table, Wanted};
+use crate::time::{Stated, may_be_time};
 use crate::{DataError, c3d, csv};
 
 /// Format of a file, by its extension.
@@ -34,29 +32,26 @@ impl Format {
     }
 }
 
-/// Reads the columns of the channels, and the times, which are in seconds where no unit is stated.
-/// `budget` counts down the numbers that may still come.
+/// Reads the columns of the channels, and the times. `budget` counts down the numbers that may still come.
 pub(crate) fn read(
     path: &Path,
-    time: Option<&Unit>,
+    time: &Stated,
     channels: &[Channel],
     budget: &mut usize,
 ) -> Result<Table, DataError> {
-    let named = |name: &str| name == TIME || channels.iter().any(|c| c.column == name);
-    let columns = match Format::of(path) {
-        Format::Csv => {
-            let scale = time.map_or(1.0, |unit| unit.scale);
-            return csv::read(path, scale, channels, budget);
-        }
-        // These formats say themselves when a row was recorded.
-        _ if time.is_some_and(|unit| !unit.is_si()) => {
-            let message = "the times of such a file are in seconds; only those of a CSV file may have \
-                           another unit";
-            return Err(DataError::whole(path.to_string_lossy(), message));
-        }
-        format => columns(path, format, &named, *budget)?,
+    let is_channel = |name: &str| channels.iter().any(|c| c.column == name);
+    let is_time = |name: &str| match &time.column {
+        Some(column) => column == name,
+        None => may_be_time(name),
     };
-    columns.table(&path.to_string_lossy(), channels, budget)
+    let wanted = |name: &str| is_time(name) || is_channel(name);
+    match Format::of(path) {
+        Format::Csv => csv::read(path, time, channels, budget),
+        format => {
+            let columns = columns(path, format, &wanted, *budget)?;
+            columns.table(&path.to_string_lossy(), time, channels, budget)
+        }
+    }
 }
 
 /// The names of the columns.
@@ -93,9 +88,9 @@ pub fn columns_of(path: &Path) -> Result<(Vec<String>, Vec<Vec<f64>>), DataError
     let format = Format::of(path);
     if !matches!(format, Format::Csv) {
         let columns = columns(path, format, &|_| true, MAX_NUMBERS)?;
-        return Ok((columns.names, columns.values));
+        return Ok(columns.in_seconds());
     }
-    let text = crate::table::bytes(path)?;
+    let text = appell_files::read(path, MAX_BYTES)?;
     let mut rows = csv::Rows::new(path, text.as_slice())?;
     let names = rows.header().to_vec();
     let mut values = vec![Vec::new(); names.len()];

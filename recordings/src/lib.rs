@@ -15,12 +15,15 @@
 //! | `manifest.rs`, `fields.rs` | content of `recording.toml`, with positions |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
 //! | `format.rs` | a run from a file of any format, by its extension |
+//! | `frame.rs` | runs in memory |
 //! | `table.rs` | the numbers of a run, in SI and with increasing times |
 //! | `csv.rs`, `motive.rs` | CSV line by line; the header of Motive |
 //! | `c3d.rs` | points and analog channels of motion capture |
 //! | `mcap.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
+//! | `time.rs` | the column of the times and its unit |
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs`, `level.rs` | quantity of a column; its noise level |
+//! | `between.rs` | inputs between rows |
 //! | `set.rs` | a data set |
 //! | `run.rs` | a run from its table: inputs held, angles unwrapped |
 //! | `quantum.rs`, `noise.rs` | resolution of a sensor; noise level, stated and estimated |
@@ -34,6 +37,7 @@
 //! computed values; findings about them concern their form.
 
 mod bare;
+mod between;
 mod c3d;
 mod channel;
 mod clock;
@@ -42,6 +46,7 @@ mod error;
 pub mod fields;
 mod finding;
 mod format;
+mod frame;
 mod level;
 pub mod limits;
 mod manifest;
@@ -59,18 +64,21 @@ mod run;
 mod set;
 mod stretches;
 mod table;
+mod time;
 
 use std::path::Path;
 
-pub use bare::read_bare;
+pub use bare::{read_bare, read_bare_frames};
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;
+pub use frame::Frame;
 pub use level::{Noise, NoiseSource};
 pub use set::{DataSet, Parameter, Part, Run, Spec};
 
+use frame::Source;
 use manifest::Manifest;
 
 /// Name of the file that describes a data set.
@@ -97,6 +105,29 @@ pub fn read(
         });
     }
     let folder = file.parent().unwrap_or(Path::new(""));
+    let text = appell_files::read_text(&file, appell_spec::limits::MAX_FILE as u64)?;
+    let manifest = manifest::read(&file, &text, library, instead)?;
+    assemble(manifest, |name| Some(Source::File(folder.join(name))))
+}
+
+/// A data set whose runs are in memory, from the text of a `recording.toml`, whose `[runs]` name them. `file` is the
+/// path of that text, or a name for messages.
+pub fn read_frames(
+    (file, text): (&Path, &str),
+    frames: &[Frame],
+    library: Library<'_>,
+    instead: Option<Spec>,
+) -> Result<DataSet, DataError> {
+    let manifest = manifest::read(file, text, library, instead)?;
+    let frame = |name: &str| frames.iter().find(|frame| frame.name == name);
+    assemble(manifest, |name| frame(name).map(Source::Frame))
+}
+
+/// The data set of a description, with the source of each run.
+fn assemble<'s>(
+    manifest: Manifest,
+    source: impl Fn(&str) -> Option<Source<'s>>,
+) -> Result<DataSet, DataError> {
     let Manifest {
         spec,
         mechanism,
@@ -105,21 +136,18 @@ pub fn read(
         time,
         channels,
         runs,
-    } = manifest::read(&file, library, instead)?;
+    } = manifest;
     let mut findings = Vec::new();
     let mut budget = limits::MAX_NUMBERS;
     let mut read_runs = Vec::new();
     let mut errors = Vec::new();
     for (name, part) in runs {
-        let path = folder.join(&name);
-        match format::read(&path, time.as_ref(), &channels, &mut budget) {
+        let table = source(&name)
+            .ok_or_else(|| DataError::whole(&*name, "no run of this name was given"))
+            .and_then(|source| source.read(&time, &channels, &mut budget));
+        match table {
             Ok(table) => {
-                let run = run::read(name, part, table, &channels, &mut findings);
-                // A stated unit is trusted.
-                if time.is_none() {
-                    findings.extend(run.sampling.doubt().map(|doubt| doubt.in_run(&run.name)));
-                }
-                read_runs.push(run);
+                read_runs.push(run::read(name, part, table, &channels, &mut findings));
             }
             Err(error) => errors.push(error),
         }
@@ -139,6 +167,7 @@ pub fn read(
     };
     noise::find(&mut set);
     set.tell_what_lacks();
+    set.tell_smooth_inputs();
     set.findings.sort_by_key(Finding::order);
     Ok(set)
 }

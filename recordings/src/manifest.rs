@@ -7,32 +7,33 @@
 //! [parameters]                             # of this rig; std = tolerance, 0 = known exactly
 //! m = { value = 2.04, unit = "kg", std = 0.04 }
 //!
-//! [channels]                               # every column other than t
+//! [channels]                               # every column other than the times
 //! theta = { measures = "theta", unit = "deg", noise_std = 0.05 }
-//! tau   = { input = "tau", unit = "N m" }
+//! tau   = { input = "tau", unit = "N m" }  # held to the next row; interpolation = "linear" joins rows by lines
 //! room  = { unit = "K" }                   # recorded, and in no model
 //! omega = { measures = "omega", unit = "rpm", unit_checked = true }   # never doubted
-//! t     = { unit = "ms" }                  # the unit of the times, where that is not s
+//! clock = { time = true, unit = "ms" }     # the column of the times, where its name does not tell it
 //!
 //! [runs]
 //! fit  = ["run1.csv", "run2.csv"]
 //! test = ["run3.csv"]
 //! ```
 
-use std::io::Read as _;
-use std::path::{Component, Path, PathBuf};
+use std::borrow::Cow;
+use std::path::Path;
 
 use appell_spec::expr::Span;
 use appell_spec::limits::MAX_FILE;
-use appell_spec::mechanism::ParameterId;
+use appell_spec::mechanism::{Interpolation, ParameterId};
 use appell_spec::units::{Dimension, Unit};
 use appell_spec::{Code, Mechanism, did_you_mean, shown};
+use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::channel::{Channel, Measured, Role};
-use crate::clock::TIME;
 use crate::fields::{Fields, Value};
 use crate::limits::MAX_RUNS;
+use crate::time::{self, Stated, TIME, may_be_time};
 use crate::{DataError, Library, Parameter, Part, Spec};
 
 /// A description whose names and units fit the mechanism.
@@ -41,23 +42,35 @@ pub(crate) struct Manifest {
     pub(crate) mechanism: Mechanism,
     pub(crate) description: String,
     pub(crate) parameters: Vec<Parameter>,
-    /// The unit of the times, where it is stated.
-    pub(crate) time: Option<Unit>,
+    pub(crate) time: Stated,
     pub(crate) channels: Vec<Channel>,
     pub(crate) runs: Vec<(String, Part)>,
 }
 
 const KEYS: &[&str] = &["mechanism", "description", "parameters", "channels", "runs"];
+/// Keys of a channel that the times do not have.
+const CHANNEL_KEYS: [&str; 5] = [
+    "measures",
+    "input",
+    "noise_std",
+    "unit_checked",
+    "interpolation",
+];
+/// How an input may run between rows.
+const INTERPOLATIONS: [(&str, Interpolation); 2] = [
+    ("hold", Interpolation::Hold),
+    ("linear", Interpolation::Linear),
+];
 
 /// Reads a description; `instead` replaces the mechanism that it names.
 pub(crate) fn read(
     path: &Path,
+    text: &str,
     library: Library<'_>,
     instead: Option<Spec>,
 ) -> Result<Manifest, DataError> {
     let file = path.to_string_lossy();
-    let text = text_of(path)?;
-    let (mut fields, table) = Fields::new(&file, &text);
+    let (mut fields, table) = Fields::new(&file, text);
     if fields.is_wrong() {
         return Err(fields.report().into());
     }
@@ -81,7 +94,7 @@ pub(crate) fn read(
     let description = fields.string(table, "description");
     let parameters = parameters(&mut fields, table, &mechanism);
     let (time, channels) = channels(&mut fields, table, &mechanism);
-    let runs = runs(&mut fields, table);
+    let runs = runs(&mut fields, table, path.parent().unwrap_or(Path::new("")));
     if fields.is_wrong() {
         return Err(fields.report().into());
     }
@@ -96,24 +109,6 @@ pub(crate) fn read(
     })
 }
 
-/// The text of a file of at most the size of a spec.
-pub(crate) fn text_of(path: &Path) -> Result<String, DataError> {
-    let failed = |cause| DataError::File {
-        path: path.to_owned(),
-        cause,
-    };
-    let mut text = Vec::new();
-    let open = std::fs::File::open(path).map_err(failed)?;
-    let most = MAX_FILE as u64 + 1;
-    open.take(most).read_to_end(&mut text).map_err(failed)?;
-    let file = path.to_string_lossy();
-    if text.len() > MAX_FILE {
-        let message = format!("the file has more than {MAX_FILE} bytes");
-        return Err(DataError::whole(file, message));
-    }
-    String::from_utf8(text).map_err(|_| DataError::whole(file, "the file is not UTF-8 text"))
-}
-
 /// The spec of a name, or of a path relative to the description.
 fn find(
     name: &str,
@@ -125,11 +120,18 @@ fn find(
     if let Some((_, spec)) = library.iter().find(|(known, _)| *known == name) {
         return Ok(Some(spec.clone()));
     }
-    let path = manifest.parent().unwrap_or(Path::new("")).join(name);
-    if path.is_file() {
+    let folder = manifest.parent().unwrap_or(Path::new(""));
+    let path = match appell_files::below(folder, name) {
+        Ok(path) => path,
+        Err(error) => {
+            fields.tell(Code::NotAllowedHere, error.to_string(), at, "");
+            return Ok(None);
+        }
+    };
+    if path.exists() {
         return Ok(Some(Spec {
             file: path.to_string_lossy().into_owned(),
-            text: text_of(&path)?,
+            text: appell_files::read_text(&path, MAX_FILE as u64)?,
         }));
     }
     let names = || library.iter().map(|(name, _)| *name);
@@ -218,12 +220,12 @@ fn parameter(
     })
 }
 
-/// The unit of the times, where it is stated, and the channels.
+/// What is said of the times, and the channels.
 fn channels(
     fields: &mut Fields<'_>,
     table: &DeTable<'_>,
     mechanism: &Mechanism,
-) -> (Option<Unit>, Vec<Channel>) {
+) -> (Stated, Vec<Channel>) {
     let Some(table) = fields.section(table, "channels") else {
         if table.get("channels").is_none() {
             let message = "the section `[channels]` is missing";
@@ -231,12 +233,19 @@ fn channels(
                 "write a line for each column, such as x = { measures = \"x\", unit = \"m\" }";
             fields.tell(Code::MissingSection, message, 0..0, help);
         }
-        return (None, Vec::new());
+        return (Stated::default(), Vec::new());
     };
-    let time = table.get(TIME).and_then(|value| time(fields, value));
     let mut entries: Vec<_> = table.iter().collect();
-    entries.retain(|(key, _)| key.get_ref() != TIME);
     entries.sort_by_key(|(key, _)| key.span().start);
+    let mut time = Stated::default();
+    if let Some((name, value)) = clock(fields, &entries) {
+        entries.retain(|(key, _)| key.get_ref() != name);
+        time = Stated {
+            column: Some(name.to_owned()),
+            unit: unit_of_times(fields, name, value),
+            by_name_alone: name != TIME && !is_time(value),
+        };
+    }
     let read = entries
         .into_iter()
         .filter_map(|(key, value)| channel(fields, key.get_ref(), value, key.span(), mechanism));
@@ -250,21 +259,77 @@ fn channels(
     (time, channels)
 }
 
-/// The unit of the times.
-fn time(fields: &mut Fields<'_>, value: &Value<'_>) -> Option<Unit> {
+/// The line of the times: the one that says so, that of `t`, or the only one with the name of a clock that
+/// describes nothing else.
+fn clock<'e>(
+    fields: &mut Fields<'_>,
+    entries: &[(&'e Spanned<Cow<'e, str>>, &'e Value<'e>)],
+) -> Option<(&'e str, &'e Value<'e>)> {
+    let is_bare = |value: &Value<'_>| {
+        let table = value.get_ref().as_table();
+        let has = |key: &&str| table.is_some_and(|table| table.get(*key).is_some());
+        !CHANNEL_KEYS.iter().chain(&["time"]).any(has)
+    };
+    let lines = || {
+        entries
+            .iter()
+            .map(|(key, value)| (&**key.get_ref(), *value))
+    };
+    let mut stated = entries.iter().filter(|(_, value)| is_time(value));
+    if let Some((key, value)) = stated.next() {
+        if let Some((second, _)) = stated.next() {
+            let message = "a second column of the times";
+            let help = format!(
+                "remove `time = true` here, or at `{}`",
+                shown(key.get_ref())
+            );
+            fields.tell(Code::DuplicateName, message, second.span(), &help);
+        }
+        return Some((key.get_ref(), value));
+    }
+    if let Some(own) = lines().find(|(name, _)| *name == TIME) {
+        return Some(own);
+    }
+    let mut clocks =
+        (entries.iter()).filter(|(key, value)| may_be_time(key.get_ref()) && is_bare(value));
+    let (first, value) = clocks.next()?;
+    if let Some((second, _)) = clocks.next() {
+        let (first, other) = (first.get_ref(), second.get_ref());
+        let message = format!(
+            "`{}` and `{}` may both be the times",
+            shown(first),
+            shown(other)
+        );
+        let help = format!("write {} for the one that is", time::line(first, "s"));
+        fields.tell(Code::ConflictingKeys, message, second.span(), &help);
+    }
+    Some((first.get_ref(), value))
+}
+
+/// Whether a line says that it is that of the times.
+fn is_time(value: &Value<'_>) -> bool {
+    let table = value.get_ref().as_table();
+    table.and_then(|table| table.get("time")?.get_ref().as_bool()) == Some(true)
+}
+
+/// The unit of the times in their line.
+fn unit_of_times(fields: &mut Fields<'_>, name: &str, value: &Value<'_>) -> Option<Unit> {
     let Some(table) = value.get_ref().as_table() else {
         fields.wrong_type(value, "a table such as { unit = \"ms\" }");
         return None;
     };
     let is_channel = |key: &&str| table.get(*key).is_some();
-    if ["measures", "input", "noise_std"].iter().any(is_channel) {
-        let message = "`t` is the time, not a channel";
+    if CHANNEL_KEYS.iter().any(is_channel) {
+        let message = format!("`{}` is the time, not a channel", shown(name));
         let help = "remove the line, or state the unit of the times alone: { unit = \"ms\" }";
         fields.tell(Code::ReservedName, message, value.span(), help);
         return None;
     }
-    fields.only(table, &["unit"]);
-    fields.unit(table, Some((TIME, &Unit::si(Dimension::TIME))))
+    fields.only(table, &["time", "unit"]);
+    fields.flag(table, "time");
+    fields
+        .unit(table, Some((name, &Unit::si(Dimension::TIME))))
+        .filter(|_| table.get("unit").is_some())
 }
 
 fn channel(
@@ -281,8 +346,17 @@ fn channel(
     };
     fields.only(
         table,
-        &["measures", "input", "unit", "unit_checked", "noise_std"],
+        &[
+            "measures",
+            "input",
+            "unit",
+            "unit_checked",
+            "noise_std",
+            "interpolation",
+            "time",
+        ],
     );
+    fields.flag(table, "time");
     let measures = fields.string(table, "measures");
     let input = fields.string(table, "input");
     let role = match (measures, input) {
@@ -309,14 +383,39 @@ fn channel(
         None if table.get("unit").is_none() => Unit::si(Dimension::NONE),
         None => return None,
     };
+    let interpolation = interpolation(fields, table, role);
     let unit_checked = fields.flag(table, "unit_checked");
-    let place = table.get("unit").map_or(at, toml::Spanned::span);
+    let place = table.get("unit").map_or(at, Spanned::span);
     let stated_noise = stated.map(|std| std * unit.scale);
     Some(Channel {
         unit_at: Some(fields.place(place)),
         unit_checked,
+        interpolation,
         ..Channel::new(column, role, unit, stated_noise)
     })
+}
+
+/// How an input runs between rows.
+fn interpolation(
+    fields: &mut Fields<'_>,
+    table: &DeTable<'_>,
+    role: Role,
+) -> Option<Interpolation> {
+    let (word, at) = fields.string(table, "interpolation")?;
+    if !matches!(role, Role::Input(_)) {
+        let message = "only inputs run on between rows";
+        fields.tell(Code::NotAllowedHere, message, at, "remove `interpolation`");
+        return None;
+    }
+    let mut known = INTERPOLATIONS.iter();
+    let found = known.find(|(own, _)| *own == word);
+    if found.is_none() {
+        let message = format!("`{}` is no interpolation of an input", shown(&word));
+        let help =
+            "write \"hold\" where a value holds until the next row, \"linear\" for straight lines";
+        fields.tell(Code::UnknownName, message, at, help);
+    }
+    found.map(|(_, interpolation)| *interpolation)
 }
 
 fn measured(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism) -> Option<Role> {
@@ -365,7 +464,7 @@ fn unknown<'n>(
 }
 
 /// The files of the runs, those to fit first.
-fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Vec<(String, Part)> {
+fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>, folder: &Path) -> Vec<(String, Part)> {
     let Some(table) = fields.section(table, "runs") else {
         if table.get("runs").is_none() {
             let message = "the section `[runs]` is missing";
@@ -378,10 +477,8 @@ fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Vec<(String, Part)> {
     let mut runs: Vec<(String, Part)> = Vec::new();
     for (key, part) in [("fit", Part::Fit), ("test", Part::Test)] {
         for (name, at) in fields.strings(table, key) {
-            if !is_inside(&name) {
-                let message = format!("`{}` does not lie beside this file", shown(&name));
-                let help = "name a file of this folder or of one below";
-                fields.tell(Code::NotAllowedHere, message, at, help);
+            if let Err(error) = appell_files::below(folder, &name) {
+                fields.tell(Code::NotAllowedHere, error.to_string(), at, "");
             } else if let Some((_, other)) = runs.iter().find(|(other, _)| *other == name) {
                 let message = format!("the run `{}` stands here twice", shown(&name));
                 let help = if *other == part {
@@ -405,11 +502,4 @@ fn runs(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Vec<(String, Part)> {
         fields.tell(Code::MissingKey, message, 0..0, help);
     }
     runs
-}
-
-/// Whether a path leads to a file beside or below.
-fn is_inside(name: &str) -> bool {
-    let path = PathBuf::from(name);
-    let mut parts = path.components();
-    !name.is_empty() && parts.all(|part| matches!(part, Component::Normal(_) | Component::CurDir))
 }

@@ -15,12 +15,13 @@ use serde_json::Value;
 
 use self::cdr::Definitions;
 use crate::DataError;
-use crate::clock::TIME;
-use crate::table::{Columns, Wanted, bytes, too_many};
+use crate::limits::MAX_BYTES;
+use crate::table::{Columns, OwnClock, Wanted, too_many};
+use crate::time::TIME;
 
 /// Reads a file; `budget` is the most numbers of all columns together.
 pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
-    let bytes = bytes(path)?;
+    let bytes = appell_files::read(path, MAX_BYTES)?;
     let place = path.to_string_lossy();
     let damaged = |error: mcap::McapError| {
         let message =
@@ -122,6 +123,7 @@ impl Log {
         Some(Columns {
             names,
             values: columns,
+            clock: OwnClock::Column,
             findings: Vec::new(),
         })
     }

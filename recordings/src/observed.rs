@@ -91,6 +91,11 @@ impl DataSet {
         };
         let inputs = info.inputs.iter().take(info.declared_inputs);
         let inputs: Vec<Option<usize>> = inputs.map(|own| input(&own.name)).collect();
+        let is_joined = |&index: &usize| {
+            let column = inputs[index];
+            column.is_some_and(|column| self.channels[column].is_joined())
+        };
+        let joined: Vec<usize> = (0..inputs.len()).filter(is_joined).collect();
         let runs = self.runs.iter().filter(|run| run.part == part);
         runs.map(|run| {
             let rows = 0..run.times.len();
@@ -99,7 +104,8 @@ impl DataSet {
                 values.map(move |column| column.map_or(0.0, |column| run.values[column][row]))
             });
             let seen = rows.flat_map(|row| measured.iter().map(move |&c| run.values[c][row]));
-            Recording::new(run.times.clone(), commanded.collect(), seen.collect())
+            let recording = Recording::new(run.times.clone(), commanded.collect(), seen.collect())?;
+            Ok(recording.joined_by_lines(&joined))
         })
         .collect()
     }

@@ -1,7 +1,7 @@
 //! Parquet, the format of tables in data stores: columns of numbers in compressed pages.
 //!
-//! Columns of the file are columns of the run; `t` is in s, or a time stamp, which counts from the first
-//! row on. Text, and tables inside tables, are ignored.
+//! Columns of the file are columns of the run. Times may be time stamps, which count from the first row on. Text,
+//! and tables inside tables, are ignored.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -15,20 +15,16 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::schema::types::ColumnDescriptor;
 
 use crate::DataError;
-use crate::clock::TIME;
-use crate::table::{Columns, Wanted, regular, too_many};
+use crate::limits::MAX_FILE;
+use crate::table::{Columns, OwnClock, Wanted, too_many};
 
 /// Rows that are read at once.
 const BATCH: usize = 1 << 16;
 
 /// Reads a file; `budget` is the most numbers of all columns together.
 pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
-    regular(path)?;
     let place = path.to_string_lossy();
-    let file = File::open(path).map_err(|cause| DataError::File {
-        path: path.to_owned(),
-        cause,
-    })?;
+    let file = appell_files::open(path, MAX_FILE)?;
     // A file from strangers may show a slip of the library; it is an error of the file here.
     let read = catch_unwind(AssertUnwindSafe(|| columns(file, wanted, budget)));
     match read {
@@ -49,8 +45,10 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
     let mut columns = Columns {
         names: Vec::new(),
         values: Vec::new(),
+        clock: OwnClock::None,
         findings: Vec::new(),
     };
+    let mut stamps = Vec::new();
     let mut left = budget;
     for (index, column) in schema.columns().iter().enumerate() {
         let name = column.path().string();
@@ -65,11 +63,12 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
                 left = rest;
                 append(group.get_column_reader(index)?, column, &mut values)?;
             }
-            in_seconds(column, name == TIME, &mut values);
         }
+        stamps.push(unit_of_stamps(column));
         columns.names.push(name);
         columns.values.push(values);
     }
+    columns.clock = OwnClock::Stamps(stamps);
     Ok(Some(columns))
 }
 
@@ -124,18 +123,14 @@ fn numbers<T: DataType>(
     }
 }
 
-/// Time stamps in s, those of the rows from the first one on.
-fn in_seconds(column: &ColumnDescriptor, is_time: bool, values: &mut [f64]) {
+/// The unit of the time stamps of a column in s.
+fn unit_of_stamps(column: &ColumnDescriptor) -> Option<f64> {
     let Some(LogicalType::Timestamp(stamp)) = column.logical_type_ref() else {
-        return;
+        return None;
     };
-    let unit = match stamp.unit {
+    Some(match stamp.unit {
         TimeUnit::MILLIS => 1e-3,
         TimeUnit::MICROS => 1e-6,
         TimeUnit::NANOS => 1e-9,
-    };
-    let first = values.first().copied().unwrap_or(0.0);
-    for value in values {
-        *value = unit * (*value - if is_time { first } else { 0.0 });
-    }
+    })
 }

@@ -63,7 +63,7 @@ pub struct Run {
     /// Times in s, strictly increasing.
     pub times: Vec<f64>,
     /// Values in SI for each channel; NaN where a measurement is missing. An input is held from its
-    /// time to the next.
+    /// time to the next, unless its channel is joined by lines.
     pub values: Vec<Vec<f64>>,
     /// Steps and gaps.
     pub sampling: Sampling,

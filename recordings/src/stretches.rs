@@ -45,9 +45,12 @@ impl DataSet {
     /// about `rows` rows.
     #[must_use]
     pub fn windows(&self, length: f64, (most, rows): (usize, usize)) -> Self {
+        // Long rows have the mean of an input, not its value at their beginning.
+        let held = self.clone().held_at_means();
+        let set = &held;
         let ends = |run: &Run| (run.times[0], run.times[run.times.len() - 1]);
-        let total: f64 = self.runs.iter().map(ends).map(|(from, to)| to - from).sum();
-        let runs = self.runs.iter().flat_map(|run| {
+        let total: f64 = set.runs.iter().map(ends).map(|(from, to)| to - from).sum();
+        let runs = set.runs.iter().flat_map(|run| {
             let (from, to) = ends(run);
             let count = ((to - from) / total * most as f64).round().max(1.0);
             // As many as asked for.
@@ -58,13 +61,12 @@ impl DataSet {
                 let begin = from + room * (place as f64 + 0.5) / count;
                 let [a, b] =
                     [begin, begin + length].map(|end| run.times.partition_point(|t| *t < end));
-                self.thinned(&cut(run, a..b), rows)
+                set.thinned(&cut(run, a..b), rows)
             })
         });
-        Self {
-            runs: runs.filter(|run| run.times.len() > 1).collect(),
-            ..self.clone()
-        }
+        let runs = runs.filter(|run| run.times.len() > 1);
+        let runs = runs.collect();
+        Self { runs, ..held }
     }
 
     /// A run with no more than about so many rows: what is measured in those that remain, and the mean of each

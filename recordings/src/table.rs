@@ -1,13 +1,13 @@
 //! The numbers of a run: columns as in the file, and the table in SI.
 
-use std::path::Path;
-
+use appell_spec::units::{Dimension, Unit};
 use appell_spec::{closest, shown};
 
 use crate::channel::Channel;
-use crate::clock::{Clock, TIME};
+use crate::clock::{Clock, Sampling};
 use crate::finding::{counted, listed};
-use crate::limits::{MAX_BYTES, MAX_NUMBERS, MAX_VALUE, MIN_ROWS};
+use crate::limits::{MAX_NUMBERS, MAX_TIME, MAX_VALUE, MIN_ROWS, MIN_STEP};
+use crate::time::{NoTime, Stated, TIME, TimeColumn};
 use crate::{DataError, Finding, FindingKind};
 
 /// The numbers of a run.
@@ -20,50 +20,69 @@ pub(crate) struct Table {
     pub(crate) findings: Vec<Finding>,
 }
 
-/// The length of a regular file; pipes are rejected, as they may block.
-pub(crate) fn regular(path: &Path) -> Result<u64, DataError> {
-    let about = std::fs::metadata(path).map_err(|cause| DataError::File {
-        path: path.to_owned(),
-        cause,
-    })?;
-    let message = "a run is a regular file";
-    let refused = || DataError::whole(path.to_string_lossy(), message);
-    about.is_file().then_some(about.len()).ok_or_else(refused)
-}
-
-/// The bytes of a regular file that is not too large.
-pub(crate) fn bytes(path: &Path) -> Result<Vec<u8>, DataError> {
-    if regular(path)? > MAX_BYTES {
-        let message = format!("the file has more than {MAX_BYTES} bytes");
-        return Err(DataError::whole(path.to_string_lossy(), message));
-    }
-    std::fs::read(path).map_err(|cause| DataError::File {
-        path: path.to_owned(),
-        cause,
-    })
-}
-
 /// Named columns in the units of the file.
 pub(crate) struct Columns {
     /// Names of all columns of the file.
     pub(crate) names: Vec<String>,
     /// Values of the requested ones; the others are empty. NaN where a value is missing.
     pub(crate) values: Vec<Vec<f64>>,
+    /// How the format itself says when a row was recorded.
+    pub(crate) clock: OwnClock,
     /// Omitted rows.
     pub(crate) findings: Vec<Finding>,
+}
+
+/// How a format says when a row was recorded.
+pub(crate) enum OwnClock {
+    /// Not at all.
+    None,
+    /// By the column `t`, in s.
+    Column,
+    /// By time stamps: the unit in s of the columns that hold such.
+    #[cfg_attr(
+        not(feature = "parquet"),
+        expect(dead_code, reason = "only Parquet has time stamps")
+    )]
+    Stamps(Vec<Option<f64>>),
+}
+
+impl OwnClock {
+    /// The unit in s of the numbers of a column, where the format states it.
+    fn unit(&self, index: usize, name: &str) -> Option<f64> {
+        match self {
+            Self::None => None,
+            Self::Column => (name == TIME).then_some(1.0),
+            Self::Stamps(units) => units.get(index).copied().flatten(),
+        }
+    }
 }
 
 /// The requested columns.
 pub(crate) type Wanted<'w> = &'w dyn Fn(&str) -> bool;
 
 impl Columns {
+    /// Names and values of all columns, with time stamps in s.
+    pub(crate) fn in_seconds(mut self) -> (Vec<String>, Vec<Vec<f64>>) {
+        for (index, (name, values)) in self.names.iter().zip(&mut self.values).enumerate() {
+            let unit = self.clock.unit(index, name).unwrap_or(1.0);
+            values.iter_mut().for_each(|value| *value *= unit);
+        }
+        (self.names, self.values)
+    }
+
     /// The columns of the channels in SI, in rows of increasing times.
     pub(crate) fn table(
         mut self,
         file: &str,
+        time: &Stated,
         channels: &[Channel],
         budget: &mut usize,
     ) -> Result<Table, DataError> {
+        let time = time.find(&self.names, channels);
+        let time = time.map_err(|NoTime { message, help }| {
+            DataError::whole(file, format!("{message}; {help}"))
+        })?;
+        let time = self.own_clock(file, time)?;
         let place = |name: &str| {
             let place = self.names.iter().position(|own| own == name);
             place.ok_or_else(|| {
@@ -73,10 +92,9 @@ impl Columns {
                 DataError::whole(file, message)
             })
         };
-        let time = place(TIME)?;
         let places: Result<Vec<usize>, _> = channels.iter().map(|c| place(&c.column)).collect();
         let places = places?;
-        let is_known = |i: &usize| *i == time || places.contains(i);
+        let is_known = |i: &usize| *i == time.index || places.contains(i);
         let unknown = (0..self.names.len()).filter(|i| !is_known(i));
         let unknown: Vec<String> = unknown.map(|i| shown(&self.names[i])).collect();
         if !unknown.is_empty() {
@@ -88,7 +106,7 @@ impl Columns {
             self.findings.push(finding);
         }
         let mut clock = Clock::default();
-        let times = &self.values[time];
+        let times = &self.values[time.index];
         // Formats in columns may be damaged so that these differ.
         if let Some(place) = places
             .iter()
@@ -102,7 +120,10 @@ impl Columns {
             );
             return Err(DataError::whole(file, message));
         }
+        // A log of several topics has rows without the clock of one of them.
+        let is_of_topic = matches!(self.clock, OwnClock::Column) && time.name != TIME;
         let rows: Vec<usize> = (0..times.len())
+            .filter(|&row| !(is_of_topic && times[row].is_nan()))
             .filter(|&row| clock.accept(times[row], row + 1, &format!("row {}", row + 1)))
             .collect();
         self.findings.extend(clock.findings(file)?);
@@ -112,12 +133,45 @@ impl Columns {
             .ok_or_else(|| too_many(file.to_owned()))?;
         let column = |(place, channel): (&usize, &Channel)| {
             let values = &self.values[*place];
-            let in_si = |&row: &usize| finite(values[row] * channel.unit.scale);
+            let stamp = match self.clock {
+                OwnClock::Stamps(_) => self.clock.unit(*place, &channel.column),
+                OwnClock::Column | OwnClock::None => None,
+            };
+            let scale = stamp.unwrap_or(1.0) * channel.unit.scale;
+            let in_si = |&row: &usize| finite(values[row] * scale);
             rows.iter().map(in_si).collect()
         };
         let columns = places.iter().zip(channels).map(column).collect();
         let times = rows.iter().map(|&row| times[row]).collect();
-        checked(file, channels, times, columns, self.findings)
+        checked(file, (&time, times), channels, columns, self.findings)
+    }
+
+    /// Turns the times into s. The unit that the format states is not stated otherwise; time stamps count from the
+    /// first row on.
+    fn own_clock(&mut self, file: &str, time: TimeColumn) -> Result<TimeColumn, DataError> {
+        let own = self.clock.unit(time.index, &time.name);
+        let times = &mut self.values[time.index];
+        match own {
+            None => times.iter_mut().for_each(|t| *t *= time.scale()),
+            Some(_) if time.unit.as_ref().is_some_and(|unit| !unit.is_si()) => {
+                let message = format!(
+                    "the file itself states the unit of the times `{}`; remove the other one",
+                    shown(&time.name)
+                );
+                return Err(DataError::whole(file, message));
+            }
+            Some(unit) => {
+                let first = times.iter().copied().find(|t| t.is_finite());
+                let first = match self.clock {
+                    OwnClock::Stamps(_) => first.unwrap_or(0.0),
+                    OwnClock::Column | OwnClock::None => 0.0,
+                };
+                times.iter_mut().for_each(|t| *t = unit * (*t - first));
+                let unit = Some(Unit::si(Dimension::TIME));
+                return Ok(TimeColumn { unit, ..time });
+            }
+        }
+        Ok(time)
     }
 }
 
@@ -133,19 +187,41 @@ pub(crate) fn too_many(place: String) -> DataError {
     DataError::whole(place, message)
 }
 
+/// What is impossible about some times.
+fn no_clock(times: &[f64]) -> Option<String> {
+    let far = times.iter().find(|t| t.abs() > MAX_TIME);
+    let near = times.windows(2).find(|pair| pair[1] - pair[0] < MIN_STEP);
+    far.map(|t| format!("a row has the time {t:e} s"))
+        .or_else(|| near.map(|pair| format!("rows are {:e} s apart", pair[1] - pair[0])))
+}
+
 /// A table with enough rows, and something in every column.
 pub(crate) fn checked(
     file: &str,
+    (clock, times): (&TimeColumn, Vec<f64>),
     channels: &[Channel],
-    times: Vec<f64>,
     columns: Vec<Vec<f64>>,
-    findings: Vec<Finding>,
+    mut findings: Vec<Finding>,
 ) -> Result<Table, DataError> {
     if times.len() < MIN_ROWS {
         let rows = counted(times.len(), "row");
         let message =
             format!("the file has {rows}; a run needs {MIN_ROWS} to tell a rate and a noise level");
+        if times.len() < 2 {
+            return Err(DataError::whole(file, message));
+        }
+        findings.push(Finding::new(FindingKind::FewRows, message));
+    }
+    if let Some(message) = no_clock(&times) {
+        let message = format!(
+            "{message}, which no clock shows; is `{}` the column of the times, and its unit the one stated?",
+            shown(&clock.name)
+        );
         return Err(DataError::whole(file, message));
+    }
+    // A stated unit is trusted.
+    if clock.unit.is_none() {
+        findings.extend(Sampling::of(&times).doubt(&clock.name));
     }
     for (channel, values) in channels.iter().zip(&columns) {
         if values.iter().all(|value| value.is_nan()) {

@@ -110,7 +110,7 @@ test = ["run.csv"]
         "write input = \"tau\"",
         "a channel has `measures` or `input`, not both",
         "`t` is the time",
-        "`../other.csv` does not lie beside this file",
+        "`../other.csv` is not below",
         "the run `run.csv` stands here twice",
         "a run that is held out may not be fitted",
     ] {
@@ -183,8 +183,11 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
             &["`theta` stands here twice", "no column `tau`"],
         ),
         (
-            good.replace("t,theta", "time,theta"),
-            &["no column `t`", "times in seconds"],
+            good.replace("t,theta", "clock,theta"),
+            &[
+                "no column of the times",
+                "clock = { time = true, unit = \"s\" }",
+            ],
         ),
         (with("0.30,,"), &["run.csv:32:1", "4 cells under 3 columns"]),
         (
@@ -448,50 +451,59 @@ fn files_of_motive_are_read_by_bodies_and_axes() {
 }
 
 #[test]
-fn times_are_in_the_unit_that_the_description_states() {
+fn inputs_are_joined_by_lines_where_the_description_says_so() {
     let folder = Folder::new();
-    let swing = swing(200, 1, 1e-3);
-    let mut lines = swing.lines();
-    let mut text = format!("{}\n", lines.next().unwrap());
-    for (row, line) in lines.enumerate() {
-        let (_, rest) = line.split_once(',').unwrap();
-        writeln!(text, "{},{rest}", 10 * row).unwrap();
-    }
-    folder.write("run.csv", text);
+    folder.write("run.csv", swing(200, 1, 1e-3));
     let read = |line: &str| {
-        let channels = format!("{SWING}\n{line}");
+        let channels = format!("theta = {{ measures = \"theta\", unit = \"rad\" }}\n{line}");
         folder.write("recording.toml", pendulum(&channels, &["run.csv"], &[]));
         folder.read()
     };
-    let slow = |set: &DataSet| {
-        let mut findings = set.findings.iter();
-        let found = findings.find(|finding| finding.kind == FindingKind::SlowClock);
-        found.map(|finding| (finding.channel.clone(), finding.message.clone()))
+    let joined = |key: &str| {
+        let line = format!("tau = {{ input = \"tau\", unit = \"N m\"{key} }}");
+        read(&line).unwrap().channels[1].is_joined()
     };
-    let set = read("t = { unit = \"ms\" }").unwrap();
-    assert!((set.runs[0].duration() - 1.99).abs() < 1e-12);
-    assert_eq!(slow(&set), None);
-    let set = read("").unwrap();
-    assert!((set.runs[0].duration() - 1990.0).abs() < 1e-9);
-    let (channel, message) = slow(&set).unwrap();
-    assert_eq!(channel.as_deref(), Some("t"));
-    for part in ["a row every 10 s", "t = { unit = \"ms\" }"] {
-        assert!(message.contains(part), "{message}");
-    }
-    // Whoever says that they are seconds is believed.
-    let set = read("t = { unit = \"s\" }").unwrap();
-    assert_eq!(slow(&set), None);
+    assert!(joined(", interpolation = \"linear\""));
+    assert!(!joined(", interpolation = \"hold\"") && !joined(""));
     for (line, told) in [
-        ("t = { unit = \"kg\" }", "`t` is a time, `kg` is a mass"),
         (
-            "t = { measures = \"theta\" }",
-            "`t` is the time, not a channel",
+            "tau = { input = \"tau\", unit = \"N m\", interpolation = \"cubic\" }",
+            "`cubic` is no interpolation of an input",
         ),
-        ("t = \"ms\"", "expected a table such as"),
+        (
+            "tau = { unit = \"N m\", interpolation = \"linear\" }",
+            "only inputs run on between rows",
+        ),
     ] {
         let error = read(line).unwrap_err().to_string();
         assert!(error.contains(told), "{error}");
     }
+}
+
+#[test]
+fn an_input_that_changes_smoothly_is_told_with_what_half_a_row_does() {
+    let mut text = String::from("t,theta,tau\n");
+    for row in 0..400 {
+        let t = 0.005 * f64::from(row);
+        writeln!(text, "{t},{},{}", (3.0 * t).sin(), 2.0 * (20.0 * t).sin()).unwrap();
+    }
+    let told = |set: &DataSet| {
+        let mut findings = set.findings.iter();
+        let found = findings.find(|finding| finding.kind == FindingKind::SmoothInput);
+        found.map(|finding| finding.message.clone())
+    };
+    let folder = one_run(text);
+    let message = told(&folder.read().unwrap()).unwrap();
+    // ω h / 2 of its size.
+    for part in ["2.500 ms", "5.0", "interpolation = \"linear\""] {
+        assert!(message.contains(part), "{message}");
+    }
+    let stated = SWING.replace("\"N m\"", "\"N m\", interpolation = \"hold\"");
+    folder.write("recording.toml", pendulum(&stated, &["run.csv"], &[]));
+    assert_eq!(told(&folder.read().unwrap()), None);
+    folder.write("recording.toml", pendulum(SWING, &["run.csv"], &[]));
+    folder.write("run.csv", swing(400, 1, 1e-3));
+    assert_eq!(told(&folder.read().unwrap()), None);
 }
 
 #[test]
@@ -510,4 +522,43 @@ fn an_angle_far_beyond_a_turn_is_not_unwrapped() {
             .iter()
             .all(|finding| finding.kind != FindingKind::Unwrapped)
     );
+}
+
+#[cfg(unix)]
+#[test]
+fn files_elsewhere_and_what_is_no_file_are_not_opened() {
+    let secret = Folder::new();
+    secret.write("secret.csv", "t,theta,tau\nroot:x:0:0,1,2\n");
+    let folder = one_run(swing(60, 1, 1e-3));
+    let link = |from: &std::path::Path| {
+        std::fs::remove_file(folder.path("run.csv")).unwrap();
+        std::os::unix::fs::symlink(from, folder.path("run.csv")).unwrap();
+    };
+    link(&secret.path("secret.csv"));
+    let message = folder.refused();
+    assert!(message.contains("is not below"), "{message}");
+    assert!(!message.contains("root:x"), "{message}");
+    link(std::path::Path::new("/dev/zero"));
+    let message = folder.refused();
+    assert!(message.contains("is not below"), "{message}");
+    std::fs::remove_file(folder.path("run.csv")).unwrap();
+    let socket = std::os::unix::net::UnixListener::bind(folder.path("run.csv"));
+    // A path may be too long for a socket.
+    if socket.is_ok() {
+        let message = folder.refused();
+        assert!(message.contains("name a regular file"), "{message}");
+        std::fs::remove_file(folder.path("run.csv")).unwrap();
+    }
+    std::fs::create_dir(folder.path("run.csv")).unwrap();
+    assert!(folder.refused().contains("this is a folder"));
+    let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+    for spec in ["/etc/passwd", "../secret.toml"] {
+        folder.write(
+            "recording.toml",
+            text.replace("\"pendulum\"", &format!("{spec:?}")),
+        );
+        let message = folder.refused();
+        assert!(message.contains("is not below"), "{message}");
+        assert!(!message.contains("root:"), "{message}");
+    }
 }

@@ -201,15 +201,21 @@ mod parquet {
 
     use super::*;
 
-    /// Times as stamps of a clock, an angle that is missing once, a torque in single precision.
     fn file() -> Vec<u8> {
-        let schema = "message run {
-            required int64 t (TIMESTAMP(MICROS, true));
+        file_of("t (TIMESTAMP(MICROS, true))")
+    }
+
+    /// Times in µs by this clock, an angle that is missing once, a torque in single precision.
+    fn file_of(clock: &str) -> Vec<u8> {
+        let schema = format!(
+            "message run {{
+            required int64 {clock};
             optional double theta;
             required float tau;
             required binary note (UTF8);
-        }";
-        let schema = Arc::new(parse_message_type(schema).unwrap());
+        }}"
+        );
+        let schema = Arc::new(parse_message_type(&schema).unwrap());
         let mut bytes = Vec::new();
         let properties = Arc::new(WriterProperties::builder().build());
         let mut writer = SerializedFileWriter::new(&mut bytes, schema, properties).unwrap();
@@ -264,6 +270,30 @@ mod parquet {
             1e-7,
             |row| row == 7,
         );
+    }
+
+    #[test]
+    fn the_clock_has_any_name_and_unit() {
+        let stamps = file_of("timestamp (TIMESTAMP(MICROS, true))");
+        let is_missing = |row: usize| row == 7;
+        let columns = ["theta", "tau"];
+        assert_run(&folder("run.parquet", &stamps, columns), 1e-7, is_missing);
+        for (clock, line) in [
+            ("time_us", ""),
+            ("clock", "clock = { time = true, unit = \"us\" }\n"),
+        ] {
+            let folder = folder("run.parquet", &file_of(clock), columns);
+            let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+            let stated = text.replace("[channels]\n", &format!("[channels]\n{line}"));
+            folder.write("recording.toml", stated);
+            let run = &folder.read().unwrap().runs[0];
+            assert!((run.duration() - time(ROWS - 1)).abs() < 1e-6, "{clock}");
+        }
+        let folder = folder("run.parquet", &stamps, columns);
+        let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+        let wrong = "[channels]\ntimestamp = { unit = \"ms\" }\n";
+        folder.write("recording.toml", text.replace("[channels]\n", wrong));
+        assert!(folder.refused().contains("itself states the unit"));
     }
 
     #[test]
@@ -337,8 +367,9 @@ float64[2] position
                 writer.write_to_known_channel(&header, data).unwrap();
             };
             let text = format!(
-                "{{\"motor\": [{{\"torque\": {}}}], \"mode\": \"on\"}}",
-                torque(row)
+                "{{\"motor\": [{{\"torque\": {}}}], \"mode\": \"on\", \"stamp\": {}}}",
+                torque(row),
+                10 * row
             );
             write(command, text.as_bytes());
             if row != 7 {
@@ -357,6 +388,15 @@ float64[2] position
         assert_run(&folder("run.mcap", &file(), COLUMNS), ROUNDING, |row| {
             row == 7
         });
+    }
+
+    #[test]
+    fn a_field_of_a_message_may_be_the_clock() {
+        let folder = folder("run.mcap", &file(), COLUMNS);
+        let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+        let line = "[channels]\n\"/command.stamp\" = { time = true, unit = \"ms\" }\n";
+        folder.write("recording.toml", text.replace("[channels]\n", line));
+        assert_run(&folder, ROUNDING, |row| row == 7);
     }
 
     #[test]

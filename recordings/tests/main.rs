@@ -1,5 +1,6 @@
 //! Data sets and their files, from the outside.
 
+mod clocks;
 mod common;
 
 mod data_sets;

@@ -17,6 +17,7 @@ mod estimate_corners;
 mod estimate_fit;
 mod estimate_gradient;
 mod estimate_late;
+mod estimate_lines;
 mod estimate_spread;
 mod formulations;
 mod four_bar;

@@ -1,4 +1,4 @@
-//! Inputs from a CSV file, each value held until the next row.
+//! Inputs from a file, each value held until the next row or joined to the next by a line.
 
 use std::io::BufRead;
 use std::path::Path;
@@ -54,21 +54,23 @@ pub fn read(
         return Err(Error::data(file, message));
     }
     let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
-    let mut values: Vec<Option<Vec<f64>>> = vec![None; setup.mechanism.inputs.len()];
+    let mut own: Vec<Option<Column>> = Vec::new();
+    own.resize_with(setup.mechanism.inputs.len(), || None);
     for column in columns.inputs {
-        values[column.input] = Some(column.values);
+        let input = column.input;
+        own[input] = Some(column);
     }
     let mut signals = Vec::new();
-    for (input, values) in setup.mechanism.inputs.iter().zip(values) {
-        let (times, values) = match values {
-            Some(values) => (columns.times.clone(), values),
-            None => (vec![0.0], vec![0.0]),
+    for (input, column) in setup.mechanism.inputs.iter().zip(own) {
+        let (times, values, interpolation) = match column {
+            Some(own) => (columns.times.clone(), own.values, own.interpolation),
+            None => (vec![0.0], vec![0.0], Interpolation::Hold),
         };
         let table = SignalTable {
             name: input.label.name.clone().into(),
             times: times.into(),
             values: values.into(),
-            interpolation: Interpolation::Hold,
+            interpolation,
         };
         let signal = Signal::new(&table).map_err(|source| Error::Table {
             file: file.clone().into_owned(),
@@ -123,6 +125,11 @@ fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Colu
                 position: 0,
                 input,
                 scale: 1.0,
+                interpolation: if channel.is_joined() {
+                    Interpolation::Linear
+                } else {
+                    Interpolation::Hold
+                },
                 values,
             });
         }
@@ -159,6 +166,7 @@ struct Column {
     input: usize,
     /// Factor from the unit of the input to SI.
     scale: f64,
+    interpolation: Interpolation,
     /// In SI.
     values: Vec<f64>,
 }
@@ -235,6 +243,7 @@ impl<R: BufRead> Reader<R> {
                     position,
                     input,
                     scale: inputs[InputId::new(input)].label.unit.scale,
+                    interpolation: Interpolation::Hold,
                     values: Vec::new(),
                 });
             } else if name == "t" {

@@ -7,13 +7,15 @@ use crate::EstimateError;
 /// One uninterrupted recording, in SI.
 ///
 /// Measurements are taken at the times of their rows. An input is held from the time of its row to
-/// that of the next. Times may be irregular.
+/// that of the next, or joined to it by a straight line. Times may be irregular.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     times: Vec<f64>,
     inputs: Vec<f64>,
     measurements: Vec<f64>,
     columns: [usize; 2],
+    /// Whether each input is joined by lines.
+    joined: Vec<bool>,
 }
 
 impl Recording {
@@ -67,6 +69,7 @@ impl Recording {
             times,
             inputs,
             measurements,
+            joined: vec![false; columns[0]],
             columns,
         })
     }
@@ -86,7 +89,39 @@ impl Recording {
         self.columns[1]
     }
 
-    /// The inputs held from the time of a row.
+    /// The same recording with some inputs joined by straight lines from row to row.
+    #[must_use]
+    pub fn joined_by_lines(mut self, inputs: &[usize]) -> Self {
+        for (input, joined) in self.joined.iter_mut().enumerate() {
+            *joined = inputs.contains(&input);
+        }
+        self
+    }
+
+    /// Whether an input is joined by lines.
+    pub(crate) fn is_joined(&self, input: usize) -> bool {
+        self.joined[input]
+    }
+
+    /// The slope of an input from the time of a row on: zero where it is held.
+    pub fn slope(&self, row: usize, input: usize) -> f64 {
+        if !self.joined[input] || row + 1 >= self.times.len() {
+            return 0.0;
+        }
+        let change = self.inputs(row + 1)[input] - self.inputs(row)[input];
+        change / (self.times[row + 1] - self.times[row])
+    }
+
+    /// Means of the inputs from the time of a row to that of the next.
+    pub fn mean_inputs(&self, row: usize) -> Vec<f64> {
+        let next = (row + 1).min(self.times.len() - 1);
+        let half = 0.5 * (self.times[next] - self.times[row]);
+        let inputs = self.inputs(row).iter().enumerate();
+        let mean = |(input, value): (usize, &f64)| value + half * self.slope(row, input);
+        inputs.map(mean).collect()
+    }
+
+    /// The inputs at the time of a row, and from then on where they are held.
     pub fn inputs(&self, row: usize) -> &[f64] {
         &self.inputs[row * self.columns[0]..(row + 1) * self.columns[0]]
     }
@@ -105,11 +140,16 @@ impl Recording {
             inputs: self.inputs[rows.start * inputs..rows.end * inputs].to_vec(),
             measurements: self.measurements[rows.start * channels..rows.end * channels].to_vec(),
             columns: self.columns,
+            joined: self.joined.clone(),
         }
     }
 
     /// The same recording with other measurements.
     pub fn with_measurements(&self, measurements: Vec<f64>) -> Result<Self, EstimateError> {
-        Self::new(self.times.clone(), self.inputs.clone(), measurements)
+        let same = Self::new(self.times.clone(), self.inputs.clone(), measurements)?;
+        Ok(Self {
+            joined: self.joined.clone(),
+            ..same
+        })
     }
 }

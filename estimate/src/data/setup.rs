@@ -4,9 +4,6 @@ use appell_runtime::model::Model;
 
 use crate::{EstimateError, Recording};
 
-/// Largest number of steps of a recording; more indicate a wrong unit.
-const MOST_STEPS: f64 = 1e7;
-
 /// Quantity measured by a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Measured {
@@ -181,14 +178,6 @@ impl<'a> Setup<'a> {
             return Err(EstimateError::DelayWithTime);
         }
         for recording in recordings {
-            let times = recording.times();
-            if times[times.len() - 1] - times[0] > MOST_STEPS * self.longest_step {
-                return Err(EstimateError::Value {
-                    what: "longest step in s".to_owned(),
-                    value: self.longest_step,
-                    demand: "at least a ten-millionth of the longest recording",
-                });
-            }
             let expected = [
                 ("inputs", recording.input_len(), info.declared_inputs),
                 ("measurements", recording.channel_len(), self.channels.len()),

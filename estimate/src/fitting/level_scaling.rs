@@ -11,6 +11,7 @@ use crate::EstimateError;
 use crate::data::setup::Disturbance;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
+use crate::motion::command;
 use crate::motion::plant::Place;
 
 /// Changes of levels with steps of the other coordinates, to first order.
@@ -83,10 +84,11 @@ fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, E
     let runs = estimation.recordings();
     for (run, recording) in runs.iter().enumerate() {
         let first = layout.place(Unknown::Initial { run, state: 0 })?;
+        let commands = command::at_start(recording);
         let at = (
             recording.times()[0],
             &values[first..first + n],
-            recording.inputs(0),
+            commands.as_slice(),
         );
         let mut columns = vec![0.0; s * s];
         columns

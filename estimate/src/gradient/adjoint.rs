@@ -14,9 +14,10 @@ use crate::matrix::{
     symmetrise, transposed_multiply,
 };
 use crate::motion::closure::Closure;
+use crate::motion::command;
 use crate::motion::plant::{Place, Scratch, StateSpace, Sums};
 use crate::motion::timeline::Advance;
-use crate::motion::transition::{self, Effects, Reverse, Span};
+use crate::motion::transition::{self, ByEnds, Effects, Reverse, Span};
 
 /// Gradients during the reverse sweep.
 struct Backward<'p, 'a> {
@@ -26,6 +27,8 @@ struct Backward<'p, 'a> {
     p: Vec<f64>,
     parameters: Vec<f64>,
     lags: Vec<f64>,
+    /// With respect to the declared inputs of a step or moment.
+    inputs: Vec<f64>,
     scratch: Scratch,
     closure: Option<Closure>,
     reverse: Reverse,
@@ -55,6 +58,7 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
         p: zeros(n * n),
         parameters: zeros(pass.system.layout.parameters),
         lags: zeros(pass.system.layout.lags),
+        inputs: zeros(pass.system.plant.info().declared_inputs),
         scratch: pass.system.plant.scratch(),
         closure: pass.closure.clone(),
         reverse: Reverse::new(pass.system.plant),
@@ -112,6 +116,7 @@ impl Backward<'_, '_> {
             z: &mut self.z,
             p: &mut self.parameters,
             lags: &mut self.lags,
+            u: &mut self.inputs,
         };
         let covariance = (root, self.p.as_mut_slice());
         closure.adjoint(plant, place, &mut self.scratch, covariance, &mut sums);
@@ -137,9 +142,21 @@ impl Backward<'_, '_> {
             self.inertia(span, on);
         }
         let has_moving_ends = advance.moved_by.iter().any(Option::is_some);
-        by_h += self.motion(span, on, has_moving_ends);
-        for (delay, part) in advance.moved_by.into_iter().flatten() {
-            gradient[delay] += part * by_h;
+        self.inputs.fill(0.0);
+        let by = self.motion(span, on, has_moving_ends);
+        by_h += by.length;
+        for moved in advance.moved_by.into_iter().flatten() {
+            gradient[moved.delay] += moved.length * by_h + moved.start * by.start;
+        }
+        self.late_inputs(on.held, gradient);
+    }
+
+    /// A later input has the value of its line earlier.
+    fn late_inputs(&self, held: &[f64], gradient: &mut [f64]) {
+        let StateSpace { setup, layout, .. } = self.pass.system;
+        for (index, &input) in setup.delayed.iter().enumerate() {
+            let by_value = self.inputs[input];
+            gradient[layout.input_delay(index)] -= command::slope(held, input) * by_value;
         }
     }
 
@@ -209,21 +226,21 @@ impl Backward<'_, '_> {
         scale(-1.0, &mut self.mass);
     }
 
-    /// From the state after a step, F and the mass matrix to the state before it. Returns the
-    /// derivative with respect to the length of the step if `by_length`.
-    fn motion(&mut self, span: Span<'_>, on: &StepTape<'_>, by_length: bool) -> f64 {
+    /// From the state after a step, F and the mass matrix to the state before it.
+    fn motion(&mut self, span: Span<'_>, on: &StepTape<'_>, by_ends: bool) -> ByEnds {
         self.vector[0].copy_from_slice(&self.z);
         self.z.fill(0.0);
         let effects = Effects {
             after: &self.vector[0],
             f: &self.square[1],
             mass: &self.mass,
-            by_length,
+            by_ends,
         };
         let mut sums = Sums {
             z: &mut self.z,
             p: &mut self.parameters,
             lags: &mut self.lags,
+            u: &mut self.inputs,
         };
         transition::adjoint(
             self.pass.system.plant,
@@ -280,16 +297,25 @@ impl Backward<'_, '_> {
         }
         add(&by_prior, &mut self.z);
         if outputs {
-            let at = (first.innovation.t, prior.as_slice(), held);
+            self.inputs.fill(0.0);
+            let t = pass.time_of(&first.innovation);
+            let at = (t, prior.as_slice(), held);
             let place = Place::new(pass.system.layout, pass.values, at);
             let mut sums = Sums {
                 z: &mut self.z,
                 p: &mut self.parameters,
                 lags: &mut self.lags,
+                u: &mut self.inputs,
             };
             let weights = [self.mu.as_slice(), &self.slopes];
             let plant = pass.system.plant;
             plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
+            self.late_inputs(held, gradient);
+            let channel = first.innovation.channel;
+            if pass.system.setup.channels[channel].longest_delay.is_some() {
+                let delay = pass.system.layout.sensor_delay(channel);
+                gradient[delay] -= command::by_time(held, &self.inputs);
+            }
         }
     }
 

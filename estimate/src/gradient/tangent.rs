@@ -16,7 +16,8 @@ use crate::estimation::Estimation;
 use crate::kalman::filter::{Innovation, Pass};
 use crate::kalman::tape::{Record, SampleTape};
 use crate::matrix::{add_scaled, dot, multiply};
-use crate::motion::plant::{Place, Scratch, Sums};
+use crate::motion::command;
+use crate::motion::plant::{Place, Plant, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{Span, added_by_rate};
 
@@ -216,9 +217,7 @@ impl<'p, 'a> Forward<'p, 'a> {
                     self.advance(step);
                 }
             }
-            Action::Switch { .. } if records > 0 => {
-                self.switch(recording_time(recording, action), &before);
-            }
+            Action::Switch { .. } if records > 0 => self.switch(&before),
             Action::Switch { .. } => {}
             Action::Measure { .. } => self.measure(samples),
         }
@@ -292,6 +291,19 @@ impl<'p, 'a> Forward<'p, 'a> {
                 }
             }
         }
+        for (column, direction) in self.directions.iter().enumerate() {
+            if let Direction::LateInput(input) = *direction {
+                let slope = command::slope(on.held, input);
+                if slope != 0.0 {
+                    let slopes: (&mut [f64], &mut [f64]) =
+                        (&mut self.by_states, &mut self.by_inputs);
+                    let by = by_input(plant, place, &mut self.scratch, slopes, input);
+                    for (state, by) in by.into_iter().enumerate() {
+                        self.added[state * columns + column] -= half * slope * by;
+                    }
+                }
+            }
+        }
         add_scaled(1.0, &self.added, &mut self.z);
         multiply(on.f, &self.z, n, &mut self.moved);
         std::mem::swap(&mut self.z, &mut self.moved);
@@ -348,35 +360,24 @@ impl<'p, 'a> Forward<'p, 'a> {
         lagged
     }
 
-    /// A later input would have held its previous value for longer.
-    fn switch(&mut self, t: f64, before: &[f64]) {
-        let late = |direction: &Direction| matches!(direction, Direction::LateInput(_));
-        if !self.directions.iter().any(late) {
-            return;
-        }
-        let info = self.estimation.setup().model.info();
-        let (states, inputs) = (info.state_len(), info.input_len());
-        let held = self.pass.held.clone();
-        let at = (t, self.pass.z.as_slice(), held.as_slice());
-        let place = Place::new(self.pass.system.layout, self.pass.values, at);
-        let (rates, a, b) = (&mut self.rates, &mut self.by_states, &mut self.by_inputs);
-        self.pass.system.plant.at(place, &mut self.scratch, |at| {
-            self.estimation
-                .setup()
-                .model
-                .jacobians(at, &mut rates[..states], a, b);
-        });
+    /// A later input would have had its previous values for longer.
+    fn switch(&mut self, before: &[f64]) {
+        let plant = self.pass.system.plant;
         for (column, direction) in self.directions.iter().enumerate() {
-            if let Direction::LateInput(input) = *direction {
-                let jump = before[input] - held[input];
-                for state in 0..states {
-                    self.z[state * self.columns + column] +=
-                        jump * self.by_inputs[state * inputs + input];
-                }
-                let plant = self.pass.system.plant;
-                for (state, slope) in plant.filters_by_input(place, &mut self.scratch, input) {
-                    self.z[state * self.columns + column] += jump * slope;
-                }
+            let Direction::LateInput(input) = *direction else {
+                continue;
+            };
+            let t = command::since(&self.pass.held, input);
+            let [old, new] = [before, &self.pass.held].map(|held| command::value(held, input, t));
+            if old.to_bits() == new.to_bits() {
+                continue;
+            }
+            let at = (t, self.pass.z.as_slice(), self.pass.held.as_slice());
+            let place = Place::new(self.pass.system.layout, self.pass.values, at);
+            let slopes: (&mut [f64], &mut [f64]) = (&mut self.by_states, &mut self.by_inputs);
+            let by = by_input(plant, place, &mut self.scratch, slopes, input);
+            for (state, by) in by.into_iter().enumerate() {
+                self.z[state * self.columns + column] += (old - new) * by;
             }
         }
     }
@@ -386,10 +387,11 @@ impl<'p, 'a> Forward<'p, 'a> {
         for index in first..self.pass.samples.len() {
             let sample = self.pass.samples[index];
             let channel = sample.innovation.channel;
-            let by_parameters = self.output_slope(index);
+            let (by_parameters, by_inputs) = self.output_slope(index);
+            let t = self.pass.time_of(&sample.innovation);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
-            let at = (sample.innovation.t, &*z, self.pass.held.as_slice());
+            let at = (t, &*z, self.pass.held.as_slice());
             let place = Place::new(self.pass.system.layout, self.pass.values, at);
             let start = self.rows.len();
             self.rows.resize(start + columns, 0.0);
@@ -413,7 +415,10 @@ impl<'p, 'a> Forward<'p, 'a> {
                             .system
                             .plant
                             .rates(place, &mut self.scratch, &mut self.rates);
-                        dot(c, &self.rates)
+                        dot(c, &self.rates) + command::by_time(&self.pass.held, &by_inputs)
+                    }
+                    Direction::LateInput(input) if !by_inputs.is_empty() => {
+                        by_inputs[input] * command::slope(&self.pass.held, input)
                     }
                     _ => 0.0,
                 };
@@ -436,13 +441,13 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// Derivatives of an output that is read with respect to the parameters; none for a state.
-    fn output_slope(&mut self, index: usize) -> Vec<f64> {
+    /// Derivatives of an output that is read with respect to the parameters and the declared inputs; none for a state.
+    fn output_slope(&mut self, index: usize) -> (Vec<f64>, Vec<f64>) {
         let sample = self.pass.samples[index];
         let setup = self.estimation.setup();
         let channel = sample.innovation.channel;
         let Measured::Output(output) = setup.reads(channel) else {
-            return Vec::new();
+            return (Vec::new(), Vec::new());
         };
         let info = setup.model.info();
         let n = self.pass.sizes.n;
@@ -454,8 +459,9 @@ impl<'p, 'a> Forward<'p, 'a> {
             vec![0.0; info.parameter_len()],
             vec![0.0; setup.lag_len()],
         );
+        let mut by_inputs = vec![0.0; info.declared_inputs];
         let at = (
-            sample.innovation.t,
+            self.pass.time_of(&sample.innovation),
             self.pass.z.as_slice(),
             self.pass.held.as_slice(),
         );
@@ -464,14 +470,43 @@ impl<'p, 'a> Forward<'p, 'a> {
             z: &mut by.0,
             p: &mut by.1,
             lags: &mut by.2,
+            u: &mut by_inputs,
         };
         let weights = [weights.as_slice(), &slopes];
         self.pass
             .system
             .plant
             .output_adjoint(place, &mut self.scratch, weights, &mut sums);
-        by.1
+        (by.1, by_inputs)
     }
+}
+
+/// Derivatives of the rates of all states with respect to a declared input; of the model's own by the two matrices.
+fn by_input(
+    plant: &Plant<'_>,
+    place: Place<'_>,
+    scratch: &mut Scratch,
+    (by_states, by_inputs): (&mut [f64], &mut [f64]),
+    input: usize,
+) -> Vec<f64> {
+    let info = plant.info();
+    let (states, inputs) = (info.state_len(), info.input_len());
+    let mut by = vec![0.0; plant.n];
+    if let Some(lag) = plant.lag_of(input) {
+        by[states + lag] = 1.0 / place.lags[lag];
+        return by;
+    }
+    let mut rates = vec![0.0; states];
+    plant.at(place, scratch, |at| {
+        plant.model.jacobians(at, &mut rates, by_states, by_inputs);
+    });
+    for (state, by) in by[..states].iter_mut().enumerate() {
+        *by = by_inputs[state * inputs + input];
+    }
+    for (state, slope) in plant.filters_by_input(place, scratch, input) {
+        by[state] += slope;
+    }
+    by
 }
 
 fn is_parameter(direction: &Direction) -> bool {

@@ -18,6 +18,7 @@ use crate::data::recording::Recording;
 use crate::data::setup::{Disturbance, Measured, Setup};
 use crate::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
 use crate::motion::closure::Closure;
+use crate::motion::command::{self, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, Span, halvings, step};
@@ -143,7 +144,7 @@ impl<'a> Pass<'a> {
         };
         let sizes = Sizes {
             n,
-            inputs: info.declared_inputs,
+            commands: command::NUMBERS * info.declared_inputs,
             disturbances: setup.disturbances.len(),
         };
         let zeros = |len| vec![0.0; len];
@@ -158,7 +159,7 @@ impl<'a> Pass<'a> {
             samples: Vec::new(),
             z: zeros(n),
             root: zeros(n * n),
-            held: zeros(sizes.inputs),
+            held: zeros(sizes.commands),
             scratch: plant.scratch(),
             closure: Closure::of(plant),
             spread: zeros(2 * n * (n + sizes.disturbances)),
@@ -184,13 +185,9 @@ impl<'a> Pass<'a> {
             }
             Action::Switch { row, input } => {
                 let first = self.records.is_empty();
-                switch(
-                    self.system.setup,
-                    first,
-                    &mut self.held,
-                    recording.inputs(row),
-                    input,
-                );
+                let StateSpace { setup, layout, .. } = self.system;
+                let switch = Switch { row, input, first };
+                switch.apply(&mut self.held, (setup, layout, self.values), recording);
                 if first {
                     self.close(recording.times()[row])?;
                 }
@@ -373,7 +370,7 @@ impl<'a> Pass<'a> {
         let measured = recording.measured(row);
         let t = recording.times()[row];
         let channels = self.sampled(measured, only);
-        let held = self.linearise_outputs(t, &channels);
+        let held = self.linearise_outputs(self.sampling_time(t, only), &channels);
         let prior = self.record(channels.len() * self.sizes.sample_len());
         for (count, &channel) in channels.iter().enumerate() {
             let tape = prior + count * self.sizes.sample_len();
@@ -390,6 +387,19 @@ impl<'a> Pass<'a> {
         let row = only.is_none().then_some(row);
         self.records.push(Record::Measure { row, samples, held });
         Ok(())
+    }
+
+    /// When a delayed channel, or another, was sampled for a row at a time.
+    pub(crate) fn sampling_time(&self, t: f64, delayed: Option<usize>) -> f64 {
+        let delay = |channel| self.values[self.system.layout.sensor_delay(channel)];
+        t - delayed.map_or(0.0, delay)
+    }
+
+    /// The same for the row of a sample.
+    pub(crate) fn time_of(&self, sample: &Innovation) -> f64 {
+        let channel = &self.system.setup.channels[sample.channel];
+        let delayed = channel.longest_delay.map(|_| sample.channel);
+        self.sampling_time(sample.t, delayed)
     }
 
     /// The channels with a value among those of a row: one delayed channel, or all others.
@@ -497,23 +507,6 @@ impl<'a> Pass<'a> {
             tape,
         });
         Ok(())
-    }
-}
-
-/// One delayed input, or all others, take new values. Before its first row a delayed input has its
-/// first value.
-pub(crate) fn switch(
-    setup: &Setup<'_>,
-    first: bool,
-    held: &mut [f64],
-    inputs: &[f64],
-    only: Option<usize>,
-) {
-    for (input, (held, &now)) in held.iter_mut().zip(inputs).enumerate() {
-        let delayed = setup.delayed.contains(&input);
-        if only.map_or(!delayed || first, |only| only == input) {
-            *held = now;
-        }
     }
 }
 

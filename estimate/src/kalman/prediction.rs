@@ -1,6 +1,6 @@
 //! Predictions over longer horizons, from the filtered state at a row, without later measurements.
 
-use super::filter::{Pass, switch};
+use super::filter::Pass;
 use crate::EstimateError;
 use crate::data::recording::Recording;
 use crate::data::setup::Measured;
@@ -8,6 +8,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::add_scaled;
 use crate::motion::closure::Closure;
+use crate::motion::command::Switch;
 use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
@@ -151,7 +152,7 @@ impl<'a> Walk<'a> {
             recording,
             origin: 0,
             z: vec![0.0; n],
-            held: vec![0.0; pass.sizes.inputs],
+            held: vec![0.0; pass.sizes.commands],
             scratch: pass.system.plant.scratch(),
             closure: pass.closure.clone(),
             stage: vec![0.0; n],
@@ -180,8 +181,14 @@ impl<'a> Walk<'a> {
                     t = advance.t + advance.h;
                 }
                 Action::Switch { row, input } => {
-                    let inputs = self.recording.inputs(row);
-                    switch(self.system.setup, false, &mut self.held, inputs, input);
+                    let StateSpace { setup, layout, .. } = self.system;
+                    let switch = Switch {
+                        row,
+                        input,
+                        first: false,
+                    };
+                    let values = (setup, layout, self.values);
+                    switch.apply(&mut self.held, values, self.recording);
                 }
                 Action::Measure { row, channel } => {
                     let horizon = if everything { 0.0 } else { horizon };
@@ -221,7 +228,8 @@ impl<'a> Walk<'a> {
                 Measured::Output(output) => {
                     if outputs.is_empty() {
                         outputs = vec![0.0; self.system.plant.info().output_len()];
-                        let t = self.recording.times()[row];
+                        let delay = |channel| self.values[self.system.layout.sensor_delay(channel)];
+                        let t = self.recording.times()[row] - only.map_or(0.0, delay);
                         let place =
                             Place::new(self.system.layout, self.values, (t, &self.z, &self.held));
                         self.system

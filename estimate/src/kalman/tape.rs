@@ -70,14 +70,15 @@ pub(crate) struct SampleTape<'a> {
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Sizes {
     pub(crate) n: usize,
-    pub(crate) inputs: usize,
+    /// Numbers of the declared inputs.
+    pub(crate) commands: usize,
     pub(crate) disturbances: usize,
 }
 
 impl Sizes {
     pub(crate) fn step_len(self) -> usize {
         let Self { n, .. } = self;
-        self.inputs + stages_len(n) + 2 * n * n + n * self.disturbances + n
+        self.commands + stages_len(n) + 2 * n * n + n * self.disturbances + n
     }
 
     pub(crate) fn sample_len(self) -> usize {
@@ -87,7 +88,7 @@ impl Sizes {
     pub(crate) fn step(self, tape: &mut [f64]) -> StepTape<'_> {
         let n = self.n;
         let (nn, columns) = (n * n, n * self.disturbances);
-        let lengths = [self.inputs, stages_len(n), nn, nn, columns, n];
+        let lengths = [self.commands, stages_len(n), nn, nn, columns, n];
         let [held, stages, f, root, columns, after] = pieces(tape, lengths);
         StepTape {
             held,
@@ -131,8 +132,8 @@ impl Pass<'_> {
 
     /// Restarts with the inputs, state and root of P on a tape.
     fn begin_at(&mut self, start: &mut [f64]) {
-        let Sizes { n, inputs, .. } = self.sizes;
-        let [held, z, root] = pieces(start, [inputs, n, n * n]);
+        let Sizes { n, commands, .. } = self.sizes;
+        let [held, z, root] = pieces(start, [commands, n, n * n]);
         self.held.copy_from_slice(held);
         self.z.copy_from_slice(z);
         self.root.copy_from_slice(root);

@@ -8,6 +8,7 @@
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
 
+use super::command;
 use super::sensors::Filter;
 use crate::data::layout::Layout;
 use crate::data::setup::Setup;
@@ -39,7 +40,7 @@ pub(crate) struct Place<'a> {
     pub(crate) t: f64,
     /// All states.
     pub(crate) z: &'a [f64],
-    /// Held declared inputs.
+    /// Declared inputs as commands.
     pub(crate) held: &'a [f64],
     /// Parameters of the model.
     pub(crate) p: &'a [f64],
@@ -48,7 +49,7 @@ pub(crate) struct Place<'a> {
 }
 
 impl<'a> Place<'a> {
-    /// With the parameters and time constants of a list of values, at a time, state and held inputs.
+    /// With the parameters and time constants of a list of values, at a time, state and commands.
     pub(crate) fn new(
         layout: Layout,
         values: &'a [f64],
@@ -62,6 +63,11 @@ impl<'a> Place<'a> {
             p: &values[..layout.parameters],
             lags: &values[lags..lags + layout.lags],
         }
+    }
+
+    /// The value of a declared input.
+    pub(crate) fn input(&self, input: usize) -> f64 {
+        command::value(self.held, input, self.t)
     }
 }
 
@@ -102,6 +108,8 @@ pub(crate) struct Sums<'a> {
     pub(crate) p: &'a mut [f64],
     /// With respect to the time constants.
     pub(crate) lags: &'a mut [f64],
+    /// With respect to the declared inputs.
+    pub(crate) u: &'a mut [f64],
 }
 
 impl<'a> Plant<'a> {
@@ -121,6 +129,11 @@ impl<'a> Plant<'a> {
             m: info.input_len(),
             speeds: info.speeds,
         })
+    }
+
+    /// The lag of an input, where it lags.
+    pub(crate) fn lag_of(&self, input: usize) -> Option<usize> {
+        self.lagging.iter().position(|&lagging| lagging == input)
     }
 
     pub(crate) fn info(&self) -> &ModelInfo {
@@ -160,7 +173,10 @@ impl<'a> Plant<'a> {
     /// Inputs and parameters of the model.
     fn view(&self, place: Place<'_>, u: &mut [f64], p: &mut [f64]) {
         let states = self.info().state_len();
-        u[..place.held.len()].copy_from_slice(place.held);
+        let declared = self.info().declared_inputs;
+        for (input, u) in u[..declared].iter_mut().enumerate() {
+            *u = place.input(input);
+        }
         p.copy_from_slice(place.p);
         for (&input, &lagged) in self.lagging.iter().zip(&place.z[states..]) {
             u[input] = lagged;
@@ -169,7 +185,7 @@ impl<'a> Plant<'a> {
             p[parameter] = place.z[state];
         }
         let derived = self.info().signal_inputs.iter();
-        for (u, &(signal, order)) in u[place.held.len()..].iter_mut().zip(derived) {
+        for (u, &(signal, order)) in u[declared..].iter_mut().zip(derived) {
             let signal = self.signals.get(signal);
             *u = signal.map_or(f64::NAN, |signal| signal.derivative(place.t, order));
         }
@@ -182,7 +198,10 @@ impl<'a> Plant<'a> {
         let [x, u, p] = pieces(gradient, [n, self.m, k]);
         add_scaled(factor, x, &mut sums.z[..n]);
         for (lagged, &input) in sums.z[n..].iter_mut().zip(self.lagging) {
-            *lagged += factor * u[input];
+            *lagged += factor * std::mem::take(&mut u[input]);
+        }
+        for (sum, own) in sums.u.iter_mut().zip(u) {
+            *sum += factor * *own;
         }
         self.pass_on_parameters(factor, p, sums);
     }
@@ -200,7 +219,7 @@ impl<'a> Plant<'a> {
         let n = self.info().state_len();
         rates[n..].fill(0.0);
         for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
-            rates[n + lag] = (place.held[input] - place.z[n + lag]) / tau;
+            rates[n + lag] = (place.input(input) - place.z[n + lag]) / tau;
         }
         for filter in &self.filters {
             rates[filter.state] = filter.gap(place, outputs) / place.lags[filter.lag];
@@ -211,7 +230,7 @@ impl<'a> Plant<'a> {
     pub(crate) fn gap(&self, place: Place<'_>, rates: &[f64], lag: usize) -> f64 {
         let state = self.info().state_len() + lag;
         match self.lagging.get(lag) {
-            Some(&input) => place.held[input] - place.z[state],
+            Some(&input) => place.input(input) - place.z[state],
             // What a channel measures need not be evaluated again.
             None => rates[state] * place.lags[lag],
         }
@@ -343,7 +362,8 @@ impl<'a> Plant<'a> {
         for (lag, (&input, &tau)) in self.lagging.iter().zip(place.lags).enumerate() {
             let (lambda, slope) = (lambda[n + lag], slopes[(n + lag) * (all + 1)]);
             sums.z[n + lag] -= lambda / tau;
-            let gap = place.held[input] - place.z[n + lag];
+            sums.u[input] += lambda / tau;
+            let gap = place.input(input) - place.z[n + lag];
             sums.lags[lag] += (slope - lambda * gap) / (tau * tau);
         }
         self.filter_adjoint(place, scratch, [lambda, slopes], sums);

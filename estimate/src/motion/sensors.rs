@@ -137,11 +137,13 @@ impl Plant<'_> {
             };
             let (mut z, mut lags) = (vec![0.0; n], vec![0.0; place.lags.len()]);
             let (mut p, mut weights) = (vec![0.0; place.p.len()], vec![0.0; l]);
+            let mut u = vec![0.0; self.info().declared_inputs];
             weights[output] = 1.0 / place.lags[filter.lag];
             let mut sums = Sums {
                 z: &mut z,
                 p: &mut p,
                 lags: &mut lags,
+                u: &mut u,
             };
             self.output_adjoint(place, scratch, [&weights, &no_slopes], &mut sums);
             rows.push((filter.state, p));

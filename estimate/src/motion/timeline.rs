@@ -22,9 +22,19 @@ pub(crate) struct Advance {
     pub(crate) t: f64,
     /// Its length in s; zero where a delay moves one of its ends only.
     pub(crate) h: f64,
-    /// Values that move the ends of the interval which the step is a part of, each with the sign
-    /// of its effect on the length of the step and the step's part of the interval.
-    pub(crate) moved_by: [Option<(usize, f64)>; 2],
+    /// Values that move the ends of the interval which the step is a part of.
+    pub(crate) moved_by: [Option<Moved>; 2],
+}
+
+/// The effect of a delay on a step.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Moved {
+    /// Place of the delay.
+    pub(crate) delay: usize,
+    /// Derivative of the start of the step.
+    pub(crate) start: f64,
+    /// Derivative of its length.
+    pub(crate) length: f64,
 }
 
 impl Advance {
@@ -33,11 +43,16 @@ impl Advance {
         let count = 1_u32 << halvings;
         let part = f64::from(count).recip();
         let h = part * self.h;
-        let moved_by = (self.moved_by).map(|end| end.map(|(delay, sign)| (delay, sign * part)));
         (0..count).map(move |i| Self {
             t: self.t + f64::from(i) * h,
             h,
-            moved_by,
+            moved_by: self.moved_by.map(|end| {
+                end.map(|own| Moved {
+                    start: own.start + f64::from(i) * part * own.length,
+                    length: part * own.length,
+                    ..own
+                })
+            }),
         })
     }
 }
@@ -91,7 +106,9 @@ fn stops(
     for (row, &t) in times.iter().enumerate() {
         let now = recording.inputs(row);
         let is_other = |input: usize, last: &[f64]| last[input].to_bits() != now[input].to_bits();
-        let changes = |input: usize| before.is_none_or(|last| is_other(input, last));
+        let changes = |input: usize| {
+            recording.is_joined(input) || before.is_none_or(|last| is_other(input, last))
+        };
         if (0..now.len()).any(|input| !is_delayed(input) && changes(input)) || row == 0 {
             stops.push(Stop {
                 t,
@@ -99,8 +116,8 @@ fn stops(
                 action: Some(Action::Switch { row, input: None }),
             });
         }
-        for (index, &input) in setup.delayed.iter().enumerate().filter(|_| row > 0) {
-            if changes(input) {
+        for (index, &input) in setup.delayed.iter().enumerate() {
+            if changes(input) && (row > 0 || recording.is_joined(input)) {
                 let delay = layout.input_delay(index);
                 let input = Some(input);
                 stops.push(Stop {
@@ -161,16 +178,20 @@ fn advance(
     let step = whole.min(shortest_lag.max(SHORTEST * whole));
     let count = (length / step).ceil().max(1.0);
     let (h, part) = (length / count, 1.0 / count);
-    let moved_by = [
-        moves_a.map(|(delay, sign)| (delay, -sign * part)),
-        moves_b.map(|(delay, sign)| (delay, sign * part)),
-    ];
     let mut step = 0.0;
     while step < count {
+        let moved = |(delay, sign): (usize, f64), start: f64, length: f64| Moved {
+            delay,
+            start: sign * start,
+            length: sign * length,
+        };
         actions.push(Action::Advance(Advance {
             t: a + step * h,
             h,
-            moved_by,
+            moved_by: [
+                moves_a.map(|end| moved(end, 1.0 - step * part, -part)),
+                moves_b.map(|end| moved(end, step * part, part)),
+            ],
         }));
         step += 1.0;
     }

@@ -3,6 +3,7 @@
 //! The transition matrix F is the derivative of the numerical step, not of the exact flow: filter
 //! and gradient then belong to the same function of the values, whatever the step.
 
+use super::command;
 use super::plant::{Place, Plant, Scratch, Sums};
 use crate::matrix::{
     add, add_scaled, dot, multiply, multiply_transposed, pieces, set_identity, transposed_multiply,
@@ -33,6 +34,11 @@ pub(crate) struct Stages<'a> {
     pub(crate) x: &'a mut [f64],
 }
 
+/// Position of a stage as a fraction of the step.
+fn part(stage: usize) -> f64 {
+    if stage == 0 { 0.0 } else { STAGES[stage - 1] }
+}
+
 /// Number of numbers for the stages of `n` states.
 pub(crate) fn stages_len(n: usize) -> usize {
     8 * n + 8 * n * n
@@ -58,9 +64,8 @@ pub(crate) struct Span<'a> {
 impl<'a> Span<'a> {
     /// The point of a stage.
     pub(crate) fn place(&self, stage: usize, z: &'a [f64]) -> Place<'a> {
-        let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
         Place {
-            t: self.t + part * self.h,
+            t: self.t + part(stage) * self.h,
             z,
             held: self.held,
             p: self.p,
@@ -192,6 +197,7 @@ pub(crate) struct Reverse {
     x: Vec<f64>,
     product: Vec<f64>,
     no_mass: Vec<f64>,
+    u: Vec<f64>,
 }
 
 impl Reverse {
@@ -205,6 +211,7 @@ impl Reverse {
             x: zeros(n * n),
             product: zeros(n * n),
             no_mass: zeros(plant.speeds * plant.speeds),
+            u: zeros(plant.info().declared_inputs),
         }
     }
 }
@@ -216,12 +223,19 @@ pub(crate) struct Effects<'a> {
     pub(crate) after: &'a [f64],
     pub(crate) f: &'a [f64],
     pub(crate) mass: &'a [f64],
-    /// Whether the derivative with respect to the step length is computed.
-    pub(crate) by_length: bool,
+    /// Whether the derivatives with respect to the ends of the step are computed.
+    pub(crate) by_ends: bool,
+}
+
+/// Derivatives with respect to the start of a step and to its length; zero if they are not computed.
+#[derive(Debug, Clone, Copy, Default)]
+pub(crate) struct ByEnds {
+    pub(crate) start: f64,
+    pub(crate) length: f64,
 }
 
 /// The gradient of that scalar: added to `sums`, where `sums.z` is that of the state before the
-/// step. Returns the derivative with respect to the step length, 0 if it is not computed.
+/// step.
 pub(crate) fn adjoint(
     plant: &Plant<'_>,
     span: Span<'_>,
@@ -229,10 +243,10 @@ pub(crate) fn adjoint(
     (stages, effects): (&Stages<'_>, Effects<'_>),
     back: &mut Reverse,
     sums: &mut Sums<'_>,
-) -> f64 {
+) -> ByEnds {
     let (n, h) = (plant.n, span.h);
     let nn = n * n;
-    let mut by_h = 0.0;
+    let mut by = ByEnds::default();
     add(effects.after, sums.z);
     for i in (0..4).rev() {
         let (z, k) = (&stages.z[i * n..(i + 1) * n], &stages.k[i * n..(i + 1) * n]);
@@ -246,11 +260,11 @@ pub(crate) fn adjoint(
             add_scaled(h * STAGES[i], &back.z, &mut back.k);
             add_scaled(h * STAGES[i], &back.x, &mut back.kk);
         }
-        if effects.by_length {
+        if effects.by_ends {
             multiply(a, x, n, &mut back.product);
-            by_h += WEIGHTS[i] * (dot(effects.after, k) + dot(effects.f, &back.product));
+            by.length += WEIGHTS[i] * (dot(effects.after, k) + dot(effects.f, &back.product));
             if i < 3 {
-                by_h += STAGES[i] * (dot(&back.z, k) + dot(&back.x, &back.product));
+                by.length += STAGES[i] * (dot(&back.z, k) + dot(&back.x, &back.product));
             }
         }
         add_scaled(h * WEIGHTS[i], effects.after, &mut back.k);
@@ -264,14 +278,23 @@ pub(crate) fn adjoint(
             &back.no_mass
         };
         back.z.fill(0.0);
+        back.u.fill(0.0);
         let mut of_stage = Sums {
             z: &mut back.z,
             p: sums.p,
             lags: sums.lags,
+            u: &mut back.u,
         };
         let weights = [back.k.as_slice(), &back.a, mass];
-        plant.adjoint(span.place(i, z), scratch, weights, &mut of_stage);
+        let place = span.place(i, z);
+        plant.adjoint(place, scratch, weights, &mut of_stage);
         add(&back.z, sums.z);
+        add(&back.u, sums.u);
+        if effects.by_ends {
+            let by_t = command::by_time(place.held, &back.u);
+            by.start += by_t;
+            by.length += part(i) * by_t;
+        }
     }
-    by_h
+    by
 }

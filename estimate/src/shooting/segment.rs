@@ -9,9 +9,9 @@ use crate::data::recording::Recording;
 use crate::data::setup::Measured;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
-use crate::kalman::filter::switch;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
+use crate::motion::command::{self, Switch};
 use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
@@ -64,7 +64,7 @@ impl<'a> SegmentIntegrator<'a> {
             width,
             z: vec![0.0; n],
             by: vec![0.0; n * width],
-            held: vec![0.0; plant.info().declared_inputs],
+            held: vec![0.0; command::NUMBERS * plant.info().declared_inputs],
             rows: Vec::new(),
             scratch: plant.scratch(),
             closure: Closure::of(plant),
@@ -83,14 +83,14 @@ impl<'a> SegmentIntegrator<'a> {
             match action {
                 Action::Advance(advance) => self.advance(advance, 0),
                 Action::Switch { row, input } => {
-                    let inputs = self.recording.inputs(row);
-                    switch(
-                        self.estimation.setup(),
-                        is_first,
-                        &mut self.held,
-                        inputs,
+                    let switch = Switch {
+                        row,
                         input,
-                    );
+                        first: is_first,
+                    };
+                    let (setup, layout) = (self.estimation.setup(), self.estimation.layout());
+                    let values = (setup, layout, self.values);
+                    switch.apply(&mut self.held, values, self.recording);
                     is_first = false;
                 }
                 Action::Measure { row, channel } => {
@@ -219,7 +219,8 @@ impl<'a> SegmentIntegrator<'a> {
     /// Adds the samples of one delayed channel, or of all others.
     fn measure(&mut self, row: usize, only: Option<usize>) -> Result<(), EstimateError> {
         let (setup, layout) = (self.estimation.setup(), self.estimation.layout());
-        let (n, t) = (self.n, self.recording.times()[row]);
+        let delay = only.map_or(0.0, |channel| self.values[layout.sensor_delay(channel)]);
+        let (n, t) = (self.n, self.recording.times()[row] - delay);
         let count = if setup.reads_outputs() {
             self.estimation.plant().info().output_len()
         } else {
@@ -296,10 +297,12 @@ fn output_slope(
     let slopes = vec![0.0; count * plant.n];
     let (mut z, mut lags) = (vec![0.0; plant.n], vec![0.0; place.lags.len()]);
     let mut p = vec![0.0; place.p.len()];
+    let mut u = vec![0.0; plant.info().declared_inputs];
     let mut sums = Sums {
         z: &mut z,
         p: &mut p,
         lags: &mut lags,
+        u: &mut u,
     };
     plant.output_adjoint(place, scratch, [&weights, &slopes], &mut sums);
     p

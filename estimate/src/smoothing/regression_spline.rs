@@ -44,7 +44,7 @@ impl Basis {
 
     /// Number of functions.
     pub const fn len(&self) -> usize {
-        self.intervals + DEGREE
+        self.intervals.saturating_add(DEGREE)
     }
 
     /// Whether there is none.
@@ -112,6 +112,10 @@ impl RegressionSpline {
     /// Fits increasing times and their values, a row for each time. `None` if the samples do not
     /// determine the splines.
     pub fn fit(basis: Basis, times: &[f64], values: &DMatrix<f64>) -> Option<Self> {
+        // Before memory is taken: knots may be many more than samples where runs have different clocks.
+        if basis.len() > times.len() {
+            return None;
+        }
         let (n, quantities) = (basis.len(), values.ncols());
         let mut triangle = vec![[0.0; LIVE]; n];
         let mut right = DMatrix::zeros(n, quantities);

@@ -193,6 +193,7 @@ fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
         else {
             continue;
         };
+        let is_joined = set.channels[column].is_joined();
         for run in &mut set.runs {
             let values = &run.values[column];
             run.values[column] = match effect.acts.as_str() {
@@ -200,8 +201,8 @@ fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
                 "scale" => values.iter().map(|value| value / size).collect(),
                 // To first order a lag is a delay.
                 "late" | "slow" => shifted(&run.times, values, size, false),
-                "delay" => shifted(&run.times, values, -size, true),
-                "lag" => lagging(&run.times, values, size),
+                "delay" => shifted(&run.times, values, -size, !is_joined),
+                "lag" => lagging(&run.times, values, size, is_joined),
                 _ => continue,
             };
         }
@@ -222,15 +223,28 @@ fn shifted(times: &[f64], values: &[f64], by: f64, is_held: bool) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-/// Held values after a lag of first order.
-fn lagging(times: &[f64], values: &[f64], time_constant: f64) -> Vec<f64> {
+/// Values after a lag of first order: those of lines at the rows, means of held ones until the next row.
+fn lagging(times: &[f64], values: &[f64], time_constant: f64, is_joined: bool) -> Vec<f64> {
     let mut state = values.first().copied().unwrap_or(0.0);
     let mut after = Vec::with_capacity(values.len());
     for row in 0..values.len() {
         let step = times.get(row + 1).map_or(0.0, |next| next - times[row]);
-        let end = values[row] + (state - values[row]) * (-step / time_constant).exp();
-        after.push(0.5 * (state + end));
-        state = end;
+        let left = (-step / time_constant).exp();
+        if is_joined {
+            after.push(state);
+            let next = values.get(row + 1).copied().unwrap_or(values[row]);
+            // How far the answer to a line stays behind.
+            let behind = if step > 0.0 {
+                (next - values[row]) / step * time_constant
+            } else {
+                0.0
+            };
+            state = next - behind + (state - values[row] + behind) * left;
+        } else {
+            let end = values[row] + (state - values[row]) * left;
+            after.push(0.5 * (state + end));
+            state = end;
+        }
     }
     after
 }
@@ -249,8 +263,12 @@ mod tests {
             .iter()
             .map(|t| if *t < 0.1 { 0.0 } else { 1.0 })
             .collect();
-        let after = lagging(&times, &step, 0.1);
+        let after = lagging(&times, &step, 0.1, false);
         let expected = 1.0 - (-(times[30] + 0.005 - 0.1) / 0.1_f64).exp();
         assert!((after[30] - expected).abs() < 2e-3, "{}", after[30]);
+        // A line is followed by the time constant.
+        let after = lagging(&times, &times, 0.1, true);
+        let expected = times[99] - 0.1 * (1.0 - (-times[99] / 0.1_f64).exp());
+        assert!((after[99] - expected).abs() < 1e-12, "{}", after[99]);
     }
 }

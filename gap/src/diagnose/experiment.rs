@@ -20,6 +20,8 @@ use appell_recordings::{DataSet, Role};
 
 /// Longest experiment in s.
 const LONGEST: f64 = 20.0;
+/// Most rows of it.
+const MOST_ROWS: f64 = 1e6;
 /// Parts of the limits that are tried.
 const SIZES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
 /// Where nothing is said, a measured channel may leave its recorded range by this part of it.
@@ -143,7 +145,7 @@ impl<'a> Rig<'a> {
             .fold(f64::INFINITY, |least, span| least.min(span[1]));
         Self {
             bench,
-            step: finest,
+            step: finest.max(longest.min(LONGEST) / MOST_ROWS),
             duration: longest.min(LONGEST),
             inputs,
             channels: channels.collect(),

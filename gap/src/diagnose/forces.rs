@@ -38,6 +38,7 @@ pub(super) struct Forces<'s> {
     times: [f64; 2],
     /// States at the ends.
     ends: [&'s [f64]; 2],
+    /// Means between them.
     inputs: Vec<f64>,
 }
 
@@ -50,7 +51,7 @@ impl<'s> Forces<'s> {
     ) -> Self {
         let info = model.info();
         let mut inputs = vec![0.0; info.input_len()];
-        inputs[..recording.input_len()].copy_from_slice(recording.inputs(row - 1));
+        inputs[..recording.input_len()].copy_from_slice(&recording.mean_inputs(row - 1));
         Self {
             model,
             times: [recording.times()[row - 1], recording.times()[row]],

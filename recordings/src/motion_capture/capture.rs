@@ -6,6 +6,7 @@ use appell_estimate::smoothing::angle::unwrap;
 use appell_spec::units;
 
 use super::skeleton::{Column, Skeleton};
+use crate::time::Stated;
 use crate::{Channel, DataError, Finding, Role, format, limits};
 
 /// Rigid bodies at increasing times, in SI; NaN where a body was not seen.
@@ -36,7 +37,7 @@ impl Capture {
         let channel = |name: String| Channel::new(&name, Role::Recorded, plain.clone(), None);
         let channels: Vec<Channel> = names.map(channel).collect();
         let mut budget = limits::MAX_NUMBERS;
-        let table = format::read(path, None, &channels, &mut budget)?;
+        let table = format::read(path, &Stated::default(), &channels, &mut budget)?;
         let mut columns = table.columns.into_iter();
         let bodies = skeleton.bodies.iter().map(|_| {
             let mut next = |column: &Column| -> Vec<f64> {

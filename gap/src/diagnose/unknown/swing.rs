@@ -12,6 +12,8 @@ const SWINGS: f64 = 2.0;
 const ROWS: f64 = 25.0;
 /// Damping ratio of a hidden mass.
 const DAMPING: f64 = 0.1;
+/// Most small steps between two rows.
+const MOST_PARTS: usize = 1000;
 
 /// Its frequencies in 1/s, from some swings in a run to some rows in a swing, the lowest first. A disturbance with
 /// a colour looks like a swing at the end of that range; a mass has a frequency within.
@@ -53,9 +55,9 @@ pub(super) fn terms(trace: &Trace, frequency: f64) -> [Vec<f64>; 2] {
         };
         stretches.push(frequency * frequency * (values[row] - at));
         rates.push(frequency * (slope - rate));
-        // A count of small steps.
+        // A count of small steps; within many periods the spring comes to rest.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
-        let parts = ((10.0 * step * frequency).ceil() as usize).max(1);
+        let parts = ((10.0 * step * frequency).ceil() as usize).clamp(1, MOST_PARTS);
         let part = step / parts as f64;
         // Half a push, a drift, half a push (Verlet): a lag of half a step would be a force.
         for number in 0..parts {

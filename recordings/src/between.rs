@@ -1,0 +1,110 @@
+//! Inputs between rows: held, or along lines; inputs that look as if they had been sampled from a continuous
+//! signal.
+
+use appell_spec::mechanism::Interpolation;
+
+use crate::channel::{Channel, Role};
+use crate::{DataSet, Finding, FindingKind, Part, Run};
+
+/// Least number of rows of an input.
+const FEWEST: usize = 32;
+/// Part of the rows that may repeat the one before: a command that is held for several rows does so in most.
+const REPEATED: f64 = 0.05;
+/// Mean square of second differences over that of first ones: (ω h)² for a frequency ω, 2 for steps at random, 3 for
+/// noise. Below this a period has ten rows and more.
+const SMOOTH: f64 = 0.4;
+
+impl Channel {
+    /// Whether it is an input that is joined by straight lines from row to row.
+    pub fn is_joined(&self) -> bool {
+        self.interpolation == Some(Interpolation::Linear)
+    }
+}
+
+impl DataSet {
+    /// Adds a note on every input without a stated interpolation that changes smoothly.
+    pub(crate) fn tell_smooth_inputs(&mut self) {
+        let runs: Vec<&Run> = self.runs.iter().filter(|r| r.part == Part::Fit).collect();
+        for (index, channel) in self.channels.iter().enumerate() {
+            if !matches!(channel.role, Role::Input(_)) || channel.interpolation.is_some() {
+                continue;
+            }
+            let values = runs.iter().map(|run| &*run.values[index]);
+            let Some(late) = half_a_row(values) else {
+                continue;
+            };
+            let step = runs.iter().map(|run| run.sampling.step).fold(0.0, f64::max);
+            let message = format!(
+                "it changes smoothly from row to row, and is held from each to the next. If it was sampled from a \
+                 continuous signal, it acts half a row ({:.3} ms) late, {:.2} % of its size off, and parameters \
+                 with it: write interpolation = \"linear\" in its line; write interpolation = \"hold\" if it was held",
+                500.0 * step,
+                100.0 * late
+            );
+            let finding = Finding::new(FindingKind::SmoothInput, message);
+            self.findings.push(finding.of_channel(&channel.column));
+        }
+    }
+
+    /// The same recordings with every input held at its mean from row to row.
+    #[must_use]
+    pub(crate) fn held_at_means(mut self) -> Self {
+        for (index, channel) in self.channels.iter_mut().enumerate() {
+            if channel.is_joined() {
+                channel.interpolation = Some(Interpolation::Hold);
+                for run in &mut self.runs {
+                    let values = &mut run.values[index];
+                    for row in 1..values.len() {
+                        values[row - 1] = 0.5 * (values[row - 1] + values[row]);
+                    }
+                }
+            }
+        }
+        self
+    }
+}
+
+/// The mean error of an input that acts half a row late, relative to its size, if it changes smoothly.
+fn half_a_row<'v>(runs: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
+    let (mut rows, mut repeated) = (0_usize, 0_usize);
+    let (mut first, mut second) = (0.0, 0.0);
+    let (mut sum, mut squares) = (0.0, 0.0);
+    for values in runs {
+        rows += values.len();
+        for pair in values.windows(2) {
+            first += (pair[1] - pair[0]).powi(2);
+            repeated += usize::from(pair[1].to_bits() == pair[0].to_bits());
+        }
+        for three in values.windows(3) {
+            second += (three[2] - 2.0 * three[1] + three[0]).powi(2);
+        }
+        sum += values.iter().sum::<f64>();
+        squares += values.iter().map(|value| value * value).sum::<f64>();
+    }
+    let count = rows as f64;
+    let is_smooth = rows >= FEWEST
+        && (repeated as f64) < REPEATED * count
+        && second < SMOOTH * first
+        && first > 0.0;
+    let spread = (squares / count - (sum / count).powi(2)).max(f64::MIN_POSITIVE);
+    is_smooth.then(|| 0.5 * (first / count / spread).sqrt())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::half_a_row;
+
+    #[test]
+    fn a_sampled_sine_is_smooth_and_commands_are_not() {
+        let rows = || (0..400).map(f64::from);
+        let sine: Vec<f64> = rows().map(|row| (0.1 * row).sin()).collect();
+        let late = half_a_row([sine.as_slice()].into_iter()).unwrap_or_default();
+        assert!((late - 0.05).abs() < 1e-3, "{late}");
+        let steps: Vec<f64> = rows().map(|row| (row / 10.0).floor().sin()).collect();
+        // Steps at random, a new one in each row.
+        let noise: Vec<f64> = rows().map(|row| (row * row).sin()).collect();
+        for command in [steps, noise, vec![1.0; 400]] {
+            assert_eq!(half_a_row([command.as_slice()].into_iter()), None);
+        }
+    }
+}

@@ -1,0 +1,254 @@
+//! The column of the times: which one it is, and in which unit.
+//!
+//! `[channels]` names it with `time = true`; a line `t = { unit = "ms" }` does so as well. Else it is the only
+//! column whose name is one of a clock: `t`, `time` or `timestamp`, with a unit behind it as in `time [ms]`,
+//! `t(us)` or `timestamp_ns`. Without a unit the times are in seconds.
+
+use appell_spec::units::{self, Dimension, Unit};
+use appell_spec::{closest, shown};
+
+use crate::channel::Channel;
+
+/// Its name where nothing else is stated.
+pub(crate) const TIME: &str = "t";
+
+/// Names of clocks, in small letters with `_` between words.
+const NAMES: [&str; 7] = [
+    TIME,
+    "time",
+    "times",
+    "timestamp",
+    "timestamps",
+    "time_stamp",
+    "elapsed_time",
+];
+/// Words for units of time, each with the symbol of the unit.
+const WORDS: [(&str, &str); 17] = [
+    ("sec", "s"),
+    ("secs", "s"),
+    ("second", "s"),
+    ("seconds", "s"),
+    ("msec", "ms"),
+    ("millis", "ms"),
+    ("millisecond", "ms"),
+    ("milliseconds", "ms"),
+    ("µs", "us"),
+    ("μs", "us"),
+    ("usec", "us"),
+    ("micros", "us"),
+    ("microsecond", "us"),
+    ("microseconds", "us"),
+    ("nsec", "ns"),
+    ("nanosecond", "ns"),
+    ("nanoseconds", "ns"),
+];
+/// Symbols that may follow a name without brackets.
+const SYMBOLS: [&str; 4] = ["s", "ms", "us", "ns"];
+
+/// What a description says of the times.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Stated {
+    /// The column, where it is described.
+    pub(crate) column: Option<String>,
+    /// Whether only its name tells that this column is the one of the times.
+    pub(crate) by_name_alone: bool,
+    /// The unit, where it is stated.
+    pub(crate) unit: Option<Unit>,
+}
+
+/// The column of the times in a file.
+#[derive(Debug, Clone)]
+pub(crate) struct TimeColumn {
+    /// Its index.
+    pub(crate) index: usize,
+    /// Its name.
+    pub(crate) name: String,
+    /// The unit, where the description or the name states it.
+    pub(crate) unit: Option<Unit>,
+}
+
+impl TimeColumn {
+    /// The unit in s.
+    pub(crate) fn scale(&self) -> f64 {
+        self.unit.as_ref().map_or(1.0, |unit| unit.scale)
+    }
+}
+
+/// Why a file has no column of the times, with what to write instead.
+pub(crate) struct NoTime {
+    pub(crate) message: String,
+    pub(crate) help: String,
+}
+
+impl Stated {
+    /// The column of the times among those of a file.
+    pub(crate) fn find(
+        &self,
+        names: &[String],
+        channels: &[Channel],
+    ) -> Result<TimeColumn, NoTime> {
+        let clocks = Self::clocks(names, channels);
+        if let Some(stated) = &self.column
+            && (!self.by_name_alone || clocks.len() < 2)
+        {
+            let index = names.iter().position(|name| name == stated);
+            let index = index.ok_or_else(|| {
+                let similar = closest(stated, names.iter().map(String::as_str));
+                NoTime {
+                    message: format!("there is no column `{}` of the times", shown(stated)),
+                    help: similar.map_or_else(
+                        || "name the column of the times in `[channels]`".to_owned(),
+                        |similar| format!("did you mean `{}`?", shown(similar)),
+                    ),
+                }
+            })?;
+            return Ok(self.column_at(index, stated));
+        }
+        match clocks[..] {
+            [index] => Ok(self.column_at(index, &names[index])),
+            [] => Err(NoTime {
+                message: "there is no column of the times".to_owned(),
+                help: format!(
+                    "call it `{TIME}`, or name it in `[channels]` of recording.toml: {}",
+                    line("clock", "s")
+                ),
+            }),
+            ref several => {
+                let several: Vec<String> = (several.iter())
+                    .map(|&index| format!("`{}`", shown(&names[index])))
+                    .collect();
+                let first = several[0].trim_matches('`');
+                Err(NoTime {
+                    message: format!("{} may all be the times", several.join(", ")),
+                    help: format!(
+                        "name one in `[channels]` of recording.toml, such as {}",
+                        line(first, "s")
+                    ),
+                })
+            }
+        }
+    }
+
+    /// The columns that have the name of a clock and are no channels.
+    fn clocks(names: &[String], channels: &[Channel]) -> Vec<usize> {
+        let is_channel = |name: &String| channels.iter().any(|own| own.column == *name);
+        let is_clock = |index: &usize| {
+            let name = &names[*index];
+            may_be_time(name) && !is_channel(name)
+        };
+        (0..names.len()).filter(is_clock).collect()
+    }
+
+    fn column_at(&self, index: usize, name: &str) -> TimeColumn {
+        TimeColumn {
+            index,
+            name: name.to_owned(),
+            unit: self.unit.clone().or_else(|| unit_of(name)),
+        }
+    }
+}
+
+/// The line of `[channels]` that names the column of the times.
+pub(crate) fn line(name: &str, unit: &str) -> String {
+    let is_bare = |c: char| c.is_ascii_alphanumeric() || c == '_' || c == '-';
+    let name = if !name.is_empty() && name.chars().all(is_bare) {
+        name.to_owned()
+    } else {
+        format!("\"{name}\"")
+    };
+    format!("`{name} = {{ time = true, unit = \"{unit}\" }}`")
+}
+
+/// Whether a column has the name of a clock.
+pub(crate) fn may_be_time(name: &str) -> bool {
+    split(name).is_some()
+}
+
+/// The unit of the times that the name of a column states.
+fn unit_of(name: &str) -> Option<Unit> {
+    split(name)?.1
+}
+
+/// The name of a clock and the unit behind it.
+fn split(name: &str) -> Option<(String, Option<Unit>)> {
+    let name = name.trim();
+    if let Some((clock, unit)) = bracketed(name) {
+        let clock = plain(clock);
+        let unit = unit_by(unit)?;
+        return is_clock(&clock).then_some((clock, Some(unit)));
+    }
+    let whole = plain(name);
+    if is_clock(&whole) {
+        return Some((whole, None));
+    }
+    let (clock, last) = whole.rsplit_once('_')?;
+    let is_symbol = SYMBOLS.contains(&last) || WORDS.iter().any(|(word, _)| *word == last);
+    (is_symbol && is_clock(clock)).then(|| (clock.to_owned(), unit_by(last)))
+}
+
+fn is_clock(name: &str) -> bool {
+    NAMES.contains(&name)
+}
+
+/// What stands before and in brackets at the end.
+fn bracketed(name: &str) -> Option<(&str, &str)> {
+    let ends = [('[', ']'), ('(', ')')];
+    ends.into_iter().find_map(|(open, close)| {
+        let inner = name.strip_suffix(close)?;
+        inner.split_once(open)
+    })
+}
+
+/// Small letters, words with `_` between them.
+fn plain(name: &str) -> String {
+    let name = name.trim().to_lowercase();
+    name.replace([' ', '-', '.'], "_")
+}
+
+/// A unit of time by its symbol or in words.
+fn unit_by(text: &str) -> Option<Unit> {
+    let text = text.trim();
+    let lower = text.to_lowercase();
+    let word = WORDS.iter().find(|(word, _)| *word == lower);
+    let unit = units::parse(word.map_or(text, |(_, symbol)| symbol)).ok()?;
+    (unit.dimension == Dimension::TIME).then_some(unit)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::{may_be_time, unit_of};
+
+    #[test]
+    fn clocks_are_known_by_name_and_unit() {
+        for (name, unit) in [
+            ("t", None),
+            ("Time", None),
+            ("time_stamp", None),
+            ("Time [s]", Some("s")),
+            ("t[ms]", Some("ms")),
+            ("time(us)", Some("us")),
+            ("time [µs]", Some("us")),
+            ("timestamp_ns", Some("ns")),
+            ("Time (Seconds)", Some("s")),
+            ("time_milliseconds", Some("ms")),
+            ("time [min]", Some("min")),
+        ] {
+            assert!(may_be_time(name), "{name}");
+            let found = unit_of(name).map(|unit| unit.text);
+            assert_eq!(found.as_deref(), unit, "{name}");
+        }
+        for name in [
+            "theta",
+            "t_wheel",
+            "t [N]",
+            "time [frames]",
+            "rise_time",
+            "ts",
+            "",
+            "[s]",
+            "t_m",
+        ] {
+            assert!(!may_be_time(name), "{name}");
+        }
+    }
+}

@@ -4,9 +4,10 @@
 //!
 //! Inverse dynamics is linear in these parameters, M ω̇ + b − Π = Y π + r, and vanishes for the true ones. Columns of
 //! Y that depend on others at all motions belong to the same combination. Recorded motions give equations
-//! `Y_b β = −r`: splines filter coordinates and inputs alike, every pseudo-velocity is weighted by its residuals, and
-//! stretches of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
+//! `Y_b β = −r`: splines filter coordinates and inputs alike, their noise is in Y_b as well as in r (`adjustment.rs`), and
+//! blocks of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
 
+mod adjustment;
 mod error;
 mod moments;
 mod regression;
@@ -146,8 +147,8 @@ pub fn fit(
     structure: &Structure,
 ) -> Result<Fit, BaseError> {
     let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
-    let stretches = moments::recorded(set, model, &p)?;
-    regression::fit(&Equations::new(regressor), structure, &stretches, model, &p)
+    let recorded = moments::recorded(set, model, &p)?;
+    regression::fit(&Equations::new(regressor), structure, &recorded, model, &p)
 }
 
 /// Y, r and π at a motion.

@@ -69,9 +69,9 @@ m_2 = { value = 2, unit = "kg", std = 0.1 }
 q1   = { measures = "q1", unit = "rad" }
 q2   = { measures = "q2", unit = "rad" }
 q3   = { measures = "q3", unit = "rad" }
-tau1 = { input = "tau1", unit = "N m" }
-tau2 = { input = "tau2", unit = "N m" }
-tau3 = { input = "tau3", unit = "N m" }
+tau1 = { input = "tau1", unit = "N m", interpolation = "linear" }
+tau2 = { input = "tau2", unit = "N m", interpolation = "linear" }
+tau3 = { input = "tau3", unit = "N m", interpolation = "linear" }
 [runs]
 fit  = ["a.csv", "b.csv"]
 test = ["c.csv"]

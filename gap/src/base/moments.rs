@@ -3,7 +3,7 @@
 use std::f64::consts::PI;
 
 use appell_estimate::Moment;
-use appell_estimate::inverse::{Motion, Record, Relations, Track};
+use appell_estimate::inverse::{InverseError, Motion, Record, Relations, Track};
 use appell_recordings::{DataSet, Part, Role, Run};
 use appell_runtime::model::{Model, Quantity};
 use appell_runtime::positions::{Moving, Positions};
@@ -69,6 +69,13 @@ pub(super) fn random(model: &dyn Model, count: usize, p: &[f64]) -> Vec<Moment> 
 /// Recorded motions whose errors do not depend on those of other stretches.
 pub(crate) struct Stretch {
     pub(super) part: Part,
+    /// The columns as splines: measured coordinates, then inputs.
+    pub(super) motions: Vec<Motion>,
+    /// How many of them are coordinates.
+    pub(super) coordinates: usize,
+    /// For derivatives of the orders r and s, at index 3 r + s: the covariance between the motions, times that of the
+    /// samples.
+    pub(super) shares: Vec<DMatrix<f64>>,
     /// Its run among those of the part.
     pub(crate) run: usize,
     pub(crate) moments: Vec<Moment>,
@@ -78,11 +85,51 @@ pub(crate) struct Stretch {
 }
 
 /// The motions of all runs.
-pub(crate) fn recorded(
+pub(crate) struct Recorded<'a> {
+    pub(crate) stretches: Vec<Stretch>,
+    /// Covariance of the samples of the training runs.
+    pub(super) noise: DMatrix<f64>,
+    pub(super) mechanics: Mechanics<'a>,
+}
+
+/// States of motions.
+pub(super) struct Mechanics<'a> {
+    relations: Relations<'a>,
+    p: Vec<f64>,
+}
+
+impl<'a> Mechanics<'a> {
+    fn new(
+        model: &'a dyn Model,
+        measured: &[usize],
+        first: &Motion,
+        p: &[f64],
+    ) -> Result<Self, InverseError> {
+        let first = coordinates_of(first, measured.len());
+        let relations = Relations::new(model, measured, &first, p)?;
+        let p = p.to_vec();
+        Ok(Self { relations, p })
+    }
+
+    /// State, accelerations and recorded inputs of a motion.
+    pub(super) fn moment(&self, motion: &Motion) -> Result<Moment, InverseError> {
+        let count = self.relations.measured().len();
+        let own = coordinates_of(motion, count);
+        let mut moment = self.relations.moment(&own, &self.p)?;
+        let given = motion.derivatives[0].iter().skip(count);
+        for (u, given) in moment.u.iter_mut().zip(given) {
+            *u = *given;
+        }
+        Ok(moment)
+    }
+}
+
+/// The recorded motions.
+pub(crate) fn recorded<'a>(
     set: &DataSet,
-    model: &dyn Model,
+    model: &'a dyn Model,
     p: &[f64],
-) -> Result<Vec<Stretch>, BaseError> {
+) -> Result<Recorded<'a>, BaseError> {
     let info = model.info();
     let columns = coordinates(set);
     let mut inputs = Vec::with_capacity(info.declared_inputs);
@@ -95,11 +142,22 @@ pub(crate) fn recorded(
     }
     let measured: Vec<usize> = columns.iter().map(|(_, coordinate)| *coordinate).collect();
     let mut stretches = Vec::new();
+    let mut training = None;
     for part in [Part::Fit, Part::Test] {
         let runs = set.runs.iter().filter(|run| run.part == part);
         let record = |run: &Run| {
-            let columns = columns.iter().map(|(column, _)| column).chain(&inputs);
-            let values = columns.map(|&column| DVector::from_column_slice(&run.values[column]));
+            let coordinates = columns
+                .iter()
+                .map(|(column, _)| run.values[*column].clone());
+            let inputs = inputs.iter().map(|&column| {
+                let values = &run.values[column];
+                if set.channels[column].is_joined() {
+                    values.clone()
+                } else {
+                    about_rows(values)
+                }
+            });
+            let values = coordinates.chain(inputs).map(DVector::from_vec);
             Record {
                 times: run.times.clone(),
                 values: DMatrix::from_columns(&values.collect::<Vec<_>>()),
@@ -110,18 +168,10 @@ pub(crate) fn recorded(
             continue;
         }
         let track = Track::beside(&records, inputs.len())?;
-        let first = coordinates_of(&track.stretches[0].motions[0], measured.len());
-        let relations = Relations::new(model, &measured, &first, p)?;
+        let mechanics = Mechanics::new(model, &measured, &track.stretches[0].motions[0], p)?;
         for stretch in &track.stretches {
-            let moments = stretch.motions.iter().map(|motion| {
-                let own = coordinates_of(motion, measured.len());
-                let mut moment = relations.moment(&own, p)?;
-                let given = motion.derivatives[0].iter().skip(measured.len());
-                for (u, given) in moment.u.iter_mut().zip(given) {
-                    *u = *given;
-                }
-                Ok(moment)
-            });
+            let moments = stretch.motions.iter();
+            let moments = moments.map(|motion| Ok(mechanics.moment(motion)?));
             stretches.push(Stretch {
                 part,
                 run: stretch.run,
@@ -129,10 +179,28 @@ pub(crate) fn recorded(
                 spreads: (0..stretch.motions.len())
                     .map(|place| track.spread(stretch, place))
                     .collect(),
+                motions: stretch.motions.clone(),
+                coordinates: measured.len(),
+                shares: stretch.spread.clone(),
             });
         }
+        training.get_or_insert((track.noise, mechanics));
     }
-    Ok(stretches)
+    let (noise, mechanics) = training.ok_or(InverseError::TooShort)?;
+    Ok(Recorded {
+        stretches,
+        noise,
+        mechanics,
+    })
+}
+
+/// An input that is held from row to row, about each of them: its mean over half a row before and after.
+fn about_rows(values: &[f64]) -> Vec<f64> {
+    let before = values.iter().take(1).chain(values);
+    let pairs = before.zip(values);
+    pairs
+        .map(|(before, after)| 0.5 * (before + after))
+        .collect()
 }
 
 /// A motion without the columns that are no coordinates.

@@ -1,18 +1,16 @@
-//! Base parameters by weighted least squares.
+//! Base parameters by recordings: their values, and how well the equations hold.
 
 use appell_estimate::HALF_WIDTH_95;
+use appell_estimate::inverse::Motion;
 use appell_recordings::Part;
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
+use super::adjustment::{Equation, adjust};
 use super::error::BaseError;
-use super::moments::Stretch;
-use super::{Equations, Structure};
+use super::moments::{Recorded, Stretch};
 
-/// How often the weights are taken from the residuals.
-const PASSES: usize = 3;
-/// Eigenvalues of the normalised information below this part of the largest are zero.
-const ZERO: f64 = 1e-12;
+use super::{Equations, Structure};
 
 /// A base parameter by the recordings.
 #[derive(Debug, Clone, PartialEq)]
@@ -74,53 +72,60 @@ struct Rows {
 pub(super) fn fit(
     equations: &Equations,
     structure: &Structure,
-    stretches: &[Stretch],
+    recorded: &Recorded<'_>,
     model: &dyn Model,
     p: &[f64],
 ) -> Result<Fit, BaseError> {
     let speeds = model.info().speeds;
-    let all: Vec<Rows> = (stretches.iter())
-        .map(|stretch| rows(equations, structure, stretch, model, p))
+    let leading: Vec<usize> = structure.base.iter().map(|base| base.leading).collect();
+    let equation = |motion: &Motion| {
+        let moment = recorded.mechanics.moment(motion)?;
+        let at = At {
+            t: moment.t,
+            x: &moment.x,
+            u: &moment.u,
+            p,
+        };
+        let linear = equations.at(at, &moment.accelerations);
+        Ok(Equation {
+            base: linear.regressor.select_columns(&leading),
+            rest: linear.rest,
+        })
+    };
+    let start = DVector::from_iterator(leading.len(), structure.base.iter().map(|own| own.nominal));
+    let adjusted = adjust(recorded, &equation, (start, speeds))?;
+    let all: Vec<Rows> = (recorded.stretches.iter())
+        .map(|stretch| rows(equations, &leading, stretch, model, p))
         .collect();
     let training: Vec<&Rows> = all.iter().filter(|rows| rows.part == Part::Fit).collect();
     let test: Vec<&Rows> = all.iter().filter(|rows| rows.part == Part::Test).collect();
-    let mut variances = DVector::repeat(speeds, 1.0);
-    let mut solved = solve(&training, &variances, structure.base.len())?;
-    for _ in 0..PASSES {
-        variances = variances_of(&training, &solved.values, speeds);
-        solved = solve(&training, &variances, structure.base.len())?;
-    }
-    let covariance = solved.covariance(&training, &variances);
-    let estimates = (0..solved.values.len()).map(|i| {
-        let (value, std) = (solved.values[i], covariance[(i, i)].sqrt());
-        Estimate {
-            value,
-            std,
-            interval95: [-1.0, 1.0].map(|side| value + side * HALF_WIDTH_95 * std),
-        }
+    let estimates = adjusted.values.iter().zip(adjusted.deviations.iter());
+    let estimates = estimates.map(|(&value, &std)| Estimate {
+        value,
+        std,
+        interval95: [-1.0, 1.0].map(|side| value + side * HALF_WIDTH_95 * std),
     });
     let told = |rows: &[&Rows]| match rows {
         [] => Vec::new(),
-        rows => told(rows, &solved.values, model),
+        rows => told(rows, &adjusted.values, model),
     };
     Ok(Fit {
         estimates: estimates.collect(),
         training: told(&training),
         test: told(&test),
         motions: training.iter().map(|rows| rows.right.len() / speeds).sum(),
-        condition: solved.condition,
+        condition: adjusted.condition,
     })
 }
 
 fn rows(
     equations: &Equations,
-    structure: &Structure,
+    leading: &[usize],
     stretch: &Stretch,
     model: &dyn Model,
     p: &[f64],
 ) -> Rows {
     let speeds = model.info().speeds;
-    let leading: Vec<usize> = structure.base.iter().map(|base| base.leading).collect();
     let count = stretch.moments.len() * speeds;
     let mut rows = Rows {
         part: stretch.part,
@@ -145,102 +150,13 @@ fn rows(
         let first = place * speeds;
         rows.base
             .rows_mut(first, speeds)
-            .copy_from(&linear.regressor.select_columns(&leading));
+            .copy_from(&linear.regressor.select_columns(leading));
         rows.right.rows_mut(first, speeds).copy_from(&-&linear.rest);
         rows.nominal.rows_mut(first, speeds).copy_from(&nominal);
         let inputs = free.rest - linear.rest;
         rows.inputs.rows_mut(first, speeds).copy_from(&inputs);
     }
     rows
-}
-
-struct Solved {
-    values: DVector<f64>,
-    /// Inverse of the information.
-    inverse: DMatrix<f64>,
-    condition: f64,
-}
-
-/// Rows of a stretch with each pseudo-velocity's row over its standard deviation.
-fn weighted(rows: &Rows, variances: &DVector<f64>) -> (DMatrix<f64>, DVector<f64>) {
-    let (mut base, mut right) = (rows.base.clone(), rows.right.clone());
-    for (i, mut row) in base.row_iter_mut().enumerate() {
-        let weight = 1.0 / variances[i % variances.len()].sqrt();
-        row *= weight;
-        right[i] *= weight;
-    }
-    (base, right)
-}
-
-fn solve(stretches: &[&Rows], variances: &DVector<f64>, count: usize) -> Result<Solved, BaseError> {
-    let (mut information, mut reached) = (DMatrix::zeros(count, count), DVector::zeros(count));
-    for rows in stretches {
-        let (base, right) = weighted(rows, variances);
-        information += base.tr_mul(&base);
-        reached += base.tr_mul(&right);
-    }
-    // Columns of equal length, so that units do not matter.
-    let scale = information.diagonal().map(|square| match square {
-        square if square > 0.0 => 1.0 / square.sqrt(),
-        _ => 0.0,
-    });
-    let scaled = DMatrix::from_fn(count, count, |i, j| {
-        scale[i] * information[(i, j)] * scale[j]
-    });
-    let eigen = scaled.symmetric_eigen();
-    let (largest, smallest) = (eigen.eigenvalues.max(), eigen.eigenvalues.min());
-    let rank = (eigen.eigenvalues.iter())
-        .filter(|&&value| value > ZERO * largest)
-        .count();
-    if rank < count {
-        return Err(BaseError::TooLittle { rank, count });
-    }
-    let inverse = &eigen.eigenvectors
-        * DMatrix::from_diagonal(&eigen.eigenvalues.map(|value| 1.0 / value))
-        * eigen.eigenvectors.transpose();
-    let inverse = DMatrix::from_fn(count, count, |i, j| scale[i] * inverse[(i, j)] * scale[j]);
-    Ok(Solved {
-        values: &inverse * reached,
-        inverse,
-        condition: (largest / smallest).sqrt(),
-    })
-}
-
-impl Solved {
-    /// Covariance where stretches are independent of each other, whatever is correlated within them.
-    fn covariance(&self, stretches: &[&Rows], variances: &DVector<f64>) -> DMatrix<f64> {
-        let count = self.values.len();
-        let mut spread = DMatrix::zeros(count, count);
-        for rows in stretches {
-            let (base, right) = weighted(rows, variances);
-            let score = base.tr_mul(&(right - &base * &self.values));
-            spread += &score * score.transpose();
-        }
-        // As many scores as stretches stand for their variance.
-        let correction = stretches.len() as f64 / (stretches.len() as f64 - 1.0).max(1.0);
-        &self.inverse * (spread * correction) * &self.inverse
-    }
-}
-
-/// Mean square of the residuals by pseudo-velocity.
-fn variances_of(stretches: &[&Rows], values: &DVector<f64>, speeds: usize) -> DVector<f64> {
-    let squares = |speed| {
-        let (mut sum, mut count) = (0.0, 0.0);
-        for rows in stretches {
-            let left = &rows.right - &rows.base * values;
-            for square in left
-                .iter()
-                .skip(speed)
-                .step_by(speeds)
-                .map(|left| left * left)
-            {
-                sum += square;
-                count += 1.0;
-            }
-        }
-        f64::max(sum / f64::max(count, 1.0), f64::MIN_POSITIVE)
-    };
-    DVector::from_fn(speeds, |speed, _| squares(speed))
 }
 
 fn told(stretches: &[&Rows], values: &DVector<f64>, model: &dyn Model) -> Vec<Speed> {

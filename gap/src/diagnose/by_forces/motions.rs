@@ -129,7 +129,7 @@ impl Motions {
         let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
         let parameters = varying(set, effects);
         let runs = set.all(OfSet::Fit);
-        let stretches = recorded(&runs, model, &p)?;
+        let stretches = recorded(&runs, model, &p)?.stretches;
         let coordinates: Vec<[usize; 2]> = (coordinates(set).into_iter())
             .filter_map(|(_, coordinate)| {
                 let speed = set.mechanism.speed_of(CoordinateId::new(coordinate))?;

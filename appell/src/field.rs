@@ -56,7 +56,6 @@ fields! {
     Recordings "recordings" "Recordings of a mechanism.",
     Also "also" "Lags, delays, biases and scales to estimate.",
     Drifting "drifting" "Parameters that drift, with their rates.",
-    Start "start" "Start of an estimation.",
     Effects "effects" "Library of effects.",
     Hypothesis "hypothesis" "Hypothesis of a gap report.",
     Sources "sources" "Sources of an FMU without machine code.",

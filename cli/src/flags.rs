@@ -32,7 +32,6 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Plot => "--plot",
         Field::Also => "--also",
         Field::Drifting => "--drifting",
-        Field::Start => "--start shooting",
         Field::Effects => "--without",
         Field::Hypothesis => "--hypothesis",
         Field::Bias => "--bias",

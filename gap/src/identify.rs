@@ -2,9 +2,9 @@
 //!
 //! ```text
 //! data set --start--> values to begin with: levels of noise, states at the first rows
-//!          --shooting--> parameters to begin with, where asked for
 //!          --problem--> what is looked for: parameters within their tolerances, levels
-//!          --fit (estimate)--> the most likely values, beside the most likely nominal ones
+//!          --basin, fit (estimate)--> the most likely values, beside the most likely nominal ones
+//!          --shooting--> other parameters to begin with, where these do not do what was recorded
 //!          --answer--> intervals, correlation, combinations that are known
 //!          --repeatability--> values of the single runs, and their spread
 //!          --held_out--> errors of predictions on the runs that no fit has seen
@@ -17,6 +17,7 @@
 
 mod additions;
 mod answer;
+mod basin;
 mod drift;
 mod error;
 mod held_out;
@@ -26,7 +27,7 @@ mod repeatability;
 mod shooting;
 mod start;
 
-use appell_estimate::{Estimation, Fit, Recording, Setup};
+use appell_estimate::{Estimation, Recording, Setup};
 use appell_runtime::model::Model;
 
 use appell_recordings::{DataSet, Part, Run};
@@ -40,9 +41,9 @@ pub use held_out::{HeldOut, Trace};
 pub use options::{Begin, Options};
 pub use repeatability::Repeatability;
 
+use basin::Search;
 use held_out::Test;
 pub(crate) use options::longest_step;
-use problem::EFFORT;
 pub(crate) use problem::{Problem, begin};
 
 /// Fits the parameters of a model to the training runs by maximum likelihood, and measures
@@ -76,18 +77,13 @@ pub fn identify(
     let problem = Problem::of(set, &estimation, (options, &additions))?;
 
     stage("fitting the levels of noise to the nominal model");
-    let search = if options.rough { Fit::quick } else { Fit::of };
-    let nominal = search(&estimation, &problem.start, &problem.levels, EFFORT)?;
-    let begin = match options.begin {
-        Begin::Nominal => nominal.values.clone(),
-        Begin::Shooting => {
-            stage("shooting at the recordings");
-            shooting::shot(&estimation, &problem, &nominal.values)?
-        }
+    let search = Search {
+        estimation: &estimation,
+        problem: &problem,
+        options,
     };
-    stage("fitting the parameters");
-    let all = [problem.wanted.as_slice(), &problem.levels].concat();
-    let fit = search(&estimation, &begin, &all, EFFORT)?;
+    let nominal = search.levels(&problem.start)?;
+    let fit = search.best(&nominal, &mut stage)?;
     stage("weighing what the recordings tell");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
     let runs: Vec<&Run> = set
@@ -104,8 +100,18 @@ pub fn identify(
             .map(|(run, recording)| (run.name.as_str(), recording))
             .collect();
         let free = (problem.wanted.as_slice(), names.as_slice());
-        answer.repeatability =
-            repeatability::repeatability(&setup, &each, free, (&estimation, &fit))?;
+        let widening = answer.parameters.iter();
+        let widening: Vec<f64> = widening
+            .map(|own| {
+                if own.std > 0.0 {
+                    own.wider_std() / own.std
+                } else {
+                    1.0
+                }
+            })
+            .collect();
+        let whole = (&estimation, &fit);
+        answer.repeatability = repeatability::repeatability(&setup, &each, free, &widening, whole)?;
     }
     answer.courses = drift::courses(&drifts, &estimation, &fit.values, &runs)?;
     stage("predicting the runs that were held out");

@@ -176,7 +176,7 @@ fn repeatability(answer: &Answer) -> Part {
             in_unit(estimate, one.spread),
             number(relative),
             estimate.quantity.unit.to_string(),
-            if relative > 1.0 {
+            if one.differs {
                 "differs from run to run"
             } else {
                 ""
@@ -185,7 +185,9 @@ fn repeatability(answer: &Answer) -> Part {
         ]);
     }
     "The spread is a standard deviation between the runs, beyond that of the single values. An interval holds for \
-     the value that all runs share; another run may have one that differs by the spread."
+     the value that all runs share; another run may have one that differs by the spread. A parameter differs from run \
+     to run where values as far apart would be found in less than 5 % of such tables if all runs shared one (Q test, \
+     Bonferroni)."
         .clone_into(&mut part.note);
     part
 }

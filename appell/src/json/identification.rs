@@ -53,7 +53,10 @@ pub fn identification(set: &DataSet, answer: &Answer) -> Value {
             .runs
             .iter()
             .map(|(run, [value, std])| json!({ "run": run, "value": value, "std": std }));
-        json!({ "name": one.name, "spread": one.spread, "runs": runs.collect::<Vec<_>>() })
+        json!({
+            "name": one.name, "spread": one.spread, "p_value": one.p_value, "differs": one.differs,
+            "runs": runs.collect::<Vec<_>>(),
+        })
     });
     json!({
         "schema": "identified/1",

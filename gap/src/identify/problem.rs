@@ -35,6 +35,8 @@ pub(crate) struct Problem {
     pub(super) quantities: Vec<Quantity>,
     /// Levels of disturbances and noise, which are always free.
     pub(crate) levels: Vec<Free>,
+    /// Sizes of the forces in each equation.
+    pub(super) sizes: Vec<f64>,
 }
 
 impl Problem {
@@ -77,6 +79,7 @@ impl Problem {
             wanted,
             quantities,
             levels,
+            sizes,
         })
     }
 }
@@ -188,7 +191,7 @@ pub(crate) fn begin(
 }
 
 /// The values with the most likely ones of some initial levels of disturbances.
-fn most_likely(
+pub(super) fn most_likely(
     estimation: &Estimation<'_>,
     values: &[f64],
     sizes: &[f64],

@@ -2,9 +2,13 @@
 //!
 //! An interval tells how well one value is known that all runs share. Where friction, temperature or a payload
 //! differs, runs have values of their own, whose spread is estimated beyond what their intervals explain
-//! (R. `DerSimonian` and N. Laird, *Meta-analysis in clinical trials*, Controlled Clinical Trials 7, 1986).
+//! (R. `DerSimonian` and N. Laird, *Meta-analysis in clinical trials*, Controlled Clinical Trials 7, 1986). Whether they
+//! differ at all is tested by the sum of their squares over their variances, Q, which is χ² where they do not
+//! (W. G. Cochran, 1954), at 5 % for all parameters together (Bonferroni).
 
-use appell_estimate::{Effort, Estimation, Fit, Free, Recording, Setup, Unknown};
+use appell_estimate::{
+    Effort, Estimation, Fit, Free, Recording, Setup, Unknown, chi_squared_probability,
+};
 
 use super::IdentifyError;
 use super::problem::begin;
@@ -24,13 +28,22 @@ pub struct Repeatability {
     pub runs: Vec<(String, [f64; 2])>,
     /// Standard deviation of the value from run to run in SI, beyond that of the single values.
     pub spread: f64,
+    /// Probability of values as different as these where all runs share one.
+    pub p_value: f64,
+    /// Whether that is below 5 % over the number of parameters.
+    pub differs: bool,
 }
 
-/// Of all free parameters, from the fit of all runs; nothing where a run alone cannot be fitted.
+/// Probability of a difference of any parameter where there is none.
+const LEVEL: f64 = 0.05;
+
+/// Of all free parameters, from the fit of all runs; nothing where a run alone cannot be fitted. Deviations of the
+/// single values are widened by these factors, as those of all runs together are where residuals are correlated.
 pub(super) fn repeatability(
     setup: &Setup<'_>,
     runs: &[(&str, &Recording)],
     (free, names): (&[Free], &[String]),
+    widening: &[f64],
     whole: (&Estimation<'_>, &Fit),
 ) -> Result<Vec<Repeatability>, IdentifyError> {
     let mut found: Vec<Repeatability> = names
@@ -39,6 +52,8 @@ pub(super) fn repeatability(
             name: name.clone(),
             runs: Vec::new(),
             spread: 0.0,
+            p_value: 1.0,
+            differs: false,
         })
         .collect();
     for (name, recording) in runs {
@@ -49,9 +64,16 @@ pub(super) fn repeatability(
             one.runs.push(((*name).to_owned(), value));
         }
     }
-    for one in &mut found {
-        let values: Vec<[f64; 2]> = one.runs.iter().map(|(_, value)| *value).collect();
-        one.spread = spread(&values);
+    let count = found.len() as f64;
+    for (one, widening) in found.iter_mut().zip(widening) {
+        let values = one.runs.iter();
+        let values: Vec<[f64; 2]> = values
+            .map(|(_, [value, deviation])| [*value, widening * deviation])
+            .collect();
+        let own = Heterogeneity::of(&values);
+        one.spread = own.spread;
+        one.p_value = own.p_value;
+        one.differs = own.p_value < LEVEL / count;
     }
     Ok(found)
 }
@@ -92,36 +114,71 @@ fn alone(
     Ok(Some(values))
 }
 
-/// Standard deviation between values beyond their own.
-fn spread(values: &[[f64; 2]]) -> f64 {
-    let known = values
-        .iter()
-        .filter(|[_, deviation]| deviation.is_finite() && *deviation > 0.0);
-    let known: Vec<[f64; 2]> = known.copied().collect();
-    if known.len() < 2 {
-        return 0.0;
+/// How different values are.
+struct Heterogeneity {
+    /// Standard deviation between them beyond their own.
+    spread: f64,
+    p_value: f64,
+}
+
+impl Heterogeneity {
+    /// Of values with their standard deviations.
+    fn of(values: &[[f64; 2]]) -> Self {
+        let is_known = |[_, deviation]: &&[f64; 2]| deviation.is_finite() && *deviation > 0.0;
+        let known: Vec<[f64; 2]> = values.iter().filter(is_known).copied().collect();
+        if known.len() < 2 {
+            return Self {
+                spread: 0.0,
+                p_value: 1.0,
+            };
+        }
+        let weight = |[_, deviation]: &[f64; 2]| deviation.powi(-2);
+        let sum: f64 = known.iter().map(weight).sum();
+        let squares: f64 = known.iter().map(|one| weight(one).powi(2)).sum();
+        let mean = known.iter().map(|one| weight(one) * one[0]).sum::<f64>() / sum;
+        let q: f64 = known
+            .iter()
+            .map(|one| weight(one) * (one[0] - mean).powi(2))
+            .sum();
+        let freedom = (known.len() - 1) as f64;
+        Self {
+            spread: ((q - freedom) / (sum - squares / sum)).max(0.0).sqrt(),
+            p_value: 1.0 - chi_squared_probability(q, freedom),
+        }
     }
-    let weight = |[_, deviation]: &[f64; 2]| deviation.powi(-2);
-    let sum: f64 = known.iter().map(weight).sum();
-    let squares: f64 = known.iter().map(|one| weight(one).powi(2)).sum();
-    let mean = known.iter().map(|one| weight(one) * one[0]).sum::<f64>() / sum;
-    let off: f64 = known
-        .iter()
-        .map(|one| weight(one) * (one[0] - mean).powi(2))
-        .sum();
-    let beyond = off - (known.len() - 1) as f64;
-    (beyond / (sum - squares / sum)).max(0.0).sqrt()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::spread;
+    use appell_test_kit::Random;
+
+    use super::{Heterogeneity, LEVEL};
 
     #[test]
     fn what_intervals_explain_is_no_spread() {
-        assert!(spread(&[[1.0, 0.5], [1.4, 0.5], [0.7, 0.5]]).abs() < 1e-12);
-        let spread = spread(&[[1.0, 0.01], [2.0, 0.01], [3.0, 0.01]]);
-        assert!((spread - 1.0).abs() < 1e-3, "{spread}");
-        assert!(super::spread(&[[1.0, 0.1]]).abs() < 1e-12);
+        let same = Heterogeneity::of(&[[1.0, 0.5], [1.4, 0.5], [0.7, 0.5]]);
+        assert!(same.spread.abs() < 1e-12 && same.p_value > 0.5);
+        let other = Heterogeneity::of(&[[1.0, 0.01], [2.0, 0.01], [3.0, 0.01]]);
+        assert!((other.spread - 1.0).abs() < 1e-3, "{}", other.spread);
+        assert!(other.p_value < 1e-12);
+        let alone = Heterogeneity::of(&[[1.0, 0.1]]);
+        assert!(alone.spread.abs() < 1e-12 && alone.p_value > 0.5);
+    }
+
+    #[test]
+    fn runs_that_share_a_value_are_told_to_differ_as_seldom_as_stated() {
+        let mut random = Random::of("runs that share a value");
+        let trials = 2000;
+        let different = (0..trials).filter(|_| {
+            let run = |_| {
+                let deviation = random.between(0.5, 2.0);
+                [3.0 + deviation * random.normal(), deviation]
+            };
+            let values: Vec<[f64; 2]> = (0..4).map(run).collect();
+            Heterogeneity::of(&values).p_value < LEVEL
+        });
+        let part = different.count() as f64 / f64::from(trials);
+        // Three standard deviations of a count of 100.
+        assert!((part - LEVEL).abs() < 0.015, "{part}");
     }
 }

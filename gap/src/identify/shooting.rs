@@ -1,5 +1,5 @@
 //! Initial parameters if those of the rig are far from the truth, by multiple shooting without a
-//! filter; the likelihood chooses among the results with open and with closed gaps.
+//! filter, with open gaps and with closed ones.
 
 use appell_estimate::{Estimation, Free, Recording, Shooting, Unknown};
 
@@ -12,12 +12,12 @@ const ROWS: usize = 10;
 /// Length of a segment in s.
 const LENGTH: f64 = 0.25;
 
-/// The most likely of `values` and those with the results of shooting.
-pub(super) fn shot(
+/// Values with the results of shooting.
+pub(super) fn shots(
     estimation: &Estimation<'_>,
     problem: &Problem,
     values: &[f64],
-) -> Result<Vec<f64>, IdentifyError> {
+) -> Result<Vec<Vec<f64>>, IdentifyError> {
     let (layout, setup) = (estimation.layout(), estimation.setup());
     let is_shot = |free: &&Free| {
         matches!(
@@ -39,21 +39,16 @@ pub(super) fn shot(
     };
     let rows = rows(estimation.recordings());
     let shots = Shooting::new(estimation, values, &free, rows, guess)?.shots()?;
-    let mut best = (estimation.log_likelihood(values)?, values.to_vec());
+    let mut all = Vec::with_capacity(shots.len());
     for shot in shots {
         let mut found = values.to_vec();
         for free in &free {
             let place = layout.place(free.unknown)?;
             found[place] = shot.values[place];
         }
-        // The filter may fail although the motion did not.
-        if let Ok(likelihood) = estimation.log_likelihood(&found)
-            && likelihood > best.0
-        {
-            best = (likelihood, found);
-        }
+        all.push(found);
     }
-    Ok(best.1)
+    Ok(all)
 }
 
 /// Rows of a segment.

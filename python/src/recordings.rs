@@ -6,9 +6,10 @@ use std::sync::Arc;
 use appell::diagnosis::{Library, Options, Report};
 use appell::gap_report::GapReport;
 use appell::identification::{Answer, Begin};
+use appell::recording::Frame;
 use appell::{Error, Source, identification};
 use appell_report::identification as identified;
-use numpy::PyArray1;
+use numpy::{PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -43,16 +44,45 @@ impl DataSet {
 }
 
 type Numbers<'py> = Bound<'py, PyArray1<f64>>;
+/// The name of a run, and its columns by name.
+type NamedColumns<'py> = (String, Vec<(String, PyReadonlyArray1<'py, f64>)>);
+
+fn frame((name, columns): NamedColumns<'_>) -> Frame {
+    let (columns, values) = columns
+        .iter()
+        .map(|(name, values)| (name.clone(), values.as_array().to_vec()))
+        .unzip();
+    Frame {
+        name,
+        columns,
+        values,
+    }
+}
+
 type Progress<'a, 'py> = Option<&'a Bound<'py, PyAny>>;
 
 #[pymethods]
 impl DataSet {
     /// A folder with a `recording.toml`, or CSV files of a mechanism, which is a shipped name or the path of a spec.
+    /// With `frames`, names of runs with their columns, those; their description is the path and the text of a
+    /// `recording.toml`.
     #[new]
-    #[pyo3(signature = (paths, model = None))]
-    fn new(py: Python<'_>, paths: Vec<PathBuf>, model: Option<String>) -> PyResult<Self> {
-        let set = watched(py, None, move |_| {
-            appell::recording::read(&paths, model.as_deref())
+    #[pyo3(signature = (paths, model = None, frames = None, description = None))]
+    fn new(
+        py: Python<'_>,
+        paths: Vec<PathBuf>,
+        model: Option<String>,
+        frames: Option<Vec<NamedColumns<'_>>>,
+        description: Option<(PathBuf, String)>,
+    ) -> PyResult<Self> {
+        let frames = frames.map(|frames| frames.into_iter().map(frame).collect::<Vec<_>>());
+        let set = watched(py, None, move |_| match &frames {
+            None => appell::recording::read(&paths, model.as_deref()),
+            Some(frames) => {
+                let described = description.as_ref();
+                let described = described.map(|(path, text)| (path.as_path(), text.as_str()));
+                appell::recording::read_frames(frames, described, model.as_deref())
+            }
         })?;
         Ok(Self(Arc::new(set.raise(py)?)))
     }

@@ -8,6 +8,7 @@ import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 import appell
@@ -95,3 +96,51 @@ def test_effects_of_ones_own_are_taken(rig, tmp_path):
     with pytest.raises(appell.SpecError) as failure:
         appell.diagnose(rig, effects=[wrong], progress=False)
     assert failure.value.diagnostics
+
+
+SWING = """
+mechanism = "pendulum"
+[parameters]
+m = { value = 1.2, unit = "kg", std = 0.1 }
+[channels]
+angle = { measures = "theta", unit = "deg" }
+motor = { input = "tau", unit = "N m", interpolation = "linear" }
+clock = { time = true, unit = "ms" }
+[runs]
+fit = ["first"]
+test = ["second"]
+"""
+
+
+def swing(phase):
+    t = np.arange(0, 3, 0.01)
+    angle = np.degrees(0.3 * np.sin(3 * t + phase)) + 0.05 * np.sin(1e4 * t)
+    return {"clock": 1e3 * t, "angle": angle, "motor": 0.2 * np.cos(2 * t)}
+
+
+def test_frames_are_recordings():
+    frames = {"first": swing(0), "second": swing(1)}
+    found = appell.Recordings(frames, description=SWING)
+    assert found.runs == ["first", "second"]
+    first = found["first"]
+    assert np.allclose(first["t"], np.arange(0, 3, 0.01), atol=1e-12)
+    assert np.allclose(first["angle"], np.radians(frames["first"]["angle"]))
+    with pytest.raises(appell.DataError, match="no run of this name"):
+        appell.Recordings({"first": swing(0)}, description=SWING)
+    with pytest.raises(ValueError, match="one length, not 2, 3"):
+        appell.Recordings({"t": [0, 1], "theta": [1, 2, 3]}, "pendulum")
+
+
+def test_frames_of_pandas_and_polars_are_recordings():
+    columns = {"theta": 0.3 * np.sin(3 * np.arange(0, 3, 0.01)), "note": ["as planned"] * 300}
+    pandas = pytest.importorskip("pandas")
+    stamps = pandas.date_range("2026-01-01", periods=300, freq="10ms")
+    frame = pandas.DataFrame(columns, index=pandas.Index(stamps, name="timestamp"))
+    frame.loc[frame.index[7], "theta"] = None
+    run = appell.Recordings([frame, frame], "pendulum")["run1"]
+    assert run["t"][-1] == pytest.approx(2.99, abs=1e-9)
+    assert np.isnan(run["theta"][7]) and not np.isnan(run["theta"][8])
+    polars = pytest.importorskip("polars")
+    frame = polars.DataFrame({"time": 0.01 * np.arange(300), "theta": columns["theta"]})
+    run = appell.Recordings({"a": frame, "b": frame}, "pendulum")["b"]
+    assert np.array_equal(run["theta"], columns["theta"])

@@ -71,7 +71,13 @@ class Simulated:
     def csv(self) -> bytes: ...
 
 class DataSet:
-    def __new__(cls, paths: Sequence[str], model: str | None = None) -> DataSet: ...
+    def __new__(
+        cls,
+        paths: Sequence[str],
+        model: str | None = None,
+        frames: Sequence[tuple[str, Sequence[tuple[str, Vector]]]] | None = None,
+        description: tuple[str, str] | None = None,
+    ) -> DataSet: ...
     def json(self) -> str: ...
     @property
     def warnings(self) -> list[str]:

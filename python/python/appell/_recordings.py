@@ -16,12 +16,33 @@ from ._notebook import Page, Picture, Progress, framed, reporter
 from ._values import many
 
 Paths = str | Path | Sequence[str | Path]
+# A folder or files; or data frames, and mappings of columns, one or several.
+Data = Any
 
 
 class Recordings(_appell.DataSet):
-    """Recordings: a folder with a `recording.toml`, or CSV files of a mechanism."""
+    """Recordings: a folder with a `recording.toml`, or CSV files of a mechanism; or data frames.
 
-    def __new__(cls, data: Paths, model: Model | str | Path | None = None) -> Recordings:
+    A frame is one of pandas or polars, or a mapping of arrays by the name of the column; several are a list, or a
+    mapping by the name of the run. Without a `description` columns have the names and units of the mechanism, and the
+    last third of the frames is held out, or of a single one its last third. `description` is the text or the path of a
+    `recording.toml`, whose `[runs]` name the frames: `run1`, `run2` … in a list.
+
+    >>> import appell, numpy as np
+    >>> t = np.arange(0, 3, 0.01)
+    >>> columns = {"time": t, "theta": 0.1 * np.cos(3 * t), "tau": np.sign(np.sin(t))}
+    >>> appell.Recordings(columns, "pendulum").channels
+    ['theta', 'tau']
+    """
+
+    def __new__(
+        cls, data: Data, model: Model | str | Path | None = None, *, description: str | Path | None = None
+    ) -> Recordings:
+        frames = _frames(data)
+        if frames is not None:
+            return super().__new__(cls, [], _name(model), frames, _described(description))
+        if description is not None:
+            raise ValueError("description: a folder or a file has its own recording.toml")
         paths = [data] if isinstance(data, (str, Path)) else list(data)
         return super().__new__(cls, [str(path) for path in paths], _name(model))
 
@@ -152,7 +173,7 @@ class Diagnosis:
 
 
 def identify(
-    data: Recordings | Paths,
+    data: Recordings | Data,
     model: Model | str | Path | None = None,
     *,
     free: Sequence[str] | None = None,
@@ -177,7 +198,7 @@ def identify(
     return Identification(native)
 
 
-def base_parameters(model: Model | str | Path, data: Recordings | Paths | None = None) -> dict[str, Any]:
+def base_parameters(model: Model | str | Path, data: Recordings | Data | None = None) -> dict[str, Any]:
     """The combinations of inertial and load parameters on which forces of motions depend at all, as
     `appell base --json` writes them; with recordings of a motion and of all inputs, their values with intervals.
 
@@ -191,7 +212,7 @@ def base_parameters(model: Model | str | Path, data: Recordings | Paths | None =
 
 
 def diagnose(
-    data: Recordings | Paths,
+    data: Recordings | Data,
     model: Model | str | Path | None = None,
     *,
     effects: Sequence[str | Path] = (),
@@ -200,7 +221,7 @@ def diagnose(
     tolerance: float | None = None,
     limits: Mapping[str, tuple[float, float]] | None = None,
     alternatives: Sequence[str | Path] = (),
-    against: Recordings | Paths | None = None,
+    against: Recordings | Data | None = None,
     progress: Progress | bool = True,
 ) -> Diagnosis:
     """Diagnoses the gap between recordings and their model: where it lies, which unmodelled effect causes it, and how
@@ -242,7 +263,76 @@ def sample_rig(folder: str | Path) -> list[str]:
     return _appell.sample(str(folder))
 
 
-def _read(data: Recordings | Paths, model: Model | str | Path | None) -> Recordings:
+def _is_frame(data: Any) -> bool:
+    """Whether it has columns by name."""
+    if hasattr(data, "columns") and hasattr(data, "__getitem__"):
+        return True
+    return isinstance(data, Mapping) and not any(_is_frame(value) for value in data.values())
+
+
+def _frames(data: Any) -> list[tuple[str, list[tuple[str, np.ndarray]]]] | None:
+    """Names of runs with their columns; nothing for paths."""
+    if isinstance(data, (str, Path)):
+        return None
+    if _is_frame(data):
+        return [("run1", _columns(data))]
+    if isinstance(data, Mapping):
+        return [(str(name), _columns(frame)) for name, frame in data.items()]
+    several = list(data)
+    if not several or not all(_is_frame(frame) for frame in several):
+        return None
+    return [(f"run{number}", _columns(frame)) for number, frame in enumerate(several, 1)]
+
+
+def _columns(frame: Any) -> list[tuple[str, np.ndarray]]:
+    """The columns of numbers, and an index with a name or with times."""
+    columns = []
+    index = getattr(frame, "index", None)
+    if index is not None and hasattr(index, "to_numpy"):
+        values = _numbers(index)
+        is_rows = index.name is None and values is not None and np.array_equal(values, np.arange(len(values)))
+        if values is not None and not is_rows:
+            columns.append((str(index.name or "t"), values))
+    for name in frame if isinstance(frame, Mapping) else frame.columns:
+        values = _numbers(frame[name])
+        if values is not None:
+            columns.append((str(name), values))
+    lengths = {len(values) for _, values in columns}
+    if len(lengths) > 1:
+        raise ValueError(f"the columns of a frame have one length, not {', '.join(map(str, sorted(lengths)))}")
+    return columns
+
+
+def _numbers(column: Any) -> np.ndarray | None:
+    """The numbers of a column, dates in s from the first one on; nothing for texts."""
+    values = np.asarray(column)
+    if values.dtype.kind in "mM":
+        unit = np.timedelta64(1, "ns")
+        passed = (values - (values[:1] if values.dtype.kind == "M" else np.timedelta64(0, "ns"))) / unit
+        return np.ascontiguousarray(1e-9 * passed)
+    if values.dtype.kind == "O":
+        values = np.array([np.nan if _is_missing(value) else value for value in values], dtype=object)
+    try:
+        numbers = np.ascontiguousarray(values, dtype=float)
+    except (TypeError, ValueError):
+        return None
+    return numbers if numbers.ndim == 1 else None
+
+
+def _is_missing(value: Any) -> bool:
+    return value is None or type(value).__name__ in ("NAType", "NaTType")
+
+
+def _described(description: str | Path | None) -> tuple[str, str] | None:
+    """Path and text of a description."""
+    if description is None:
+        return None
+    if isinstance(description, Path) or "\n" not in description:
+        return str(description), Path(description).read_text(encoding="utf-8")
+    return "description", description
+
+
+def _read(data: Recordings | Data, model: Model | str | Path | None) -> Recordings:
     return data if isinstance(data, Recordings) else Recordings(data, model)
 
 

@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use appell_gap::diagnose::{Changes, Refitted, SignalEffect};
 use appell_report::text::{number, with_unit};
+use appell_spec::foreign::toml_string;
 
 use crate::Error;
 use crate::gap_report::{Found, GapReport, Hypothesis};
@@ -127,9 +128,9 @@ fn for_recordings(parameters: &[Refitted]) -> String {
     let lines = fitted.filter_map(|one| {
         let std = one.std?;
         let value = digits(one.value, one.value / std);
-        let (name, unit, std) = (&one.name, &one.unit, digits(std, 1.0));
+        let (name, unit, std) = (&one.name, toml_string(&one.unit), digits(std, 1.0));
         Some(format!(
-            "{name} = {{ value = {value}, unit = \"{unit}\", std = {std} }}\n"
+            "{name} = {{ value = {value}, unit = {unit}, std = {std} }}\n"
         ))
     });
     let lines: String = lines.collect();

@@ -23,6 +23,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use appell_spec::foreign::one_line;
 use appell_spec::{Report, Severity};
 use thiserror::Error;
 
@@ -295,7 +296,8 @@ fn program(
     for warning in diagnostics.filter(|d| d.severity != Severity::Note) {
         let at = warning.labels.first().map_or(0, |(span, _)| span.start);
         let (line, column) = warnings.line_column(at);
-        println!("cargo::warning={file}:{line}:{column}: {}", warning.message);
+        let told = format!("{file}:{line}:{column}: {}", warning.message);
+        println!("cargo::warning={}", one_line(&told));
     }
     let kinds = kinds(mechanism.parameters.len());
     assemble::program(derivation, &mechanism, &kinds)

@@ -8,7 +8,9 @@ mod types;
 
 use std::fmt::Write as _;
 
-use crate::infix::{Dialect, Infix, harmless, math_name, shape};
+use appell_spec::foreign::sentence;
+
+use crate::infix::{Dialect, Infix, math_name, shape};
 use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
@@ -196,6 +198,10 @@ impl Real {
     }
 
     fn literal(self, value: f64) -> String {
+        if !value.is_finite() {
+            let sign = if value < 0.0 { "-" } else { "" };
+            return format!("{sign}{}", if value.is_nan() { "NAN" } else { "INFINITY" });
+        }
         match self {
             Self::Double => format!("{value:?}"),
             Self::Float => format!("(float){value:?}"),
@@ -258,8 +264,8 @@ pub fn emit(program: &Program, options: &Options) -> Emitted {
 fn heading(program: &Program) -> String {
     format!(
         "{}. Equations of motion by the Gibbs-Appell method, emitted from {}.",
-        harmless(&program.info.title),
-        harmless(&program.file)
+        sentence(&program.info.title),
+        sentence(&program.file)
     )
 }
 
@@ -270,11 +276,16 @@ fn is_empty(program: &Program, array: &Array) -> bool {
 
 /// What a function computes, and its results.
 fn comment(program: &Program, function: &Function) -> String {
-    let about = harmless(&function.kind.about().replace(['[', ']', '`'], ""));
+    let about = sentence(&function.kind.about().replace(['[', ']', '`'], ""));
     let mut text = format!("/* {about}\n");
     for array in &function.results {
         if !is_empty(program, array) {
-            let _ = writeln!(text, " * {}: {}", array.name, harmless(&array.about));
+            let _ = writeln!(
+                text,
+                " * {}: {}",
+                sentence(&array.name),
+                sentence(&array.about)
+            );
         }
     }
     text + " */\n"
@@ -480,7 +491,7 @@ fn statement(text: &mut String, infix: &Infix<'_, Real>, real: &str, step: &Step
             Ok(())
         }
         Step::Paragraph { title } if title.is_empty() => writeln!(text),
-        Step::Paragraph { title } => writeln!(text, "\n    /* {} */", harmless(title)),
+        Step::Paragraph { title } => writeln!(text, "\n    /* {} */", sentence(title)),
     };
 }
 

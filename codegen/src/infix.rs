@@ -193,15 +193,3 @@ pub(crate) fn shape(program: &Program, layout: Layout) -> Vec<usize> {
         Layout::Jacobian(rows, columns) => vec![len(rows), len(columns)],
     }
 }
-
-/// A text of a spec in one line, with nothing that ends a comment or a string.
-pub(crate) fn harmless(text: &str) -> String {
-    let line: String = text
-        .chars()
-        .map(|c| if c.is_control() { ' ' } else { c })
-        .collect();
-    line.replace("*/", "* /")
-        .replace("/*", "/ *")
-        .replace("??", "? ?")
-        .replace('\\', "/")
-}

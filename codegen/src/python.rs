@@ -4,8 +4,9 @@
 use std::fmt::Write as _;
 
 use appell_runtime::model::Quantity;
+use appell_spec::foreign::sentence;
 
-use crate::infix::{Dialect, Infix, harmless, math_name, shape};
+use crate::infix::{Dialect, Infix, math_name, shape};
 use crate::program::{Function, FunctionKind, Own, Program};
 use crate::schedule::names::ArgumentNames;
 use crate::schedule::pi::parts_of_pi;
@@ -107,8 +108,8 @@ fn names(text: &mut String, list: &str, quantities: &[Quantity]) {
             text,
             "    {},  # {} [{}]",
             quoted(&quantity.name),
-            harmless(&quantity.about),
-            harmless(&quantity.unit)
+            sentence(&quantity.about),
+            sentence(&quantity.unit)
         );
     }
     text.push_str(")\n");
@@ -156,7 +157,7 @@ fn definition(
         let _ = writeln!(
             text,
             "        {}: {} ({shape})",
-            array.name,
+            docstring(&array.name),
             docstring(&array.about)
         );
     }
@@ -228,7 +229,7 @@ fn statement(text: &mut String, infix: &Infix<'_, Python>, step: &Step) {
             )
         }
         Step::Paragraph { title } if title.is_empty() => writeln!(text),
-        Step::Paragraph { title } => writeln!(text, "\n    # {}", harmless(title)),
+        Step::Paragraph { title } => writeln!(text, "\n    # {}", sentence(title)),
     };
 }
 
@@ -269,10 +270,10 @@ fn number(value: f64) -> String {
 }
 
 fn quoted(text: &str) -> String {
-    format!("\"{}\"", docstring(text).replace('"', "'"))
+    format!("\"{}\"", docstring(text))
 }
 
 /// A text that may stand between three quotes.
 fn docstring(text: &str) -> String {
-    harmless(text).replace('"', "'")
+    sentence(text).replace('"', "'")
 }

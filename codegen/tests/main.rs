@@ -13,6 +13,7 @@ mod emit_golden;
 mod findings;
 mod fmu;
 mod fuzz_derivation;
+mod hostile;
 #[cfg(feature = "jit")]
 mod jit;
 #[cfg(feature = "jit")]

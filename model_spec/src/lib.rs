@@ -13,6 +13,7 @@ pub mod compose;
 pub mod diagnostic;
 pub mod edit;
 pub mod expr;
+pub mod foreign;
 pub mod ids;
 pub mod joints;
 pub mod language;

@@ -287,11 +287,9 @@ impl<'a> Writer<'a> {
 
 /// A sentence that is not too long.
 fn sentence(text: &str) -> String {
-    let mut end = text.len().min(MAX_SENTENCE);
-    while !text.is_char_boundary(end) {
-        end -= 1;
-    }
-    text[..end].chars().filter(|c| !c.is_control()).collect()
+    let mut sentence = appell_spec::foreign::sentence(text);
+    sentence.truncate(sentence.floor_char_boundary(MAX_SENTENCE));
+    sentence
 }
 
 /// An expression plus a number that is written with its sign.

@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+pub(crate) use appell_spec::foreign::toml_string as quoted;
+
 use crate::names::Names;
 use crate::xml::Span;
 
@@ -44,21 +46,6 @@ impl Item {
     pub(crate) fn table(&self) -> String {
         format!("{{ {} }}", self.0.join(", "))
     }
-}
-
-/// A TOML string.
-pub(crate) fn quoted(text: &str) -> String {
-    let mut quoted = String::from('"');
-    for c in text.chars() {
-        match c {
-            '"' => quoted.push_str("\\\""),
-            '\\' => quoted.push_str("\\\\"),
-            c if c.is_control() => quoted.push(' '),
-            c => quoted.push(c),
-        }
-    }
-    quoted.push('"');
-    quoted
 }
 
 fn expression(text: &str) -> String {

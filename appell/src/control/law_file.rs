@@ -3,6 +3,7 @@
 use std::fmt::Write as _;
 
 use appell_runtime::model::{ModelInfo, Quantity};
+use appell_spec::foreign::sentence;
 
 use super::design::{Design, DesignedGains};
 use super::remedies::pole_text;
@@ -61,9 +62,10 @@ pub(crate) fn schedule(
     let info = setup.info;
     let mut text = format!(
         "# u = offset - K (y - y_steady - y_desired) with gains over {}, designed for {}.\n#\n\
-         # appell simulate {model}{} --feedback FILE.toml\n",
+         # appell simulate {}{} --feedback FILE.toml\n",
         over.name,
-        info.title,
+        sentence(&info.title),
+        sentence(model),
         flags(first, info, Some(&over.name))
     );
     text += &names(first, info);
@@ -125,13 +127,14 @@ fn header(design: &Design, law: &DesignedGains, setup: &Setup<'_>, model: &str) 
     let place = if law.sampling.is_some() { "z" } else { "1/s" };
     let mut text = format!(
         "# u = offset - K (y - y_desired), designed for {}.\n# Poles of the closed loop, {place}: {}\n",
-        setup.info.title,
+        sentence(&setup.info.title),
         poles.join(", ")
     );
     let flags = flags(design, setup.info, None);
     let _ = writeln!(
         text,
-        "#\n# appell simulate {model}{flags} --feedback FILE.toml"
+        "#\n# appell simulate {}{flags} --feedback FILE.toml",
+        sentence(model)
     );
     text
 }

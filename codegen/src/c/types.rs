@@ -3,9 +3,10 @@
 use std::fmt::Write as _;
 
 use appell_runtime::model::Quantity;
+use appell_spec::foreign::sentence;
 
 use super::{Real, is_empty};
-use crate::infix::{Dialect, harmless, shape};
+use crate::infix::{Dialect, shape};
 use crate::program::{Array, Function, Layout, Own, Program, Space};
 use crate::schedule::names::{ArgumentNames, identifier};
 use crate::schedule::{Argument, Schedule};
@@ -385,5 +386,5 @@ fn told(quantity: &Quantity, space: Space) -> String {
         Space::GeneralizedForces => format!("for {}", quantity.name),
         _ => format!("{} [{}]", quantity.about, quantity.unit),
     };
-    format!(" /* {} */", harmless(&about))
+    format!(" /* {} */", sentence(&about))
 }

@@ -1,6 +1,7 @@
 //! Equations as a person writes them, above the function that computes them.
 
-use super::layout::one_line;
+use appell_spec::foreign::one_line;
+
 use super::picture::ParametersFirst;
 use super::types::Types;
 use crate::program::{Array, Function, FunctionKind, Layout, Space};

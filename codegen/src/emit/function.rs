@@ -1,12 +1,13 @@
 //! One function of a model: signature, rustdoc, body.
 
+use appell_spec::foreign::sentence;
 use quote::quote;
 use syn::ItemFn;
 
 use super::body::body;
 use super::error::Error;
 use super::lanes::in_lanes;
-use super::layout::{blank_tokens, docs, one_line};
+use super::layout::{blank_tokens, code, docs};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
 use crate::program::{Function, Space, Term};
@@ -19,10 +20,7 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     };
     let [rows, columns] = &array.names;
     let list = |names: &[String]| {
-        let names: Vec<String> = names
-            .iter()
-            .map(|name| format!("`{}`", one_line(name)))
-            .collect();
+        let names: Vec<String> = names.iter().map(|name| code(name)).collect();
         names.join(", ")
     };
     match (rows.is_empty(), columns.is_empty()) {
@@ -45,10 +43,7 @@ fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<St
         .glossary
         .iter()
         .filter(occurs)
-        .map(|term| {
-            let (symbol, meaning) = (one_line(&term.symbol), one_line(&term.meaning));
-            format!("- `{symbol}`: {meaning}")
-        })
+        .map(|term| format!("- {}: {}", code(&term.symbol), sentence(&term.meaning)))
         .collect();
     if !lines.is_empty() {
         lines.push(String::new());
@@ -82,13 +77,10 @@ pub(super) fn function(
     lines.extend(equations);
     lines.extend(rows_and_columns(function));
     for remark in &function.remarks {
-        lines.extend([one_line(remark), String::new()]);
+        lines.extend([sentence(remark), String::new()]);
     }
     lines.extend(glossary(function, schedule, &told));
-    lines.push(format!(
-        "From `{}`.",
-        one_line(&types.program.file).replace('`', "'")
-    ));
+    lines.push(format!("From {}.", code(&types.program.file)));
     lines.push(format!("Operations: {cost}."));
     let about = docs(&lines);
     let blank = blank_tokens();

@@ -4,6 +4,7 @@
 //! of a blank line; no text of a spec can spell it, because every other comment starts with a
 //! space.
 
+use appell_spec::foreign::{one_line, sentence};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use syn::{Attribute, Expr, Meta, token};
@@ -14,7 +15,7 @@ const BLANK: &str = "%blank";
 
 /// An attribute that is printed as a comment of one line.
 pub(super) fn comment(text: &str) -> Attribute {
-    attribute("comment", &format!(" {}", one_line(text)))
+    attribute("comment", &format!(" {}", sentence(text)))
 }
 
 /// An attribute that is printed as a blank line.
@@ -29,9 +30,9 @@ pub(super) fn blank_tokens() -> TokenStream {
 
 /// Rustdoc lines as tokens.
 pub(super) fn docs(lines: &[String]) -> TokenStream {
-    let lines = lines.iter().map(|line| match one_line(line) {
-        line if line.is_empty() => line,
-        line => format!(" {line}"),
+    let lines = lines.iter().map(|text| match one_line(text).trim_end() {
+        "" => String::new(),
+        text => format!(" {text}"),
     });
     quote!(#(#[doc = #lines])*)
 }
@@ -53,22 +54,16 @@ fn attribute(name: &str, text: &str) -> Attribute {
     }
 }
 
-/// A text on one line, without characters that steer the display: they could make code look like
-/// a comment.
-pub(super) fn one_line(text: &str) -> String {
-    let steers = |c: char| matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' | '\u{2028}' | '\u{2029}' | '\u{200e}' | '\u{200f}');
-    let words = text
-        .chars()
-        .filter(|&c| !steers(c))
-        .map(|c| if c.is_control() { ' ' } else { c });
-    words.collect::<String>().trim_end().to_owned()
+/// A name or a unit inside rustdoc, as code.
+pub(super) fn code(text: &str) -> String {
+    format!("`{}`", sentence(text).replace('`', "'"))
 }
 
-/// A sentence of a spec inside rustdoc: no links, no tags, no emphasis.
+/// A sentence of a spec inside rustdoc: no links, no tags, no emphasis, no code.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
-    for c in one_line(text).chars() {
-        if matches!(c, '[' | ']' | '<' | '>' | '`' | '*' | '\\') {
+    for c in sentence(text).chars() {
+        if matches!(c, '[' | ']' | '<' | '>' | '`' | '*' | '~' | '#' | '&' | '|') {
             escaped.push('\\');
         }
         escaped.push(c);

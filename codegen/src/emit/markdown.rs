@@ -3,8 +3,9 @@
 use std::fmt::Write;
 
 use appell_runtime::model::Quantity;
+use appell_spec::foreign::is_seen;
 
-use super::layout::{escaped, one_line};
+use super::layout::{code, escaped};
 use super::types::Types;
 use crate::program::FunctionKind;
 use crate::schedule::OperationCount;
@@ -18,11 +19,7 @@ pub(super) fn page(types: &Types<'_>, costs: &[(FunctionKind, OperationCount)]) 
     if !info.source.is_empty() {
         let _ = writeln!(page, "Source: {}\n", escaped(&info.source));
     }
-    let _ = writeln!(
-        page,
-        "Spec: `{}`.",
-        one_line(&types.program.file).replace('`', "'")
-    );
+    let _ = writeln!(page, "Spec: {}.", code(&types.program.file));
     let speeds = info.speed_quantities();
     table(&mut page, "Pseudo-velocities", "initial", speeds);
     table(
@@ -47,7 +44,6 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
     if quantities.is_empty() {
         return;
     }
-    let cell = |text: &str| escaped(text).replace('|', "\\|");
     if value.is_empty() {
         let _ = writeln!(
             page,
@@ -60,9 +56,9 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
         );
     }
     for quantity in quantities {
-        let (name, about) = (cell(&quantity.name), cell(&quantity.about));
-        let unit = cell(&quantity.unit);
-        let _ = write!(page, "| `{name}` | {about} | {unit} |");
+        let name = code(&quantity.name);
+        let (about, unit) = (escaped(&quantity.about), escaped(&quantity.unit));
+        let _ = write!(page, "| {name} | {about} | {unit} |");
         if !value.is_empty() {
             let _ = write!(page, " {} |", quantity.to_unit(quantity.value));
         }
@@ -70,18 +66,18 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
     }
 }
 
+/// Most marks around a raw string of Rust.
+const MOST_GUARDS: usize = 255;
+
 /// The spec as a raw string, or as an escaped one where a raw string cannot hold it.
 pub(super) fn spec_constant(spec: &str) -> String {
     const ABOUT: &str = "/// The spec this module is made from.\npub const SPEC: &str = ";
-    let needs_escapes = spec
-        .chars()
-        .any(|c| c == '\r' || one_line(&c.to_string()).is_empty() && !c.is_whitespace());
-    if needs_escapes {
-        return format!("{ABOUT}{spec:?};\n\n");
-    }
     let mut guard = "#".to_owned();
-    while spec.contains(&format!("\"{guard}")) {
+    while spec.contains(&format!("\"{guard}")) && guard.len() <= MOST_GUARDS {
         guard.push('#');
+    }
+    if guard.len() > MOST_GUARDS || !is_seen(spec) {
+        return format!("{ABOUT}{spec:?};\n\n");
     }
     format!("{ABOUT}r{guard}\"{spec}\"{guard};\n\n")
 }

@@ -9,8 +9,8 @@ use super::lanes;
 use super::layout::{blank_tokens, docs, escaped};
 use super::series;
 use super::switching;
-use super::syntax::{ident, known, path};
-use super::types::{Types, double};
+use super::syntax::{ident, known, number, path};
+use super::types::Types;
 use crate::program::{FunctionKind, Layout, Program, Space};
 use crate::schedule::OperationCount;
 
@@ -177,8 +177,8 @@ fn reaction(reaction: &Reaction) -> TokenStream {
 fn contact(contact: &Contact) -> TokenStream {
     let (name, grips) = (borrowed(&contact.name), contact.grips);
     let reaction = Literal::usize_unsuffixed(contact.reaction);
-    let normal = contact.normal.map(double);
-    let friction = contact.friction.map(double);
+    let normal = contact.normal.map(number);
+    let friction = contact.friction.map(number);
     let friction = friction.map_or_else(|| quote!(None), |friction| quote!(Some(#friction)));
     quote! {
         model::Contact {
@@ -203,15 +203,15 @@ fn quantity(quantity: &Quantity) -> TokenStream {
     } = quantity;
     let [name, about, unit]: [&str; 3] = [name, about, unit];
     let scaled = (scale.to_bits() != 1.0_f64.to_bits()).then(|| {
-        let scale = double(*scale);
+        let scale = number(*scale);
         quote!(.scaled(#scale))
     });
     let valued = (value.to_bits() != 0).then(|| {
-        let value = double(*value);
+        let value = number(*value);
         quote!(.valued(#value))
     });
     let within = (low.is_finite() || high.is_finite()).then(|| {
-        let [low, high] = [*low, *high].map(double);
+        let [low, high] = [*low, *high].map(number);
         quote!(.within(#low, #high))
     });
     quote!(model::Quantity::new(#name, #about, #unit) #scaled #valued #within)
@@ -226,8 +226,8 @@ fn signals(info: &ModelInfo) -> TokenStream {
     let blank = blank_tokens();
     let tables = info.signals.iter().map(|signal| {
         let name = borrowed(&signal.name);
-        let times = signal.times.iter().map(|&time| double(time));
-        let values = signal.values.iter().map(|&value| double(value));
+        let times = signal.times.iter().map(|&time| number(time));
+        let values = signal.values.iter().map(|&value| number(value));
         let interpolation = known(match signal.interpolation {
             Interpolation::Hold => "Hold",
             Interpolation::Linear => "Linear",

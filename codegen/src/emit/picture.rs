@@ -1,6 +1,7 @@
 //! Small matrices drawn in characters.
 
-use super::layout::one_line;
+use appell_spec::foreign::one_line;
+
 use super::types::Types;
 use crate::program::{Function, FunctionKind, Layout};
 use crate::symbolic::print::{Setter, Vocabulary, text};

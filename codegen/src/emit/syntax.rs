@@ -177,9 +177,16 @@ pub(super) fn array(elements: Vec<Expr>) -> Expr {
     })
 }
 
-/// A double, exactly.
+/// A double, exactly, or what is none.
 pub(super) fn number(value: f64) -> Expr {
-    let literal = literal(Literal::f64_unsuffixed(value.abs()));
+    if value.is_nan() {
+        return syn::parse_quote!(f64::NAN);
+    }
+    let literal = if value.is_infinite() {
+        syn::parse_quote!(f64::INFINITY)
+    } else {
+        literal(Literal::f64_unsuffixed(value.abs()))
+    };
     if value.is_sign_negative() {
         negated(literal)
     } else {

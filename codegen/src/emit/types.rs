@@ -7,7 +7,7 @@ use proc_macro2::TokenStream;
 use quote::quote;
 
 use super::body::Group;
-use super::layout::{blank_tokens, docs, escaped, one_line};
+use super::layout::{blank_tokens, code, docs, escaped};
 use super::syntax::{ident, known, number};
 use crate::program::{Function, FunctionKind, Layout, Own, Program, Space};
 use crate::schedule::Argument;
@@ -217,16 +217,15 @@ impl<'a> Types<'a> {
         };
         let texts = match space {
             Space::ConstraintRows => (info.constraint_rows.iter())
-                .map(|row| format!("Row `{}`.", one_line(row).replace('`', "'")))
+                .map(|row| format!("Row {}.", code(row)))
                 .collect(),
             Space::Reactions => (info.reactions.iter())
                 .map(|reaction| {
-                    let [name, unit] = [&reaction.name, &reaction.unit]
-                        .map(|text| one_line(text).replace('`', "'"));
-                    if unit.is_empty() {
-                        format!("At `{name}`.")
+                    let name = code(&reaction.name);
+                    if reaction.unit.is_empty() {
+                        format!("At {name}.")
                     } else {
-                        format!("At `{name}`, in `{unit}`.")
+                        format!("At {name}, in {}.", code(&reaction.unit))
                     }
                 })
                 .collect(),
@@ -368,7 +367,7 @@ impl<'a> Types<'a> {
             .iter()
             .zip(Self::result_fields(function))
             .map(|(array, field)| {
-                let text = docs(&[one_line(&array.about)]);
+                let text = docs(&[array.about.clone()]);
                 let field = ident(&field);
                 let kind = self.array_type(array.layout);
                 quote!(#text pub #field: #kind)
@@ -413,7 +412,7 @@ fn spec_values(
         return TokenStream::new();
     }
     let fields = labels.iter().map(|label| ident(label));
-    let values = quantities.iter().map(|quantity| double(quantity.value));
+    let values = quantities.iter().map(|quantity| number(quantity.value));
     let (blank, about) = (blank_tokens(), docs(&[about.to_owned()]));
     quote! {
         #blank
@@ -483,40 +482,38 @@ impl Vector<'_> {
 
 /// What the rate of a quantity is.
 fn rate(quantity: &Quantity) -> String {
-    let name = one_line(&quantity.name).replace('`', "'");
-    let unit = one_line(&quantity.unit).replace('`', "'");
-    match unit.as_str() {
-        "" => format!("Rate of `{name}`, in `1/s`."),
+    let unit = match &*quantity.unit {
+        "" => "1/s".to_owned(),
         unit => match unit.strip_suffix("/s") {
-            Some(unit) => format!("Rate of `{name}`, in `{unit}/s^2`."),
-            None if unit.contains('/') => format!("Rate of `{name}`, in `({unit})/s`."),
-            None => format!("Rate of `{name}`, in `{unit}/s`."),
+            Some(unit) => format!("{unit}/s^2"),
+            None if unit.contains('/') => format!("({unit})/s"),
+            None => format!("{unit}/s"),
         },
-    }
+    };
+    format!("Rate of {}, in {}.", code(&quantity.name), code(&unit))
 }
 
 /// What the pseudo-force of a pseudo-velocity is.
 fn force(quantity: &Quantity) -> String {
-    let name = one_line(&quantity.name).replace('`', "'");
-    let unit = one_line(&quantity.unit).replace('`', "'");
-    match unit.as_str() {
-        "" => format!("Along `{name}`, in `W`."),
-        "m/s" => format!("Along `{name}`, in `N`."),
-        "rad/s" => format!("Along `{name}`, in `N*m`."),
-        unit => format!("Along `{name}`, in `W/({unit})`."),
-    }
+    let unit = match &*quantity.unit {
+        "" => "W".to_owned(),
+        "m/s" => "N".to_owned(),
+        "rad/s" => "N*m".to_owned(),
+        unit => format!("W/({unit})"),
+    };
+    format!("Along {}, in {}.", code(&quantity.name), code(&unit))
 }
 
 /// What a quantity is, and its unit.
 fn sentence(quantity: &Quantity) -> String {
     let about = capitalised(&escaped(&quantity.about));
     let about = about.trim_end_matches('.');
-    let unit = one_line(&quantity.unit).replace('`', "'");
-    match (about.is_empty(), unit.is_empty()) {
+    let unit = code(&quantity.unit);
+    match (about.is_empty(), quantity.unit.is_empty()) {
         (true, true) => "No unit.".to_owned(),
-        (true, false) => format!("In `{unit}`."),
+        (true, false) => format!("In {unit}."),
         (false, true) => format!("{about}."),
-        (false, false) => format!("{about}, in `{unit}`."),
+        (false, false) => format!("{about}, in {unit}."),
     }
 }
 
@@ -528,18 +525,5 @@ fn capitalised(text: &str) -> String {
             first.to_uppercase().chain(letters).collect()
         }
         _ => text.to_owned(),
-    }
-}
-
-/// A double as an expression, infinities too.
-pub(super) fn double(value: f64) -> TokenStream {
-    if value.is_nan() {
-        quote!(f64::NAN)
-    } else if value.is_infinite() {
-        let sign = (value < 0.0).then(|| quote!(-));
-        quote!(#sign f64::INFINITY)
-    } else {
-        let number = number(value);
-        quote!(#number)
     }
 }

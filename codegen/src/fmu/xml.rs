@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use appell_spec::foreign::one_line;
+
 /// An element with its attributes and the elements inside.
 #[derive(Debug, Clone)]
 pub(super) struct Element {
@@ -69,17 +71,16 @@ impl Element {
     }
 }
 
-/// A text as the value of an attribute. Characters that XML forbids become spaces.
+/// A text as the value of an attribute.
 fn escaped(text: &str) -> String {
     let mut safe = String::new();
-    for c in text.chars() {
+    for c in one_line(text).chars() {
         match c {
             '&' => safe.push_str("&amp;"),
             '<' => safe.push_str("&lt;"),
             '>' => safe.push_str("&gt;"),
             '"' => safe.push_str("&quot;"),
             '\'' => safe.push_str("&apos;"),
-            c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => safe.push(' '),
             c => safe.push(c),
         }
     }
@@ -97,7 +98,7 @@ mod tests {
         let (_, element) = text.split_once('\n').expect("a declaration");
         assert_eq!(
             element,
-            "<a b=\"&quot;/&gt;&lt;script&gt;&amp;&apos;   \"/>\n"
+            "<a b=\"&quot;/&gt;&lt;script&gt;&amp;&apos; \u{fffd} \"/>\n"
         );
     }
 }

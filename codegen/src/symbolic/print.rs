@@ -15,4 +15,4 @@ pub use latex::{latex, latex_text};
 pub use letter::{Letter, superscript};
 pub use math::Math;
 pub use mathml::mathml;
-pub use text::{clean, columns, text};
+pub use text::{columns, text};

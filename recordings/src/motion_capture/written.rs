@@ -2,6 +2,8 @@
 
 use std::fmt::Write as _;
 
+use appell_spec::foreign::toml_string;
+
 use super::pose::Vector;
 use super::ride::Ride;
 use super::skeleton::{ChannelKind, Skeleton};
@@ -27,8 +29,9 @@ const DERIVED: [(&str, &str); 13] = [
 /// The text of `recording.toml` for runs of these names.
 pub fn manifest(skeleton: &Skeleton, runs: &[String]) -> String {
     let mut text = format!(
-        "mechanism   = {:?}\ndescription = {:?}\n\n[channels]\n",
-        skeleton.mechanism, skeleton.description
+        "mechanism   = {}\ndescription = {}\n\n[channels]\n",
+        toml_string(&skeleton.mechanism),
+        toml_string(&skeleton.description)
     );
     // Writing to a string cannot fail.
     for channel in &skeleton.channels {
@@ -42,7 +45,8 @@ pub fn manifest(skeleton: &Skeleton, runs: &[String]) -> String {
     for (name, unit) in DERIVED {
         let _ = writeln!(text, "{name} = {{ unit = {unit:?} }}");
     }
-    let _ = write!(text, "\n[runs]\nfit = {runs:?}\n");
+    let runs: Vec<String> = runs.iter().map(|run| toml_string(run)).collect();
+    let _ = write!(text, "\n[runs]\nfit = [{}]\n", runs.join(", "));
     text
 }
 

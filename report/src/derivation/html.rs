@@ -5,8 +5,9 @@ use maud::{Markup, PreEscaped, html as markup};
 use super::display::{Equation, Piece, left_width};
 use super::{Block, Chain, Page, Section, Span, Table};
 use crate::page_shell::PageShell;
+use appell_codegen::symbolic::print::Math;
 use appell_codegen::symbolic::print::mathml::{TIMES, mathml, sign};
-use appell_codegen::symbolic::print::{Math, clean};
+use appell_spec::foreign::one_line;
 
 /// Width of a line of equations, in characters as [`super::Math::width`] counts them.
 const WIDTH: usize = 92;
@@ -23,12 +24,12 @@ const STYLE: &str = concat!(
 
 /// The page as a self-contained HTML document.
 pub fn html(page: &Page) -> String {
-    let title = clean(&page.title);
+    let title = one_line(&page.title);
     PageShell::new(&title, STYLE).around(&markup! {
         main {
             h1 { (title) }
             @if let Some(source) = &page.source {
-                p class="source" { "Source: " (clean(source)) }
+                p class="source" { "Source: " (one_line(source)) }
             }
             @for (index, section) in page.sections.iter().enumerate() {
                 section {
@@ -89,7 +90,7 @@ fn spans(spans: &[Span]) -> Markup {
             Span::Text(text) => {
                 let rest = &text[usize::from(stopped)..];
                 stopped = false;
-                markup! { (clean(rest)) }
+                markup! { (one_line(rest)) }
             }
             Span::Math(math) => {
                 let stop = match spans.peek() {
@@ -112,7 +113,7 @@ fn table(table: &Table, purpose: Use) -> Markup {
     markup! {
         div class="table" { table {
             @if !table.title.is_empty() {
-                caption { (clean(&table.title)) }
+                caption { (one_line(&table.title)) }
             }
             @for row in &table.rows {
                 @let lines = located(purpose, &[row.line]);
@@ -149,10 +150,10 @@ fn width(cell: &[Span]) -> usize {
 fn chain(chain: &Chain) -> Markup {
     markup! {
         p class="chain" {
-            span class="frame" { (clean(&chain.start)) }
+            span class="frame" { (one_line(&chain.start)) }
             @for (label, to) in &chain.links {
                 span class="turn" { (spans(label)) }
-                span class="frame" { (clean(to)) }
+                span class="frame" { (one_line(to)) }
             }
         }
     }

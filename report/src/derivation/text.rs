@@ -3,8 +3,9 @@
 use super::display::{Equation, Piece, left_width};
 use super::text_box::TextBox;
 use super::{Block, Chain, Math, Page, Span, Table};
+use appell_codegen::symbolic::print::columns;
 use appell_codegen::symbolic::print::text as inline;
-use appell_codegen::symbolic::print::{clean, columns};
+use appell_spec::foreign::one_line;
 
 /// Width of the page in characters.
 const WIDTH: usize = 100;
@@ -16,12 +17,12 @@ const MARGIN: usize = 6;
 /// The page as Unicode text.
 pub fn text(page: &Page) -> String {
     let mut out = String::new();
-    let title = clean(&page.title);
+    let title = one_line(&page.title);
     line(&mut out, &title);
     line(&mut out, &"═".repeat(columns(&title)));
     if let Some(source) = &page.source {
         line(&mut out, "");
-        paragraph(&mut out, &format!("Source: {}", clean(source)));
+        paragraph(&mut out, &format!("Source: {}", one_line(source)));
     }
     for (index, section) in page.sections.iter().enumerate() {
         let heading = format!("{}  {}", index + 1, spans(&section.heading));
@@ -50,7 +51,7 @@ fn spans(spans: &[Span]) -> String {
     spans
         .iter()
         .map(|span| match span {
-            Span::Text(text) => clean(text),
+            Span::Text(text) => one_line(text),
             Span::Math(math) => inline(math),
         })
         .collect()
@@ -102,7 +103,7 @@ fn table(out: &mut String, table: &Table) {
         })
         .collect();
     if !table.title.is_empty() {
-        line(out, &format!("  {}", clean(&table.title)));
+        line(out, &format!("  {}", one_line(&table.title)));
     }
     for (row, cells) in table.rows.iter().zip(rows) {
         let Some((last, firsts)) = cells.split_last() else {
@@ -151,9 +152,9 @@ fn broken(text: &str) -> Vec<String> {
 }
 
 fn chain(out: &mut String, chain: &Chain) {
-    let mut current = format!("{}{}", " ".repeat(INDENT), clean(&chain.start));
+    let mut current = format!("{}{}", " ".repeat(INDENT), one_line(&chain.start));
     for (label, to) in &chain.links {
-        let link = format!(" ──{}─▶ {}", arrow_label(&spans(label)), clean(to));
+        let link = format!(" ──{}─▶ {}", arrow_label(&spans(label)), one_line(to));
         if columns(&current) + columns(&link) > WIDTH {
             line(out, &current);
             current = " ".repeat(2 * INDENT);
@@ -262,7 +263,7 @@ fn boxed(math: &Math) -> TextBox {
             let cells: Vec<Vec<String>> = components.iter().map(|c| vec![inline(c)]).collect();
             let mut boxed = TextBox::bracketed(&cells);
             if let Some(frame) = frame {
-                boxed.append_to_last(&format!(" {}", clean(frame)));
+                boxed.append_to_last(&format!(" {}", one_line(frame)));
             }
             boxed
         }

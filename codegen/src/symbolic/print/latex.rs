@@ -2,6 +2,8 @@
 
 use std::fmt::Write;
 
+use appell_spec::foreign::one_line;
+
 use super::letter::{Letter, greek_command};
 use super::math::Math;
 
@@ -209,7 +211,7 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
 /// Text that LaTeX prints and does not obey.
 pub fn latex_text(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
+    for c in one_line(text).chars() {
         match c {
             '\\' => out.push_str("\\textbackslash{}"),
             '{' | '}' | '$' | '&' | '#' | '_' | '%' => {
@@ -260,7 +262,6 @@ fn foreign(out: &mut String, c: char) {
         ('…', _) => out.push_str("\\dots{}"),
         // Latin letters with accents are known to every engine.
         ('À'..='ÿ' | 'Ā'..='ž', _) => out.push(c),
-        _ if c.is_control() => out.push(' '),
         _ => {
             let _ = write!(out, "\\other{{{}}}{{{:04X}}}", c as u32, c as u32);
         }

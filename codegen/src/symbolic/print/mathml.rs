@@ -2,14 +2,15 @@
 
 use std::fmt::Write;
 
+use appell_spec::foreign::one_line;
+
 use super::letter::Letter;
 use super::math::Math;
-use super::text::clean;
 
 /// Text that HTML shows and does not obey.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
-    for c in clean(text).chars() {
+    for c in one_line(text).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),

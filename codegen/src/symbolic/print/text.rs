@@ -1,5 +1,7 @@
 //! Formulas on one line of Unicode text: `ω₁² sin θ`.
 
+use appell_spec::foreign::one_line;
+
 use super::letter::superscript;
 use super::math::Math;
 
@@ -8,8 +10,8 @@ pub fn text(math: &Math) -> String {
     match math {
         Math::Integer(digits) => digits.clone(),
         Math::Ratio(n, d) => ratio(n, d),
-        Math::Letter(letter) => clean(&letter.to_string()),
-        Math::Words(words) => clean(words),
+        Math::Letter(letter) => one_line(&letter.to_string()),
+        Math::Words(words) => one_line(words),
         Math::Sign(sign) => (*sign).to_owned(),
         Math::Row(factors) => factors.iter().map(text).collect::<Vec<_>>().join(" "),
         Math::Sum(terms) => sum(terms),
@@ -55,7 +57,7 @@ pub fn text(math: &Math) -> String {
         } => {
             let components: Vec<String> = components.iter().map(text).collect();
             match frame {
-                Some(frame) => format!("[{}] {}", components.join(",  "), clean(frame)),
+                Some(frame) => format!("[{}] {}", components.join(",  "), one_line(frame)),
                 None => format!("({})", components.join(", ")),
             }
         }
@@ -136,20 +138,6 @@ fn ratio(n: &str, d: &str) -> String {
         _ => return format!("{n}/{d}"),
     };
     known.to_owned()
-}
-
-/// Text without characters that steer a terminal or turn the direction of writing.
-pub fn clean(text: &str) -> String {
-    text.chars()
-        .map(|c| match c {
-            '\u{200b}'..='\u{200f}'
-            | '\u{2028}'..='\u{202e}'
-            | '\u{2060}'..='\u{206f}'
-            | '\u{feff}' => '\u{fffd}',
-            c if c.is_control() => ' ',
-            c => c,
-        })
-        .collect()
 }
 
 /// Columns that a line takes.

@@ -30,6 +30,8 @@ mod joints;
 #[cfg(feature = "jit")]
 mod responses;
 mod schedule;
+#[cfg(feature = "jit")]
+mod smooth;
 mod switches;
 mod symbolic_forms;
 mod symbolic_identity;

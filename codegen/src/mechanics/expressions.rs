@@ -136,14 +136,28 @@ fn call(
             graph.function(Function::Tanh, ratio)
         }
         F::SmoothMin | F::SmoothMax => {
-            // (a + b ∓ √((a - b)² + w²)) / 2
-            let difference = graph.sub(a, b);
-            let mut root = hypot(graph, difference, arguments[2]);
-            if function == F::SmoothMin {
-                root = graph.neg(root);
+            // Less or more than the sharp one by w²/(2(d + √(d² + w²))), d ≥ 0 being the difference: that cancels no
+            // digits, nor do its derivatives, which take the sides of the choice for those of d.
+            let [less, more] =
+                [[a, b], [b, a]].map(|sides| graph.choice(Relation::Less, [a, b], sides));
+            let (difference, signed) = (graph.sub(more, less), graph.sub(a, b));
+            let root = hypot(graph, signed, arguments[2]);
+            let sum = graph.add(difference, root);
+            let square = graph.square(arguments[2]);
+            if sum == Graph::ZERO && square != Graph::ZERO {
+                return Err(DivisionByZero);
             }
-            let sum = graph.sum(&[a, b, root]);
-            graph.scale(&Rational::new(1, 2), sum)
+            let sum = graph.scale(&Rational::from(2), sum);
+            let share = if square == Graph::ZERO {
+                Graph::ZERO
+            } else {
+                graph.div(square, sum)
+            };
+            if function == F::SmoothMin {
+                graph.sub(less, share)
+            } else {
+                graph.add(more, share)
+            }
         }
     })
 }

@@ -212,6 +212,8 @@ pub(super) fn value(expr: &Expr, parameters: &[Parameter]) -> f64 {
 
 fn call(function: Function, values: &[f64]) -> f64 {
     let smooth_abs = |a: f64, w: f64| a.hypot(w);
+    // By how much a smoothed corner is off the sharp one, √(d² + w²) − |d| over 2.
+    let rounding = |d: f64, w: f64| w * w / (2.0 * (d.abs() + d.hypot(w)));
     match (function, values) {
         (Function::Sin, [a]) => a.sin(),
         (Function::Cos, [a]) => a.cos(),
@@ -233,8 +235,8 @@ fn call(function: Function, values: &[f64]) -> f64 {
         (Function::Max, [a, b]) => a.max(*b),
         (Function::SmoothAbs, [a, w]) => smooth_abs(*a, *w),
         (Function::SmoothSign, [a, w]) => (a / w).tanh(),
-        (Function::SmoothMin, [a, b, w]) => f64::midpoint(a + b, -smooth_abs(a - b, *w)),
-        (Function::SmoothMax, [a, b, w]) => f64::midpoint(a + b, smooth_abs(a - b, *w)),
+        (Function::SmoothMin, [a, b, w]) => a.min(*b) - rounding(a - b, *w),
+        (Function::SmoothMax, [a, b, w]) => a.max(*b) + rounding(a - b, *w),
         _ => f64::NAN,
     }
 }

@@ -15,6 +15,7 @@ pub mod creep;
 pub mod dependent;
 pub mod divisors;
 pub mod elimination;
+mod explicit;
 pub mod expressions;
 pub mod factorized;
 pub mod finding;
@@ -63,7 +64,7 @@ use constraints::Constraints;
 use contacts::Contact;
 use dependent::DependentSpeeds;
 use elimination::{Elimination, GeneralizedVelocities};
-use finding::{Finding, Outcome};
+use finding::{Finding, Item, Outcome};
 use gibbs_appell::{BodyMotion, GibbsForm};
 use given::Given;
 use initial::InitialState;
@@ -135,12 +136,28 @@ pub struct Unbound {
     pub bodies: Vec<BodyMotion>,
 }
 
+impl Derivation {
+    /// q̇, M, b, Π and ω̇.
+    fn all_equations(&self) -> Vec<Expr> {
+        let mut all = self.gibbs.mass_matrix.concat();
+        let vectors = [&self.gibbs.bias, &self.forces, &self.coordinate_rates];
+        vectors.into_iter().for_each(|vector| all.extend(vector));
+        all.extend(&self.motion.accelerations);
+        all
+    }
+}
+
 /// Derives the equations of motion of a mechanism. What can be told without the stage that fails is
 /// told with its findings.
 pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut findings = divisors::findings(mechanism);
     match equations(mechanism) {
-        Ok(derivation) if findings.is_empty() => Ok(derivation),
+        Ok(derivation) if findings.is_empty() => {
+            if !divisors::holds_doubles(&derivation.algebra.graph, &derivation.all_equations()) {
+                return Err(vec![divisors::beyond_double("the motion", Item::Mechanism)]);
+            }
+            Ok(derivation)
+        }
         Ok(_) => Err(findings),
         Err(others) => {
             for other in others {
@@ -240,6 +257,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         equations,
         (&bodies, &dependent),
     )?;
+    algebra.check_size()?;
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
     let told = [constraints.warnings.clone(), positions.warnings.clone()];
     let mut warnings = [told.concat(), not_judged].concat();
@@ -371,6 +389,7 @@ fn moving(
     if elimination.open.unknowns.is_empty()
         && let Some((kinematics, tree)) = Recursion::new(algebra, mechanism, symbols, rates)?
     {
+        algebra.check_size()?;
         return Ok(Moving {
             bodies: tree.bodies(algebra, mechanism, symbols, &kinematics, rates)?,
             gibbs: tree.gibbs_form(algebra),

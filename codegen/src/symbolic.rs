@@ -17,6 +17,7 @@ mod gradient;
 mod graph;
 pub mod identity;
 mod interval;
+mod inverse;
 mod node;
 pub mod print;
 mod rational;

@@ -347,3 +347,45 @@ fn the_formulations_of_a_long_chain_are_compared_or_refused_in_time() {
         assert!(start.elapsed() < LONGEST_WAIT, "{:?}", start.elapsed());
     }
 }
+
+/// A point with an output and with bodies of numbers that are too large together.
+fn numbers(output: &str, mass: &str) -> String {
+    format!(
+        "[mechanism]\nname = 'numbers'\ntitle = 'numbers'\n[parameters]\nk = {{ value = 1, unit = '1/m' }}\n\
+         [coordinates]\nx = {{ unit = 'm' }}\n[points]\n\
+         P = {{ from = 'O', in = 'ground', at = ['x*1e200', 0, 0] }}\n\
+         [bodies]\nb = {{ centre = 'P', mass = '{mass} [kg]' }}\n[pseudo_velocities]\nv = 'dot(x)'\n\
+         [outputs]\no = {{ value = '{output}', unit = '1' }}\n"
+    )
+}
+
+#[test]
+fn a_number_beyond_double_precision_is_told_at_its_expression() {
+    for output in [
+        "1e300*1e300",
+        "1e-300*1e-300",
+        "1e300/1e-300",
+        "1e200^2",
+        "1e300*(k*x)*1e300",
+        "(1e300*k*x)^64",
+        "1/(1e-300*(k*x)*1e-300)",
+    ] {
+        let shown = refusal(&numbers(output, "1e-300"));
+        assert!(shown.contains("error[not-finite]"), "{output}\n{shown}");
+        assert!(shown.contains("o = {"), "{output}\n{shown}");
+    }
+    let shown = refusal(&numbers("k*x", "1"));
+    assert!(shown.contains("error[not-finite]: the motion"), "{shown}");
+    // What cancels is a number.
+    let shown = warnings(&numbers("1e300*1e-300*(k*x)*1e150*1e-150", "1e-300"));
+    assert!(!shown.contains("not-finite"), "{shown}");
+}
+
+/// Rationals would grow by a thousand bits with each factor.
+#[test]
+fn long_numbers_stay_cheap() {
+    let factor = "1.234567890123456789012345678901234567e250*(k*x)*1.2345678901234567890123456789012345e-250*";
+    let product = factor.repeat(30) + "1";
+    let shown = warnings(&numbers(&product, "1e-300"));
+    assert!(!shown.contains("error"), "{shown}");
+}

@@ -14,6 +14,7 @@ mod findings;
 mod fmu;
 mod fuzz_derivation;
 mod hostile;
+mod inverse_angles;
 #[cfg(feature = "jit")]
 mod jit;
 #[cfg(feature = "jit")]

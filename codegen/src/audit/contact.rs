@@ -254,7 +254,8 @@ impl Geometry<'_> {
             .map(|(velocity, rest)| {
                 let coefficients = rates.iter().map(|&rate| {
                     let coefficient = self.algebra.derivative(velocity, rate);
-                    self.algebra.unless_zero(coefficient)
+                    let vanishes = self.algebra.vanishes(coefficient);
+                    if vanishes { Graph::ZERO } else { coefficient }
                 });
                 LinearRow {
                     coefficients: coefficients.collect(),

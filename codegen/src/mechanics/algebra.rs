@@ -6,12 +6,15 @@ use appell_spec::mechanism::Mechanism;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
+use super::explicit::given_coordinates;
 use super::finding::{Finding, Item, Outcome};
 use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
 
 /// Expressions that a derivation may hold.
 const MOST_EXPRESSIONS: usize = 1_000_000;
+/// Expressions that a program with all derivatives may hold.
+pub(super) const MOST_OF_PROGRAM: usize = 8 * MOST_EXPRESSIONS;
 /// Products with more terms than this are not multiplied out.
 const MOST_TERMS: usize = 200;
 /// Fractions whose numerators would have more terms than this are not joined.
@@ -50,6 +53,8 @@ pub struct Algebra {
     pub(super) relations: Vec<Relation>,
     /// Unit quaternions, the scalar part first.
     pub(super) quaternions: Vec<[Expr; 4]>,
+    /// Coordinates that position constraints give by a formula.
+    given: Vec<(Expr, Expr)>,
     /// Whether long expressions stand as a recursion made them.
     pub(super) recursive: bool,
 }
@@ -68,7 +73,7 @@ impl Algebra {
         if let Some(pi) = graph.as_symbol(symbols.pi) {
             test = test.with_pi(pi);
         }
-        Self {
+        let mut algebra = Self {
             graph,
             test,
             pi: symbols.pi,
@@ -76,18 +81,26 @@ impl Algebra {
             derivatives: Vec::new(),
             relations: Vec::new(),
             quaternions,
+            given: Vec::new(),
             recursive: false,
-        }
+        };
+        algebra.given = given_coordinates(&mut algebra, mechanism, symbols);
+        algebra
     }
 
     /// Fails where the expressions have grown beyond what a mechanism of bodies needs.
     pub fn check_size(&self) -> Outcome<()> {
-        if self.graph.len() <= MOST_EXPRESSIONS {
+        self.holds_at_most(MOST_EXPRESSIONS)
+    }
+
+    /// Fails where there are more expressions.
+    pub fn holds_at_most(&self, most: usize) -> Outcome<()> {
+        if self.graph.len() <= most {
             return Ok(());
         }
         Err(vec![Finding {
             code: Code::TooLarge,
-            message: format!("the equations need more than {MOST_EXPRESSIONS} expressions"),
+            message: format!("the equations need more than {most} expressions"),
             item: Item::Mechanism,
             help:
                 "rotate frames from the ground instead of from each other, or split the mechanism"
@@ -117,6 +130,21 @@ impl Algebra {
         } else {
             expr
         }
+    }
+
+    /// Whether an expression is zero wherever the position constraints hold, as far as these give coordinates by
+    /// formulas.
+    pub fn vanishes(&mut self, expr: Expr) -> bool {
+        if self.test.is_zero(&self.graph, expr) {
+            return true;
+        }
+        let symbols: Vec<Expr> = self.given.iter().map(|&(q, _)| q).collect();
+        let symbols = ids(&self.graph, &symbols);
+        if !self.graph.mentions(expr, &symbols) {
+            return false;
+        }
+        let there = Substitution::of_parts(&self.graph, &self.given).apply(&mut self.graph, expr);
+        there.is_some_and(|there| self.test.is_zero(&self.graph, there))
     }
 
     /// The same value in the fewest operations that the tools here find.

@@ -4,6 +4,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::mechanism::{BodyId, ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
+use super::algebra::MOST_OF_PROGRAM;
 use super::constraints::Constraints;
 use super::finding::Outcome;
 use super::gibbs_appell::{
@@ -37,6 +38,7 @@ pub fn program(
     let mut functions = Vec::with_capacity(kinds.len());
     for &kind in kinds {
         let results = derivation.results(mechanism, &info, kind)?;
+        derivation.algebra.holds_at_most(MOST_OF_PROGRAM)?;
         let may_lack = matches!(
             kind,
             FunctionKind::Outputs

@@ -344,7 +344,9 @@ fn row(
     let mut coefficients = Vec::with_capacity(symbols.rates.len());
     for &rate in &symbols.rates {
         let coefficient = algebra.derivative(value, rate);
-        coefficients.push(algebra.shortest(coefficient));
+        let coefficient = algebra.shortest(coefficient);
+        let vanishes = !of_position && algebra.vanishes(coefficient);
+        coefficients.push(if vanishes { Graph::ZERO } else { coefficient });
     }
     let rest = Substitution::by_zero(&algebra.graph, &symbols.rates)
         .apply(&mut algebra.graph, value)

@@ -1,8 +1,10 @@
-//! Divisions by what is zero in every configuration: `1/(sin(a)^2 + cos(a)^2 - 1)`, `tan(pi/2)`.
+//! Divisions by what is zero in every configuration: `1/(sin(a)^2 + cos(a)^2 - 1)`, `tan(pi/2)`; and numbers that no
+//! double holds.
 //!
 //! All expressions of a spec are read once in a graph of their own, so that every such mistake is told
 //! at once and the equations do not depend on the search.
 
+use appell_spec::Code;
 use appell_spec::expr::Expr as Spec;
 use appell_spec::mechanism::{ConstraintKind, LoadKind, Mechanism};
 
@@ -10,39 +12,69 @@ use super::algebra::Algebra;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, division_by_zero};
 use super::symbols::Symbols;
-use crate::symbolic::{Graph, Node};
+use crate::symbolic::{Expr, Graph, Node};
 
-/// One finding per item that divides by zero.
+/// One finding per item that divides by zero or holds a number beyond double precision.
 pub fn findings(mechanism: &Mechanism) -> Vec<Finding> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
-    let mut items: Vec<Item> = Vec::new();
+    let mut findings: Vec<Finding> = Vec::new();
     for (item, expr) in expressions(mechanism) {
-        if items.last() != Some(&item) && divides_by_zero(&mut algebra, &symbols, expr) {
-            items.push(item);
+        if findings.last().is_none_or(|last| last.item != item) {
+            findings.extend(finding(&mut algebra, &symbols, item, expr));
         }
     }
-    items.into_iter().map(division_by_zero).collect()
+    findings
 }
 
-fn divides_by_zero(algebra: &mut Algebra, symbols: &Symbols, expr: &Spec) -> bool {
+fn finding(algebra: &mut Algebra, symbols: &Symbols, item: Item, expr: &Spec) -> Option<Finding> {
     let lowering = Lowering {
         symbols,
         rates: &symbols.rates,
     };
     let Ok(lowered) = lowering.lower(&mut algebra.graph, expr) else {
-        return true;
+        return Some(division_by_zero(item));
     };
     let Algebra { graph, test, .. } = algebra;
-    graph.in_order(&[lowered]).into_iter().any(|part| {
+    let divides_by_zero = graph.in_order(&[lowered]).into_iter().any(|part| {
         let Node::Product(factors) = graph.node(part) else {
             return false;
         };
         factors
             .iter()
             .any(|f| f.exponent < 0 && test.is_zero(graph, f.base))
-    })
+    });
+    if divides_by_zero {
+        return Some(division_by_zero(item));
+    }
+    (!holds_doubles(graph, &[lowered])).then(|| beyond_double("an expression", item))
+}
+
+/// Whether a double holds each number in expressions.
+pub fn holds_doubles(graph: &Graph, roots: &[Expr]) -> bool {
+    graph
+        .in_order(roots)
+        .into_iter()
+        .all(|part| match graph.node(part) {
+            Node::Number(number) => number.is_double(),
+            Node::Sum(terms) => terms.iter().all(|term| term.coefficient.is_double()),
+            Node::Product(factors) => factors.iter().all(|factor| {
+                let base = graph.as_number(factor.base);
+                base.is_none_or(|base| base.to_f64().powi(factor.exponent).is_normal())
+            }),
+            _ => true,
+        })
+}
+
+/// A number that no double holds.
+pub fn beyond_double(what: &str, item: Item) -> Finding {
+    Finding {
+        code: Code::NotFinite,
+        message: format!("{what} has a number beyond double precision in it"),
+        item,
+        help: "use parameters, or other units: a double holds 1e-308 to 1e308".to_owned(),
+    }
 }
 
 /// Every expression of a mechanism with the item it belongs to, item by item.

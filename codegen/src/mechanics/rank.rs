@@ -89,7 +89,7 @@ fn reduced(
         for (value, &other) in entries.zip(subtracted) {
             let change = algebra.graph.mul(factor, other);
             *value = algebra.graph.sub(*value, change);
-            if algebra.test.is_zero(&algebra.graph, *value) {
+            if algebra.vanishes(*value) {
                 *value = Graph::ZERO;
             }
         }

@@ -143,6 +143,11 @@ impl Graph {
             let value = self.function(function, positive);
             return if odd { self.neg(value) } else { value };
         }
+        if matches!(function, Sin | Cos)
+            && let Some([cos, sin]) = self.cos_sin_of_inverse(argument)
+        {
+            return if function == Cos { cos } else { sin };
+        }
         if let Some(number) = self.as_number(argument) {
             let exact = match function {
                 _ if number.is_zero() && odd => Some(Rational::ZERO),

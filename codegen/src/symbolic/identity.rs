@@ -51,6 +51,8 @@ use super::{Expr, Graph, SymbolId};
 const TRIALS: usize = 2;
 /// Points that are tried for an expression without square roots.
 const MOST_POINTS: usize = TRIALS + 2;
+/// Values that points with one symbol drawn again may remember.
+const MOST_REMEMBERED: usize = 1 << 21;
 /// Points that are tried for an expression with square roots. Each independent root is defined at
 /// every second point.
 const MOST_POINTS_WITH_ROOTS: usize = 128;
@@ -68,6 +70,8 @@ pub struct IdentityTest {
     cones: Cones,
     /// For [`IdentityTest::independent_of`]: the first points with one symbol drawn again.
     redrawn: FxHashMap<(SymbolId, usize), Point>,
+    /// Values that these points remember.
+    remembered: usize,
     /// Sets of radicands that are known to be independent, or not.
     independent: FxHashMap<u32, bool>,
 }
@@ -82,6 +86,7 @@ impl IdentityTest {
             points: Vec::new(),
             cones: Cones::default(),
             redrawn: FxHashMap::default(),
+            remembered: 0,
             independent: FxHashMap::default(),
         }
     }
@@ -149,6 +154,11 @@ impl IdentityTest {
         if self.cones.symbols(e) & symbol_bit(symbol) == 0 {
             return true;
         }
+        // Each symbol has points of its own: together they would hold a value for each pair.
+        if self.remembered > MOST_REMEMBERED {
+            self.redrawn.clear();
+            self.remembered = 0;
+        }
         let roots = self.cones.roots(e);
         let mut agreed = 0;
         for index in 0..most_points(roots) {
@@ -158,6 +168,7 @@ impl IdentityTest {
             let Self {
                 points,
                 redrawn,
+                remembered,
                 cones,
                 ..
             } = &mut *self;
@@ -170,7 +181,10 @@ impl IdentityTest {
             let other = redrawn
                 .entry((symbol, index))
                 .or_insert_with(|| original.sibling());
-            if let Some(after) = other.evaluate(g, e, Some(redraw)) {
+            let known = other.len();
+            let after = other.evaluate(g, e, Some(redraw));
+            *remembered += other.len() - known;
+            if let Some(after) = after {
                 if before != after {
                     return false;
                 }
@@ -328,5 +342,32 @@ fn most_points(roots: u32) -> usize {
         MOST_POINTS
     } else {
         MOST_POINTS_WITH_ROOTS
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A point for each symbol would hold a value for each pair of a symbol and an expression.
+    #[test]
+    fn points_with_one_symbol_drawn_again_remember_what_depends_on_it() {
+        const COUNT: usize = 300;
+        let mut g = Graph::new();
+        let symbols: Vec<Expr> = (0..COUNT).map(|k| g.symbol(&format!("x{k}"))).collect();
+        let sines: Vec<Expr> = symbols.iter().map(|&x| g.sin(x)).collect();
+        let mut test = IdentityTest::new(1);
+        for (&symbol, k) in symbols.iter().zip(0..) {
+            let symbol = g.as_symbol(symbol).expect("a symbol");
+            for (&sine, other) in sines.iter().zip(0..) {
+                assert_eq!(test.independent_of(&g, sine, symbol), k != other);
+            }
+        }
+        // Sixty-four symbols apart share a bit.
+        assert!(
+            test.remembered < COUNT * 4 * COUNT.div_ceil(64),
+            "{}",
+            test.remembered
+        );
     }
 }

@@ -99,11 +99,6 @@ impl Intervals {
             Node::Product(factors) => factors.iter().fold(Range::number(1.0, false), |p, f| {
                 p.times(self.at(f.base).power(f.exponent))
             }),
-            // cos(arctan x) = 1/√(1 + x²), which the ends of the interval of an arctangent do not tell.
-            Node::Function(Function::Cos, x) if is_arctangent(g, *x) => Range {
-                interval: Interval { lo: 0.0, hi: 1.0 },
-                nonzero: true,
-            },
             Node::Function(function, x) => apply(*function, self.at(*x)),
             Node::Atan2(..) => Range::ANGLE,
             Node::Power(base, exponent) => self.at(*base).real_power(self.at(*exponent)),
@@ -126,14 +121,6 @@ impl Intervals {
             }
             Node::Solution { .. } => Range::ANY,
         }
-    }
-}
-
-fn is_arctangent(g: &Graph, expr: Expr) -> bool {
-    match g.node(expr) {
-        Node::Function(Function::Atan, _) => true,
-        Node::Named(id) => is_arctangent(g, g.definition(*id).value),
-        _ => false,
     }
 }
 

@@ -8,7 +8,12 @@ use num_bigint::BigInt;
 use num_rational::{BigRational, Ratio};
 use num_traits::{Signed, ToPrimitive, Zero};
 
-/// An exact rational number in lowest terms.
+/// Bits of numerator and denominator together up to which a number is exact.
+const MOST_BITS: u64 = 1 << 12;
+/// Bits that are left of those of a longer one.
+const KEPT_BITS: u64 = 128;
+
+/// An exact rational number in lowest terms; one that takes thousands of bits is rounded.
 ///
 /// `Big` is used only where `Small` cannot hold the value, so equal numbers are equal variants and
 /// the derived comparisons are those of the numbers.
@@ -36,6 +41,7 @@ impl Rational {
 
     /// From a big rational, stored small where it fits.
     pub fn from_big(value: BigRational) -> Self {
+        let value = rounded(value);
         // i64::MIN has no negative and no absolute value; it stays big.
         let small = |n: &BigInt| n.to_i64().filter(|&n| n != i64::MIN);
         match (small(value.numer()), small(value.denom())) {
@@ -81,6 +87,12 @@ impl Rational {
         }
     }
 
+    /// Whether a double holds it: neither too large nor, unless it is zero, too small.
+    pub fn is_double(&self) -> bool {
+        let value = self.to_f64();
+        value.is_finite() && (value != 0.0 || self.is_zero())
+    }
+
     /// Whether it is zero.
     pub fn is_zero(&self) -> bool {
         *self == Self::ZERO
@@ -118,10 +130,8 @@ impl Rational {
         }
     }
 
-    /// Integer power. `None` for zero to a negative exponent and where the result would need more
-    /// than some thousands of digits.
+    /// Integer power. `None` for zero to a negative exponent and where the result would be too long.
     pub fn checked_pow(&self, exponent: i32) -> Option<Self> {
-        const MOST_BITS: u64 = 1 << 14;
         if exponent == 1 || self.is_one() {
             return Some(self.clone());
         }
@@ -129,8 +139,8 @@ impl Rational {
             return None;
         }
         let base = self.to_big();
-        let bits = base.numer().bits().max(base.denom().bits());
-        (bits * u64::from(exponent.unsigned_abs()) <= MOST_BITS || bits <= 1)
+        let bits = base.numer().bits() + base.denom().bits();
+        (bits * u64::from(exponent.unsigned_abs()) <= MOST_BITS || bits <= 2)
             .then(|| Self::from_big(num_traits::Pow::pow(base, exponent)))
     }
 
@@ -171,6 +181,23 @@ impl Rational {
         } else {
             Self::from_big(BigRational::new(numerator, denominator))
         }
+    }
+}
+
+/// A number as it is, or with as many leading bits as any double has, and no exponent far beyond theirs: what is
+/// longer comes of numbers that no double holds, and must not cost more with each operation.
+fn rounded(value: BigRational) -> BigRational {
+    let (over, under) = (value.numer().bits(), value.denom().bits());
+    if over + under <= MOST_BITS {
+        return value;
+    }
+    let [cut_over, cut_under] = [over, under].map(|bits| bits.saturating_sub(KEPT_BITS));
+    let quotient = BigRational::new(value.numer() >> cut_over, value.denom() >> cut_under);
+    let power = |bits: u64| BigInt::from(1) << bits.min(MOST_BITS / 2 - KEPT_BITS);
+    if cut_over >= cut_under {
+        quotient * power(cut_over - cut_under)
+    } else {
+        quotient / power(cut_under - cut_over)
     }
 }
 

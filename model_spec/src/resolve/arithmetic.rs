@@ -47,7 +47,7 @@ impl Resolver<'_> {
         let known = a.constant.as_ref().zip(b.constant.as_ref());
         let constant = known
             .filter(|_| dim != Dim::Unknown)
-            .and_then(|(a, b)| constant(op, a, b));
+            .and_then(|(a, b)| self.constant(op, a, b, &span));
         let typed = Typed {
             expr: Expr {
                 kind: ExprKind::Binary(op, Box::new(a.expr), Box::new(b.expr)),
@@ -198,6 +198,25 @@ impl Resolver<'_> {
         })
     }
 
+    /// The exact value of an operation on numbers, where it is short; reports one that no double holds.
+    fn constant(
+        &mut self,
+        op: BinaryOp,
+        a: &BigRational,
+        b: &BigRational,
+        span: &Span,
+    ) -> Option<BigRational> {
+        if !is_double(op, a, b) {
+            self.tell(
+                Diagnostic::error(Code::NotFinite, "the number is beyond double precision")
+                    .at(span.clone(), "a double holds 1e-308 to 1e308")
+                    .help("use other units, or write the value of the whole expression"),
+            );
+            return None;
+        }
+        constant(op, a, b)
+    }
+
     /// Limits the growth of repeated powers.
     fn bounded(&mut self, mut typed: Typed) -> Typed {
         if typed.size > MAX_DEGREE {
@@ -260,4 +279,18 @@ fn constant(op: BinaryOp, a: &BigRational, b: &BigRational) -> Option<BigRationa
         }
     };
     (bits(&value) <= MAX_BITS).then_some(value)
+}
+
+/// Whether a double holds the value of an operation on numbers that are not zero.
+fn is_double(op: BinaryOp, a: &BigRational, b: &BigRational) -> bool {
+    let double = |value: &BigRational| value.to_f64().unwrap_or(f64::NAN);
+    let (x, y) = (double(a), double(b));
+    let value = match op {
+        // Terms that cancel leave zero.
+        BinaryOp::Add | BinaryOp::Subtract => return (x + y).is_finite() && (x - y).is_finite(),
+        BinaryOp::Multiply => x * y,
+        BinaryOp::Divide => x / y,
+        BinaryOp::Power => x.abs().powf(y),
+    };
+    value.is_finite() && (value != 0.0 || a.is_zero() || b.is_zero())
 }

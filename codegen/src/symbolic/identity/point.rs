@@ -48,6 +48,39 @@ impl From<Option<Element>> for Cell {
     }
 }
 
+/// Values by expression.
+#[derive(Debug, Clone)]
+enum Cells {
+    /// Of most expressions of the graph.
+    All(Vec<Cell>),
+    /// Of the few expressions that depend on one symbol.
+    Few(FxHashMap<Expr, Cell>),
+}
+
+impl Cells {
+    fn get(&self, expr: Expr) -> Cell {
+        let known = match self {
+            Self::All(cells) => cells.get(expr.0 as usize),
+            Self::Few(cells) => cells.get(&expr),
+        };
+        known.copied().unwrap_or(Cell::UNKNOWN)
+    }
+
+    fn set(&mut self, g: &Graph, expr: Expr, cell: Cell) {
+        match self {
+            Self::All(cells) => {
+                if cells.len() < g.len() {
+                    cells.resize(g.len(), Cell::UNKNOWN);
+                }
+                cells[expr.0 as usize] = cell;
+            }
+            Self::Few(cells) => {
+                cells.insert(expr, cell);
+            }
+        }
+    }
+}
+
 /// One random point with the values of all expressions that were asked for.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
@@ -56,7 +89,7 @@ pub(super) struct Point {
     pi: Option<SymbolId>,
     /// Symbols that are components of unit quaternions.
     quaternions: Vec<[SymbolId; 4]>,
-    cells: Vec<Cell>,
+    cells: Cells,
     rotations: FxHashMap<Expr, Option<Rotation>>,
     solutions: FxHashMap<u32, Option<Box<[Element]>>>,
     inverses: FxHashMap<i64, Element>,
@@ -86,7 +119,7 @@ impl Point {
             key,
             pi,
             quaternions,
-            cells: Vec::new(),
+            cells: Cells::All(Vec::new()),
             rotations: FxHashMap::default(),
             solutions: FxHashMap::default(),
             inverses: FxHashMap::default(),
@@ -95,9 +128,20 @@ impl Point {
         }
     }
 
-    /// Another point with the same pseudo-random functions.
+    /// Another point with the same pseudo-random functions, which will differ in one symbol.
     pub(super) fn sibling(&self) -> Self {
-        Self::new(self.key, self.pi, self.quaternions.clone())
+        Self {
+            cells: Cells::Few(FxHashMap::default()),
+            ..Self::new(self.key, self.pi, self.quaternions.clone())
+        }
+    }
+
+    /// How many values it remembers.
+    pub(super) fn len(&self) -> usize {
+        match &self.cells {
+            Cells::All(cells) => cells.len(),
+            Cells::Few(cells) => cells.len(),
+        }
     }
 
     /// The value of an expression; `None` where it has none at this point.
@@ -107,46 +151,44 @@ impl Point {
         root: Expr,
         redraw: Option<Redraw<'_>>,
     ) -> Option<Element> {
-        if self.cells.len() < g.len() {
-            self.cells.resize(g.len(), Cell::UNKNOWN);
-        }
         let mut stack = std::mem::take(&mut self.stack);
         stack.push(root);
         while let Some(&expr) = stack.last() {
-            let index = expr.0 as usize;
-            if self.cells[index] != Cell::UNKNOWN {
-                stack.pop();
-                continue;
-            }
-            if let Some(redraw) = redraw
-                && redraw.symbols[index] & symbol_bit(redraw.symbol) == 0
-            {
-                self.cells[index] = redraw.original.cells[index];
+            if self.cell(expr, redraw) != Cell::UNKNOWN {
                 stack.pop();
                 continue;
             }
             let height = stack.len();
             g.for_each_part(expr, |part| {
-                if self.cells[part.0 as usize] == Cell::UNKNOWN {
+                if self.cell(part, redraw) == Cell::UNKNOWN {
                     stack.push(part);
                 }
             });
             if stack.len() == height {
-                self.cells[index] = self.step(g, expr, redraw).into();
+                let value = self.step(g, expr, redraw);
+                self.cells.set(g, expr, value.into());
                 stack.pop();
             }
         }
         self.stack = stack;
-        self.cells[root.0 as usize].value()
+        self.part(root, redraw)
     }
 
-    /// The value of a part. A part of what was copied from the original is only known there.
+    /// What is known of an expression: at the original, where it does not depend on the symbol drawn again.
+    fn cell(&self, expr: Expr, redraw: Option<Redraw<'_>>) -> Cell {
+        let stays =
+            |redraw: &Redraw<'_>| redraw.symbols[expr.0 as usize] & symbol_bit(redraw.symbol) == 0;
+        let known = redraw
+            .filter(stays)
+            .map(|redraw| redraw.original.cells.get(expr));
+        known
+            .filter(|&cell| cell != Cell::UNKNOWN)
+            .unwrap_or_else(|| self.cells.get(expr))
+    }
+
+    /// The value of a part.
     fn part(&self, expr: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
-        let cell = self.cells[expr.0 as usize];
-        match redraw {
-            Some(redraw) if cell == Cell::UNKNOWN => redraw.original.cells[expr.0 as usize].value(),
-            _ => cell.value(),
-        }
+        self.cell(expr, redraw).value()
     }
 
     fn drawn(&self, tag: u64, symbol: SymbolId) -> Element {

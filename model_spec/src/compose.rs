@@ -4,6 +4,7 @@ use toml_edit::{DocumentMut, Item, TableLike, Value};
 
 use crate::edit::EditError;
 use crate::expr::Word;
+use crate::foreign::sentence;
 use crate::language::{Form, Key, SECTIONS, Shape};
 
 /// A spec that grows, with its comments and layout untouched.
@@ -103,7 +104,7 @@ fn merge(own: &mut dyn TableLike, name: &str, item: &Item) -> bool {
 
 /// Writes a comment above an item.
 fn comment(own: &mut dyn TableLike, name: &str, note: &str) {
-    let comment = format!("# {}\n", note.replace('\n', " "));
+    let comment = format!("# {}\n", sentence(note));
     if let Some(Item::Table(table)) = own.get_mut(name) {
         table.decor_mut().set_prefix(format!("\n{comment}"));
     } else if let Some(mut key) = own.key_mut(name) {
@@ -119,7 +120,12 @@ fn expressions(section: &str) -> Vec<&'static str> {
         Some(Shape::Kinds(kinds)) => kinds.iter().flat_map(|kind| kind.keys).collect(),
         Some(Shape::States) | None => Vec::new(),
     };
-    let hold = |key: &&Key| matches!(key.form, Form::Expression | Form::Components | Form::Matrix);
+    let hold = |key: &&Key| {
+        matches!(
+            key.form,
+            Form::Expression | Form::Components | Form::Matrix | Form::Inertia(_)
+        )
+    };
     keys.into_iter().filter(hold).map(|key| key.name).collect()
 }
 

@@ -197,6 +197,8 @@ pub enum Form {
     Word(&'static [Word]),
     /// `true` or `false`.
     Flag,
+    /// A table, or an expression.
+    Inertia(&'static [Key]),
     /// A table.
     Table(&'static [Key]),
     /// A list of tables.

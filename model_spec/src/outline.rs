@@ -87,7 +87,7 @@ impl Outline {
         inner
             .iter()
             .try_fold(named(keys, first)?, |key, name| match key.form {
-                Form::Table(keys) | Form::Tables(keys) => named(keys, name),
+                Form::Table(keys) | Form::Tables(keys) | Form::Inertia(keys) => named(keys, name),
                 _ => None,
             })
     }

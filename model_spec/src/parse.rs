@@ -19,7 +19,7 @@ use crate::suggest::{self, shown};
 use reader::{Reader, in_text_order, phrase};
 
 pub use expression::unit_diagnostic;
-pub(crate) use expression::zero;
+pub(crate) use expression::{SECOND_RATE, zero};
 pub use reader::is_forbidden;
 
 /// Reads a spec; what could not be read is left out of the tree and reported in the diagnostics.

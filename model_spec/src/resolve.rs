@@ -50,7 +50,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     // They may be velocities of points and frames.
     let mut pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     resolver.given_rates(&mut pseudo_velocities);
-    let bodies = resolver.bodies();
+    let bodies = resolver.bodies(&frames);
     let mut constraints = resolver.constraints(&bodies);
     constraints.extend(orientations::norms(&frames, &constraints));
     let loads = resolver.loads(&bodies);

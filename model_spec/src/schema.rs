@@ -130,6 +130,7 @@ fn form(form: &Form) -> Value {
         Form::Direction => json!({ "anyOf": [words(AXES), list(expression(), 3)] }),
         Form::Word(known) => words(known),
         Form::Flag => json!({ "type": "boolean" }),
+        Form::Inertia(keys) => json!({ "anyOf": [expression(), table(keys, None)] }),
         Form::Table(keys) => table(keys, None),
         Form::Tables(keys) => json!({
             "type": "array",

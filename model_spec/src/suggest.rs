@@ -20,6 +20,7 @@ pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
     };
     candidates
         .into_iter()
+        .filter(|c| *c != word)
         .filter(|c| c.len() <= MAX_LENGTH && c.len().abs_diff(word.len()) <= allowed)
         .map(|c| (distance(word, c), c))
         .filter(|(d, c)| *d <= allowed || c.eq_ignore_ascii_case(word))
@@ -87,5 +88,6 @@ mod tests {
         assert_eq!(closest("spi", words), Some("psi"));
         assert_eq!(closest("gravity", words), None);
         assert_eq!(closest("r", ["R"]), Some("R"));
+        assert_eq!(closest("t", ["t"]), None);
     }
 }

@@ -53,6 +53,28 @@ fn a_finding_says_what_to_write() {
         (OUTPUT, "l*(1 deg)", "`1 [deg]`"),
         (OUTPUT, "l*(2 delta)", "a product is written with `*`"),
         (OUTPUT, "dot(v)", "`acceleration(P, x)`"),
+        (OUTPUT, "ddot(x)", "`acceleration(P, x)`"),
+        (OUTPUT, "dot(dot(x))", "`acceleration(P, x)`"),
+        (OUTPUT, "x_ddot", "`acceleration(P, x)`"),
+        (OUTPUT, "l*np.sin(delta)", "write `sin` without `np.`"),
+        (OUTPUT, "l*math.log(2)", "write `ln` without `math.`"),
+        (
+            OUTPUT,
+            "l*np.arctan2(delta, 1)",
+            "write `atan2` without `np.`",
+        ),
+        ("\"kg\"", "\"kgm2\"", "did you mean `kg*m^2`?"),
+        ("\"kg\"", "\"Nms\"", "did you mean `N*m*s`?"),
+        (
+            "kind = \"gravity\", down",
+            "kind = \"friction\", down",
+            "weight = { kind = \"generalized\", coordinate = \"q\", force = \"-F*smooth_sign(dot(q), 0.01 [rad/s])\" }",
+        ),
+        (
+            "kind = \"gravity\", down",
+            "kind = \"motor\", down",
+            "force = \"tau\"",
+        ),
         ("\"m/s^2\"", "\"m/s2\"", "as in `m/s^2`"),
         (
             "x - l*sin(delta)",
@@ -105,4 +127,65 @@ fn degrees_read_as_radians_are_doubted() {
         let told = told(from, to);
         assert_eq!(told.contains("doubtful-unit"), doubted, "{to}:\n{told}");
     }
+}
+
+#[test]
+fn a_reserved_name_is_told_once() {
+    for name in ["t", "pi", "sin", "dot"] {
+        let text = SPEC
+            .replace("\"x\"", &format!("\"{name}\""))
+            .replace("dot(x)", &format!("dot({name})"));
+        let text = text
+            .replace("x     =", &format!("{name} ="))
+            .replace("x - l", &format!("{name} - l"));
+        let report = load("rod.toml", &text)
+            .expect_err("a reserved name")
+            .plain();
+        assert_eq!(report.matches("error[").count(), 1, "{report}");
+        assert!(report.contains("error[reserved-name]"), "{report}");
+    }
+}
+
+#[test]
+fn a_body_in_a_plane_needs_one_moment_of_inertia() {
+    let full = "inertia = { in = \"arm\", diagonal = [\"m*l^2\", \"m*l^2\", \"m*l^2\"] }";
+    assert_eq!(told(full, "inertia = \"m*l^2\""), "");
+    assert_eq!(told(full, "inertia = \"2 [g*cm^2]\""), "");
+    let help = "write `inertia = { in = \"FRAME\", diagonal = [\"I_x\", \"I_y\", \"I_z\"] }`";
+    let in_space = SPEC.replace(full, "inertia = \"m*l^2\"").replace(
+        "arm = { parent = \"ground\", about_axis = \"-y\", by = \"delta\" }",
+        "arm = { parent = \"ground\", turns = [{ about_axis = \"z\", by = \"x/l\" }, { about_axis = \"y\", by = \"delta\" }] }",
+    );
+    let report = load("rod.toml", &in_space)
+        .expect_err("three moments are missing")
+        .plain();
+    assert!(report.contains(help), "{report}");
+    let mismatch = told(full, "inertia = \"m*l\"");
+    assert!(mismatch.contains("unit-mismatch"), "{mismatch}");
+    let unframed = SPEC
+        .replace("frame = \"arm\", ", "")
+        .replace(full, "inertia = \"m*l^2\"");
+    let report = load("rod.toml", &unframed)
+        .expect_err("a frame is missing")
+        .plain();
+    assert!(report.contains("body-without-frame"), "{report}");
+}
+
+#[test]
+fn an_output_is_an_expression_alone() {
+    let mechanism = |text: &str| load("rod.toml", text).expect("a valid spec").mechanism;
+    let bare = SPEC.replace(
+        "{ value = \"l*cos(delta)\", unit = \"m\" }",
+        "\"l*cos(delta)\"",
+    );
+    assert_ne!(bare, SPEC);
+    let (bare, full) = (mechanism(&bare), mechanism(SPEC));
+    let unit = |mechanism: &appell_spec::Mechanism| {
+        mechanism
+            .outputs
+            .iter()
+            .map(|output| output.label.unit.text.clone())
+            .collect::<Vec<_>>()
+    };
+    assert_eq!(unit(&bare), unit(&full));
 }

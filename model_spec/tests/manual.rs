@@ -47,6 +47,7 @@ fn form_words(form: &Form) -> String {
             .collect::<Vec<_>>()
             .join(", "),
         Form::Flag => "`true` or `false`".to_owned(),
+        Form::Inertia(_) => "table, or expression".to_owned(),
         Form::Table(_) => "table".to_owned(),
         Form::Tables(_) => "list of tables".to_owned(),
     }
@@ -67,7 +68,7 @@ fn key_table(keys: &[Key]) -> String {
         writeln!(text, "| `{}` | {form} | {need} | {} |", key.name, key.about).unwrap();
     }
     for key in keys {
-        if let Form::Table(inner) | Form::Tables(inner) = &key.form {
+        if let Form::Table(inner) | Form::Tables(inner) | Form::Inertia(inner) = &key.form {
             write!(text, "\nKeys of `{}`:\n\n{}", key.name, key_table(inner)).unwrap();
         }
     }

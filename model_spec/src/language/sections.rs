@@ -241,9 +241,9 @@ pub static SECTIONS: &[Section] = &[
                 key("mass", Form::Expression, Need::Always, "Mass."),
                 key(
                     "inertia",
-                    Form::Table(INERTIA),
+                    Form::Inertia(INERTIA),
                     Need::Optional,
-                    "Inertia about the centre of mass.",
+                    "Inertia about the centre of mass; of a body that moves in a plane the moment about its normal.",
                 ),
                 key(
                     "taken_away",
@@ -308,7 +308,7 @@ pub static SECTIONS: &[Section] = &[
                 UNIT_CHECKED,
                 ABOUT,
             ],
-            None,
+            Some("value"),
         ),
     },
     Section {

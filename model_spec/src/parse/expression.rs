@@ -105,6 +105,14 @@ impl<'a> Parser<'_, 'a> {
             {
                 Some(format!("write `{function}({argument})`"))
             }
+            (Token::Name(library), Token::Number("."), Some(Token::Name(function)))
+                if LIBRARIES.contains(&library) =>
+            {
+                let function = familiar(function).unwrap_or(function);
+                Some(format!(
+                    "functions stand alone: write `{function}` without `{library}.`"
+                ))
+            }
             (Token::Number(number), Token::Name(unit), _) if units::parse(unit).is_ok() => Some(
                 format!("a product is written with `*`, a unit in brackets: `{number} [{unit}]`"),
             ),
@@ -283,6 +291,11 @@ impl<'a> Parser<'_, 'a> {
                 .error(inner, "`dot` takes the name of a coordinate")
                 .help("write out derivatives of expressions, such as `2*q*dot(q)`"));
         };
+        if name == "dot" && self.peek().token == Token::Symbol('(') {
+            return Err(self
+                .error(inner, "`dot` takes the name of a coordinate")
+                .help(SECOND_RATE));
+        }
         let close = self.expect(')', "the coordinate")?;
         let kind = ExprAstKind::Rate(Spanned {
             value: name.to_owned(),
@@ -355,28 +368,48 @@ impl<'a> Parser<'_, 'a> {
         let named = Word::ALL.iter().map(|row| row.1);
         let known = Function::ALL.iter().map(|row| row.1);
         let known = known.chain(["dot", "if"]).chain(named);
-        let familiar = match name {
-            "log" => Some("ln"),
-            "arctan" => Some("atan"),
-            "arcsin" => Some("asin"),
-            "arccos" => Some("acos"),
-            "arctan2" => Some("atan2"),
-            "sgn" | "signum" => Some("sign"),
-            "der" | "diff" | "ddt" => Some("dot"),
-            "pow" => Some("^"),
-            _ => suggest::closest(name, known),
+        let help = match name {
+            "ddot" | "dotdot" | "der2" => SECOND_RATE.to_owned(),
+            _ => familiar(name)
+                .or_else(|| suggest::closest(name, known))
+                .map_or_else(
+                    || {
+                        let names = suggest::list(Function::ALL.iter().map(|row| row.1));
+                        format!("the functions are {names}")
+                    },
+                    suggest::meant,
+                ),
         };
-        let help = familiar.map_or_else(
-            || {
-                let names = suggest::list(Function::ALL.iter().map(|row| row.1));
-                format!("the functions are {names}")
-            },
-            suggest::meant,
-        );
         Diagnostic::error(Code::UnknownFunction, format!("unknown function `{name}`"))
             .at(self.source.span(at.start..at.end), "")
             .help(help)
     }
+}
+
+/// What to write where an expression asks for a second derivative.
+pub(crate) const SECOND_RATE: &str = "accelerations are results: an output may name `acceleration(P, x)` of a point, or \
+     `angular_acceleration(F, x)` of a frame; a spec states rates, `dot(q)`";
+
+/// What stands before functions in other languages.
+const LIBRARIES: [&str; 8] = ["np", "numpy", "math", "Math", "sp", "sympy", "ca", "jnp"];
+
+/// What other languages call a function.
+fn familiar(name: &str) -> Option<&'static str> {
+    Some(match name {
+        "log" => "ln",
+        "arctan" => "atan",
+        "arcsin" => "asin",
+        "arccos" => "acos",
+        "arctan2" => "atan2",
+        "fabs" | "absolute" => "abs",
+        "sgn" | "signum" => "sign",
+        "minimum" | "fmin" => "min",
+        "maximum" | "fmax" => "max",
+        "where" | "if_else" => "if",
+        "der" | "diff" | "ddt" => "dot",
+        "pow" | "power" => "^",
+        _ => return None,
+    })
 }
 
 /// An operator with its binding powers to the left and to the right.

@@ -5,7 +5,7 @@ use toml::de::{DeTable, DeValue};
 use crate::ast::{Entry, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::Span;
-use crate::language::{Form, Key, Kind, Need, Section, Shape};
+use crate::language::{Form, ItemKind, Key, Kind, LoadWord, Need, Section, Shape};
 use crate::limits::{MAX_ITEMS, MAX_PARAMETERS};
 use crate::name;
 use crate::suggest::{self, did_you_mean, shown};
@@ -120,7 +120,11 @@ impl Reader<'_> {
             return empty(owner);
         };
         let Some(kind) = kinds.iter().find(|k| k.word == word.as_ref()) else {
-            let help = did_you_mean(word, kinds.iter().map(|k| k.word), list);
+            let instead = kinds
+                .iter()
+                .find_map(|kind| written_otherwise(kind, word, owner.name));
+            let help =
+                instead.unwrap_or_else(|| did_you_mean(word, kinds.iter().map(|k| k.word), list));
             self.unknown_word(
                 format!("unknown kind `{}`", shown(word)),
                 value.span(),
@@ -357,4 +361,33 @@ fn join<'a>(names: impl Iterator<Item = &'a str>, with: &str) -> String {
         .map(|name| format!("`{name}`"))
         .collect::<Vec<_>>()
         .join(with)
+}
+
+/// The line that writes a load which has no kind of its own.
+fn written_otherwise(kind: &Kind, word: &str, name: &str) -> Option<String> {
+    let generalized = |force: &str| {
+        format!(
+            "write `{name} = {{ kind = \"generalized\", coordinate = \"q\", force = \"{force}\" }}`"
+        )
+    };
+    let name = shown(name);
+    let ItemKind::Load(LoadWord::Generalized) = kind.is else {
+        return None;
+    };
+    match word.to_ascii_lowercase().as_str() {
+        "friction" | "coulomb" | "dry_friction" | "stiction" => {
+            let line = generalized("-F*smooth_sign(dot(q), 0.01 [rad/s])");
+            Some(format!(
+                "{line}, F being the friction; what grows with the speed is of kind \"damper\""
+            ))
+        }
+        "motor" | "actuator" | "drive" => Some(generalized("tau") + " with an input `tau`"),
+        "viscous" | "dashpot" => Some(format!(
+            "write `{name} = {{ kind = \"damper\", coordinate = \"q\", damping = \"c\" }}`"
+        )),
+        "weight" => Some(format!(
+            "write `{name} = {{ kind = \"gravity\", down = \"-z\", acceleration = \"g\" }}`"
+        )),
+        _ => None,
+    }
 }

@@ -76,6 +76,10 @@ impl Reader<'_> {
             }
             Form::Word(words) => self.word(key, words, value).map(ValueAst::Word),
             Form::Flag => self.flag(value).map(ValueAst::Flag),
+            Form::Inertia(keys) => match value.get_ref() {
+                DeValue::Table(_) => self.inner_table(key.name, keys, value),
+                _ => Some(ValueAst::Expression(self.expression(value))),
+            },
             Form::Table(keys) => self.inner_table(key.name, keys, value),
             Form::Tables(keys) => self.tables(key, keys, value).map(ValueAst::Tables),
         }

@@ -1,9 +1,11 @@
 //! Bodies and their inertia.
 
-use crate::ast::{ItemAst, ValueAst};
+use crate::ast::{ExprAst, ItemAst, ValueAst};
+use crate::axis::Axis;
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Expr, ExprKind};
-use crate::mechanism::{Body, Inertia};
+use crate::expr::{BinaryOp, Expr, ExprKind};
+use crate::ids::FrameId;
+use crate::mechanism::{Body, Frame, GROUND, Inertia};
 use crate::units::Dimension;
 
 use super::dimensions::Dim;
@@ -14,21 +16,22 @@ const MASS: Place = Place::constant("the mass of a body");
 const INERTIA: Place = Place::constant("a moment of inertia");
 
 impl Resolver<'_> {
-    pub(super) fn bodies(&mut self) -> Vec<Body> {
+    pub(super) fn bodies(&mut self, frames: &[Frame]) -> Vec<Body> {
         let ast = self.ast;
         for (id, item) in ast.items("bodies").iter().enumerate() {
             self.bodies.insert(item.name.value.as_str(), id);
         }
         ast.items("bodies")
             .iter()
-            .map(|item| self.body(item))
+            .map(|item| self.body(item, frames))
             .collect()
     }
 
-    fn body(&mut self, item: &ItemAst) -> Body {
+    fn body(&mut self, item: &ItemAst, frames: &[Frame]) -> Body {
         let frame = self.optional_reference(item, "frame");
         let inertia = match item.entry("inertia").map(|e| &e.value) {
             Some(ValueAst::Table(table)) => self.inertia(table),
+            Some(ValueAst::Expression(moment)) => self.planar_inertia(moment, frame, frames),
             _ => None,
         };
         if let Some(inertia) = &inertia
@@ -62,6 +65,63 @@ impl Resolver<'_> {
             line: self.line(&item.name.span),
             span: item.name.span.clone(),
         }
+    }
+
+    /// The inertia of a body that moves in a plane, by its moment about the normal: that of a flat body, as the
+    /// other moments change nothing.
+    fn planar_inertia(
+        &mut self,
+        moment: &ExprAst,
+        frame: Option<FrameId>,
+        frames: &[Frame],
+    ) -> Option<Inertia> {
+        let about_normal = self.expression(moment, &INERTIA, Dim::Known(Dimension::INERTIA));
+        let span = moment.span.clone();
+        let number = |value: i64| Expr {
+            kind: ExprKind::Number(num_rational::BigRational::from_integer(value.into())),
+            span: span.clone(),
+        };
+        let half = Expr {
+            kind: ExprKind::Binary(
+                BinaryOp::Divide,
+                Box::new(about_normal.clone()),
+                Box::new(number(2)),
+            ),
+            span: span.clone(),
+        };
+        let normal = match frame {
+            Some(frame) => match normal(frame, frames) {
+                Some(normal) => normal,
+                None => {
+                    self.tell(
+                        Diagnostic::error(
+                            Code::NotAllowedHere,
+                            "one moment of inertia is enough only for a body that turns about one axis",
+                        )
+                        .at(span.clone(), "about which axis?")
+                        .help(
+                            "write `inertia = { in = \"FRAME\", diagonal = [\"I_x\", \"I_y\", \"I_z\"] }`",
+                        ),
+                    );
+                    return None;
+                }
+            },
+            // That its frame is missing is told with the body.
+            None => Axis::Z,
+        };
+        let matrix = [0, 1, 2].map(|i| {
+            [0, 1, 2].map(|j| match (i == j, i == normal.index()) {
+                (true, true) => about_normal.clone(),
+                (true, false) => half.clone(),
+                (false, _) => number(0),
+            })
+        });
+        Some(Inertia {
+            frame: frame.unwrap_or(GROUND),
+            matrix,
+            line: self.line(&span),
+            span,
+        })
     }
 
     fn inertia(&mut self, item: &ItemAst) -> Option<Inertia> {
@@ -125,6 +185,26 @@ impl Resolver<'_> {
             }
         }
     }
+}
+
+/// The axis about which all turns between a frame and the ground are, if it is one.
+fn normal(frame: FrameId, frames: &[Frame]) -> Option<Axis> {
+    let mut normal = None;
+    let mut at = Some(frame);
+    while let Some(frame) = at {
+        let frame = frames.get(frame.index())?;
+        if frame.quaternion.is_some() {
+            return None;
+        }
+        for turn in &frame.turns {
+            if normal.is_some_and(|normal| normal != turn.axis) {
+                return None;
+            }
+            normal = Some(turn.axis);
+        }
+        at = frame.parent;
+    }
+    normal
 }
 
 /// Written where the expression is.

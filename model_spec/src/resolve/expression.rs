@@ -8,6 +8,7 @@ use crate::ast::{ExprAst, ExprAstKind, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Function, Motion, Quantity, Relation, Span};
 use crate::mechanism::{Interpolation, SignalId};
+use crate::parse::SECOND_RATE;
 use crate::suggest::{did_you_mean, shown};
 use crate::units::{Dimension, Unit};
 
@@ -102,6 +103,9 @@ impl Resolver<'_> {
     }
 
     fn name(&mut self, name: &str, span: Span, place: &Place) -> Typed {
+        if self.reserved.contains(name) {
+            return Typed::poisoned(span);
+        }
         match name {
             "t" => return self.quantity(Quantity::Time, Some(Dimension::TIME), name, span, place),
             "pi" => return self.quantity(Quantity::Pi, Some(Dimension::NONE), name, span, place),
@@ -164,6 +168,9 @@ impl Resolver<'_> {
 
     fn rate(&mut self, name: &Spanned<String>, span: Span, place: &Place) -> Typed {
         let text = name.value.as_str();
+        if self.reserved.contains(text) {
+            return Typed::poisoned(span);
+        }
         match self.names.get(text) {
             Some(named) => {
                 if let Meaning::Quantity(Quantity::Coordinate(id)) = named.meaning {
@@ -201,14 +208,20 @@ impl Resolver<'_> {
 
     fn unknown_name(&self, name: &str, span: &Span) -> Diagnostic {
         let known = self.names.keys().copied().chain(["t", "pi"]);
-        let rate_of = name.strip_suffix("_dot").filter(|&of| {
-            let named = self.names.get(of).map(|named| named.meaning);
-            matches!(named, Some(Meaning::Quantity(Quantity::Coordinate(_))))
-        });
-        let known = known.filter(|_| rate_of.is_none());
+        let with_suffix = |suffix| {
+            name.strip_suffix(suffix).filter(|&of| {
+                let named = self.names.get(of).map(|named| named.meaning);
+                matches!(named, Some(Meaning::Quantity(Quantity::Coordinate(_))))
+            })
+        };
+        let (rate_of, twice) = (with_suffix("_dot"), with_suffix("_ddot").is_some());
+        let known = known.filter(|_| rate_of.is_none() && !twice);
         let help = did_you_mean(name, known, || {
             if let Some(coordinate) = rate_of {
                 return format!("write `dot({coordinate})`");
+            }
+            if twice {
+                return SECOND_RATE.to_owned();
             }
             if Function::from_name(name).is_some() {
                 format!("`{name}` is a function; write `{name}(…)`")

@@ -8,7 +8,7 @@ use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, Function, Span};
 use crate::joints;
 use crate::parse;
-use crate::units::Unit;
+use crate::units::{Dimension, Unit};
 
 use super::dimensions::Dim;
 use super::place::Place;
@@ -57,7 +57,8 @@ impl<'a> Snippet<'a> {
 /// - A value of plain numbers, such as `20`, `2*10` or `5*sin(2*t)`, is in the quantity's unit.
 /// - Names, and numbers with a unit, carry dimensions, which are checked: `5[m/s]/R`.
 /// - Gains: where time or the state may occur and no number has a unit, a plain number may stand
-///   beside names, as in `-3*x - v`. Everything is in SI then, and dimensions do not matter. A
+///   beside names, as in `-3*x - v`, and a function of names alone, as in `sin(t)`, is a plain number.
+///   Everything is in SI then, and dimensions do not matter. A
 ///   quantity that is not declared in SI must not be given so: two readings would differ.
 ///
 /// The places of the findings are places in the snippet's document.
@@ -92,9 +93,12 @@ pub fn formula(
     };
     let plain = is_plain(&ast);
     let numbers = any(&ast, &is_bare_number);
-    let gains = scope != Scope::Constant && numbers && !any(&ast, &has_unit);
+    let gains = scope != Scope::Constant && (numbers || plain) && !any(&ast, &has_unit);
     let ast = if plain { times(ast, unit) } else { ast };
-    let expr = resolver.expression(&ast, &place, Dim::Known(unit.dimension));
+    let typed = resolver.elaborate(&ast, &place);
+    resolver.expect(&typed, Dim::Known(unit.dimension), &place);
+    let found = typed.dim.known();
+    let expr = typed.expr;
     resolver.settle();
     let mut findings = resolver.findings;
     if gains && (plain || unit.is_si()) {
@@ -103,14 +107,44 @@ pub fn formula(
     if findings.is_empty() {
         return Ok(expr);
     }
-    if numbers {
-        for finding in &mut findings {
-            if finding.code == Code::UnitMismatch && finding.help.is_none() {
-                finding.help = Some("write units after the numbers, as in `5[m/s]`".to_owned());
-            }
+    let help = match found {
+        _ if numbers => "write units after the numbers, as in `5[m/s]`".to_owned(),
+        Some(found) if found != unit.dimension && !unit.text.is_empty() => {
+            names_alone(snippet.text.trim(), unit, found, scope)
+        }
+        _ => return Err(findings),
+    };
+    for finding in &mut findings {
+        if finding.code == Code::UnitMismatch && finding.help.is_none() {
+            finding.help = Some(help.clone());
         }
     }
     Err(findings)
+}
+
+/// What to write where names alone have another unit.
+fn names_alone(text: &str, unit: &Unit, found: Dimension, scope: Scope) -> String {
+    let is_name = text.chars().all(|c| c.is_alphanumeric() || c == '_');
+    let text = if is_name {
+        text.to_owned()
+    } else {
+        format!("({text})")
+    };
+    let own = Unit::si(found).text;
+    let own = if own.contains(['*', '/']) {
+        format!("({own})")
+    } else {
+        own
+    };
+    let factor = match (unit.text.as_str(), own.as_str()) {
+        (unit, "1") => unit.to_owned(),
+        (unit, own) => format!("{unit}/{own}"),
+    };
+    let with_unit = format!("write `1[{factor}]*{text}`");
+    if scope == Scope::Constant || !unit.is_si() {
+        return with_unit;
+    }
+    format!("{with_unit}, or `1*{text}`: beside a number without a unit all is in SI")
 }
 
 /// Whether a value is a number whatever its arguments measure.
@@ -220,7 +254,13 @@ v = { value = 'dot(x)', unit = 'm/s' }
                 accepts(text, Scope::Constant, unit);
             }
         }
-        for text in ["5*sin(2*t)", "if(t < 2, 5, -5)", "exp(-t)*2"] {
+        for text in [
+            "5*sin(2*t)",
+            "if(t < 2, 5, -5)",
+            "exp(-t)*2",
+            "sin(t)",
+            "-cos(t)*exp(-t)",
+        ] {
             accepts(text, Scope::Schedule, "kN");
         }
     }
@@ -243,6 +283,27 @@ v = { value = 'dot(x)', unit = 'm/s' }
             read("R", Scope::Law, "N"),
             Err("an input must have the unit `N`, found a length".to_owned())
         );
+    }
+
+    #[test]
+    fn a_name_of_another_unit_is_told_with_what_to_write() {
+        let unit = crate::units::parse("N").expect("a unit");
+        for (text, written) in [
+            ("t", "1[N/s]*t"),
+            ("-x", "1[N/m]*(-x)"),
+            ("x", "1*x"),
+            ("x + R", "1*(x + R)"),
+        ] {
+            let snippet = Snippet::alone(text);
+            let findings = formula(SPEC, &snippet, "an input", Scope::Law, &unit);
+            let findings = findings.err().unwrap_or_default();
+            let help = findings.first().and_then(|finding| finding.help.clone());
+            assert!(
+                help.unwrap_or_default().contains(&format!("`{written}`")),
+                "{text}: {findings:?}"
+            );
+            accepts(written, Scope::Law, "N");
+        }
     }
 
     #[test]

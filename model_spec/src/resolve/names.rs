@@ -72,6 +72,7 @@ impl<'a> Resolver<'a> {
     ) {
         let text = name.value.as_str();
         if is_reserved(text) {
+            self.reserved.insert(text);
             self.tell(
                 Diagnostic::error(
                     Code::ReservedName,

@@ -1,6 +1,6 @@
 //! What the resolution of every section shares.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::ast::{ExprAst, ItemAst, SpecAst};
 use crate::diagnostic::Diagnostic;
@@ -23,6 +23,8 @@ pub(super) struct Resolver<'a> {
     pub(super) line_starts: Vec<usize>,
     /// What the names in expressions mean.
     pub(super) names: BTreeMap<&'a str, Named>,
+    /// Names that an item has and expressions cannot use; each is reported where it is defined.
+    pub(super) reserved: BTreeSet<&'a str>,
     /// Names of frames, points and bodies, each with its index.
     pub(super) frames: BTreeMap<&'a str, usize>,
     pub(super) points: BTreeMap<&'a str, usize>,
@@ -56,6 +58,7 @@ impl<'a> Resolver<'a> {
                 .chain(breaks.map(|(i, _)| i + 1))
                 .collect(),
             names: BTreeMap::new(),
+            reserved: BTreeSet::new(),
             frames: BTreeMap::from([("ground", 0)]),
             points: BTreeMap::from([("O", 0)]),
             bodies: BTreeMap::new(),

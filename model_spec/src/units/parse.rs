@@ -282,10 +282,18 @@ impl Parser<'_> {
     fn symbol(&self, start: usize) -> Result<Product, UnitError> {
         let at = start..self.at;
         let symbol = self.text.get(at.clone()).unwrap_or_default();
+        // `kgm2` is a product without its signs.
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let digits = rest.strip_prefix('^').unwrap_or(rest);
+        let count = digits.bytes().take_while(u8::is_ascii_digit).count();
+        let power = match digits.get(..count) {
+            Some(digits) if count > 0 => format!("^{digits}"),
+            _ => String::new(),
+        };
         lookup(symbol).ok_or_else(|| UnitError::Unknown {
             symbol: symbol.to_owned(),
             at,
-            similar: similar(symbol),
+            similar: similar(symbol).map(|similar| similar + &power),
         })
     }
 }
@@ -325,6 +333,21 @@ fn product(powers: [i32; 7], size: (i64, i64), times_pi: bool, ten: i32) -> Prod
     }
 }
 
+/// A symbol as a product of a few units.
+fn factors(symbol: &str, is_unit: &dyn Fn(&str) -> bool) -> Option<String> {
+    const MOST: usize = 3;
+    fn split(symbol: &str, is_unit: &dyn Fn(&str) -> bool, most: usize) -> Option<String> {
+        if is_unit(symbol) {
+            return Some(symbol.to_owned());
+        }
+        let most = most.checked_sub(1).filter(|most| *most > 0)?;
+        let cuts = (1..symbol.len()).filter_map(|at| symbol.split_at_checked(at));
+        let mut firsts = cuts.filter(|(first, _)| is_unit(first));
+        firsts.find_map(|(first, rest)| Some(format!("{first}*{}", split(rest, is_unit, most)?)))
+    }
+    (symbol.len() <= 8).then(|| split(symbol, is_unit, MOST))?
+}
+
 fn similar(symbol: &str) -> Option<String> {
     let spoken = UNITS
         .iter()
@@ -345,12 +368,11 @@ fn similar(symbol: &str) -> Option<String> {
         "L" => Some("l"),
         _ => None,
     };
-    // `Nm` is a product without its sign.
+    // `Nm` is a product without its sign; `Nms` has seconds in it rather than milliseconds.
     let product = || {
-        (1..symbol.len())
-            .filter_map(|at| symbol.split_at_checked(at))
-            .find(|(a, b)| lookup(a).is_some() && lookup(b).is_some())
-            .map(|(a, b)| format!("{a}*{b}"))
+        let whole = |part: &str| part == "kg" || UNITS.iter().any(|unit| unit.symbol == part);
+        let any = |part: &str| lookup(part).is_some();
+        factors(symbol, &whole).or_else(|| factors(symbol, &any))
     };
     spoken
         .or_else(|| common.map(str::to_owned))
@@ -438,6 +460,11 @@ mod tests {
         for (text, expected) in [
             ("Nm", "N*m"),
             ("kgm", "kg*m"),
+            ("kgm2", "kg*m^2"),
+            ("kgm^2", "kg*m^2"),
+            ("Nms", "N*m*s"),
+            ("Nm/rad", "N*m"),
+            ("kgm2/s", "kg*m^2"),
             ("sec", "s"),
             ("metre", "m"),
             ("dge", "deg"),

@@ -10,6 +10,7 @@ mod contact;
 mod determination;
 mod idle;
 mod integrability;
+mod limits;
 mod passivity;
 mod ranges;
 mod reaction;
@@ -34,7 +35,10 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     let Some(mut bench) = Bench::new(mechanism, derivation) else {
         return Audit::default();
     };
-    bench.proposals = ranges::proposals(&mut bench);
+    bench.limits = limits::limits(&mut bench);
+    if bench.limits.is_none() {
+        bench.proposals = ranges::proposals(&mut bench);
+    }
     let mut told = Audit::default();
     let contacts = contact::findings(&mut bench.algebra, mechanism, &derivation.symbols);
     let is_told = |item| contacts.iter().any(|finding| finding.item == item);
@@ -43,6 +47,7 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     told.warnings = contacts;
     for question in [
         determination::audit,
+        limits::audit,
         ranges::audit,
         idle::audit,
         work::audit,

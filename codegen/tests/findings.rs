@@ -389,3 +389,21 @@ fn long_numbers_stay_cheap() {
     let shown = warnings(&numbers(&product, "1e-300"));
     assert!(!shown.contains("error"), "{shown}");
 }
+
+/// What the note about a divisor says to write keeps it off zero.
+#[test]
+fn limits_of_parameters_take_the_place_of_pivoting() {
+    let text = include_str!("audit/singular-pseudo-velocities.limits.toml");
+    let pivoted = derived("a.toml", text).expect("a valid spec").derivation;
+    assert!(!pivoted.velocities.solved_numerically.is_empty());
+    let limited = text
+        .replace(
+            "value = 1, unit = \"m\" }",
+            "value = 1, unit = \"m\", at_least = 0.5, at_most = 2 }",
+        )
+        .replace("at_least = 0 }", "at_least = 0, at_most = 0.06 }");
+    let solved = derived("a.toml", &limited)
+        .expect("a valid spec")
+        .derivation;
+    assert!(solved.velocities.solved_numerically.is_empty());
+}

@@ -2,6 +2,7 @@
 
 use appell_spec::mechanism::Mechanism;
 
+use super::limits::Limits;
 use super::ranges::Proposal;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
@@ -38,6 +39,8 @@ pub(super) struct Bench<'a> {
     pub(super) unconstrained: Kinematics,
     /// Outputs in terms of coordinates and pseudo-velocities.
     pub(super) outputs: Vec<Expr>,
+    /// Limits of parameters that would take the place of pivoting.
+    pub(super) limits: Option<Limits>,
     /// Ranges that would take the place of pivoting.
     pub(super) proposals: Vec<Proposal>,
 }
@@ -58,6 +61,7 @@ impl<'a> Bench<'a> {
             algebra,
             unconstrained,
             outputs,
+            limits: None,
             proposals: Vec::new(),
         })
     }

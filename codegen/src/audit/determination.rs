@@ -9,6 +9,7 @@ use super::samples::takes_both_signs;
 use crate::mechanics::algebra::Algebra;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
+use crate::mechanics::motions::motions;
 use crate::symbolic::{Expr, Graph, Node, SymbolId};
 
 /// Coefficients with more operations, and determinants, are not examined.
@@ -22,19 +23,10 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     if bench.derivation.warnings.iter().any(singular) {
         return;
     }
-    let Some((speeds, rows)) = coefficients(bench) else {
+    let Some((speeds, factors)) = factors_of_determinant(bench) else {
         return;
     };
-    let mut minors = MOST_MINORS;
-    let all = [rows, speeds.clone()].concat();
-    // What is too long to be factored is too long to be read.
-    if bench.algebra.graph.operations(&all.concat()) > MOST_OPERATIONS {
-        return;
-    }
-    let Some(determinant) = determinant(&mut bench.algebra, all, &mut minors) else {
-        return;
-    };
-    for factor in factors(&mut bench.algebra, determinant) {
+    for factor in factors {
         let positions = positions(bench, factor);
         if positions.is_empty() {
             continue;
@@ -63,6 +55,13 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
                     help,
                 });
             }
+            continue;
+        }
+        if bench
+            .limits
+            .as_ref()
+            .is_some_and(|limits| limits.keep_off_zero(factor))
+        {
             continue;
         }
         let mut excluding = format!("a `range` of {names} that excludes it");
@@ -100,6 +99,28 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
 
 type Matrix = Vec<Vec<Expr>>;
 
+/// The coefficients in the definitions of the pseudo-velocities, and the factors of the determinant of these and
+/// the constraints; `None` where they are too long to be read.
+fn factors_of_determinant(bench: &mut Bench) -> Option<(Matrix, Vec<Expr>)> {
+    let (speeds, rows) = coefficients(bench)?;
+    let all = [rows, speeds.clone()].concat();
+    if bench.algebra.graph.operations(&all.concat()) > MOST_OPERATIONS {
+        return None;
+    }
+    let mut minors = MOST_MINORS;
+    let determinant = determinant(&mut bench.algebra, all, &mut minors)?;
+    let factors = factors(&mut bench.algebra, determinant);
+    Some((speeds, factors))
+}
+
+/// Factors of the determinant that may vanish in the declared ranges.
+pub(super) fn divisors(bench: &mut Bench) -> Vec<Expr> {
+    let factors = factors_of_determinant(bench).map(|(_, factors)| factors);
+    let mut factors = factors.unwrap_or_default();
+    factors.retain(|&factor| !bench.declared.cannot_vanish(&bench.algebra.graph, factor));
+    factors
+}
+
 /// Coefficients of q̇ in the definitions of the pseudo-velocities, and in the constraints.
 fn coefficients(bench: &mut Bench) -> Option<(Matrix, Matrix)> {
     let symbols = &bench.derivation.symbols;
@@ -108,9 +129,13 @@ fn coefficients(bench: &mut Bench) -> Option<(Matrix, Matrix)> {
         rates: &symbols.rates,
     };
     let algebra = &mut bench.algebra;
+    let mut told = motions(algebra, bench.mechanism, symbols, &bench.unconstrained);
     let mut speeds = Matrix::new();
     for speed in &bench.mechanism.pseudo_velocities {
-        let value = lowering.lower(&mut algebra.graph, &speed.definition).ok()?;
+        let mut value = lowering.lower(&mut algebra.graph, &speed.definition).ok()?;
+        if let Some(told) = &mut told {
+            value = told.apply(&mut algebra.graph, value)?;
+        }
         let row = symbols.rates.iter().map(|&rate| {
             let coefficient = algebra.derivative(value, rate);
             algebra.shortest(coefficient)

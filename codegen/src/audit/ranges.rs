@@ -18,6 +18,8 @@ pub(super) struct Proposal {
     range: [f64; 2],
     /// Whether another finding names it.
     pub(super) is_told: bool,
+    /// Coordinates whose rates are solved with pivoting then.
+    open: Vec<usize>,
 }
 
 impl Proposal {
@@ -79,14 +81,16 @@ pub(super) fn proposals(bench: &mut Bench) -> Vec<Proposal> {
                 &derivation.constraints,
                 &mut intervals,
             );
-            let open = solved.map_or(left, |solved| solved.open.coordinates.len());
-            if open < left {
-                left = open;
-                let coordinate = id;
+            if let Ok(solved) = solved
+                && solved.open.coordinates.len() < left
+            {
+                let open = solved.open.coordinates;
+                left = open.len();
                 proposals.push(Proposal {
-                    coordinate,
+                    coordinate: id,
                     range,
                     is_told: false,
+                    open,
                 });
                 break;
             }
@@ -112,9 +116,15 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
             ),
             item: Item::Coordinate(proposal.coordinate),
             help: format!(
-                "write {}: formulas then give the rates; no action is needed if the motion \
+                "write {}: formulas then give {}; no action is needed if the motion \
                  passes its ends",
-                proposal.written(mechanism)
+                proposal.written(mechanism),
+                if proposal.open.is_empty() {
+                    "the rates".to_owned()
+                } else {
+                    let open = listed(proposal.open.iter().map(names));
+                    format!("the rates but those of {open}, which need pivoting still")
+                }
             ),
         });
     }

@@ -1,0 +1,164 @@
+//! Limits of parameters with which formulas give the rates that are now solved with pivoting.
+
+use appell_spec::Code;
+use appell_spec::mechanism::{CoordinateId, Mechanism, Parameter, ParameterId};
+
+use super::bench::{Audit, Bench, listed};
+use super::determination::divisors;
+use crate::mechanics::declared_ranges;
+use crate::mechanics::elimination::eliminate;
+use crate::mechanics::finding::{Finding, Item};
+use crate::symbolic::Expr;
+
+/// How far the limits are from the values, the widest first.
+const FACTORS: [f64; 4] = [2.0, 1.5, 1.2, 1.1];
+
+/// Limits to write.
+#[derive(Debug, Clone)]
+pub(super) struct Limits {
+    /// What they keep off zero.
+    divisors: Vec<Expr>,
+    /// Parameters with the limits that they lack, in their units.
+    parameters: Vec<(ParameterId, [Option<f64>; 2])>,
+}
+
+impl Limits {
+    /// Whether they keep an expression off zero.
+    pub(super) fn keep_off_zero(&self, expr: Expr) -> bool {
+        self.divisors.contains(&expr)
+    }
+}
+
+/// The widest limits of the parameters in what divides with which nothing is solved with pivoting.
+pub(super) fn limits(bench: &mut Bench) -> Option<Limits> {
+    let derivation = bench.derivation;
+    let positions = &derivation.positions.names;
+    if derivation.velocities.solved_numerically.is_empty() || !positions.is_empty() {
+        return None;
+    }
+    let divisors = divisors(bench);
+    let graph = &bench.algebra.graph;
+    let matrix = &derivation.dependent.system.matrix;
+    let occurs = |&(id, parameter): &(ParameterId, &Parameter)| {
+        let symbol = graph.as_symbol(derivation.symbols.parameters[id.index()]);
+        let in_matrix = symbol.is_some_and(|s| matrix.iter().any(|&e| graph.mentions(e, &[s])));
+        in_matrix && parameter.value != 0.0
+    };
+    let parameters: Vec<_> = bench
+        .mechanism
+        .parameters
+        .entries()
+        .filter(occurs)
+        .collect();
+    FACTORS.into_iter().find_map(|factor| {
+        let mut limited = bench.mechanism.clone();
+        let mut written = Vec::new();
+        for &(id, parameter) in &parameters {
+            let ends = missing(parameter, factor);
+            let limited = &mut limited.parameters[id];
+            let scale = parameter.label.unit.scale;
+            limited.at_least = limited.at_least.or(ends[0].map(|end| end * scale));
+            limited.at_most = limited.at_most.or(ends[1].map(|end| end * scale));
+            written.push((id, ends));
+        }
+        written.retain(|(_, ends)| ends.iter().any(Option::is_some));
+        let symbols = &derivation.symbols;
+        let mut ranges = declared_ranges(&bench.algebra.graph, &limited, symbols);
+        let constraints = &derivation.constraints;
+        let solved = eliminate(
+            &mut bench.algebra,
+            &limited,
+            symbols,
+            constraints,
+            &mut ranges,
+        );
+        let holds = solved.is_ok_and(|solved| solved.open.coordinates.is_empty());
+        (holds && !written.is_empty()).then(|| Limits {
+            divisors: divisors.clone(),
+            parameters: written,
+        })
+    })
+}
+
+/// The limits that a parameter lacks, in its unit, rounded towards its value.
+fn missing(parameter: &Parameter, factor: f64) -> [Option<f64>; 2] {
+    let value = parameter.value / parameter.label.unit.scale;
+    let ends = [value / factor, value * factor];
+    let [least, most] = if value < 0.0 {
+        [ends[1], ends[0]]
+    } else {
+        ends
+    };
+    [
+        parameter
+            .at_least
+            .is_none()
+            .then(|| two_digits(least, f64::ceil)),
+        parameter
+            .at_most
+            .is_none()
+            .then(|| two_digits(most, f64::floor)),
+    ]
+}
+
+fn two_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
+    let power = 10.0_f64.powf(1.0 - value.abs().log10().floor());
+    round(value * power) / power
+}
+
+/// One note that names what divides, and the limits that keep it off zero.
+pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
+    let Some(limits) = &bench.limits else {
+        return;
+    };
+    let mechanism = bench.mechanism;
+    let names = |q: &usize| &*mechanism.coordinates[CoordinateId::new(*q)].label.name;
+    let rates = listed(
+        bench
+            .derivation
+            .velocities
+            .solved_numerically
+            .iter()
+            .map(names),
+    );
+    let divisors = limits
+        .divisors
+        .iter()
+        .filter_map(|&divisor| bench.readable(divisor));
+    let divisors: Vec<String> = divisors.map(|text| format!("`{text}`")).collect();
+    let because = if divisors.is_empty() {
+        String::new()
+    } else {
+        format!(", as their divisor {} may vanish", divisors.join(", "))
+    };
+    let Some(&(first, _)) = limits.parameters.first() else {
+        return;
+    };
+    told.notes.push(Finding {
+        code: Code::SingularPseudoVelocities,
+        message: format!("the rates of {rates} are solved with pivoting{because}"),
+        item: Item::Parameter(first),
+        help: format!(
+            "write {}: they keep the divisor off zero in the declared ranges, and formulas then give the rates",
+            limits.written(mechanism)
+        ),
+    });
+}
+
+impl Limits {
+    /// As they stand in a spec.
+    fn written(&self, mechanism: &Mechanism) -> String {
+        let of = |(id, ends): &(ParameterId, [Option<f64>; 2])| {
+            let keys = ["at_least", "at_most"].into_iter().zip(ends);
+            let keys = keys.filter_map(|(key, end)| Some(format!("{key} = {}", (*end)?)));
+            let keys: Vec<String> = keys.collect();
+            format!(
+                "`{}` for `{}`",
+                keys.join(", "),
+                mechanism.parameters[*id].label.name
+            )
+        };
+        let all: Vec<String> = self.parameters.iter().map(of).collect();
+        all.join(" and ")
+    }
+}

@@ -9,7 +9,7 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     let found = match error {
         Error::Report(report) => found_in(report),
         Error::Expression(error) => {
-            let place = format!("{} {}", error.field, error.name);
+            let place = format!("{} {}", argument(error.field), error.name);
             found_in(&error.report(&place))
         }
         _ => "[]".to_owned(),
@@ -20,8 +20,25 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
         (_, Class::Data) => "DataError",
         (_, Class::Computation) => "ComputationError",
     };
-    let field = error.field().map(Field::name);
-    made(py, class, (error.to_string(), found, field))
+    let field = error.field().map(argument);
+    let text = match error {
+        Error::Request { field, message } => format!("{}: {message}", argument(*field)),
+        other => other.to_string(),
+    };
+    made(py, class, (text, found, field))
+}
+
+/// The argument by which Python gives a part of a request.
+fn argument(field: Field) -> &'static str {
+    match field {
+        Field::Set | Field::Letters => "parameters",
+        Field::Input => "inputs",
+        Field::Recorded => "recorded",
+        Field::End => "t_end",
+        Field::Interval => "dt",
+        Field::Sampling => "sampled_ms, delay_ms",
+        other => other.name(),
+    }
 }
 
 fn found_in(report: &Report) -> String {

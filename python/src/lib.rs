@@ -24,7 +24,7 @@ mod _appell {
     #[pymodule_export]
     use super::model::{Model, shipped};
     #[pymodule_export]
-    use super::motion::{Simulated, simulate};
+    use super::motion::{Simulated, restored, simulate};
     #[pymodule_export]
     use super::recordings::{DataSet, Gap, Identified, apply, sample};
     #[pymodule_export]

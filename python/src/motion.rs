@@ -1,12 +1,15 @@
 //! Motions: what is asked for, and what comes of it.
 
+use std::cell::Cell;
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
 
 use appell::setup::Assignment;
-use appell::{CsvOptions, Driven, InputSource, Law, Method, Motion, TabulatedInputs};
+use appell::{
+    CsvOptions, Driven, Extras, InputSource, Law, Method, Motion, TabulatedInputs, Trajectory,
+};
 use appell_report::figure::Figure;
-use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1};
+use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -62,15 +65,16 @@ fn table(
     Ok(TabulatedInputs::held(times, &columns.collect::<Vec<_>>())?)
 }
 
-/// Integrates the equations of motion. Of the inputs, texts are expressions, pairs of arrays are tables, and the
-/// rest are functions of time and state.
+/// Integrates the equations of motion: one motion, or one for each row of `starts`. Of the inputs, texts are
+/// expressions, pairs of arrays are tables, and the rest are functions of time and state.
 #[pyfunction]
-#[pyo3(signature = (model, t_end, *, dt, parameters, initial, expressions, tables, functions, recorded, laws, method, step, tolerances, max_steps, extras))]
+#[pyo3(signature = (model, t_end, *, starts, dt, parameters, initial, expressions, tables, functions, recorded, laws, method, step, tolerances, max_steps, extras))]
 #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
 pub(crate) fn simulate(
     py: Python<'_>,
     model: &Bound<'_, Model>,
     t_end: f64,
+    starts: Option<PyReadonlyArray2<'_, f64>>,
     dt: Option<f64>,
     parameters: Values,
     initial: Values,
@@ -84,7 +88,7 @@ pub(crate) fn simulate(
     tolerances: [Option<f64>; 2],
     max_steps: Option<usize>,
     extras: Vec<String>,
-) -> PyResult<Simulated> {
+) -> PyResult<Vec<Simulated>> {
     let model = &model.get().inner;
     let info = model.info();
     let failed = Arc::new(Mutex::new(None));
@@ -162,19 +166,141 @@ pub(crate) fn simulate(
     }
     let model = Arc::clone(model);
     let told = Arc::clone(&failed);
+    let starts = starts.map(|starts| {
+        let rows = starts.as_array();
+        rows.outer_iter()
+            .map(|row| row.to_vec())
+            .collect::<Vec<_>>()
+    });
     let simulated = awaited(py, move |watch| {
-        let simulated = model.simulate_while(&motion, || watch.goes_on() && lock(&told).is_none());
+        let goes_on = || watch.goes_on() && lock(&told).is_none();
+        let simulated = match &starts {
+            None => model.simulate_while(&motion, goes_on).map(|one| vec![one]),
+            Some(starts) => model.simulate_batch(&motion, starts, goes_on),
+        };
         simulated.map(|simulated| (model, simulated))
     })?;
     if let Some(error) = lock(&failed).take() {
         return Err(error);
     }
     let (model, simulated) = simulated.raise(py)?;
-    Ok(Simulated { model, simulated })
+    let one = |simulated| Simulated {
+        model: Arc::clone(&model),
+        simulated,
+    };
+    Ok(simulated.into_iter().map(one).collect())
+}
+
+/// What a motion is made of: times, rows of columns, parameters, which extra columns there are, why it ended, what is
+/// undefined, from when on inputs are held, its cost.
+type Parts<'py> = (
+    Bound<'py, PyArray1<f64>>,
+    Bound<'py, PyArray2<f64>>,
+    Vec<f64>,
+    [bool; 6],
+    [Option<String>; 2],
+    Option<f64>,
+    [usize; 3],
+);
+
+/// A motion from its parts.
+#[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "the parts of a motion")]
+pub(crate) fn restored(
+    model: &Bound<'_, Model>,
+    times: PyReadonlyArray1<'_, f64>,
+    rows: PyReadonlyArray2<'_, f64>,
+    parameters: Vec<f64>,
+    extras: [bool; 6],
+    texts: [Option<String>; 2],
+    held_from: Option<f64>,
+    cost: [usize; 3],
+) -> PyResult<Simulated> {
+    let model = &model.get().inner;
+    let info = model.info();
+    let (n, m) = (info.state_len(), info.input_len());
+    let (times, rows) = (times.as_slice()?.to_vec(), rows.as_array());
+    if rows.nrows() != times.len()
+        || rows.ncols() < n + m
+        || parameters.len() != info.parameter_len()
+    {
+        return Err(PyValueError::new_err("the motion belongs to another model"));
+    }
+    let states: Vec<f64> = rows
+        .outer_iter()
+        .flat_map(|row| row.to_vec().into_iter().take(n))
+        .collect();
+    // Rows are asked for in their order.
+    let next = Cell::new(0);
+    let fill = |_: f64, _: &[f64], u: &mut [f64]| {
+        let row = rows.row(next.get());
+        next.set(next.get() + 1);
+        for (u, value) in u.iter_mut().zip(row.iter().skip(n)) {
+            *u = *value;
+        }
+    };
+    let [
+        outputs,
+        energies,
+        reactions,
+        contacts,
+        conditions,
+        residuals,
+    ] = extras;
+    let extras = Extras {
+        outputs,
+        energies,
+        reactions,
+        contacts,
+        conditions,
+        residuals,
+    };
+    let mut trajectory =
+        Trajectory::evaluate(model.equations(), &parameters, times, &states, fill, extras);
+    let [steps, rejected, evaluations] = cost;
+    trajectory.statistics.steps = steps;
+    trajectory.statistics.rejected = rejected;
+    trajectory.statistics.evaluations = evaluations;
+    let [failure, undefined] = texts;
+    let simulated = appell::Simulated {
+        trajectory,
+        failure,
+        undefined,
+        undriven: false,
+        held_from,
+    };
+    Ok(Simulated {
+        model: Arc::clone(model),
+        simulated,
+    })
 }
 
 #[pymethods]
 impl Simulated {
+    /// What it is made of; see [`restored`].
+    fn parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
+        let simulated = &self.simulated;
+        let trajectory = &simulated.trajectory;
+        let extras = trajectory.extras();
+        let cost = trajectory.statistics;
+        Ok((
+            self.times(py),
+            self.values(py)?,
+            trajectory.parameters().to_vec(),
+            [
+                extras.outputs,
+                extras.energies,
+                extras.reactions,
+                extras.contacts,
+                extras.conditions,
+                extras.residuals,
+            ],
+            [simulated.failure.clone(), simulated.undefined.clone()],
+            simulated.held_from,
+            [cost.steps, cost.rejected, cost.evaluations],
+        ))
+    }
+
     /// Times in s.
     fn times<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<f64>> {
         PyArray1::from_slice(py, self.simulated.trajectory.times())
@@ -205,6 +331,12 @@ impl Simulated {
     #[getter]
     fn failure(&self) -> Option<&str> {
         self.simulated.failure.as_deref()
+    }
+
+    /// Which inputs, outputs and energies are no numbers.
+    #[getter]
+    fn undefined(&self) -> Option<&str> {
+        self.simulated.undefined.as_deref()
     }
 
     /// The time from which the last values of recorded inputs are held.

@@ -1,6 +1,7 @@
 """Simulated motions."""
 
 import _thread
+import pickle
 import threading
 import time
 
@@ -135,3 +136,37 @@ def test_equations_are_typeset(model):
     assert "<math" in m.equations.text and "\\documentclass" in m.equations.latex
     assert "Acceleration energy" in m.derivation.plain
     assert m.draw(theta="30deg").svg.startswith("<svg")
+
+
+def test_a_batch_of_initial_states_has_the_motions_of_a_loop():
+    m = appell.load("cart_pole")
+    starts = np.tile(m.state(), (11, 1))
+    starts[:, m.states.index("theta")] = np.linspace(-0.2, 0.2, len(starts))
+    motions = m.simulate(1, initial=starts, inputs={"F": "2*sin(3*t)"})
+    assert motions["theta"].shape == (11, len(motions.t))
+    assert motions.failures == (None,) * 11
+    for number, start in enumerate(starts):
+        alone = m.simulate(1, initial=start, inputs={"F": "2*sin(3*t)"})
+        # The elementary functions of lanes differ from those of the library in last digits.
+        assert np.allclose(motions.x[number], alone.x, rtol=0, atol=1e-8)
+        assert motions[number].columns == alone.columns
+
+
+def test_motions_travel_by_pickle():
+    m = appell.load("cart_pole")
+    motion = m.simulate(1, initial={"theta": 0.1}, inputs={"F": lambda t, x: -x["theta"]}, record=["reactions"])
+    again = pickle.loads(pickle.dumps(motion))
+    assert again.columns == motion.columns
+    assert np.array_equal(again.values, motion.values) and np.array_equal(again.t, motion.t)
+    assert again.summary == motion.summary and again.statistics == motion.statistics
+    assert again.failure is None and again.page.text == motion.page.text
+
+
+def test_errors_name_arguments_of_python():
+    m = appell.load("cart_pole")
+    with pytest.raises(appell.RequestError, match="^t_end: "):
+        m.simulate(-1)
+    with pytest.raises(appell.RequestError, match="^dt: "):
+        m.simulate(1, dt=1e-12)
+    with pytest.raises(appell.RequestError, match="^parameters: "):
+        m.simulate(1, parameters={"nothing": 1})

@@ -18,7 +18,7 @@ from ._cluster import spread
 from ._ensemble import Ensemble, ensemble
 from ._errors import ComputationError, DataError, Diagnostic, EndsEarly, Error, RequestError, SpecError, Unstable
 from ._model import Derivation, Model, Quantity
-from ._motion import Motion
+from ._motion import Motion, Motions
 from ._notebook import Page, Picture
 from ._recordings import Diagnosis, Identification, Recordings, base_parameters, diagnose, identify, sample_rig
 from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
@@ -30,7 +30,7 @@ __version__ = _version("appell")
 __all__ = [
     "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "EndsEarly", "Energies",
     "Ensemble", "Error",
-    "Identification", "InverseDynamics", "Jacobians", "LeftOut", "Linear", "Model", "Motion", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
+    "Identification", "InverseDynamics", "Jacobians", "LeftOut", "Linear", "Model", "Motion", "Motions", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
     "RequestError", "Robot", "SpecError", "SteadyMotion", "Unstable", "Vector", "base_parameters", "diagnose", "ensemble", "identify", "import_robot", "labelled", "load", "sample_rig",
     "sample_robot", "shipped", "spread",
 ]  # fmt: skip

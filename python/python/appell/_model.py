@@ -16,7 +16,7 @@ import numpy as np
 
 from . import _appell
 from ._errors import EndsEarly, Unstable
-from ._motion import Motion
+from ._motion import Motion, Motions
 from ._notebook import Page, Picture
 from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._values import Vector, labelled, many, text, texts
@@ -271,8 +271,10 @@ class Model(_appell.Model):
         atol: float | None = None,
         max_steps: int | None = None,
         record: Iterable[str] = (),
-    ) -> Motion:
-        """Integrates the equations of motion from 0 to `t_end` in s.
+    ) -> Any:
+        """Integrates the equations of motion from 0 to `t_end` in s; returns a `Motion`.
+
+        With an array (N, n) of initial states the N motions are integrated eight at a time, and come as `Motions`.
 
         `inputs` gives each input a number in SI, a text (an expression in t, states and parameters, in units of the
         spec), a function of t and x, or a pair of arrays: times in s and values in SI, each held until the next; or it
@@ -303,9 +305,16 @@ class Model(_appell.Model):
             else:
                 tables.append((name, *_table(name, given)))
         laws = [feedback] if isinstance(feedback, Design) else many(feedback)
-        native = _appell.simulate(
+        starts = None
+        if isinstance(initial, (np.ndarray, list, tuple)) and np.ndim(initial) == 2:
+            starts = np.ascontiguousarray(initial, dtype=float)
+            if starts.shape[1] != len(self.states) or not len(starts):
+                raise ValueError(f"initial: {len(self.states)} values a row are needed, not the shape {starts.shape}")
+            initial = None
+        natives = _appell.simulate(
             self,
             float(t_end),
+            starts=starts,
             dt=dt,
             parameters=self._given(parameters, self.parameters),
             initial=self._given(initial, self.states),
@@ -320,10 +329,15 @@ class Model(_appell.Model):
             max_steps=max_steps,
             extras=many(record),
         )
-        if native.failure is not None:
-            reason = native.failure.partition("; state:")[0]
-            warnings.warn(f"the motion ends early: {reason}", EndsEarly, stacklevel=2)
-        return Motion(native, self.states)
+        for number, native in enumerate(natives):
+            which = "the motion" if starts is None else f"motion {number}"
+            if native.failure is not None:
+                reason = native.failure.partition("; state:")[0]
+                warnings.warn(f"{which} ends early: {reason}", EndsEarly, stacklevel=2)
+            if native.undefined is not None:
+                warnings.warn(f"{which}: {native.undefined}", RuntimeWarning, stacklevel=2)
+        motions = [Motion(native, self) for native in natives]
+        return motions[0] if starts is None else Motions(motions)
 
     def _given(self, values: Values | np.ndarray | None, names: tuple[str, ...]) -> list[tuple[str, str]]:
         if values is None or isinstance(values, Mapping):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,8 +12,10 @@ import numpy as np
 from ._notebook import Page, Picture, framed
 from ._values import Vector, labelled
 
+from . import _appell
+
 if TYPE_CHECKING:
-    from . import _appell
+    from ._model import Model
 
 
 class Motion:
@@ -26,8 +29,10 @@ class Motion:
     True
     """
 
-    def __init__(self, native: _appell.Simulated, states: tuple[str, ...]):
+    def __init__(self, native: _appell.Simulated, model: Model):
         self._native = native
+        self._model = model
+        self._summary: str | None = None
         told = native.columns()
         self.columns: tuple[str, ...] = tuple(name for name, *_ in told)
         """Names of the columns: states, inputs, outputs, energies and what was asked for besides."""
@@ -40,7 +45,7 @@ class Motion:
         """Times in s, (N,)."""
         self.values: Vector = labelled(native.values(), self.columns)
         """All columns in SI, (N, columns)."""
-        self._states = states
+        self._states = model.states
 
     @property
     def x(self) -> Vector:
@@ -51,6 +56,11 @@ class Motion:
     def failure(self) -> str | None:
         """Why the motion ends early; None if it does not."""
         return self._native.failure
+
+    @property
+    def undefined(self) -> str | None:
+        """Which inputs, outputs and energies are no numbers, and from when on; None if all are."""
+        return self._native.undefined
 
     @property
     def held_from(self) -> float | None:
@@ -65,7 +75,7 @@ class Motion:
     @property
     def summary(self) -> dict[str, Any]:
         """First and last values, extrema and events."""
-        return json.loads(self._native.summary())
+        return json.loads(self._native.summary() if self._summary is None else self._summary)
 
     def __getitem__(self, column: str) -> np.ndarray:
         return self.values[column]
@@ -125,6 +135,9 @@ class Motion:
         """Writes the columns in the units of the spec, as `appell simulate --out` does."""
         Path(path).write_bytes(self._native.csv())
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _restored, (self._model, self._native.parts(), json.dumps(self.summary))
+
     def _repr_html_(self) -> str:
         return framed(self._native.page(), 560)
 
@@ -132,3 +145,56 @@ class Motion:
         last = f"{self.t[-1]:g} s" if len(self.t) else "nothing"
         ended = f"; ended early: {self.failure}" if self.failure else ""
         return f"<motion of {last}, {len(self)} rows: {', '.join(self.columns)}{ended}>"
+
+
+def _restored(model: Model, parts: tuple[Any, ...], summary: str) -> Motion:
+    motion = Motion(_appell.restored(model, *parts), model)
+    motion._summary = summary
+    return motion
+
+
+class Motions:
+    """Motions that differ in their initial states, over the same times. `motions["theta"]` has a row a motion, and
+    `motions[3]` is a `Motion`.
+
+    >>> import appell, numpy as np
+    >>> m = appell.load("pendulum")
+    >>> motions = m.simulate(2, initial=np.array([[0.0, 0.1], [0.0, 0.2], [0.0, 0.3]]))
+    >>> len(motions), motions["theta"].shape == (3, len(motions.t))
+    (3, True)
+    """
+
+    def __init__(self, motions: Sequence[Motion]):
+        self._motions = tuple(motions)
+        longest = max(self._motions, key=len)
+        self.columns: tuple[str, ...] = longest.columns
+        """Names of the columns, as those of a `Motion`."""
+        self.t: np.ndarray = longest.t
+        """Times in s, (K,)."""
+        values = np.full((len(self._motions), *longest.values.shape), np.nan)
+        for rows, motion in zip(values, self._motions, strict=True):
+            # A motion that ends early has its last row where it ends, which is no time of the others.
+            same = int(np.argmin(np.append(motion.t == self.t[: len(motion)], False)))
+            rows[:same] = motion.values[:same]
+        self.values: Vector = labelled(values, self.columns)
+        """All columns in SI, (N, K, columns); NaN after the end of a motion that ends early."""
+        self._states = longest._states
+
+    @property
+    def x(self) -> Vector:
+        """The states in SI, (N, K, n)."""
+        return labelled(np.asarray(self.values)[..., : len(self._states)], self._states)
+
+    @property
+    def failures(self) -> tuple[str | None, ...]:
+        """Why each motion ends early; None if it does not."""
+        return tuple(motion.failure for motion in self._motions)
+
+    def __getitem__(self, which: str | int) -> Any:
+        return self.values[which] if isinstance(which, str) else self._motions[which]
+
+    def __len__(self) -> int:
+        return len(self._motions)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} motions, {len(self.t)} rows each: {', '.join(self.columns)}>"

@@ -303,9 +303,7 @@ fn which(report: &Report) -> Markup {
         @if let Some(left) = report.left.as_ref().filter(|left| left.is_there() && report.law.is_none()) {
             p {
                 b { "Left." } " In addition to the first hypothesis, the recordings support "
-                (left.about) ", which accounts for "
-                (percent(left.gain / (left.gain + left.explained.max(0.0))))
-                " of the gap (log Bayes factor " (short(left.log_bayes_factor)) ")."
+                (left.about) " (log Bayes factor " (short(left.log_bayes_factor)) ")."
             }
         }
         (law(report))

@@ -25,6 +25,7 @@ mod vary;
 
 use appell_recordings::fields::Fields;
 use appell_spec::{Code, Report};
+use toml::de::DeTable;
 
 use crate::design::Sampling;
 use crate::limits::MAX_CASES;
@@ -99,7 +100,7 @@ impl Study {
             let help = "begin with `[study]` and `model = \"…\"`, the name of a shipped mechanism or the path of a spec";
             read.tell(Code::MissingSection, "there is no `[study]`", 0..0, help);
         }
-        let empty = toml::de::DeTable::new();
+        let empty = DeTable::new();
         let study = study.unwrap_or(&empty);
         let place = table.get("study").map_or(0..0, toml::Spanned::span);
         read.fields.only(study, &STUDY);
@@ -153,7 +154,13 @@ impl Study {
             let message = "the key `cases` is missing";
             read.tell(Code::MissingKey, message, place.clone(), help);
         }
-        if vary.is_empty() && noise.is_empty() && points.is_none() {
+        let lacks = |section: &str| {
+            let section = table
+                .get(section)
+                .map(|section| section.get_ref().as_table());
+            section.is_none_or(|section| section.is_some_and(DeTable::is_empty))
+        };
+        if lacks("vary") && lacks("noise") && !study.contains_key("table") {
             let help = "write what varies under `[vary]`, such as `m = { normal = [5, 0.2] }`";
             read.tell(Code::MissingSection, "nothing varies", 0..0, help);
         }

@@ -125,7 +125,8 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             about,
         });
     }
-    if all.is_empty() && table.get("keep").is_none_or(|v| v.get_ref().is_table()) {
+    let keep = table.get("keep").map(|keep| keep.get_ref().as_table());
+    if keep.is_none_or(|keep| keep.is_some_and(DeTable::is_empty)) {
         let help = "write what is kept under `[keep]`, such as `reached = { end = \"x\" }`";
         read.tell(Code::MissingSection, "nothing is kept", 0..0, help);
     }

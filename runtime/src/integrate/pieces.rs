@@ -129,7 +129,7 @@ impl Piece {
     /// When the polynomial is largest, if it rises above a value between the nodes.
     pub fn top(&self, above: f64) -> Option<f64> {
         let [middle, radius] = self.range();
-        if !(middle + radius > above) {
+        if middle + radius <= above {
             return None;
         }
         let points = self.fine();
@@ -143,7 +143,7 @@ impl Piece {
     pub(super) fn doubts(&self) -> Vec<f64> {
         let [middle, radius] = self.range();
         let mut times = Vec::new();
-        if !(radius >= middle.abs()) {
+        if !radius.is_finite() || radius < middle.abs() {
             return times;
         }
         let points = self.fine();
@@ -262,7 +262,7 @@ pub struct Walk {
 impl Walk {
     /// Shows functions on pieces of a time, none of which is longer than `longest` in s.
     pub fn walk(&mut self, [from, to]: [f64; 2], longest: f64, of: &mut impl Sought) {
-        if !(to > from) || of.count() == 0 {
+        if to <= from || of.count() == 0 {
             return;
         }
         let count = of.count();

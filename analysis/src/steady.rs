@@ -381,13 +381,12 @@ impl<'a> SteadyProblem<'a> {
             z: base.clone(),
             residual: f64::INFINITY,
         };
-        for start in 0..starts.max(1) {
-            let z = if start == 0 {
-                base.clone()
-            } else {
-                self.start(equations, &spread.next())
-            };
-            match newton::solve(equations, &self.with_speeds(equations, z)) {
+        // The motion that is given may be near as it is; of others the coordinates are given alone.
+        let others = (1..starts).map(|_| self.start(equations, &spread.next()));
+        let others = std::iter::once(base.clone()).chain(others);
+        let others = others.map(|start| self.with_speeds(equations, start));
+        for start in std::iter::once(base.clone()).chain(others) {
+            match newton::solve(equations, &start) {
                 Ok(mut zero) => {
                     let mut point = equations.point(&zero.z);
                     let turning = &self.structure.turning;

@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use appell_files::FileError;
 use appell_robots::{Failure, MAX_FILE};
 pub use appell_robots::{Format, Imported, LeftOut, Letters, Lock, Options, SNAP, Without};
 use serde_json::{Value, json};
@@ -42,14 +43,18 @@ fn told(failure: Failure) -> Error {
 }
 
 /// Reads a file with those that it includes, and the meshes that give bodies their inertia, and turns it into a spec.
-pub fn read(path: &Path, options: &Options) -> Result<Imported, Error> {
+/// These files lie below `root`, or else below the folder of the file.
+pub fn read(path: &Path, root: Option<&Path>, options: &Options) -> Result<Imported, Error> {
     let text = files::read(path, MAX_FILE)?;
     let file = path.to_string_lossy().replace('\\', "/");
     let folder = path.parent().unwrap_or(Path::new(""));
     let others = |name: &str| {
-        let path = appell_files::below(folder, name);
+        let path = appell_files::within(root.unwrap_or(folder), folder, name);
         let bytes = path.and_then(|path| appell_files::read(&path, MAX_MESH));
-        bytes.map_err(|why| why.to_string())
+        bytes.map_err(|why| match why {
+            FileError::Outside { .. } => format!("{why}, or name a folder above both as the root"),
+            why => why.to_string(),
+        })
     };
     appell_robots::import_with(&file, &text, options, &others).map_err(told)
 }

@@ -20,12 +20,15 @@ pub struct Source {
 }
 
 impl Source {
-    /// A shipped name or the path of a spec file. A shipped name takes precedence; `./name` is the file.
+    /// A shipped name or the path of a spec file; `-` is standard input. A shipped name takes precedence; `./name` is the file.
     pub fn find(model: &str) -> Result<Self, Error> {
         if Shipped::find(model).is_some() {
             return Self::shipped(model);
         }
         let path = Path::new(model);
+        if files::is_stdout(path) {
+            return Self::read(path);
+        }
         let is_path = path.components().count() > 1 || path.extension().is_some() || path.exists();
         if is_path {
             Self::read(path)

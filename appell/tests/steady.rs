@@ -50,7 +50,7 @@ title = "bead"
 [parameters]
 g = { value = 9.81, unit = "m/s^2" }
 [coordinates]
-phi = { unit = "rad", range = [RANGE] }
+phi = { unit = "rad", range = [RANGE], initial = 1 }
 [pseudo_velocities]
 w = "dot(phi)"
 [points]

@@ -89,11 +89,7 @@ fn the_description_in_the_manual_is_one() {
 fn csv_files_alone_need_a_model() {
     let folder = Folder::new();
     folder.write("a.csv", &swing(900));
-    folder.fails(
-        2,
-        &["recording", "a.csv"],
-        &["CSV files need the mechanism"],
-    );
+    folder.fails(2, &["recording", "a.csv"], &["need the mechanism"]);
     let outcome = folder.done(&["recording", "a.csv", "--model", "pendulum"]);
     assert!(
         outcome.stdout.contains("held out from"),

@@ -33,7 +33,7 @@ pub enum FileError {
     },
     /// A file names one that does not lie below its folder.
     #[error(
-        "`{}` is not below {}: copy the file there, or name it on the command line",
+        "`{}` is not below {}: copy the file there",
         named.escape_debug(), folder(root)
     )]
     Outside {
@@ -117,36 +117,50 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, FileError> {
     })
 }
 
-/// The path of a file that another one names: below `root`, the folder of the latter, also when links are followed.
+/// The path of a file that another one in `folder` names: below `root`, also when links are followed.
 ///
 /// A file that does not exist has a path as well, so that the caller can say so.
-pub fn below(root: &Path, named: &str) -> Result<PathBuf, FileError> {
+pub fn within(root: &Path, folder: &Path, named: &str) -> Result<PathBuf, FileError> {
     let outside = || FileError::Outside {
         named: named.to_owned(),
         root: root.to_owned(),
     };
-    let mut depth = 0_usize;
-    for part in Path::new(named).components() {
-        depth = match part {
-            Component::Normal(_) => depth + 1,
-            Component::CurDir => depth,
-            Component::ParentDir => depth.checked_sub(1).ok_or_else(outside)?,
-            Component::RootDir | Component::Prefix(_) => return Err(outside()),
-        };
-    }
-    let path = root.join(named);
-    let here = if root.as_os_str().is_empty() {
-        Path::new(".")
-    } else {
-        root
-    };
-    // Without the file, or without the right to see it, there is nothing to follow.
-    if let (Ok(target), Ok(root)) = (path.canonicalize(), here.canonicalize())
-        && !target.starts_with(root)
-    {
+    if Path::new(named).has_root() {
         return Err(outside());
     }
-    Ok(path)
+    let path = folder.join(named);
+    let here =
+        |path: &Path| std::path::absolute(Path::new(".").join(path)).map(|path| plain(&path));
+    let is_below = here(&path).and_then(|path| Ok(path.starts_with(here(root)?)));
+    if !is_below.unwrap_or(false) {
+        return Err(outside());
+    }
+    // Without the file, or without the right to see it, there is nothing to follow.
+    let real = |path: &Path| Path::new(".").join(path).canonicalize();
+    match (real(&path), real(root)) {
+        (Ok(target), Ok(root)) if !target.starts_with(root) => Err(outside()),
+        _ => Ok(path),
+    }
+}
+
+/// The path of a file that another one in the folder `root` names, below this folder.
+pub fn below(root: &Path, named: &str) -> Result<PathBuf, FileError> {
+    within(root, root, named)
+}
+
+/// An absolute path without `.` and `..`.
+fn plain(path: &Path) -> PathBuf {
+    let mut plain = PathBuf::new();
+    for part in path.components() {
+        match part {
+            Component::ParentDir => {
+                plain.pop();
+            }
+            Component::CurDir => {}
+            part => plain.push(part),
+        }
+    }
+    plain
 }
 
 fn too_large(path: &Path, most: u64) -> FileError {

@@ -1,10 +1,11 @@
 //! What is read, and what stays of files that are written.
+#![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use std::fs;
 use std::io::Write as _;
 use std::path::Path;
 
-use appell_files::{Draft, FileError, below, read, read_text, remove_left_behind};
+use appell_files::{Draft, FileError, below, read, read_text, remove_left_behind, within};
 
 fn folder() -> tempfile::TempDir {
     tempfile::tempdir().unwrap()
@@ -61,6 +62,20 @@ fn a_file_names_what_lies_below_its_folder() {
         let refused = below(root, named);
         assert!(matches!(refused, Err(FileError::Outside { .. })), "{named}");
     }
+}
+
+#[test]
+fn a_user_names_the_folder_below_which_files_lie() {
+    let here = folder();
+    let root = here.path();
+    let scenes = root.join("scenes");
+    assert!(within(root, &scenes, "../arm.xml").is_ok());
+    for named in ["../../arm.xml", "/etc/passwd"] {
+        assert!(within(root, &scenes, named).is_err(), "{named}");
+    }
+    assert!(within(Path::new(""), Path::new(""), "a.xml").is_ok());
+    assert!(within(Path::new(""), Path::new("scenes"), "../a.xml").is_ok());
+    assert!(within(Path::new(""), Path::new(""), "../a.xml").is_err());
 }
 
 #[cfg(unix)]

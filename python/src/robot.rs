@@ -12,6 +12,7 @@ use crate::watched::watched;
 
 /// The spec of a robot file, and what is told of it as JSON.
 #[pyfunction]
+#[expect(clippy::too_many_arguments, reason = "called from Python alone")]
 pub(crate) fn import_robot(
     py: Python<'_>,
     file: PathBuf,
@@ -20,6 +21,7 @@ pub(crate) fn import_robot(
     lock: Vec<(String, Option<f64>)>,
     snap: bool,
     floating: bool,
+    root: Option<PathBuf>,
 ) -> PyResult<(String, String)> {
     let without = without.iter().map(|word| Without::from_str(word));
     let options = Options {
@@ -35,7 +37,10 @@ pub(crate) fn import_robot(
         floating,
     };
     let name = file.to_string_lossy().into_owned();
-    let robot = watched(py, None, move |_| robot::read(&file, &options))?.raise(py)?;
+    let robot = watched(py, None, move |_| {
+        robot::read(&file, root.as_deref(), &options)
+    })?
+    .raise(py)?;
     Ok((robot.spec.clone(), robot::entry(&name, &robot).to_string()))
 }
 

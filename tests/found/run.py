@@ -135,13 +135,13 @@ def times_of_any_size_are_read_or_refused(run):
     text = run.read("recording.toml")
     for run_1 in ["run1.csv", "run1_1e300.csv", "run1_1e-300.csv"]:
         run.write("recording.toml", text.replace("run1.csv", run_1))
-        for command in [["recording", "."], ["identify", "--data", "."]]:
+        for command in [["recording", "."], ["identify", "my_rig.toml", "--data", "."]]:
             run(*command, status=(0, 3, 4))
     lines = run.read("run1.csv").splitlines()
     in_ns = [lines[0]] + [line.replace(",", "e-9,", 1) for line in lines[1:]]
     run.write("run1.csv", "\n".join(in_ns) + "\n")
     run.write("recording.toml", text)
-    run("identify", "--data", ".", status=(0, 3, 4))
+    run("identify", "my_rig.toml", "--data", ".", status=(0, 3, 4))
 
 
 @case("05_ensemble_fewer_cases")

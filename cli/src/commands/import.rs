@@ -23,10 +23,13 @@ const MOST_LINES: usize = 6;
 Examples:
   appell import robot/arm.urdf -o arm.toml
   appell import robot/arm.xml -o arm_to_identify.toml --parameters inertias --without limits
-  appell import robot/arm.xml -o stiff.toml --lock elbow=0.5 --lock slide")]
+  appell import robot/arm.xml -o stiff.toml --lock elbow=0.5 --lock reach")]
 pub(crate) struct Import {
     /// The robot: a URDF or an MJCF file
     robot: PathBuf,
+    /// Folder below which included files and meshes lie [default: that of the robot file]
+    #[arg(long, value_name = "DIR")]
+    root: Option<PathBuf>,
     /// The spec, `-` is standard output [default: name of the robot file with `.toml`; an existing file is not
     /// overwritten]
     #[arg(long, short, value_name = "FILE.toml")]
@@ -78,7 +81,7 @@ impl Import {
             snap: self.snap,
             floating: self.floating,
         };
-        let robot = robot::read(&self.robot, &options)?;
+        let robot = robot::read(&self.robot, self.root.as_deref(), &options)?;
         if self.out.is_none()
             && std::fs::read(out).is_ok_and(|there| there != robot.spec.as_bytes())
         {

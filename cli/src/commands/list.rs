@@ -47,7 +47,7 @@ impl List {
         let mut entries = Vec::new();
         let bar = progress::cases(found.len() as u64, "robot files");
         for (path, format) in found {
-            let robot = robot::read(&path, &Options::default());
+            let robot = robot::read(&path, Some(folder), &Options::default());
             let file = path.strip_prefix(folder).unwrap_or(&path).display();
             rows.push(row(file.to_string(), format, &robot));
             let file = path.to_string_lossy();

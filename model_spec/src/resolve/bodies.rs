@@ -89,25 +89,20 @@ impl Resolver<'_> {
             ),
             span: span.clone(),
         };
-        let normal = match frame {
-            Some(frame) => match normal(frame, frames) {
-                Some(normal) => normal,
-                None => {
-                    self.tell(
-                        Diagnostic::error(
-                            Code::NotAllowedHere,
-                            "one moment of inertia is enough only for a body that turns about one axis",
-                        )
-                        .at(span.clone(), "about which axis?")
-                        .help(
-                            "write `inertia = { in = \"FRAME\", diagonal = [\"I_x\", \"I_y\", \"I_z\"] }`",
-                        ),
-                    );
-                    return None;
-                }
-            },
-            // That its frame is missing is told with the body.
-            None => Axis::Z,
+        // That a frame is missing is told with the body.
+        let normal = frame.map_or(Some(Axis::Z), |frame| normal(frame, frames));
+        let Some(normal) = normal else {
+            self.tell(
+                Diagnostic::error(
+                    Code::NotAllowedHere,
+                    "one moment of inertia is enough only for a body that turns about one axis",
+                )
+                .at(span.clone(), "about which axis?")
+                .help(
+                    "write `inertia = { in = \"FRAME\", diagonal = [\"I_x\", \"I_y\", \"I_z\"] }`",
+                ),
+            );
+            return None;
         };
         let matrix = [0, 1, 2].map(|i| {
             [0, 1, 2].map(|j| match (i == j, i == normal.index()) {

@@ -117,9 +117,7 @@ impl SwitchSearch {
         };
         let mut waiting = vec![[t, t_new]];
         for _ in 0..MOST_INTERVALS {
-            let Some([from, to]) = waiting.pop() else {
-                return None;
-            };
+            let [from, to] = waiting.pop()?;
             within([from, to], &mut self.bounds);
             let functions = &self.bounds[..count];
             let mut undecided = functions.iter().filter(|of| !of.keeps_its_sign());

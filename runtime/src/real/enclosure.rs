@@ -169,6 +169,10 @@ impl Mul for Enclosure {
 
 impl Div for Enclosure {
     type Output = Self;
+    #[expect(
+        clippy::suspicious_arithmetic_impl,
+        reason = "the enclosure of a quotient is that of a product with a reciprocal"
+    )]
     fn div(self, other: Self) -> Self {
         let slope = other.range.reciprocal().power(2).negated();
         self * other.map(Range::reciprocal, slope)

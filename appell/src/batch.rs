@@ -54,7 +54,12 @@ impl Model {
             for start in starts.iter().take_while(|_| go_on()) {
                 ready.initial.clone_from(start);
                 let rates = || self.rates();
-                all.push(motion.simulate(self.equations(), rates, &ready, |s| s.run())?);
+                #[expect(
+                    clippy::redundant_closure_for_method_calls,
+                    reason = "the method is that of one lifetime"
+                )]
+                let run = motion.simulate(self.equations(), rates, &ready, |s| s.run())?;
+                all.push(run);
             }
         } else {
             let kind = match motion.method {

@@ -183,7 +183,7 @@ impl Ensemble {
         let (setup, _) = variant::nominal(&mut reading, &first.model)?;
         let targets = factors::targets(&mut reading, &setup, &table);
         reading.check()?;
-        let design = factors::design(&mut reading, &setup, &targets, &table)?;
+        let design = factors::design(&mut reading, &setup, &targets, &table);
         let Some((design, columns, choices)) = design else {
             reading.check()?;
             return Err(Error::data(file, "there is no design"));

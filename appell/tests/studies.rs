@@ -1,5 +1,7 @@
 //! What a study may not say: every mistake has its place, and no study exhausts memory or leaves its folder.
 
+use std::fmt::Write as _;
+
 use appell::Class;
 use appell::ensemble::{Ensemble, Folder, Running};
 
@@ -181,7 +183,7 @@ fn courses_together_are_bounded() {
     let scratch = Scratch::new("courses");
     let mut study = STUDY.replace("dt_s = 1", "dt_s = 1e-3");
     for course in 0..20 {
-        study += &format!("c{course} = {{ course = \"x\" }}\n");
+        let _ = writeln!(study, "c{course} = {{ course = \"x\" }}");
     }
     let (_, told) = told(&scratch, &study);
     assert!(told.contains("study.toml:7:8"), "{told}");

@@ -3,6 +3,7 @@
 //! The shell asks this program, so that the names are those of this version.
 
 use std::ffi::OsStr;
+use std::path::Path;
 
 use appell::{Model, ModelInfo, Quantity};
 use appell_analysis::Term;
@@ -47,8 +48,8 @@ fn own(quantities: &[Quantity]) -> Vec<String> {
 /// `NAME=` for the names that the model of the command line has.
 fn names(typed: &OsStr, of: impl Fn(&ModelInfo) -> Vec<String>) -> Vec<CompletionCandidate> {
     let begins = typed.to_string_lossy();
-    let is_model =
-        |word: &String| word.ends_with(".toml") || ALL.iter().any(|shipped| shipped.name == word);
+    let is_spec = |word: &str| Path::new(word).extension().is_some_and(|end| end == "toml");
+    let is_model = |word: &String| is_spec(word) || ALL.iter().any(|shipped| shipped.name == word);
     let model = std::env::args().skip(1).find(is_model);
     let model = model.and_then(|word| Model::find(&word).ok());
     let names = model.map(|model| of(model.info())).unwrap_or_default();

@@ -25,6 +25,32 @@ pub(crate) struct Apply {
     pub(crate) command: String,
 }
 
+/// Fits that did not converge, where they may have changed the verdict.
+fn failures(text: &mut String, report: &Report) {
+    let is_listed = |effects: &[String]| {
+        let mut listed = report.which.iter().take(LISTED);
+        listed.any(|one| one.effects == effects)
+    };
+    let shows_failures = report.verdict == GapVerdict::Unexplained
+        || report.failed.iter().any(|(effects, _)| is_listed(effects));
+    if shows_failures && !report.failed.is_empty() {
+        let names: Vec<String> = (report.failed.iter().take(LISTED))
+            .map(|(effects, _)| joined(effects))
+            .collect();
+        let _ = writeln!(
+            text,
+            "  failed    {} {} not converge, among them {}; see the gap report for the reasons",
+            report.failed.len(),
+            if report.failed.len() == 1 {
+                "fit did"
+            } else {
+                "fits did"
+            },
+            names.join(", ")
+        );
+    }
+}
+
 /// The summary, about ten lines.
 pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> String {
     let mut text = String::new();
@@ -86,28 +112,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     } else if let Some(left) = report.left.as_ref().filter(|left| left.is_there()) {
         let _ = writeln!(text, "  left      {}", left.about);
     }
-    let is_listed = |effects: &[String]| {
-        let mut listed = report.which.iter().take(LISTED);
-        listed.any(|one| one.effects == effects)
-    };
-    let shows_failures = report.verdict == GapVerdict::Unexplained
-        || report.failed.iter().any(|(effects, _)| is_listed(effects));
-    if shows_failures && !report.failed.is_empty() {
-        let names: Vec<String> = (report.failed.iter().take(LISTED))
-            .map(|(effects, _)| joined(effects))
-            .collect();
-        let _ = writeln!(
-            text,
-            "  failed    {} {} not converge, among them {}; see the gap report for the reasons",
-            report.failed.len(),
-            if report.failed.len() == 1 {
-                "fit did"
-            } else {
-                "fits did"
-            },
-            names.join(", ")
-        );
-    }
+    failures(&mut text, report);
     if let Some(experiment) = &report.experiment {
         let _ = writeln!(text, "  next      {}", experiment_sentence(experiment));
     }

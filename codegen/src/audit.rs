@@ -23,6 +23,7 @@ use appell_spec::mechanism::Mechanism;
 
 use crate::mechanics::Derivation;
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::explicit::given_coordinates;
 use crate::mechanics::finding::Finding;
 use crate::mechanics::symbols::Symbols;
 use crate::symbolic::Graph;
@@ -69,6 +70,7 @@ pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
+    algebra.given = given_coordinates(&mut algebra, mechanism, &symbols);
     contact::findings(&mut algebra, mechanism, &symbols)
 }
 

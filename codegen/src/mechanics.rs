@@ -15,7 +15,7 @@ pub mod creep;
 pub mod dependent;
 pub mod divisors;
 pub mod elimination;
-mod explicit;
+pub(crate) mod explicit;
 pub mod expressions;
 pub mod factorized;
 pub mod finding;
@@ -140,8 +140,9 @@ impl Derivation {
     /// q̇, M, b, Π and ω̇.
     fn all_equations(&self) -> Vec<Expr> {
         let mut all = self.gibbs.mass_matrix.concat();
-        let vectors = [&self.gibbs.bias, &self.forces, &self.coordinate_rates];
-        vectors.into_iter().for_each(|vector| all.extend(vector));
+        for vector in [&self.gibbs.bias, &self.forces, &self.coordinate_rates] {
+            all.extend(vector);
+        }
         all.extend(&self.motion.accelerations);
         all
     }
@@ -197,6 +198,7 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
     let mut algebra = Algebra::new(graph, mechanism, &symbols);
+    algebra.given = explicit::given_coordinates(&mut algebra, mechanism, &symbols);
     let Bound {
         constraints,
         contacts,

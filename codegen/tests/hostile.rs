@@ -219,7 +219,7 @@ fn code(tokens: TokenStream) -> Vec<String> {
                 code.extend(self::code(group.stream()));
             }
             TokenTree::Literal(literal) if literal.to_string().contains('"') => {
-                code.push("\"\"".to_owned())
+                code.push("\"\"".to_owned());
             }
             token => code.push(token.to_string()),
         }

@@ -8,7 +8,7 @@ use appell_codegen::emit::{Options, emit};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_runtime::Simulation;
-use appell_runtime::model::{Model, Switching as _};
+use appell_runtime::model::Model;
 use appell_runtime::simulate::Method;
 
 /// A carriage of 1 kg under a force that is switched.

@@ -132,14 +132,7 @@ impl Study {
                 help,
             );
         }
-        let grids = |entry: &toml::Spanned<toml::de::DeValue<'_>>| {
-            let entry = entry.get_ref().as_table();
-            entry.is_some_and(|entry| entry.contains_key("grid") || entry.contains_key("range"))
-        };
-        // Also those in which something else is wrong.
-        let entries = table.get("vary").and_then(|vary| vary.get_ref().as_table());
-        let has_nodes = study.contains_key("table")
-            || entries.is_some_and(|entries| entries.iter().any(|(_, entry)| grids(entry)));
+        let has_nodes = study.contains_key("table") || has_grid(table);
         if let Some(model) = model.as_ref().filter(|_| chosen) {
             let message = "`model` stands here and in `[vary]`";
             read.tell(
@@ -154,13 +147,7 @@ impl Study {
             let message = "the key `cases` is missing";
             read.tell(Code::MissingKey, message, place.clone(), help);
         }
-        let lacks = |section: &str| {
-            let section = table
-                .get(section)
-                .map(|section| section.get_ref().as_table());
-            section.is_none_or(|section| section.is_some_and(DeTable::is_empty))
-        };
-        if lacks("vary") && lacks("noise") && !study.contains_key("table") {
+        if lacks(table, "vary") && lacks(table, "noise") && !study.contains_key("table") {
             let help = "write what varies under `[vary]`, such as `m = { normal = [5, 0.2] }`";
             read.tell(Code::MissingSection, "nothing varies", 0..0, help);
         }
@@ -191,4 +178,22 @@ impl Study {
             rare,
         })
     }
+}
+
+/// Whether a factor has nodes of its own, whatever else is wrong with it.
+fn has_grid(table: &DeTable<'_>) -> bool {
+    let entries = table.get("vary").and_then(|vary| vary.get_ref().as_table());
+    let mut entries = entries.into_iter().flatten();
+    entries.any(|(_, entry)| {
+        let entry = entry.get_ref().as_table();
+        entry.is_some_and(|entry| entry.contains_key("grid") || entry.contains_key("range"))
+    })
+}
+
+/// Whether a section is not there, or empty.
+fn lacks(table: &DeTable<'_>, section: &str) -> bool {
+    let section = table
+        .get(section)
+        .map(|section| section.get_ref().as_table());
+    section.is_none_or(|section| section.is_some_and(DeTable::is_empty))
 }

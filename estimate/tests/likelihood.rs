@@ -258,7 +258,7 @@ fn what_no_filter_can_run_with_is_refused() {
     let mut wrong = setup(&model);
     wrong.longest_step = 1e-12;
     let refused = message(&wrong);
-    assert!(refused.contains("longest step"), "{refused}");
+    assert!(refused.contains("steps of the filter"), "{refused}");
     let wrong = Setup::new(&model, &[Measured::State(5), Measured::State(0)]);
     assert_eq!(message(&wrong), "there is no state 5; the model has 2");
     let mut wrong = setup(&model);

@@ -138,7 +138,7 @@ pub fn within(root: &Path, folder: &Path, named: &str) -> Result<PathBuf, FileEr
     // Without the file, or without the right to see it, there is nothing to follow.
     let real = |path: &Path| Path::new(".").join(path).canonicalize();
     match (real(&path), real(root)) {
-        (Ok(target), Ok(root)) if !target.starts_with(root) => Err(outside()),
+        (Ok(target), Ok(root)) if !target.starts_with(&root) => Err(outside()),
         _ => Ok(path),
     }
 }

@@ -122,7 +122,7 @@ fn permissions_are_those_of_other_files_and_stay() {
         Draft::new(&here.path().join(name))
             .unwrap()
             .finish()
-            .unwrap()
+            .unwrap();
     };
     fs::write(here.path().join("plain"), "").unwrap();
     write("new");

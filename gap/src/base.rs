@@ -4,7 +4,7 @@
 //!
 //! Inverse dynamics is linear in these parameters, M ω̇ + b − Π = Y π + r, and vanishes for the true ones. Columns of
 //! Y that depend on others at all motions belong to the same combination. Recorded motions give equations
-//! `Y_b β = −r`: splines filter coordinates and inputs alike, their noise is in Y_b as well as in r (`adjustment.rs`), and
+//! `Y_b β = −r`: splines filter coordinates and inputs alike, their noise is in `Y_b` as well as in r (`adjustment.rs`), and
 //! blocks of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
 
 mod adjustment;

@@ -104,7 +104,7 @@ impl Rig {
     /// The base parameters by a run of so many seconds, during which the command is held from row to row.
     fn fit(&self, seconds: f64, seed: u64) -> Fit {
         let mut dice = Random::new(seed);
-        let phases = [0, 1, 2].map(|_| dice.between(0.0, 6.28));
+        let phases = [0, 1, 2].map(|_| dice.between(0.0, std::f64::consts::TAU));
         let sines = [(14.0, 5.6), (12.0, 9.3), (4.0, 2.3)];
         let force = |t: f64| -> f64 {
             let parts = sines.iter().zip(phases);

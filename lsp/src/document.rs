@@ -46,7 +46,9 @@ impl Document {
         let mut keys = self.outline.keys.iter().map(|key| key.path.as_slice());
         let names = || SECTIONS.iter().map(|section| section.name);
         let is_section = |path: &&[String]| names().any(|name| path[0] == name);
-        let is_alike = |path: &[String]| appell_spec::closest(&path[0], names()).is_some();
+        let is_alike = |path: &[String]| {
+            is_section(&path) || appell_spec::closest(&path[0], names()).is_some()
+        };
         keys.clone().any(|path| path == ["mechanism", "name"])
             || keys.clone().any(|path| is_section(&path)) && keys.all(is_alike)
     }

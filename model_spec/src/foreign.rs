@@ -110,7 +110,8 @@ mod tests {
     #[test]
     fn a_string_of_toml_is_read_again() {
         let text = "a \"b\" \\ \u{8} ' \r\n # \u{7f}";
-        let table: toml_edit::DocumentMut = format!("a = {}", toml_string(text)).parse().unwrap();
+        let table: toml_edit::DocumentMut =
+            format!("a = {}", toml_string(text)).parse().expect("TOML");
         assert_eq!(table["a"].as_str(), Some(one_line(text).as_str()));
     }
 }

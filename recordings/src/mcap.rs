@@ -10,6 +10,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 
+use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 use mcap::{Message, MessageStream};
 use serde_json::Value;
 
@@ -28,6 +29,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
             format!("the file breaks off or is damaged: {error}; `mcap recover` saves what it can");
         DataError::whole(&*place, message)
     };
+    check_lengths(&bytes).map_err(damaged)?;
     let mut log = Log::default();
     for message in MessageStream::new(&bytes).map_err(damaged)? {
         let message = message.map_err(damaged)?;
@@ -41,6 +43,25 @@ pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
     }
     log.columns(budget)
         .ok_or_else(|| too_many(place.into_owned()))
+}
+
+/// Refuses records, and chunks once they are decompressed, of a length that no log has: the lengths in a damaged file
+/// are memory that its reader would ask for.
+fn check_lengths(bytes: &[u8]) -> Result<(), mcap::McapError> {
+    /// Longest record or chunk, in bytes.
+    const MOST: usize = 1 << 28;
+    let options = LinearReaderOptions::default().with_record_length_limit(MOST);
+    let mut reader = LinearReader::new_with_options(options);
+    let mut rest = bytes;
+    while let Some(event) = reader.next_event() {
+        if let LinearReadEvent::ReadRequest(wanted) = event? {
+            let (next, later) = rest.split_at(wanted.min(rest.len()));
+            reader.insert(next.len()).copy_from_slice(next);
+            reader.notify_read(next.len());
+            rest = later;
+        }
+    }
+    Ok(())
 }
 
 /// Everything that was logged, message by message.

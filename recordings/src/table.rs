@@ -65,7 +65,9 @@ impl Columns {
     pub(crate) fn in_seconds(mut self) -> (Vec<String>, Vec<Vec<f64>>) {
         for (index, (name, values)) in self.names.iter().zip(&mut self.values).enumerate() {
             let unit = self.clock.unit(index, name).unwrap_or(1.0);
-            values.iter_mut().for_each(|value| *value *= unit);
+            for value in values {
+                *value *= unit;
+            }
         }
         (self.names, self.values)
     }
@@ -166,7 +168,9 @@ impl Columns {
                     OwnClock::Stamps(_) => first.unwrap_or(0.0),
                     OwnClock::Column | OwnClock::None => 0.0,
                 };
-                times.iter_mut().for_each(|t| *t = unit * (*t - first));
+                for t in times.iter_mut() {
+                    *t = unit * (*t - first);
+                }
                 let unit = Some(Unit::si(Dimension::TIME));
                 return Ok(TimeColumn { unit, ..time });
             }

@@ -116,11 +116,10 @@ pub fn width(text: &str, size: f64) -> f64 {
     let ems = text.chars().map(|letter| match letter {
         'i' | 'j' | 'l' | 'I' | '.' | ',' | ':' | ';' | '!' | '|' | '\'' | ' ' => 0.35,
         't' | 'f' | 'r' | '(' | ')' | '[' | ']' | '-' | '/' => 0.42,
-        'm' | 'w' | 'M' | 'W' | '@' | '%' | '—' => 1.0,
+        'm' | 'w' | 'M' | 'W' | '@' | '%' | '—' | '\u{1100}'.. => 1.0,
         'A'..='Z' => 0.75,
         ' '..='~' => 0.64,
         // Writing systems with wide letters.
-        '\u{1100}'.. => 1.0,
         _ => 0.7,
     });
     ems.sum::<f64>() * size

@@ -90,15 +90,15 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
     }
 }
 
-fn left(about: &str, log_bayes_factor: f64) -> Option<Left> {
-    Some(Left {
+fn left(about: &str, log_bayes_factor: f64) -> Left {
+    Left {
         place: "x".to_owned(),
         variable: "F".to_owned(),
         about: about.to_owned(),
         log_bayes_factor,
         gain: 10.0,
         explained: 0.0,
-    })
+    }
 }
 
 #[test]
@@ -174,7 +174,7 @@ fn what_the_library_lacks_does_not_hide_what_parameters_close() {
         ]
     };
     let mut report = report(GapVerdict::Unexplained, which(), budget());
-    report.left = left("an error of x", 70.0);
+    report.left = Some(left("an error of x", 70.0));
     let told = Headline::of(&report);
     let says = "re-fitted parameters close 99.6 % of the gap; no effect of the library explains the rest: an error of x";
     assert_eq!(told.cause, says);
@@ -186,7 +186,7 @@ fn what_the_library_lacks_does_not_hide_what_parameters_close() {
         told.change
     );
     // Where the odds are small, it is left open.
-    report.left = left("an error of x", 0.5);
+    report.left = Some(left("an error of x", 0.5));
     let told = sentence(&report);
     assert!(told.contains("leave it open (probability 61 %)"), "{told}");
 }

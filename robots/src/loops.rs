@@ -88,7 +88,7 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
                 "{count} equations between {} rates are too many",
                 places.freedoms.len()
             ),
-            "leave the couplings out with `--without couplings`, or import a part of the robot",
+            "leave the couplings out, or import a part of the robot",
         );
         return Equations::default();
     }
@@ -368,7 +368,7 @@ impl<'a> Places<'a> {
                 Code::SingularMassMatrix,
                 links[body.link].place.clone(),
                 format!("`{link}` moves by joint `{joint}` but has no inertia along it, nor has anything on it"),
-                "give it a mass and an inertia, or make the joint fixed, as `--lock` does",
+                "give it a mass and an inertia, or make the joint fixed",
             );
         }
     }

@@ -6,6 +6,7 @@ mod joints;
 mod remarks;
 mod resistances;
 mod tendons;
+mod units;
 
 use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
@@ -219,7 +220,7 @@ impl<'a> Writer<'a> {
                 let q = &self.called.coordinates[index];
                 let name = self.quantities.new_one(&format!("v_{q}"));
                 let item = Item::default().text("value", &format!("dot({q})"));
-                let rate = joints::Units::of(body.joint.motion).rate;
+                let rate = units::Units::of(body.joint.motion).rate;
                 self.speeds.add(&name, &item.text("unit", rate));
             }
             self.mark(&body.joint.place);

@@ -39,7 +39,7 @@ fn span(lane: usize) -> [f64; 2] {
 fn watch(lane: usize) -> Watch<'static> {
     let mut watch = Watch {
         switches: Some(Switches::of_time(1, move |t, on| {
-            on[0] = f64::from(t >= switching_time(lane))
+            on[0] = f64::from(t >= switching_time(lane));
         })),
         ..Watch::default()
     };

@@ -323,7 +323,7 @@ fn steps_end_where_switches_change() {
     let wave = |t: f64, _: &[f64], rates: &mut [f64]| rates[0] = if above(t) { 1.0 } else { -1.0 };
     let watch = || Watch {
         switches: Some(Switches::of_time(1, move |t, values| {
-            values[0] = f64::from(u8::from(above(t)))
+            values[0] = f64::from(u8::from(above(t)));
         })),
         ..Watch::default()
     };

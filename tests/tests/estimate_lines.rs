@@ -5,7 +5,6 @@
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
 use appell_estimate::{Direction, Estimation, Measured, Recording, Setup, Unknown};
-use appell_runtime::model::Model;
 
 /// Two forces on a carriage with a spring that hardens, and an accelerometer that feels them at once.
 const CARRIAGE: &str = r#"
@@ -179,7 +178,7 @@ fn rows_far_apart_do_what_a_fine_table_of_the_lines_does() {
     let setup = Setup::new(&model, &[Measured::State(1)]);
     let coarse = recording(40, 0.05, 1);
     let fine = {
-        let parts = 50_u32;
+        let parts = 200_u32;
         let times: Vec<f64> = (0..=39 * parts)
             .map(|row| 0.05 / f64::from(parts) * f64::from(row))
             .collect();

@@ -157,7 +157,7 @@ pub(super) fn design(
     setup: &Setup<'_>,
     targets: &[Target],
     table: &Table,
-) -> Result<Option<Drawn>, Error> {
+) -> Option<Drawn> {
     let study = reading.study;
     let (mut factors, mut columns, mut choices) = (Vec::new(), Vec::new(), Vec::new());
     for (vary, &target) in study.vary.iter().zip(targets) {
@@ -204,7 +204,7 @@ pub(super) fn design(
         }
     }
     if !reading.findings.is_empty() {
-        return Ok(None);
+        return None;
     }
     // Without factors noise alone varies.
     let sampling = if factors.is_empty() {
@@ -220,15 +220,15 @@ pub(super) fn design(
         &correlations,
     );
     let error = match design {
-        Ok(design) => return Ok(Some((design, columns, choices))),
+        Ok(design) => return Some((design, columns, choices)),
         Err(error) => error,
     };
     let message = error.to_string();
-    let correlation = study
+    let mut correlation = study
         .correlations
         .iter()
         .map(|correlation| &correlation.value);
-    match (&error, correlation.last()) {
+    match (&error, correlation.next_back()) {
         (DesignError::Correlations, Some(last)) => {
             let help = "the matrix of all correlations must be positive semidefinite";
             reading.tell(Code::ValueOutsideLimits, message, last, help);
@@ -249,7 +249,7 @@ pub(super) fn design(
             reading.tell(Code::LimitExceeded, message, &study.count, help);
         }
     }
-    Ok(None)
+    None
 }
 
 fn twice(reading: &mut Reading<'_>, factors: &[Factor]) {

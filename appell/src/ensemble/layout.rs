@@ -113,22 +113,7 @@ pub(super) fn layout(
             }
         }
     }
-    let each = (t_end / interval).floor() + 1.0;
-    if each * courses.len() as f64 > MAX_COLUMNS as f64 {
-        let message = format!(
-            "{} courses of {each} times are too many columns",
-            courses.len()
-        );
-        let help = format!(
-            "at most {MAX_COLUMNS} are possible: write a longer `dt_s`, or keep fewer courses"
-        );
-        match (given, courses.first()) {
-            (Some(interval), _) => reading.tell(Code::LimitExceeded, message, interval, &help),
-            (None, Some((first, _))) => {
-                reading.tell(Code::LimitExceeded, message, &keep[*first].name, &help);
-            }
-            (None, None) => {}
-        }
+    if !are_bounded(reading, keep, &courses, interval) {
         courses.clear();
     }
     for (index, value) in courses {
@@ -226,4 +211,33 @@ fn unique(reading: &mut Reading<'_>, columns: &[Column]) {
             (None, None) => {}
         }
     }
+}
+
+/// Whether the columns of all courses together are few enough; more are told.
+fn are_bounded(
+    reading: &mut Reading<'_>,
+    keep: &[Keep],
+    courses: &[(usize, Column)],
+    interval: f64,
+) -> bool {
+    let motion = &reading.study.motion;
+    let (given, t_end) = (motion.interval.as_ref(), motion.t_end);
+    let each = (t_end / interval).floor() + 1.0;
+    let Some((first, _)) = courses.first() else {
+        return true;
+    };
+    if each * courses.len() as f64 <= MAX_COLUMNS as f64 {
+        return true;
+    }
+    let message = format!(
+        "{} courses of {each} times are too many columns",
+        courses.len()
+    );
+    let help =
+        format!("at most {MAX_COLUMNS} are possible: write a longer `dt_s`, or keep fewer courses");
+    match given {
+        Some(interval) => reading.tell(Code::LimitExceeded, message, interval, &help),
+        None => reading.tell(Code::LimitExceeded, message, &keep[*first].name, &help),
+    }
+    false
 }

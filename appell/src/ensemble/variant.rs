@@ -151,45 +151,7 @@ pub(super) fn variant(
             reading.at(value, plan.input(index, &expr, &setup))?;
         }
     }
-    let (mut noises, mut held) = (Vec::new(), 0.0);
-    for noise in &study.noise {
-        held += study.motion.t_end / noise.every.value;
-        if held > MAX_HELD {
-            let message = format!("a motion would have more than {MAX_HELD} values of noise");
-            let help = "write a longer `every_s`, or a shorter motion";
-            reading.tell(Code::LimitExceeded, message, &noise.every, help);
-            break;
-        }
-        let target = factors::named(&setup, &noise.name.text);
-        let (onto, unit) = match target {
-            Some(Target::State(index)) => {
-                (Onto::Measured(index), setup.unit_of_state(index).clone())
-            }
-            Some(Target::Parameter(index)) if noise.unit.is_some() => {
-                let label = &setup.mechanism.parameters[ParameterId::new(index)].label;
-                (Onto::Parameter(index), label.unit.clone())
-            }
-            _ => {
-                let message = format!("there is no state `{}`", noise.name.text);
-                let help = "noise is on a state that laws measure, or a quantity of the study's own with its `unit`";
-                reading.tell(Code::UnknownName, message, &noise.name, help);
-                continue;
-            }
-        };
-        if let Some(deviation) = reading.constant(&setup, &noise.deviation, &unit) {
-            if deviation < 0.0 {
-                let message = "a standard deviation is not negative";
-                reading.tell(Code::ValueOutsideLimits, message, &noise.deviation, "");
-            }
-            noises.push(Noise::new(
-                study.seed,
-                &noise.name.text,
-                onto,
-                deviation,
-                noise.every.value,
-            ));
-        }
-    }
+    let noises = noises(reading, &setup);
     if !reading.findings.is_empty() {
         return Ok(None);
     }
@@ -233,6 +195,51 @@ pub(super) fn variant(
     }))
 }
 
+/// The noise of a study on what laws measure, and on parameters.
+fn noises(reading: &mut Reading<'_>, setup: &Setup<'_>) -> Vec<Noise> {
+    let study = reading.study;
+    let (mut noises, mut held) = (Vec::new(), 0.0);
+    for noise in &study.noise {
+        held += study.motion.t_end / noise.every.value;
+        if held > MAX_HELD {
+            let message = format!("a motion would have more than {MAX_HELD} values of noise");
+            let help = "write a longer `every_s`, or a shorter motion";
+            reading.tell(Code::LimitExceeded, message, &noise.every, help);
+            break;
+        }
+        let target = factors::named(setup, &noise.name.text);
+        let (onto, unit) = match target {
+            Some(Target::State(index)) => {
+                (Onto::Measured(index), setup.unit_of_state(index).clone())
+            }
+            Some(Target::Parameter(index)) if noise.unit.is_some() => {
+                let label = &setup.mechanism.parameters[ParameterId::new(index)].label;
+                (Onto::Parameter(index), label.unit.clone())
+            }
+            _ => {
+                let message = format!("there is no state `{}`", noise.name.text);
+                let help = "noise is on a state that laws measure, or a quantity of the study's own with its `unit`";
+                reading.tell(Code::UnknownName, message, &noise.name, help);
+                continue;
+            }
+        };
+        if let Some(deviation) = reading.constant(setup, &noise.deviation, &unit) {
+            if deviation < 0.0 {
+                let message = "a standard deviation is not negative";
+                reading.tell(Code::ValueOutsideLimits, message, &noise.deviation, "");
+            }
+            noises.push(Noise::new(
+                study.seed,
+                &noise.name.text,
+                onto,
+                deviation,
+                noise.every.value,
+            ));
+        }
+    }
+    noises
+}
+
 /// Values that follow from parameters as functions of them.
 fn compile(
     reading: &mut Reading<'_>,
@@ -242,13 +249,12 @@ fn compile(
     let mut functions = Vec::new();
     for (index, expr, at) in following {
         let mut bench = Workbench::new(&setup.mechanism);
-        match bench.lower(&expr) {
-            Some(lowered) => functions.push((index, bench.function(setup.info, vec![lowered])?)),
-            None => {
-                let message = "the expression divides by the number zero";
-                reading.tell(Code::DivisionByZero, message, &at, "");
-            }
-        }
+        let Some(lowered) = bench.lower(&expr) else {
+            let message = "the expression divides by the number zero";
+            reading.tell(Code::DivisionByZero, message, &at, "");
+            continue;
+        };
+        functions.push((index, bench.function(setup.info, vec![lowered])?));
     }
     Ok(functions)
 }

@@ -1,10 +1,10 @@
 //! What every question about the equations needs, and where its answers go.
 
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{Mechanism, ParameterId};
 
-use super::limits::Limits;
 use super::ranges::Proposal;
 use crate::mechanics::algebra::Algebra;
+use crate::mechanics::explicit::given_coordinates;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::Finding;
 use crate::mechanics::initial::InitialState;
@@ -51,6 +51,7 @@ impl<'a> Bench<'a> {
         let symbols = &derivation.symbols;
         let graph = derivation.algebra.graph.clone();
         let mut algebra = Algebra::new(graph, mechanism, symbols);
+        algebra.given = given_coordinates(&mut algebra, mechanism, symbols);
         let unconstrained = unconstrained(&mut algebra, mechanism, symbols)?;
         let outputs = outputs(&mut algebra, mechanism, derivation)?;
         Some(Self {
@@ -155,4 +156,20 @@ pub(super) fn shown(graph: &Graph, expr: Expr) -> String {
 pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
     names.join(", ")
+}
+
+/// Limits of parameters with which formulas give the rates that are now solved with pivoting.
+#[derive(Debug, Clone)]
+pub(super) struct Limits {
+    /// What they keep off zero.
+    pub(super) divisors: Vec<Expr>,
+    /// Parameters with the limits that they lack, in their units.
+    pub(super) parameters: Vec<(ParameterId, [Option<f64>; 2])>,
+}
+
+impl Limits {
+    /// Whether they keep an expression off zero.
+    pub(super) fn keep_off_zero(&self, expr: Expr) -> bool {
+        self.divisors.contains(&expr)
+    }
 }

@@ -3,31 +3,14 @@
 use appell_spec::Code;
 use appell_spec::mechanism::{CoordinateId, Mechanism, Parameter, ParameterId};
 
-use super::bench::{Audit, Bench, listed};
+use super::bench::{Audit, Bench, Limits, listed};
 use super::determination::divisors;
 use crate::mechanics::declared_ranges;
 use crate::mechanics::elimination::eliminate;
 use crate::mechanics::finding::{Finding, Item};
-use crate::symbolic::Expr;
 
 /// How far the limits are from the values, the widest first.
 const FACTORS: [f64; 4] = [2.0, 1.5, 1.2, 1.1];
-
-/// Limits to write.
-#[derive(Debug, Clone)]
-pub(super) struct Limits {
-    /// What they keep off zero.
-    divisors: Vec<Expr>,
-    /// Parameters with the limits that they lack, in their units.
-    parameters: Vec<(ParameterId, [Option<f64>; 2])>,
-}
-
-impl Limits {
-    /// Whether they keep an expression off zero.
-    pub(super) fn keep_off_zero(&self, expr: Expr) -> bool {
-        self.divisors.contains(&expr)
-    }
-}
 
 /// The widest limits of the parameters in what divides with which nothing is solved with pivoting.
 pub(super) fn limits(bench: &mut Bench) -> Option<Limits> {

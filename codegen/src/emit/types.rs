@@ -367,7 +367,7 @@ impl<'a> Types<'a> {
             .iter()
             .zip(Self::result_fields(function))
             .map(|(array, field)| {
-                let text = docs(&[array.about.clone()]);
+                let text = docs(std::slice::from_ref(&array.about));
                 let field = ident(&field);
                 let kind = self.array_type(array.layout);
                 quote!(#text pub #field: #kind)

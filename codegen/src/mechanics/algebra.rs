@@ -6,7 +6,6 @@ use appell_spec::mechanism::Mechanism;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Derivatives, Expr, Graph, IdentityTest, Substitution, SymbolId};
 
-use super::explicit::given_coordinates;
 use super::finding::{Finding, Item, Outcome};
 use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
@@ -54,7 +53,7 @@ pub struct Algebra {
     /// Unit quaternions, the scalar part first.
     pub(super) quaternions: Vec<[Expr; 4]>,
     /// Coordinates that position constraints give by a formula.
-    given: Vec<(Expr, Expr)>,
+    pub(crate) given: Vec<(Expr, Expr)>,
     /// Whether long expressions stand as a recursion made them.
     pub(super) recursive: bool,
 }
@@ -73,7 +72,7 @@ impl Algebra {
         if let Some(pi) = graph.as_symbol(symbols.pi) {
             test = test.with_pi(pi);
         }
-        let mut algebra = Self {
+        Self {
             graph,
             test,
             pi: symbols.pi,
@@ -83,9 +82,7 @@ impl Algebra {
             quaternions,
             given: Vec::new(),
             recursive: false,
-        };
-        algebra.given = given_coordinates(&mut algebra, mechanism, symbols);
-        algebra
+        }
     }
 
     /// Fails where the expressions have grown beyond what a mechanism of bodies needs.

@@ -11,7 +11,7 @@ use super::symbols::Symbols;
 use crate::symbolic::{Expr, Function, Graph, Substitution};
 
 /// Coordinates with their formulas, at most one for each constraint.
-pub(super) fn given_coordinates(
+pub(crate) fn given_coordinates(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
@@ -40,10 +40,8 @@ pub(super) fn given_coordinates(
             None => &symbols.coordinates,
         };
         let free = |q: &&Expr| !given.iter().any(|(known, _)| known == *q);
-        let found = candidates.iter().filter(free);
-        let found = found
-            .filter_map(|&q| Some((q, solved_for(algebra, residual, q)?)))
-            .next();
+        let mut free = candidates.iter().filter(free);
+        let found = free.find_map(|&q| Some((q, solved_for(algebra, residual, q)?)));
         given.extend(found);
     }
     given

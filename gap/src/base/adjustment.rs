@@ -1,6 +1,6 @@
 //! Parameters by adjustment of recorded motions to the equations: errors in variables.
 //!
-//! The equations of a motion x = (q, q̇, q̈, u) are e(x, β) = Y_b(x) β + r(x) = 0. What is recorded, x₀, has errors of the
+//! The equations of a motion x = (q, q̇, q̈, u) are `e(x, β) = Y_b(x) β + r(x) = 0`. What is recorded, x₀, has errors of the
 //! covariance C, which the splines tell. The sum of their squares, weighted by C, is smallest under the equations
 //! (Gauss–Helmert model): about a motion x and values β with J = ∂e/∂x
 //!

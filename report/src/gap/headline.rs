@@ -206,13 +206,19 @@ fn error(report: &Report, far: &HowFar) -> String {
         short(floor)
     );
     if is_determined(far.closed, far.closed_ci95) {
-        text += &format!("; {} of the gap closes", share(far.closed, far.closed_ci95));
+        text = format!(
+            "{text}; {} of the gap closes",
+            share(far.closed, far.closed_ci95)
+        );
     } else {
         text += "; these runs do not determine how much of the gap closes";
     }
     let refit = refitted(&far.budget);
     if let Some(refit) = refit.filter(|_| !is_refit_alone(far)) {
-        text += &format!(", {} by re-fitted parameters alone", percent(refit.closed));
+        text = format!(
+            "{text}, {} by re-fitted parameters alone",
+            percent(refit.closed)
+        );
     }
     if far.is_worse {
         text += "; worse than with re-fitted parameters alone";

@@ -5,42 +5,8 @@ use crate::model::{Joint, Motion};
 use crate::table::{Item, list};
 
 use super::resistances::Owner;
+use super::units::Units;
 use super::{Writer, sentence};
-
-/// Units of what belongs to a kind of joint.
-pub(super) struct Units {
-    pub(super) coordinate: &'static str,
-    pub(super) rate: &'static str,
-    pub(super) force: &'static str,
-    /// Of the factors of a rate, its square and its cube, and of a coordinate likewise.
-    pub(super) damping: [&'static str; 3],
-    pub(super) stiffness: [&'static str; 3],
-    pub(super) inertia: &'static str,
-}
-
-impl Units {
-    pub(super) fn of(motion: Motion) -> Self {
-        match motion {
-            Motion::Turning => Self {
-                coordinate: "rad",
-                rate: "rad/s",
-                force: "N*m",
-                damping: ["N*m*s", "N*m*s^2", "N*m*s^3"],
-                stiffness: ["N*m"; 3],
-                inertia: "kg*m^2",
-            },
-            // What has several coordinates has no unit of its own.
-            Motion::Sliding | Motion::Ball | Motion::Free => Self {
-                coordinate: "m",
-                rate: "m/s",
-                force: "N",
-                damping: ["N*s/m", "N*s^2/m^2", "N*s^3/m^3"],
-                stiffness: ["N/m", "N/m^2", "N/m^3"],
-                inertia: "kg",
-            },
-        }
-    }
-}
 
 impl Writer<'_> {
     /// The coordinate of a joint, its speed, its input, and what resists it.

@@ -5,7 +5,7 @@ use crate::model::Polynomial;
 use crate::rotation::is_zero;
 use crate::table::Item;
 
-use super::joints::Units;
+use super::units::Units;
 use super::{Writer, plus};
 
 /// Rates below which dry friction fades out.

@@ -6,8 +6,8 @@ use crate::model::{Coupling, Motion, Sum, Tendon};
 use crate::rotation::is_zero;
 use crate::table::Item;
 
-use super::joints::Units;
 use super::resistances::Owner;
+use super::units::Units;
 use super::{Writer, plus};
 
 impl Writer<'_> {

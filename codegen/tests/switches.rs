@@ -217,6 +217,30 @@ fn no_place_that_switches_is_passed_over() {
 }
 
 #[test]
+fn bumps_of_any_width_are_felt_wherever_they_are() {
+    for (half, centre, sign) in [
+        (1e-2, 1.3, ""),
+        (1e-2, 18.9, "-"),
+        (1e-3, 7.77, ""),
+        (1e-3, 5.0, "-"),
+        (1e-4, 11.123, "-"),
+        (1e-5, 5.0, ""),
+    ] {
+        let force = format!("{sign}1e3*F_0*max(0, {half} - abs(x/(1 [m]) - {centre}))");
+        let work = format!("{sign}2e3").parse::<f64>().unwrap() * half * half;
+        let expected = (1.0 + 2.0 * work).sqrt();
+        for method in ADAPTIVE {
+            let found = velocity(&force, 1.0, method);
+            let off = (found - expected).abs();
+            assert!(
+                off < OVER_ALL_STEPS,
+                "{force} {method:?}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
 fn a_motion_that_is_switched_to_and_fro_ends_with_an_error() {
     let model = InterpretedModel::new(carriage("-F_0*sign(x/(1 [m]) - 1 + v/(1 [m/s]))"));
     for method in ADAPTIVE {

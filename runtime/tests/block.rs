@@ -15,14 +15,18 @@ use std::ops::ControlFlow;
 fn pendulum(lane: usize, t: f64, x: &[f64], rates: &mut [f64]) {
     let w = 1.0 + 0.3 * lane as f64;
     let torque = if t < switching_time(lane) { 0.5 } else { -0.8 };
+    let bump = 10.0 * f64::max(0.0, 1e-3 - (x[0] - BUMP).abs());
     rates[0] = x[1];
-    rates[1] = torque - w * w * x[0].sin() - 0.05 * x[1];
+    rates[1] = torque + bump - w * w * x[0].sin() - 0.05 * x[1];
     rates[2] = if lane == 7 {
         1.0 + x[2] * x[2]
     } else {
         (t * w).cos() * x[0]
     };
 }
+
+/// Where a narrow bump of the torque is.
+const BUMP: f64 = 0.15;
 
 fn switching_time(lane: usize) -> f64 {
     2.0 + 0.37 * lane as f64
@@ -37,10 +41,16 @@ fn span(lane: usize) -> [f64; 2] {
 }
 
 fn watch(lane: usize) -> Watch<'static> {
+    let mut switches = Switches::of_time(1, move |t, on| {
+        on[0] = f64::from(t >= switching_time(lane));
+    });
+    switches.counts.crossings = 2;
+    switches.crossings = Box::new(|_, x, signs| {
+        signs[0] = x[0] - BUMP;
+        signs[1] = 1e-3 - signs[0].abs();
+    });
     let mut watch = Watch {
-        switches: Some(Switches::of_time(1, move |t, on| {
-            on[0] = f64::from(t >= switching_time(lane));
-        })),
+        switches: Some(switches),
         ..Watch::default()
     };
     watch

@@ -339,7 +339,6 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         for (l, lane) in on_their_way(lanes) {
             accepted[l] = errors[l] <= 1.0;
             if accepted[l] {
-                lane.statistics.steps += 1;
                 continue;
             }
             lane.statistics.rejected += 1;
@@ -357,6 +356,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if !P::ERROR_USES_NEW_RATES {
             self.new_rates(f, lanes, accepted);
         }
+        // Whether the step is accepted, where that can be told.
         let accept = |this: &mut Self, l: usize, lane: &mut Lane<'_, '_, O>, within: bool| {
             let ends = ends::<P>(&this.stages, &mut this.ends, l, lane);
             if within {
@@ -366,9 +366,15 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                     let coefficient = this.dense.coefficient(HERMITE + c);
                     this.stages.combination(l, lane.stride.h, row, coefficient);
                 }
+                if let Some(shorter) = lane.watcher.shorter(&ends, &this.dense) {
+                    lane.statistics.rejected += 1;
+                    (lane.steps.next_h, lane.restart) = (Some(shorter), false);
+                    return Some(false);
+                }
             } else if lane.watcher.wants_interior(&ends) {
-                return false;
+                return None;
             }
+            lane.statistics.steps += 1;
             let interior = within.then_some(&this.dense);
             lane.end = lane.watcher.accept(&ends, interior, lane.x);
             let switched = lane.watcher.switched();
@@ -386,11 +392,11 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             let end = (lane.stride.t_new, lane.stride.lands);
             (lane.t, lane.restart) = switched.map_or(end, |t| (t, true));
             lane.finish_at_end();
-            true
+            Some(true)
         };
         let mut wanted = [false; LANES];
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| accepted[l]) {
-            wanted[l] = !accept(self, l, lane, false);
+            wanted[l] = accept(self, l, lane, false).is_none();
         }
         let (clock, new_rates) = (self.clock, P::TABLEAU.new_rates());
         if wanted.contains(&true) {
@@ -400,7 +406,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             }
         }
         for (l, lane) in on_their_way(lanes).filter(|&(l, _)| wanted[l]) {
-            accept(self, l, lane, true);
+            accepted[l] = accept(self, l, lane, true) == Some(true);
         }
         self.stages.advance(accepted, new_rates);
     }

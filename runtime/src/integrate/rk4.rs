@@ -108,13 +108,13 @@ impl Rk4 {
                     return End::failed(t, cause);
                 }
                 // No error shows that a step across a switch is wrong: steps come near it until it is at hand.
-                let ends = self.stages.ends([t, stride.t_new], new_rates);
-                if !watcher.stops.has_crossings() || tries == MOST_TRIES {
+                if !watcher.stops.has_crossings() {
                     break;
                 }
+                let ends = self.stages.ends([t, stride.t_new], new_rates);
                 self.dense.set_hermite(&ends);
                 match watcher.switch_within(&ends, &self.dense) {
-                    Some(switch) if switch - t > AT_ONCE * h => {
+                    Some(switch) if switch - t > AT_ONCE * h && tries < MOST_TRIES => {
                         stride = Stride::to(t, t + NEARLY * (switch - t));
                     }
                     _ => break,

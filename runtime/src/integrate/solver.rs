@@ -119,9 +119,18 @@ impl<P: EmbeddedPair> Solver<P> {
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
             let error = self.attempt(&mut f, t, stride, options, watcher);
             if error <= 1.0 {
-                statistics.steps += 1;
-                if let Some(end) = self.accept(&mut f, t, stride, watcher, x) {
-                    return end;
+                match self.accept(&mut f, t, stride, watcher, x) {
+                    Ok(end) => {
+                        statistics.steps += 1;
+                        if let Some(end) = end {
+                            return end;
+                        }
+                    }
+                    Err(shorter) => {
+                        statistics.rejected += 1;
+                        (next_h, restart) = (Some(shorter), false);
+                        continue;
+                    }
                 }
                 let switched = watcher.switched();
                 if switched.is_some() {
@@ -187,7 +196,8 @@ impl<P: EmbeddedPair> Solver<P> {
         error
     }
 
-    /// Interpolates if anyone asks for it and shows the step to the watcher.
+    /// Interpolates if anyone asks for it and shows the step to the watcher, or tells the length of the step to be
+    /// tried instead.
     fn accept<F, O>(
         &mut self,
         f: &mut F,
@@ -195,7 +205,7 @@ impl<P: EmbeddedPair> Solver<P> {
         stride: Stride,
         watcher: &mut Watcher<'_, '_, O>,
         x: &mut [f64],
-    ) -> Option<End>
+    ) -> Result<Option<End>, f64>
     where
         F: FnMut(f64, &[f64], &mut [f64]),
         O: Observer,
@@ -206,7 +216,7 @@ impl<P: EmbeddedPair> Solver<P> {
         }
         let ends = self.stages.ends(span, new_rates);
         if !watcher.wants_interior(&ends) {
-            return watcher.accept(&ends, None, x);
+            return Ok(watcher.accept(&ends, None, x));
         }
         self.dense.set_hermite(&ends);
         for (i, &(node, row)) in P::INTERIOR_STAGES.iter().enumerate() {
@@ -218,7 +228,10 @@ impl<P: EmbeddedPair> Solver<P> {
             self.stages.combination(stride.h, row, coefficient);
         }
         let ends = self.stages.ends(span, new_rates);
-        watcher.accept(&ends, Some(&self.dense), x)
+        match watcher.shorter(&ends, &self.dense) {
+            Some(shorter) => Err(shorter),
+            None => Ok(watcher.accept(&ends, Some(&self.dense), x)),
+        }
     }
 
     /// A first step from the sizes of x, ẋ and ẍ, not beyond the next stop nor `longest`.

@@ -135,6 +135,8 @@ pub(super) struct Watcher<'w, 'a, O> {
 
 /// A step that is hardly one, in parts of the time.
 const SLIVER: f64 = 1e-9;
+/// The part of a step of which its stages tell too little.
+const EARLY: f64 = 0.5;
 /// So many of these in a row after a switch are one place that the motion does not leave.
 const MOST_SLIVERS: usize = 300;
 
@@ -200,17 +202,16 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             || self.observer.wants_interior(ends.t[0], ends.t[1])
     }
 
-    /// Shows a step up to its first end: an event, a limit, a switch, or its own. `x` becomes the state
-    /// there. Returns the end of the integration if this is it.
+    /// Shows a step up to its first end: an event, a limit, the switch that was found, or its own. `x` becomes the
+    /// state there. Returns the end of the integration if this is it.
     pub(super) fn accept(
         &mut self,
         ends: &Ends<'_>,
         interior: Option<&DenseOutput>,
         x: &mut [f64],
     ) -> Option<End> {
-        self.switched = interior.and_then(|dense| self.switch_within(ends, dense));
         let t = self.switched.unwrap_or(ends.t[1]);
-        let is_sliver = t - ends.t[0] <= SLIVER * t.abs().max(1.0);
+        let is_sliver = t - ends.t[0] <= sliver(t);
         let before = self.slivers.or(self.switched.map(|_| 0));
         self.slivers = before.filter(|_| is_sliver).map(|slivers| slivers + 1);
         let end = if self.switched.is_some() {
@@ -231,8 +232,18 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         end.or(chatters.then(|| End::failed(t, Cause::Chattering)))
     }
 
-    /// Where the state first switches the equations within a step; the state and the rates are kept.
+    /// Looks for a switch in a step. The length of the one to be tried instead, where the switch is early in it: most
+    /// stages are then beyond, and the error tells nothing of the rates before. That one ends a sliver before it.
+    pub(super) fn shorter(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
+        let switch = self.switch_within(ends, dense)?;
+        let (before, length) = (switch - ends.t[0], ends.t[1] - ends.t[0]);
+        let is_early = sliver(switch) < before && before < EARLY * length;
+        is_early.then(|| before - 0.5 * sliver(switch))
+    }
+
+    /// Where the state first switches the equations within a step; the time, the state and the rates are kept.
     pub(super) fn switch_within(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
+        self.switched = None;
         let (switches, search) = self.stops.switches.as_mut()?;
         let (t, x) = search.of_state(switches, ends, dense)?;
         let [state, rates] = &mut self.at_switch;
@@ -244,7 +255,8 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             // Where this fails, the next step does.
             (projection.0)(t, state);
         }
-        Some(t)
+        self.switched = Some(t);
+        self.switched
     }
 
     /// Shows a step up to an event or a limit within it.
@@ -318,4 +330,9 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             })),
         }
     }
+}
+
+/// The longest sliver that ends at a time.
+fn sliver(t: f64) -> f64 {
+    SLIVER * t.abs().max(1.0)
 }

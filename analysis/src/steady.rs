@@ -381,32 +381,44 @@ impl<'a> SteadyProblem<'a> {
             z: base.clone(),
             residual: f64::INFINITY,
         };
-        // The motion that is given may be near as it is; of others the coordinates are given alone.
-        let others = (1..starts).map(|_| self.start(equations, &spread.next()));
-        let others = std::iter::once(base.clone()).chain(others);
-        let others = others.map(|start| self.with_speeds(equations, start));
-        for start in std::iter::once(base.clone()).chain(others) {
-            match newton::solve(equations, &start) {
-                Ok(mut zero) => {
-                    let mut point = equations.point(&zero.z);
-                    let turning = &self.structure.turning;
-                    turning.bring_near(&self.base.x, &mut point.x);
-                    self.fold(&mut point);
-                    zero.z = equations.unknowns_of(&point);
-                    let same = |other: &Zero| {
-                        (&other.z - &zero.z).norm() <= SAME_MOTION * (1.0 + zero.z.norm())
-                            || self.are_one_family(equations, [other, &zero])
-                    };
-                    if !found.iter().any(same) {
-                        found.push(zero);
-                    }
+        // Speeds that satisfy the conditions lead to fast motions, where others lead to none.
+        for solves_for_speeds in [false, true] {
+            if !found.is_empty() {
+                break;
+            }
+            for number in 0..starts.max(1) {
+                let mut start = base.clone();
+                if number > 0 {
+                    start = self.start(equations, &spread.next());
                 }
-                Err(missed) if missed.residual < nearest.residual => nearest = missed,
-                Err(_) => {}
+                if solves_for_speeds {
+                    start = self.with_speeds(equations, start);
+                }
+                match newton::solve(equations, &start) {
+                    Ok(zero) => self.add(equations, zero, &mut found),
+                    Err(missed) if missed.residual < nearest.residual => nearest = missed,
+                    Err(_) => {}
+                }
             }
         }
         found.sort_by(|a, b| (&a.z - &base).norm().total_cmp(&(&b.z - &base).norm()));
         (found, nearest)
+    }
+
+    /// Adds a zero near the given angles, unless it is there.
+    fn add(&self, equations: &SteadyEquations<'_>, mut zero: Zero, found: &mut Vec<Zero>) {
+        let mut point = equations.point(&zero.z);
+        let turning = &self.structure.turning;
+        turning.bring_near(&self.base.x, &mut point.x);
+        self.fold(&mut point);
+        zero.z = equations.unknowns_of(&point);
+        let same = |other: &Zero| {
+            (&other.z - &zero.z).norm() <= SAME_MOTION * (1.0 + zero.z.norm())
+                || self.are_one_family(equations, [other, &zero])
+        };
+        if !found.iter().any(same) {
+            found.push(zero);
+        }
     }
 
     /// Whether two motions belong to families, of which one motion is enough, on the same side of the ranges.
@@ -513,11 +525,7 @@ impl<'a> SteadyProblem<'a> {
         let equations = self.equations();
         let mut spread = Spread::new(equations.unknowns.len());
         let others = (1..starts).filter_map(|_| {
-            let zero = newton::solve(
-                &equations,
-                &self.with_speeds(&equations, self.start(&equations, &spread.next())),
-            )
-            .ok()?;
+            let zero = newton::solve(&equations, &self.start(&equations, &spread.next())).ok()?;
             let other = self.motion(&equations, &zero);
             self.in_range(&other.point).then_some(other)
         });

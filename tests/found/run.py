@@ -5,7 +5,7 @@
 Each case runs the program over copies of its inputs in a folder of its own, with bounded memory and time, and holds the
 result against a value from somewhere else: a closed form, another simulator, the parameters of a simulation. The READMEs
 of the folders tell where an input was found. The standard library of Python suffices; the exit status is the number of
-cases that fail.
+cases that fail. A case that is open is known to fail, and is told once it no longer does.
 """
 
 import json
@@ -26,11 +26,11 @@ MOST_TIME = 120
 CASES = []
 
 
-def case(*inputs):
-    """A case: its inputs are copied into the folder in which it runs."""
+def case(*inputs, is_open=False):
+    """A case: its inputs are copied into the folder in which it runs. An open one is known to fail."""
 
     def add(function):
-        CASES.append((function.__name__, inputs, function))
+        CASES.append((function.__name__, inputs, function, is_open))
         return function
 
     return add
@@ -365,7 +365,7 @@ def inputs_may_be_joined_by_lines(run):
         near(found[name]["value"], right, 0.002 * right, name)
 
 
-@case("18_identify_rate_only_swing")
+@case("18_identify_rate_only_swing", is_open=True)
 def a_swing_is_identified_by_its_rate(run):
     for start in [[], ["--start", "shooting"]]:
         found = identified(run, "swing.toml", "--data", ".", *start)
@@ -373,7 +373,7 @@ def a_swing_is_identified_by_its_rate(run):
             near(found[name]["value"], right, 0.01 * right, f"{name} {start}")
 
 
-@case("19_identify_servo_lag")
+@case("19_identify_servo_lag", is_open=True)
 def the_lag_of_a_servo_is_identified(run):
     found = identified(run, "full.toml", "--data", ".", "--also", "u.lag")
     for name, right in {"Ja": 0.012, "d": 0.08, "f": 0.15, "u.lag": 0.04}.items():
@@ -402,7 +402,7 @@ def main():
     program, *wanted = sys.argv[1:] or sys.exit(__doc__)
     program = str(Path(program).resolve())
     failed = 0
-    for name, inputs, function in CASES:
+    for name, inputs, function, is_open in CASES:
         if wanted and name not in wanted and not any(i in wanted for i in inputs):
             continue
         with tempfile.TemporaryDirectory() as parent:
@@ -416,10 +416,11 @@ def main():
                     shutil.copy(source, folder)
             try:
                 function(Run(program, folder))
-                print(f"ok      {name}", flush=True)
+                print(f"{'MENDED' if is_open else 'ok':7} {name}", flush=True)
+                failed += is_open
             except (Failed, KeyError, ValueError, OSError, subprocess.SubprocessError) as error:
-                failed += 1
-                print(f"FAILED  {name}: {type(error).__name__} {error}", flush=True)
+                failed += not is_open
+                print(f"{'open' if is_open else 'FAILED':7} {name}: {type(error).__name__} {error}", flush=True)
     sys.exit(failed)
 
 

@@ -13,7 +13,7 @@
 //! | [`Source::derivation`], [`Source::linear_equations`], [`Source::rust`], [`Source::expanded`] | `appell derive` |
 //! | [`Source::drawing`] | `appell draw` |
 //! | [`Source::fmu`] | `appell export` |
-//! | [`Model::evaluate`] | `appell evaluate` |
+//! | [`Model::evaluation`] | `appell evaluate` |
 //! | [`capture::convert`] | `appell motion` |
 //! | [`recording::read`], [`Model::identify`] | `appell recording`, `appell identify` |
 //! | [`Model::inverse`] | `appell inverse` |

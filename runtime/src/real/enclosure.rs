@@ -6,7 +6,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
 /// Bounds on the values of a function over an interval of time, on its slope there, and on its value in the middle.
 ///
-/// The bounds follow from the mean value theorem, f(t) ∈ f(m) + f'([t]) ([t] − m), where they are tighter than those
+/// The bounds follow from the mean value theorem, `f(t) ∈ f(m) + f'([t]) ([t] − m)`, where they are tighter than those
 /// of the operations alone: they are off by the square of the length (Moore, Kearfott and Cloud, *Introduction to
 /// Interval Analysis*, chapter 6).
 #[derive(Debug, Clone, Copy, PartialEq)]

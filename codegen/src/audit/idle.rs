@@ -6,7 +6,7 @@ use super::bench::{Audit, Bench};
 use super::work::silent_loads;
 use crate::mechanics::expressions::Lowering;
 use crate::mechanics::finding::{Finding, Item};
-use crate::mechanics::loads::applied_loads;
+use crate::mechanics::loads::{applied_loads, settle};
 use crate::mechanics::motions::motions;
 use crate::symbolic::vector;
 use crate::symbolic::{Expr, Graph};
@@ -71,7 +71,11 @@ fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
             moved.extend(free.frames.angular_velocity(frame).v);
         }
     }
-    for load in applied_loads(algebra, mechanism, symbols, free, rates).ok()? {
+    let mut loads = applied_loads(algebra, mechanism, symbols, free, rates).ok()?;
+    let responses = symbols.responses.iter();
+    let as_they_are: Vec<(Expr, Expr)> = responses.map(|&(_, symbol)| (symbol, symbol)).collect();
+    settle(&mut loads, &mut algebra.graph, mechanism, &as_they_are).ok()?;
+    for load in loads {
         moved.push(load.power(&mut algebra.graph));
     }
     let lowering = Lowering { symbols, rates };

@@ -27,7 +27,7 @@ use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::gibbs_appell::{GibbsForm, body_motions, gibbs_form};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{applied_loads, generalized_forces, settle};
-use super::motion::{self, Way};
+use super::motion;
 use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Rational, Substitution};
@@ -233,7 +233,7 @@ impl Creeping<'_> {
 }
 
 /// M⁻¹ times a list.
-fn per_mass(
+pub(super) fn per_mass(
     derivation: &mut Derivation,
     mechanism: &Mechanism,
     momenta: &[Expr],
@@ -247,14 +247,8 @@ fn per_mass(
         bias: vec![Graph::ZERO; momenta.len()],
         ..derivation.gibbs.clone()
     };
-    let solved = motion::solve(
-        algebra,
-        mechanism,
-        &without_bias,
-        &kicks,
-        &[],
-        Way::Shortest,
-    )?;
+    let way = derivation.dependent.way();
+    let solved = motion::solve(algebra, mechanism, &without_bias, &kicks, &[], way)?;
     let mut all = Vec::with_capacity(momenta.len());
     for &solved in &solved.accelerations {
         let mut parts = Vec::with_capacity(momenta.len());

@@ -1,7 +1,7 @@
 //! Applied loads: pseudo-forces from virtual power, potential energy, power.
 
 use appell_spec::Code;
-use appell_spec::expr::{Quantity, Response};
+use appell_spec::expr::{Expr as Spec, Response};
 use appell_spec::mechanism::{
     BodyId, Connection, FrameId, GROUND, LoadId, LoadKind, Mechanism, PointId,
 };
@@ -24,9 +24,11 @@ struct Work {
 }
 
 /// A load, as the pairs of forces and velocities that make its power.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct AppliedLoad {
     work: Vec<Work>,
+    /// What depends on reactions in it: the symbols that stand for it, and its values.
+    pub of_reactions: Vec<(Expr, Expr)>,
     /// What an expression may name of it.
     pub acts: Acts,
     /// Potential energy, for loads that have one.
@@ -34,9 +36,10 @@ pub struct AppliedLoad {
 }
 
 /// The force of a load as expressions name it.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub enum Acts {
     /// On every body in another way.
+    #[default]
     Spread,
     /// A force or a torque.
     Vector(FrameVector),
@@ -96,7 +99,9 @@ fn replace_in(
 ) -> Outcome<()> {
     let work = load.work.iter_mut();
     let parts = work.flat_map(|work| [&mut work.force, &mut work.velocity]);
-    let parts = parts.chain(&mut load.potential).chain(load.acts.parts());
+    let of_reactions = load.of_reactions.iter_mut().map(|(_, value)| value);
+    let parts = parts.chain(&mut load.potential).chain(of_reactions);
+    let parts = parts.chain(load.acts.parts());
     for part in parts {
         *part = replacement
             .apply(graph, *part)
@@ -125,7 +130,7 @@ pub fn generalized_forces(
         .collect()
 }
 
-/// All loads of a mechanism, for given velocities. Reactions keep their symbols.
+/// All loads of a mechanism, for given velocities. What depends on reactions has symbols until [`settle`].
 pub fn applied_loads(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -133,15 +138,16 @@ pub fn applied_loads(
     kinematics: &Kinematics,
     rates: &[Expr],
 ) -> Outcome<Vec<AppliedLoad>> {
-    let context = Context {
-        mechanism,
-        kinematics,
-        lowering: Lowering { symbols, rates },
-    };
     let mut loads = Vec::with_capacity(mechanism.loads.len());
     let mut findings = Vec::new();
     for (index, load) in mechanism.loads.entries() {
-        match context.apply(algebra, &load.kind) {
+        let context = Context {
+            mechanism,
+            kinematics,
+            lowering: Lowering { symbols, rates },
+            load: index,
+        };
+        match context.load(algebra, &load.kind) {
             Ok(applied) => loads.push(applied),
             Err(DivisionByZero) => findings.push(undefined(index, &load.kind)),
         }
@@ -207,38 +213,33 @@ pub fn forces(
     values
 }
 
-/// What loads that depend on reactions do: nothing as long as these are not known.
-///
-/// The reaction in a load is that of the motion without all such loads. What they change of the
-/// reactions that they depend on is of second order.
+/// Puts values in place of what depends on reactions, with those that are known; it is nothing where none is. A
+/// symbol of [`AppliedLoad::of_reactions`] that is among them stays one.
 pub fn settle(
     loads: &mut [AppliedLoad],
     graph: &mut Graph,
     mechanism: &Mechanism,
     reactions: &[(Expr, Expr)],
 ) -> Outcome<()> {
-    if !reactions.is_empty() {
-        let mut known = Substitution::of_parts(graph, reactions);
-        return replace(loads, graph, &mut known);
-    }
-    let mut waits = vec![false; loads.len()];
+    let mut known = Substitution::of_parts(graph, reactions);
     for index in mechanism.loads_after_what_they_name() {
-        for expr in mechanism.loads[index].kind.expressions() {
-            expr.visit(&mut |quantity| match quantity {
-                Quantity::Response(Response::Reaction(..) | Response::NormalForce(_)) => {
-                    waits[index.index()] = true;
-                }
-                Quantity::Response(Response::Force(other, _)) => {
-                    waits[index.index()] |= waits[other.index()];
-                }
-                _ => {}
-            });
+        let load = &mut loads[index.index()];
+        if load.of_reactions.is_empty() {
+            continue;
         }
-    }
-    for (load, waits) in loads.iter_mut().zip(waits) {
-        if waits {
-            load.work.clear();
+        for (symbol, value) in load.of_reactions.clone() {
+            if reactions.iter().any(|&(known, _)| known == symbol) {
+                continue;
+            }
+            let value = match reactions {
+                [] => Some(Graph::ZERO),
+                _ => known.apply(graph, value),
+            };
+            let value = value.ok_or_else(|| vec![division_by_zero(Item::Load(index))])?;
+            known.replace(graph, symbol, value);
         }
+        replace_in(load, graph, &mut known, index)?;
+        load.work.retain(|work| work.force != Graph::ZERO);
     }
     Ok(())
 }
@@ -261,11 +262,38 @@ struct Context<'a> {
     mechanism: &'a Mechanism,
     kinematics: &'a Kinematics,
     lowering: Lowering<'a>,
+    load: LoadId,
 }
 
 type Lowered<T> = Result<T, DivisionByZero>;
 
 impl Context<'_> {
+    /// A load, with what depends on reactions in it.
+    fn load(&self, algebra: &mut Algebra, kind: &LoadKind) -> Lowered<AppliedLoad> {
+        let mut applied = self.apply(algebra, kind)?;
+        for (place, expr) in kind.expressions().into_iter().enumerate() {
+            if let Some(symbol) = self.lowering.symbols.of_reactions(self.load, place) {
+                let value = self.lowering.lower(&mut algebra.graph, expr)?;
+                applied.of_reactions.push((symbol, value));
+            }
+        }
+        Ok(applied)
+    }
+
+    /// The value of an expression, counted as in [`LoadKind::expressions`], or what stands for it.
+    fn part(&self, algebra: &mut Algebra, place: usize, expr: &Spec) -> Lowered<Expr> {
+        let symbol = self.lowering.symbols.of_reactions(self.load, place);
+        symbol.map_or_else(|| self.lowering.lower(&mut algebra.graph, expr), Ok)
+    }
+
+    fn vector(&self, algebra: &mut Algebra, vector: &[Spec; 3]) -> Lowered<Vec3> {
+        let mut values = [Graph::ZERO; 3];
+        for (place, (value, expr)) in values.iter_mut().zip(vector).enumerate() {
+            *value = self.part(algebra, place, expr)?;
+        }
+        Ok(values)
+    }
+
     fn apply(&self, algebra: &mut Algebra, kind: &LoadKind) -> Lowered<AppliedLoad> {
         match kind {
             LoadKind::Gravity { down, acceleration } => self.gravity(algebra, *down, acceleration),
@@ -276,7 +304,7 @@ impl Context<'_> {
                 frame,
                 vector,
             } => {
-                let force = self.lowering.lower_all(&mut algebra.graph, vector)?;
+                let force = self.vector(algebra, vector)?;
                 let mut v = match body {
                     Some(body) => self.kinematics.material_velocity(
                         &mut algebra.graph,
@@ -299,7 +327,7 @@ impl Context<'_> {
                 frame,
                 vector,
             } => {
-                let torque = self.lowering.lower_all(&mut algebra.graph, vector)?;
+                let torque = self.vector(algebra, vector)?;
                 let mut w = self.body_rate(algebra, *on, *frame);
                 if let Some(other) = reaction_on {
                     let reacting = self.body_rate(algebra, *other, *frame);
@@ -317,28 +345,23 @@ impl Context<'_> {
                 self.spring(algebra, between, k, relaxed)
             }
             LoadKind::Damper { between, damping } => {
-                let c = self.lowering.lower(&mut algebra.graph, damping)?;
+                let c = self.part(algebra, 0, damping)?;
                 self.damper(algebra, between, c)
             }
             LoadKind::Generalized { velocity, force } => {
-                let force = self.lowering.lower(&mut algebra.graph, force)?;
+                let force = self.part(algebra, 1, force)?;
                 let velocity = self.lowering.lower(&mut algebra.graph, velocity)?;
                 Ok(AppliedLoad {
                     work: vec![Work { force, velocity }],
                     acts: Acts::Scalar(force),
-                    potential: None,
+                    ..AppliedLoad::default()
                 })
             }
         }
     }
 
     /// The weight of every body; its potential counts from the origin of the ground.
-    fn gravity(
-        &self,
-        algebra: &mut Algebra,
-        down: [i8; 3],
-        g: &appell_spec::expr::Expr,
-    ) -> Lowered<AppliedLoad> {
+    fn gravity(&self, algebra: &mut Algebra, down: [i8; 3], g: &Spec) -> Lowered<AppliedLoad> {
         let g = self.lowering.lower(&mut algebra.graph, g)?;
         let down = down.map(|c| algebra.graph.integer(c.into()));
         let (mut work, mut heights) = (Vec::new(), Vec::new());
@@ -366,8 +389,8 @@ impl Context<'_> {
         let potential = algebra.graph.sum(&heights);
         Ok(AppliedLoad {
             work,
-            acts: Acts::Spread,
             potential: Some(algebra.shortest(potential)),
+            ..AppliedLoad::default()
         })
     }
 
@@ -388,6 +411,7 @@ impl Context<'_> {
             work: resisting(algebra, tension, &work),
             acts: Acts::Scalar(tension),
             potential: Some(potential),
+            ..AppliedLoad::default()
         })
     }
 
@@ -402,7 +426,7 @@ impl Context<'_> {
         Ok(AppliedLoad {
             work: resisting(algebra, tension, &work),
             acts: Acts::Scalar(tension),
-            potential: None,
+            ..AppliedLoad::default()
         })
     }
 
@@ -477,7 +501,7 @@ fn working(algebra: &mut Algebra, (frame, force): (FrameId, Vec3), velocity: Vec
     AppliedLoad {
         work,
         acts: Acts::Vector(FrameVector { frame, v: force }),
-        potential: None,
+        ..AppliedLoad::default()
     }
 }
 

@@ -1,98 +1,293 @@
 //! Loads that depend on reactions, such as friction that grows with the normal force.
 //!
-//! The reaction in a load is that of the motion without all loads that depend on reactions. What such a
-//! load changes of the reaction that it depends on is of second order: with a coefficient of friction μ,
-//! a share μ of what is a share μ already. So the equations are solved twice, as for a contact that
-//! creeps, and nothing has to be solved for force and motion at once, which can have several solutions or
-//! none (P. Painlevé, 1895).
+//! Such loads F change the reactions λ that they depend on. Accelerations and reactions are linear in forces, so
+//!
+//! `λ = λ₀ + K F(λ)`,
+//!
+//! with the reactions λ₀ while F = 0 and K = ∂λ/∂F. Newton's method solves it: in one step where F is linear in λ,
+//! else in a fixed number of steps from λ₀. Strong friction makes 1 − K ∂F/∂λ vanish, and beyond that there can be
+//! several solutions or none (P. Painlevé, 1895).
 
 use appell_spec::expr::Response;
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
+use super::algebra::Algebra;
+use super::creep::per_mass;
 use super::dependent;
-use super::finding::Outcome;
+use super::finding::{Item, Outcome, division_by_zero};
 use super::gibbs_appell::named_parts;
 use super::loads::{self, AppliedLoad, generalized_forces, settle};
 use super::motion;
 use super::responses::{Answering, named_in};
-use crate::symbolic::Expr;
+use super::symbols::ids;
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// Steps of Newton's method where forces are no linear functions of reactions. Each squares the error, which begins
+/// at a share of the order of the coefficient of friction.
+const STEPS: usize = 4;
 
 impl Derivation {
-    /// Lets all loads act on a motion that knows only those without reactions. `all` hold symbols for the
-    /// reactions and for the dependent speeds.
+    /// Lets all loads act on a motion that knows only those without reactions. `all` hold symbols for what depends
+    /// on reactions and for the dependent speeds.
     pub(super) fn let_all_loads_act(
         &mut self,
         mechanism: &Mechanism,
         mut all: Vec<AppliedLoad>,
     ) -> Outcome<()> {
-        let derivation = self;
-        let reactions = reactions(derivation, mechanism)?;
+        let reactions = self.reactions_with(mechanism, &all)?;
         if reactions.is_empty() {
             return Ok(());
         }
-        let Derivation {
-            algebra,
-            symbols,
-            dependent,
-            ..
-        } = derivation;
-        settle(&mut all, &mut algebra.graph, mechanism, &reactions)?;
-        let directions = [symbols.speeds.as_slice(), &dependent.system.unknowns].concat();
-        let unbound = generalized_forces(algebra, &all, &directions);
-        let mut actual = dependent.actual(&algebra.graph);
-        loads::replace(&mut all, &mut algebra.graph, &mut actual)?;
-        let forces = dependent::apply(&mut actual, algebra, &unbound)?;
-        let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-        derivation.given.put_into_forces(&mut forces);
-        let parts = named_parts(&mut algebra.graph, &derivation.bodies);
+        settle(&mut all, &mut self.algebra.graph, mechanism, &reactions)?;
+        let (unbound, forces) = self.forces_of(&mut all)?;
+        let Self {
+            algebra, dependent, ..
+        } = self;
+        let parts = named_parts(&mut algebra.graph, &self.bodies);
         let way = dependent.way();
-        let gibbs = &derivation.gibbs;
-        derivation.motion = motion::solve(algebra, mechanism, gibbs, &forces, &parts, way)?;
-        derivation.recursion = None;
-        derivation.unbound.forces = unbound;
-        derivation.forces = forces;
-        derivation.loads = all;
-        derivation.reactions_in_loads = reactions;
+        self.motion = motion::solve(algebra, mechanism, &self.gibbs, &forces, &parts, way)?;
+        self.recursion = None;
+        self.unbound.forces = unbound;
+        self.forces = forces;
+        self.loads = all;
+        self.reactions_in_loads = reactions;
         Ok(())
     }
+
+    /// Π of loads along all speeds and along the pseudo-velocities; the loads lose their symbols for the dependent
+    /// speeds.
+    fn forces_of(&mut self, loads: &mut [AppliedLoad]) -> Outcome<(Vec<Expr>, Vec<Expr>)> {
+        let (algebra, dependent) = (&mut self.algebra, &self.dependent);
+        let directions = [self.symbols.speeds.as_slice(), &dependent.system.unknowns].concat();
+        let unbound = generalized_forces(algebra, loads, &directions);
+        let mut actual = dependent.actual(&algebra.graph);
+        loads::replace(loads, &mut algebra.graph, &mut actual)?;
+        let forces = dependent::apply(&mut actual, algebra, &unbound)?;
+        let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
+        self.given.put_into_forces(&mut forces);
+        Ok((unbound, forces))
+    }
+
+    /// The reactions that loads name, with their values in the motion of all loads.
+    fn reactions_with(
+        &mut self,
+        mechanism: &Mechanism,
+        all: &[AppliedLoad],
+    ) -> Outcome<Vec<(Expr, Expr)>> {
+        let loads = mechanism.loads.iter();
+        let exprs = loads.flat_map(|load| load.kind.expressions());
+        let mut wanted = named_in(&self.symbols, exprs);
+        wanted.retain(|(response, _)| !matches!(response, Response::Force(..)));
+        if wanted.is_empty() {
+            return Ok(Vec::new());
+        }
+        let names = wanted.iter();
+        let names: Vec<String> = names.map(|&(named, _)| name(mechanism, named)).collect();
+        let mut all = all.to_vec();
+        let (_, forces) = self.forces_of(&mut all)?;
+        let order = mechanism.loads_after_what_they_name().into_iter();
+        let loads: Vec<(Expr, Expr)> = order
+            .flat_map(|load| all[load.index()].of_reactions.clone())
+            .collect();
+        let accelerations = self.motion.accelerations.clone();
+        let without = self.answers(mechanism, &wanted, &accelerations, &[])?;
+        let response = self.response_to(mechanism, &loads, &forces, &wanted)?;
+        let fixed = FixedPoint {
+            unknowns: without.iter().map(|&(symbol, _)| symbol).collect(),
+            without: without.into_iter().map(|(_, value)| value).collect(),
+            response,
+            loads,
+        };
+        let values = fixed.solved(&mut self.algebra, &names)?;
+        Ok(fixed.unknowns.into_iter().zip(values).collect())
+    }
+
+    /// K: how reactions change with what stands for forces that depend on them.
+    fn response_to(
+        &mut self,
+        mechanism: &Mechanism,
+        loads: &[(Expr, Expr)],
+        forces: &[Expr],
+        wanted: &[(Response, Expr)],
+    ) -> Outcome<Vec<Vec<Expr>>> {
+        let symbols = loads.iter().map(|&(symbol, _)| symbol);
+        let symbols: Vec<Expr> = symbols.collect();
+        let held: Vec<(Expr, Expr)> = symbols.iter().map(|&f| (f, f)).collect();
+        let unknown = self.symbols.accelerations.clone();
+        let answers = self.answers(mechanism, wanted, &unknown, &held)?;
+        // What the symbols alone push.
+        let mut absent = Substitution::by_zero(&self.algebra.graph, &symbols);
+        let rest = dependent::apply(&mut absent, &mut self.algebra, forces)?;
+        let graph = &mut self.algebra.graph;
+        let push = forces.iter().zip(&rest);
+        let push: Vec<Expr> = push.map(|(&all, &rest)| graph.sub(all, rest)).collect();
+        let pushed = per_mass(self, mechanism, &push)?;
+        let algebra = &mut self.algebra;
+        let mut response = vec![Vec::with_capacity(loads.len()); answers.len()];
+        for &symbol in &symbols {
+            for (row, &(_, answer)) in response.iter_mut().zip(&answers) {
+                let mut parts = vec![algebra.derivative(answer, symbol)];
+                for (&unknown, &pushed) in unknown.iter().zip(&pushed) {
+                    let slope = algebra.derivative(answer, unknown);
+                    let pushed = algebra.derivative(pushed, symbol);
+                    parts.push(algebra.graph.mul(slope, pushed));
+                }
+                let entry = algebra.graph.sum(&parts);
+                row.push(algebra.unless_zero(entry));
+            }
+        }
+        Ok(response)
+    }
+
+    /// Reactions for given accelerations.
+    fn answers(
+        &mut self,
+        mechanism: &Mechanism,
+        wanted: &[(Response, Expr)],
+        accelerations: &[Expr],
+        reactions_in_loads: &[(Expr, Expr)],
+    ) -> Outcome<Vec<(Expr, Expr)>> {
+        let bodies = self.bodies_in_ground(mechanism);
+        let answering = Answering {
+            mechanism,
+            symbols: &self.symbols,
+            constraints: &self.constraints,
+            contacts: &self.contacts,
+            violation: &self.velocities.violating,
+            kinematics: &self.kinematics,
+            rates: &self.coordinate_rates,
+            creeps: false,
+            bodies: &bodies,
+            accelerations,
+            loads: &self.loads,
+            reactions_in_loads,
+            given: &self.given,
+        };
+        answering.values(&mut self.algebra, wanted)
+    }
 }
 
-/// The reactions that loads name, with their values in the motion as it is known.
-fn reactions(derivation: &mut Derivation, mechanism: &Mechanism) -> Outcome<Vec<(Expr, Expr)>> {
-    let loads = mechanism.loads.iter();
-    let exprs = loads.flat_map(|load| load.kind.expressions());
-    let mut wanted = named_in(&derivation.symbols, exprs);
-    wanted.retain(|(response, _)| !matches!(response, Response::Force(..)));
-    if wanted.is_empty() {
-        return Ok(Vec::new());
+/// `λ = λ₀ + K F(λ)`
+struct FixedPoint {
+    /// Symbols of λ.
+    unknowns: Vec<Expr>,
+    /// λ₀.
+    without: Vec<Expr>,
+    /// K, a row for each reaction.
+    response: Vec<Vec<Expr>>,
+    /// Symbols of F, and values with symbols for λ and for earlier ones.
+    loads: Vec<(Expr, Expr)>,
+}
+
+impl FixedPoint {
+    /// λ, under names.
+    fn solved(&self, algebra: &mut Algebra, names: &[String]) -> Outcome<Vec<Expr>> {
+        let graph = &mut algebra.graph;
+        // Reactions that no such load changes are known.
+        let is_open = |&i: &usize| self.response[i].iter().any(|&k| k != Graph::ZERO);
+        let open: Vec<usize> = (0..names.len()).filter(is_open).collect();
+        let mut values: Vec<Expr> = self.without.clone();
+        for (i, (value, name)) in values.iter_mut().zip(names).enumerate() {
+            *value = if open.contains(&i) {
+                graph.name_automatically(&format!("{name}_0"), *value)
+            } else {
+                graph.name(name, *value)
+            };
+        }
+        if open.is_empty() {
+            return Ok(values);
+        }
+        let mut known = Substitution::of_parts(graph, &[]);
+        for (i, &unknown) in self.unknowns.iter().enumerate() {
+            if !open.contains(&i) {
+                known.replace(graph, unknown, values[i]);
+            }
+        }
+        let mut forces = Vec::with_capacity(self.loads.len());
+        for &(symbol, value) in &self.loads {
+            let value = dependent::apply(&mut known, algebra, &[value])?[0];
+            known.replace(&algebra.graph, symbol, value);
+            forces.push(value);
+        }
+        let unknowns: Vec<Expr> = open.iter().map(|&i| self.unknowns[i]).collect();
+        let mut residual = Vec::with_capacity(open.len());
+        for &i in &open {
+            let graph = &mut algebra.graph;
+            let change = dependent::scalar_product(graph, &self.response[i], &forces);
+            let less = graph.sub(values[i], self.unknowns[i]);
+            residual.push(graph.add(less, change));
+        }
+        let mut slopes = Vec::with_capacity(open.len() * open.len());
+        for &residual in &residual {
+            for &unknown in &unknowns {
+                let slope = algebra.derivative(residual, unknown);
+                let slope = algebra.unless_zero(slope);
+                slopes.push(algebra.graph.neg(slope));
+            }
+        }
+        let (start, steps) = if is_linear(algebra, &residual, &slopes, &unknowns) {
+            (vec![Graph::ZERO; open.len()], 1)
+        } else {
+            (open.iter().map(|&i| values[i]).collect(), STEPS)
+        };
+        let mut at: Vec<Expr> = start;
+        for step in 1..=steps {
+            let here: Vec<(Expr, Expr)> = unknowns.iter().copied().zip(at.clone()).collect();
+            let mut here = Substitution::of_parts(&algebra.graph, &here);
+            let right = dependent::apply(&mut here, algebra, &residual)?;
+            let matrix = dependent::apply(&mut here, algebra, &slopes)?;
+            let changes = quotient(algebra, matrix, right)?;
+            for ((at, change), &i) in at.iter_mut().zip(changes).zip(&open) {
+                let graph = &mut algebra.graph;
+                let next = graph.add(*at, change);
+                *at = if step == steps {
+                    graph.name(&names[i], next)
+                } else {
+                    graph.name_automatically(&format!("{}_{step}", names[i]), next)
+                };
+            }
+        }
+        for (i, at) in open.into_iter().zip(at) {
+            values[i] = at;
+        }
+        Ok(values)
     }
-    let bodies = derivation.bodies_in_ground(mechanism);
-    let answering = Answering {
-        mechanism,
-        symbols: &derivation.symbols,
-        constraints: &derivation.constraints,
-        contacts: &derivation.contacts,
-        violation: &derivation.velocities.violating,
-        kinematics: &derivation.kinematics,
-        rates: &derivation.coordinate_rates,
-        creeps: false,
-        bodies: &bodies,
-        accelerations: &derivation.motion.accelerations,
-        loads: &derivation.loads,
-        reactions_in_loads: &[],
-        given: &derivation.given,
+}
+
+/// Whether a residual is that without the unknowns less the matrix times the unknowns: a jump has no slope either.
+fn is_linear(algebra: &mut Algebra, residual: &[Expr], matrix: &[Expr], unknowns: &[Expr]) -> bool {
+    let symbols = ids(&algebra.graph, unknowns);
+    let changes = |&entry: &Expr| algebra.graph.mentions(entry, &symbols);
+    if matrix.iter().any(changes) {
+        return false;
+    }
+    let mut none = Substitution::by_zero(&algebra.graph, unknowns);
+    let mut rows = residual.iter().zip(matrix.chunks(unknowns.len()));
+    rows.all(|(&residual, row)| {
+        let Some(constant) = none.apply(&mut algebra.graph, residual) else {
+            return false;
+        };
+        let along = dependent::scalar_product(&mut algebra.graph, row, unknowns);
+        let rest = algebra.graph.sub(constant, along);
+        algebra.test.are_equal(&algebra.graph, residual, rest)
+    })
+}
+
+/// Unknowns of a system; a single equation is divided by its coefficient.
+fn quotient(algebra: &mut Algebra, matrix: Vec<Expr>, right: Vec<Expr>) -> Outcome<Vec<Expr>> {
+    let [coefficient] = matrix[..] else {
+        return Ok(algebra.graph.solve_numerically(matrix, right));
     };
-    let mut values = answering.values(&mut derivation.algebra, &wanted)?;
-    let graph = &mut derivation.algebra.graph;
-    for ((response, _), (_, value)) in wanted.iter().zip(&mut values) {
-        *value = graph.name(&named(mechanism, *response), *value);
+    if algebra.test.is_zero(&algebra.graph, coefficient) {
+        return Err(vec![division_by_zero(Item::Mechanism)]);
     }
-    Ok(values)
+    let divide = |value: Expr| algebra.graph.div(value, coefficient);
+    Ok(right.into_iter().map(divide).collect())
 }
 
-/// Its name in equations.
-fn named(mechanism: &Mechanism, response: Response) -> String {
+/// The name of a reaction in equations.
+fn name(mechanism: &Mechanism, response: Response) -> String {
     let axes = ["x", "y", "z"];
     match response {
         Response::Reaction(c, along) => {

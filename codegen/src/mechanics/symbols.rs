@@ -1,7 +1,7 @@
 //! The symbols of a mechanism.
 
 use appell_spec::expr::{Motion as MotionQuantity, Quantity, Response};
-use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, Mechanism, PointId};
+use appell_spec::mechanism::{Axis, ConstraintKind, FrameId, LoadId, Mechanism, PointId};
 use rustc_hash::FxHashMap;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
@@ -30,6 +30,8 @@ pub struct Symbols {
     pub responses: Vec<(Response, Expr)>,
     /// The symbols of both.
     named: FxHashMap<Quantity, Expr>,
+    /// Expressions of loads that depend on reactions, by load and place, as if they were inputs.
+    of_reactions: FxHashMap<(LoadId, usize), Expr>,
     /// Time.
     pub time: Expr,
     /// The circle constant.
@@ -72,6 +74,7 @@ impl Symbols {
         let time = graph.symbol("t");
         let pi = graph.symbol("pi");
         let named = Named::new(graph, mechanism);
+        let of_reactions = of_reactions(graph, mechanism);
         Self {
             parameters,
             coordinates,
@@ -83,6 +86,7 @@ impl Symbols {
             motions: named.motions,
             responses: named.responses,
             named: named.all,
+            of_reactions,
             time,
             pi,
             weights: Vec::new(),
@@ -202,7 +206,39 @@ fn along(mechanism: &Mechanism, axis: Axis, frame: FrameId) -> String {
     format!("{axis}, {}", mechanism.frames[frame].name)
 }
 
+/// A symbol for each expression of a load that depends on reactions, by itself or by the force of another load.
+fn of_reactions(graph: &mut Graph, mechanism: &Mechanism) -> FxHashMap<(LoadId, usize), Expr> {
+    let mut all: FxHashMap<(LoadId, usize), Expr> = FxHashMap::default();
+    let mut reacts = vec![false; mechanism.loads.len()];
+    for load in mechanism.loads_after_what_they_name() {
+        let item = &mechanism.loads[load];
+        for (place, expr) in item.kind.expressions().into_iter().enumerate() {
+            let mut depends = false;
+            expr.visit(&mut |quantity| {
+                depends |= match quantity {
+                    Quantity::Response(Response::Reaction(..) | Response::NormalForce(_)) => true,
+                    Quantity::Response(Response::Force(other, _)) => reacts[other.index()],
+                    _ => false,
+                };
+            });
+            if depends {
+                reacts[load.index()] = true;
+                all.insert(
+                    (load, place),
+                    graph.symbol(&format!("{}_{place}", item.name)),
+                );
+            }
+        }
+    }
+    all
+}
+
 impl Symbols {
+    /// What stands for an expression of a load, counted as in `LoadKind::expressions`, that depends on reactions.
+    pub fn of_reactions(&self, load: LoadId, place: usize) -> Option<Expr> {
+        self.of_reactions.get(&(load, place)).copied()
+    }
+
     /// The symbol of a kinematic quantity or a force that a load or an output names.
     pub fn named(&self, quantity: Quantity) -> Option<Expr> {
         self.named.get(&quantity).copied()

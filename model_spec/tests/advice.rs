@@ -189,3 +189,34 @@ fn an_output_is_an_expression_alone() {
     };
     assert_eq!(unit(&bare), unit(&full));
 }
+
+#[test]
+fn a_body_without_mass_may_have_a_share_of_an_inertia() {
+    const BODY: &str =
+        "mass = \"m\", inertia = { in = \"arm\", diagonal = [\"m*l^2\", \"m*l^2\", \"m*l^2\"] }";
+    for (body, says) in [
+        (
+            "mass = 0, inertia = { in = \"arm\", diagonal = [0, \"m*l^2\", 0] }",
+            false,
+        ),
+        (
+            "mass = \"0*m\", inertia = { in = \"arm\", diagonal = [\"3*m*l^2\", \"m*l^2\", 0] }",
+            false,
+        ),
+        (
+            "mass = \"m\", inertia = { in = \"arm\", diagonal = [0, \"m*l^2\", 0] }",
+            true,
+        ),
+        (
+            "mass = 0, inertia = { in = \"arm\", diagonal = [\"m*l^2\", \"-m*l^2\", \"m*l^2\"] }",
+            true,
+        ),
+        (
+            "mass = 0, inertia = { in = \"arm\", moments = [\"m*l^2\", \"m*l^2\", 0], products = [0, \"m*l^2\", 0] }",
+            true,
+        ),
+    ] {
+        let told = told(BODY, body);
+        assert_eq!(told.contains("not-physical"), says, "{body}: {told}");
+    }
+}

@@ -176,7 +176,7 @@ codes! {
         "A reaction acts on another point or body; a spring connects two different points."
     NotPhysical Spec "not-physical"
         "A physically impossible mass, inertia, friction or axis"
-        "Masses and coefficients of friction are not negative. No moment of inertia is negative; none exceeds the sum of the other two, which is only a warning, because a planar model may state just the moment that it needs. The axis of a joint has a length."
+        "Masses and coefficients of friction are not negative. No moment of inertia is negative; none exceeds the sum of the other two, which is only a warning, because a planar model may state just the moment that it needs, and not asked of a body without mass, which has a share of an inertia, such as that of a rotor about its axle. The axis of a joint has a length."
     DoubtfulItem Spec "doubtful-item"
         "An item that is probably meant otherwise"
         "A force or a blade at the material point of one body and the centre of mass of another; weight along the ground on which a body rolls, or twice, as two loads of kind `gravity` or as one and a force; a wheel that is symmetric about another axis than its axle. These are notes."

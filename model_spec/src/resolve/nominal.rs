@@ -77,7 +77,14 @@ impl Resolver<'_> {
                 }
             }
         }
-        if !is_physical(&matrix) {
+        // What a body without mass has is a share, such as that of a rotor about its axle: the rest counts elsewhere.
+        let is_share = value(&body.mass, parameters) == 0.0;
+        let is_right = if is_share {
+            has_no_negative_moment(&matrix)
+        } else {
+            is_physical(&matrix)
+        };
+        if !is_right {
             let (reason, help) = impossible(&matrix);
             let message = format!("no body can have the inertia of `{}`: {reason}", body.name);
             let is_negative = (0..3).any(|i| matrix[i][i] < 0.0);
@@ -142,17 +149,29 @@ fn rounded(value: f64) -> f64 {
 }
 
 /// Whether a tensor belongs to some distribution of mass: its second moments, `tr(I)/2 - I`, form
-/// a matrix without negative eigenvalue, which its principal minors tell.
+/// a matrix without negative eigenvalue.
 fn is_physical(inertia: &[[f64; 3]; 3]) -> bool {
     let half_trace = (inertia[0][0] + inertia[1][1] + inertia[2][2]) / 2.0;
-    if half_trace <= 0.0 {
-        return half_trace == 0.0 && inertia.iter().flatten().all(|entry| *entry == 0.0);
-    }
-    // Relative to the trace, so that rounding means the same for a watch and for a ship.
-    let mut s = inertia.map(|row| row.map(|entry| -entry / half_trace));
+    let mut moments = inertia.map(|row| row.map(|entry| -entry));
     for i in 0..3 {
-        s[i][i] += 1.0;
+        moments[i][i] += half_trace;
     }
+    half_trace >= 0.0 && is_semidefinite(&moments, half_trace)
+}
+
+/// Whether no axis has a negative moment.
+fn has_no_negative_moment(inertia: &[[f64; 3]; 3]) -> bool {
+    let trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
+    trace >= 0.0 && is_semidefinite(inertia, trace)
+}
+
+/// Whether a symmetric matrix has no negative eigenvalue, which its principal minors tell. Rounding counts relative to
+/// `size`, so that it means the same for a watch and for a ship; without a size all entries are zero.
+fn is_semidefinite(matrix: &[[f64; 3]; 3], size: f64) -> bool {
+    if size == 0.0 {
+        return matrix.iter().flatten().all(|entry| *entry == 0.0);
+    }
+    let s = matrix.map(|row| row.map(|entry| entry / size));
     let minor = |i: usize, j: usize| s[i][i] * s[j][j] - s[i][j] * s[j][i];
     let determinant = s[0][0] * minor(1, 2) - s[0][1] * (s[1][0] * s[2][2] - s[1][2] * s[2][0])
         + s[0][2] * (s[1][0] * s[2][1] - s[1][1] * s[2][0]);

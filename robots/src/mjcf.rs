@@ -255,7 +255,9 @@ impl<'x> Reader<'x, '_> {
 
     fn not_yet(&self, element: Element<'_>) {
         let name = element.tag_name().name();
-        let help = "write out the bodies that it makes; MuJoCo does so when it saves a model";
+        let help = "let MuJoCo write out the bodies that it makes, and import `flat.xml`: \
+                    `python -c \"import mujoco; s = mujoco.MjSpec.from_file('FILE'); s.compile(); \
+                    open('flat.xml', 'w').write(s.to_xml())\"`";
         self.findings.error(
             Code::NotAllowedHere,
             tag(element),

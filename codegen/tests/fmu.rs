@@ -58,6 +58,20 @@ fn equal_specs_have_equal_texts_and_other_numbers_another_token() {
     assert!(equations.contains(&token(&one)));
 }
 
+#[test]
+fn an_fmu_whose_equations_time_switches_says_what_it_may_pass_over() {
+    let plain = include_str!("emit_support/block.toml");
+    let switched = plain.replace("stiffness = \"k\"", "stiffness = \"if(t < 2 [s], k, 2*k)\"");
+    assert_ne!(plain, switched);
+    for (text, warns) in [(plain, false), (switched.as_str(), true)] {
+        let fmu = fmu("block.toml", text);
+        assert_eq!(
+            fmu.model_description.contains("\"logStatusWarning\""),
+            warns
+        );
+    }
+}
+
 /// Names of C, of FMI, of the sources and of the independent variable; texts that end attributes and comments.
 #[test]
 fn a_spec_breaks_neither_xml_nor_c() {

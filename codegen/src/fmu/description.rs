@@ -24,9 +24,16 @@ pub(super) fn model(program: &Program, variables: &Variables, name: &str, token:
             .with("providesDirectionalDerivatives", true)
             .with("providesAdjointDerivatives", true)
     };
-    let log = Element::new("Category")
-        .with("name", "logStatusError")
-        .with("description", "Why a call has failed");
+    let category = |name: &str, about: &str| {
+        let category = Element::new("Category");
+        category.with("name", name).with("description", about)
+    };
+    let has_switches = variables.end > variables.switches;
+    let mut log = vec![category("logStatusError", "Why a call has failed")];
+    if has_switches {
+        let about = "Where the integration of co-simulation can be wrong";
+        log.push(category("logStatusWarning", about));
+    }
     Element::new("fmiModelDescription")
         .with("fmiVersion", VERSION)
         .with("modelName", &info.name)
@@ -38,13 +45,11 @@ pub(super) fn model(program: &Program, variables: &Variables, name: &str, token:
         )
         .with("variableNamingConvention", "structured")
         .holding([
-            kind("ModelExchange").maybe(
-                "needsCompletedIntegratorStep",
-                (variables.end > variables.switches).then_some(true),
-            ),
+            kind("ModelExchange")
+                .maybe("needsCompletedIntegratorStep", has_switches.then_some(true)),
             kind("CoSimulation").with("canHandleVariableCommunicationStepSize", true),
             units.element(),
-            Element::new("LogCategories").holding([log]),
+            Element::new("LogCategories").holding(log),
             Element::new("DefaultExperiment")
                 .with("startTime", 0)
                 .with("stopTime", 10)

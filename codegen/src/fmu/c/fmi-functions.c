@@ -68,6 +68,11 @@ static fmi3Status told(const Instance *instance, const char *format, ...) {
     return fmi3Error;
 }
 
+/* Where the integration of co-simulation can be wrong. */
+#define UNSEEN \
+    "Steps end where time switches the equations, which is sought at eighths of each step: a pulse that is shorter than " \
+    "an eighth of the communication step can be passed over."
+
 /* Whether a function may be called now. */
 static int allowed(const Instance *instance, int modes, const char *function) {
     if (!instance) {
@@ -190,15 +195,19 @@ EXPORT fmi3Instance API(fmi3InstantiateCoSimulation)(
     fmi3IntermediateUpdateCallback intermediateUpdate
 ) {
     (void)instanceName;
+    fmi3Instance made;
     (void)resourcePath;
     (void)visible;
-    (void)loggingOn;
     (void)eventModeUsed;
     (void)earlyReturnAllowed;
     (void)requiredIntermediateVariables;
     (void)nRequiredIntermediateVariables;
     (void)intermediateUpdate;
-    return instantiated(instantiationToken, 1, instanceEnvironment, logMessage);
+    made = instantiated(instantiationToken, 1, instanceEnvironment, logMessage);
+    if (made && SWITCHES > 0 && loggingOn && logMessage) {
+        logMessage(instanceEnvironment, fmi3Warning, "logStatusWarning", UNSEEN);
+    }
+    return made;
 }
 
 EXPORT fmi3Instance API(fmi3InstantiateScheduledExecution)(

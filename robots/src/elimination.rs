@@ -2,8 +2,11 @@
 
 /// A row shorter than this share of itself, less what others say, adds nothing.
 const NOTHING: f64 = 1e-5;
+/// By how much a pivot has to be larger than one before it.
+const ALIKE: f64 = 1.001;
 
-fn largest(row: &[f64]) -> f64 {
+/// The largest magnitude.
+pub(crate) fn largest(row: &[f64]) -> f64 {
     row.iter().fold(0.0_f64, |most, x| most.max(x.abs()))
 }
 
@@ -17,32 +20,23 @@ fn subtract(row: &mut [f64], pivot: usize, other: &[f64]) {
     }
 }
 
-/// Which rows do not follow from those before them.
-pub(crate) fn independent(rows: Vec<Vec<f64>>) -> Vec<bool> {
-    let mut known: Vec<(usize, Vec<f64>)> = Vec::new();
-    let says_more = |mut row: Vec<f64>| {
-        let whole = largest(&row).max(NOTHING);
-        for (pivot, other) in &known {
-            subtract(&mut row, *pivot, other);
-        }
-        let columns = 0..row.len();
-        let pivot = columns.max_by(|&a, &b| row[a].abs().total_cmp(&row[b].abs()));
-        let pivot = pivot.filter(|&pivot| row[pivot].abs() > NOTHING * whole);
-        known.extend(pivot.map(|pivot| (pivot, row)));
-        pivot.is_some()
-    };
-    rows.into_iter().map(says_more).collect()
+/// A row that says something new, with its pivot, reduced so that it alone has its pivot, whose entry is 1.
+#[derive(Debug)]
+pub(crate) struct Reduced {
+    pub(crate) row: usize,
+    pub(crate) pivot: usize,
+    pub(crate) entries: Vec<f64>,
 }
 
-/// A pivot for each row, by complete pivoting, and the rows reduced so that each alone has its pivot, whose entry is 1.
+/// The rows that do not follow from others, by complete pivoting, in their order.
 ///
 /// Rows with a preferred pivot take it as long as it is there; among the other columns weights count, and one without a
-/// weight is the last choice. There is no result where a row has no pivot.
+/// weight is the last choice. Of what is alike the first is taken.
 pub(crate) fn eliminated(
     mut rows: Vec<Vec<f64>>,
     preferred: &[Option<usize>],
     weights: &[f64],
-) -> Option<(Vec<usize>, Vec<Vec<f64>>)> {
+) -> Vec<Reduced> {
     let lengths: Vec<f64> = rows.iter().map(|row| largest(row).max(NOTHING)).collect();
     let mut pivots: Vec<Option<usize>> = vec![None; rows.len()];
     let mut taken = vec![false; weights.len()];
@@ -63,14 +57,19 @@ pub(crate) fn eliminated(
                     }
                     let can = weight > 0.0;
                     let worth = share * if can { weight } else { 1.0 };
-                    if best.is_none_or(|(most, could, ..)| (can, worth) > (could, most)) {
+                    let is_better = |(most, could, ..): (f64, bool, usize, usize)| {
+                        (can, worth) > (could, if can == could { ALIKE * most } else { most })
+                    };
+                    if best.is_none_or(is_better) {
                         best = Some((worth, can, row, column));
                     }
                 }
             }
             best.map(|(.., row, column)| (row, column))
         };
-        let (row, column) = wanted.or_else(best)?;
+        let Some((row, column)) = wanted.or_else(best) else {
+            break;
+        };
         pivots[row] = Some(column);
         taken[column] = true;
         let factor = rows[row][column];
@@ -82,7 +81,15 @@ pub(crate) fn eliminated(
         }
         rows[row] = own;
     }
-    Some((pivots.into_iter().flatten().collect(), rows))
+    let each = rows.into_iter().zip(pivots).enumerate();
+    let reduced = each.filter_map(|(row, (entries, pivot))| {
+        Some(Reduced {
+            row,
+            pivot: pivot?,
+            entries,
+        })
+    });
+    reduced.collect()
 }
 
 /// The pivots in another order, in which each row has an entry at its own: there is one where the pivots determine all
@@ -131,8 +138,17 @@ fn give(
 mod tests {
     use super::*;
 
+    fn pivots(
+        rows: Vec<Vec<f64>>,
+        preferred: &[Option<usize>],
+        weights: &[f64],
+    ) -> Vec<(usize, usize)> {
+        let reduced = eliminated(rows, preferred, weights);
+        reduced.iter().map(|one| (one.row, one.pivot)).collect()
+    }
+
     #[test]
-    fn rows_that_follow_from_others_are_found() {
+    fn rows_that_follow_from_others_are_left_out() {
         let rows = vec![
             vec![1.0, 2.0, 0.0],
             vec![0.0, 1.0, 1.0],
@@ -140,27 +156,32 @@ mod tests {
             vec![0.0, 0.0, 0.0],
             vec![0.0, 0.0, 3.0],
         ];
-        assert_eq!(independent(rows), [true, true, false, false, true]);
+        let found = pivots(rows, &[None; 5], &[1.0; 3]);
+        assert_eq!(found.len(), 3);
+        assert!(found.iter().all(|(row, _)| *row != 3), "{found:?}");
+        assert!(pivots(vec![vec![0.0; 2]], &[None], &[1.0; 2]).is_empty());
     }
 
     #[test]
     fn the_largest_pivots_are_chosen_and_wishes_granted() {
         let rows = || vec![vec![1e-7, 1.0, 0.3], vec![1e-7, 0.9, 0.5]];
-        let (pivots, reduced) = eliminated(rows(), &[None, None], &[1.0; 3]).expect("pivots");
-        assert_eq!(pivots, [1, 2]);
+        let reduced = eliminated(rows(), &[None, None], &[1.0; 3]);
+        assert_eq!((reduced[0].pivot, reduced[1].pivot), (1, 2));
         assert!(
-            (reduced[0][0] - 5e-8 / 0.23 * 0.8).abs() < 1e-7,
+            (reduced[0].entries[0] - 5e-8 / 0.23 * 0.8).abs() < 1e-7,
             "{reduced:?}"
         );
-        let (pivots, _) = eliminated(rows(), &[None, Some(1)], &[1.0; 3]).expect("pivots");
-        assert_eq!(pivots, [2, 1]);
-        let (pivots, _) = eliminated(rows(), &[None, None], &[1.0, 0.0, 1.0]).expect("pivots");
         assert_eq!(
-            pivots,
-            [1, 2],
+            pivots(rows(), &[None, Some(1)], &[1.0; 3]),
+            [(0, 2), (1, 1)]
+        );
+        assert_eq!(
+            pivots(rows(), &[None, None], &[1.0, 0.0, 1.0]),
+            [(0, 1), (1, 2)],
             "a column without a weight where no other is left"
         );
-        assert!(eliminated(vec![vec![0.0; 2]], &[None], &[1.0; 2]).is_none());
+        let small = vec![vec![1.0, 0.1], vec![0.001, 1.0], vec![1.0, 0.1001]];
+        assert_eq!(pivots(small, &[None; 3], &[1.0; 2]), [(0, 0), (1, 1)]);
     }
 
     #[test]

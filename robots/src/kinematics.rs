@@ -60,12 +60,12 @@ impl Twist {
     }
 }
 
-/// Poses of all links where joints with an axis have moved by some way from how they are drawn.
-pub(crate) fn poses(links: &[Link], moved: impl Fn(usize) -> f64) -> Vec<Pose> {
+/// Poses of all links where joints with an axis have moved by some way from how they are drawn, and the others by a pose.
+pub(crate) fn poses(links: &[Link], moved: impl Fn(usize) -> f64, turned: &[Pose]) -> Vec<Pose> {
     let mut poses: Vec<Pose> = Vec::with_capacity(links.len());
     for (index, link) in links.iter().enumerate() {
         let on = link.parent.map_or(Pose::IDENTITY, |parent| poses[parent]);
-        let within = link.moved(moved(index));
+        let within = link.moved(moved(index)).then(turned[index]);
         poses.push(on.then(within));
     }
     poses
@@ -92,7 +92,7 @@ impl Link {
     }
 }
 
-/// A displacement of each link's joint at which no link is in line with another by chance.
-pub(crate) fn anywhere(link: usize) -> f64 {
-    0.1 + 0.05 * ((7 * link) % 5) as f64
+/// A displacement of each freedom at which no link is in line with another by chance.
+pub(crate) fn anywhere(index: usize) -> f64 {
+    0.1 + 0.05 * ((7 * index) % 5) as f64
 }

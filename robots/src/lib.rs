@@ -17,10 +17,12 @@
 //! | `tree.rs` | links that are fixed together become one body |
 //! | `kinematics.rs`, `mass.rs` | where links are and how they move with each coordinate; the mass matrix |
 //! | `loops.rs`, `elimination.rs` | equations between coordinates, of loops and couplings, and which follow from the others |
+//! | `assembly.rs` | where joints stand, and where equations hold |
 //! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
 //! | `options.rs`, `without.rs`, `lock.rs`, `snap.rs` | requests; what is left out; joints made rigid; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
+mod assembly;
 mod elimination;
 mod format;
 mod includes;

@@ -1,11 +1,12 @@
 //! Equations between coordinates: closed loops, where what connects two links of the tree demands that points of both
 //! meet, and couplings. Some may say the same, as that across the plane of a four-bar; these are left out. Each of the
-//! others gets the coordinate that follows from it, chosen by pivoting where the motion begins.
+//! others gets the coordinate that follows from it, chosen by pivoting where the motion begins and the equations hold.
 
 use appell_spec::Code;
 
-use crate::elimination::{eliminated, independent, matched};
-use crate::kinematics::{Freedom, anywhere, poses};
+use crate::assembly::{Configuration, Linear};
+use crate::elimination::{eliminated, matched};
+use crate::kinematics::{Freedom, anywhere};
 use crate::mass;
 use crate::model::{Connection, Coupling, Link, Motion, Robot, Sum};
 use crate::rotation::{Pose, Rotation, Vector, add, dot, minus};
@@ -14,6 +15,8 @@ use crate::xml::Findings;
 
 /// What a driven joint counts less where one is chosen to follow.
 const DRIVEN: f64 = 1e-2;
+/// How far places lie at which ranks are taken, as shares of [`anywhere`]: the next one where none is found.
+const BESIDE: [f64; 3] = [1.0, 0.1, 0.01];
 /// Most entries of the equations' matrix.
 const MOST_ENTRIES: usize = 1 << 18;
 
@@ -42,6 +45,8 @@ pub(crate) struct Equations {
     pub(crate) meetings: Vec<(String, Vec<Meeting>)>,
     /// By coupling; none where it says nothing new.
     pub(crate) couplings: Vec<Option<Follower>>,
+    /// Where the motion begins, where followers alone cannot make the equations hold.
+    pub(crate) start: Option<Configuration>,
 }
 
 impl Equations {
@@ -61,12 +66,9 @@ enum Of {
     Meeting(usize, usize, usize),
 }
 
-/// An equation between rates, by freedom.
+/// An equation between coordinates.
 struct Row {
     of: Of,
-    /// Where no link is in line with another by chance, and where the motion begins.
-    anywhere: Vec<f64>,
-    start: Vec<f64>,
     /// The coordinate that follows if it can.
     preferred: Option<usize>,
 }
@@ -96,21 +98,26 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
     let mut rows = Vec::new();
     for (index, coupling) in robot.couplings.iter().enumerate() {
         equations.couplings.push(None);
-        rows.push(places.coupled(index, coupling));
+        let preferred = match coupling.follows.terms.as_slice() {
+            [(name, _)] => places.column(name),
+            _ => None,
+        };
+        let of = Of::Coupling(index);
+        rows.push(Row { of, preferred });
     }
     for (index, connection) in robot.connections.iter().enumerate() {
         let meetings = places.meetings(connection);
-        rows.extend(places.rows(index, connection, &meetings));
+        let each = (0..meetings.len()).flat_map(|meeting| (0..3).map(move |axis| (meeting, axis)));
+        rows.extend(each.map(|(meeting, axis)| Row {
+            of: Of::Meeting(index, meeting, axis),
+            preferred: None,
+        }));
         equations.meetings.push((connection.name.clone(), meetings));
     }
-    let new = independent(rows.iter().map(|row| row.anywhere.clone()).collect());
-    let rows: Vec<Row> = (rows.into_iter().zip(new))
-        .filter_map(|(row, new)| new.then_some(row))
-        .collect();
-    let pivots = places.pivots(&rows);
-    for (row, &pivot) in rows.iter().zip(&pivots) {
-        let follower = places.follower(pivot);
-        if places.turns(pivot) {
+    let (kept, start) = places.followers(&rows);
+    for (row, pivot) in &kept {
+        let (row, follower) = (&rows[*row], places.follower(*pivot));
+        if places.turns(*pivot) {
             places.refuse(&row.of, follower, findings);
         }
         match row.of {
@@ -125,18 +132,21 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
     for (_, meetings) in &mut equations.meetings {
         meetings.retain(|meeting| !meeting.rows.is_empty());
     }
-    places.refuse_what_has_no_mass(&rows, &pivots, findings);
+    equations.start = start;
+    places.refuse_what_has_no_mass(&kept, findings);
     equations
 }
 
-/// Poses of the links, as they are drawn, where the motion begins, and where no link is in line with another by chance.
+/// Where links are, as they are drawn, where the motion begins, and where no link is in line with another by chance.
 struct Places<'a> {
     robot: &'a Robot,
     tree: &'a Tree,
     freedoms: Vec<Freedom>,
     drawn: Vec<Pose>,
-    start: Vec<Pose>,
-    anywhere: Vec<Pose>,
+    begun: Configuration,
+    /// Where the equations hold, if that is found.
+    start: Option<Configuration>,
+    anywhere: Configuration,
 }
 
 impl<'a> Places<'a> {
@@ -144,14 +154,59 @@ impl<'a> Places<'a> {
         let links = &robot.links;
         let begun =
             |link: usize| (links[link].joint.as_ref()).map_or(0.0, |own| own.start() - own.zero);
-        Self {
+        let begun = Configuration::new(links, begun);
+        let mut places = Self {
             robot,
             tree,
             freedoms,
-            drawn: poses(links, |_| 0.0),
-            start: poses(links, begun),
-            anywhere: poses(links, anywhere),
+            drawn: Configuration::new(links, |_| 0.0).poses(links),
+            begun: begun.clone(),
+            start: None,
+            anywhere: begun,
+        };
+        places.start = places.assembled(&places.begun);
+        let from = places.start.as_ref().unwrap_or(&places.begun);
+        let beside = |share: f64| {
+            let columns = 0..places.freedoms.len();
+            let by: Vec<f64> = columns.map(|column| share * anywhere(column)).collect();
+            let mut beside = from.clone();
+            beside.step(links, &places.freedoms, &by);
+            beside
+        };
+        let found = BESIDE
+            .into_iter()
+            .find_map(|share| places.assembled(&beside(share)));
+        places.anywhere = found.unwrap_or_else(|| beside(BESIDE[0]));
+        places
+    }
+
+    /// The nearest place where all equations hold.
+    fn assembled(&self, from: &Configuration) -> Option<Configuration> {
+        let links = &self.robot.links;
+        from.clone()
+            .assembled(links, &self.freedoms, &|at| self.linear(at))
+    }
+
+    /// All equations at a place.
+    fn linear(&self, at: &Configuration) -> Linear {
+        let poses = at.poses(&self.robot.links);
+        let mut linear = Linear::default();
+        for coupling in &self.robot.couplings {
+            self.coupled(coupling, at, &mut linear);
         }
+        for connection in &self.robot.connections {
+            self.connected(connection, &poses, &mut linear);
+        }
+        linear
+    }
+
+    /// The column of a joint with an axis.
+    fn column(&self, name: &str) -> Option<usize> {
+        let body = *self.tree.by_joint.get(name)?;
+        let link = self.tree.bodies[body].link;
+        self.freedoms
+            .iter()
+            .position(|freedom| freedom.link == link)
     }
 
     fn follower(&self, freedom: usize) -> Follower {
@@ -162,59 +217,35 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The row of a coupling.
-    fn coupled(&self, index: usize, coupling: &Coupling) -> Row {
-        let column = |name: &str| {
-            let body = *self.tree.by_joint.get(name)?;
-            let link = self.tree.bodies[body].link;
-            self.freedoms
-                .iter()
-                .position(|freedom| freedom.link == link)
+    /// Adds the row of a coupling.
+    fn coupled(&self, coupling: &Coupling, at: &Configuration, linear: &mut Linear) {
+        let value = |name: &str| {
+            let body = self.tree.by_joint.get(name);
+            let body = body.map(|body| &self.tree.bodies[*body]);
+            body.map_or(0.0, |body| body.joint.zero + at.ways[body.link])
         };
-        let row = |begins: bool| {
-            let value = |name: &str| {
-                let body = self
-                    .tree
-                    .by_joint
-                    .get(name)
-                    .map(|body| &self.tree.bodies[*body]);
-                body.map_or(0.0, |body| {
-                    if begins {
-                        body.joint.start()
-                    } else {
-                        body.joint.zero + anywhere(body.link)
-                    }
-                })
-            };
-            let mut row = vec![0.0; self.freedoms.len()];
-            let mut add = |sum: &Sum, by: f64| {
-                for (name, factor) in &sum.terms {
-                    if let Some(column) = column(name) {
-                        row[column] += by * factor;
-                    }
+        let mut row = vec![0.0; self.freedoms.len()];
+        let mut add = |sum: &Sum, by: f64| {
+            for (name, factor) in &sum.terms {
+                if let Some(column) = self.column(name) {
+                    row[column] += by * factor;
                 }
-            };
-            add(&coupling.follows, 1.0);
-            if let Some(other) = &coupling.other {
-                let x = other.at(value) - coupling.zeros[1];
-                // By Horner's rule, from the highest power on.
-                let powers = coupling.coefficients.iter().enumerate().skip(1).rev();
-                let slope =
-                    powers.fold(0.0, |sum, (power, factor)| sum * x + factor * power as f64);
-                add(other, -slope);
             }
-            row
         };
-        let preferred = match coupling.follows.terms.as_slice() {
-            [(name, _)] => column(name),
-            _ => None,
-        };
-        Row {
-            of: Of::Coupling(index),
-            anywhere: row(false),
-            start: row(true),
-            preferred,
+        add(&coupling.follows, 1.0);
+        let other = coupling.other.as_ref();
+        let x = other.map_or(0.0, |other| other.at(value) - coupling.zeros[1]);
+        // The polynomial and its slope by Horner's rule, from the highest power on.
+        let factors = coupling.coefficients.iter().rev();
+        let (polynomial, slope) = factors.fold((0.0, 0.0), |(sum, slope), factor| {
+            (sum * x + factor, slope * x + sum)
+        });
+        if let Some(other) = other {
+            add(other, -slope);
         }
+        let follows = coupling.follows.at(value) - coupling.zeros[0];
+        linear.rows.push(row);
+        linear.off.push(follows - polynomial);
     }
 
     /// The points that a connection makes meet, without their equations.
@@ -238,32 +269,24 @@ impl<'a> Places<'a> {
         shared.and_then(|link| self.tree.body_of[link])
     }
 
-    /// The rows of a connection.
-    fn rows(&self, index: usize, connection: &Connection, meetings: &[Meeting]) -> Vec<Row> {
+    /// Adds the rows of a connection.
+    fn connected(&self, connection: &Connection, poses: &[Pose], linear: &mut Linear) {
         let shared = self.carrier_of_both(connection.links());
         let along = self.along(connection);
-        let mut rows = Vec::new();
-        for (meeting, offset) in (0..meetings.len()).zip(connection.points()) {
+        let turned = along.map_or(Rotation::IDENTITY, |body| self.axes(body, poses));
+        for offset in connection.points() {
             let ends = connection.ends_at(offset);
+            let between = minus(place(ends[0], poses), place(ends[1], poses));
             for axis in 0..3 {
-                let row = |poses: &[Pose]| {
-                    let turned = along.map_or(Rotation::IDENTITY, |body| self.axes(body, poses));
-                    let direction = turned.0.map(|row| row[axis]);
-                    let mut row = vec![0.0; self.freedoms.len()];
-                    for (sign, end) in [(1.0, ends[0]), (-1.0, ends[1])] {
-                        self.add_slopes(&mut row, sign, end, direction, shared, poses);
-                    }
-                    row
-                };
-                rows.push(Row {
-                    of: Of::Meeting(index, meeting, axis),
-                    anywhere: row(&self.anywhere),
-                    start: row(&self.start),
-                    preferred: None,
-                });
+                let direction = turned.0.map(|row| row[axis]);
+                let mut row = vec![0.0; self.freedoms.len()];
+                for (sign, end) in [(1.0, ends[0]), (-1.0, ends[1])] {
+                    self.add_slopes(&mut row, sign, end, direction, shared, poses);
+                }
+                linear.rows.push(row);
+                linear.off.push(dot(between, direction));
             }
         }
-        rows
     }
 
     /// Adds how a point of a link moves along a direction with every coordinate behind the link that carries
@@ -288,22 +311,48 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The follower of each row: couplings have theirs, the others those that pivoting finds where the motion begins, or,
-    /// where some rows say nothing there, anywhere.
-    fn pivots(&self, rows: &[Row]) -> Vec<usize> {
+    /// The rows that say something new, each with the freedom that follows from it, and where the motion has to begin.
+    ///
+    /// How many they are shows where no link is in line with another by chance. Couplings have their followers; for the
+    /// others, rows and followers are those with the largest pivots where the motion begins, or, where fewer rows say
+    /// something there, anywhere.
+    fn followers(&self, rows: &[Row]) -> (Vec<(usize, usize)>, Option<Configuration>) {
         let weights: Vec<f64> = (0..self.freedoms.len())
             .map(|column| self.weight(column))
             .collect();
         let preferred: Vec<Option<usize>> = rows.iter().map(|row| row.preferred).collect();
-        let of = |which: fn(&Row) -> &Vec<f64>| {
-            let own: Vec<&Vec<f64>> = rows.iter().map(which).collect();
-            let all = own.iter().map(|row| (*row).clone()).collect();
-            let (pivots, _) = eliminated(all, &preferred, &weights)?;
-            Some(matched(&own, &pivots))
+        let at = |place: &Configuration| {
+            let all = self.linear(place).rows;
+            let kept = eliminated(all.clone(), &preferred, &weights);
+            let own: Vec<&Vec<f64>> = kept.iter().map(|one| &all[one.row]).collect();
+            let pivots: Vec<usize> = kept.iter().map(|one| one.pivot).collect();
+            let pivots = matched(&own, &pivots);
+            let kept = kept.iter().map(|one| one.row).zip(pivots);
+            kept.collect::<Vec<(usize, usize)>>()
         };
-        of(|row| &row.start)
-            .or_else(|| of(|row| &row.anywhere))
-            .unwrap_or_default()
+        let from = self.start.as_ref().unwrap_or(&self.begun);
+        let (here, anywhere) = (at(from), at(&self.anywhere));
+        let kept = if here.len() == anywhere.len() {
+            here
+        } else {
+            anywhere
+        };
+        let follow = |at: &Configuration| {
+            let mut linear = self.linear(at);
+            for (column, _) in self.freedoms.iter().enumerate() {
+                if kept.iter().all(|(_, pivot)| *pivot != column) {
+                    linear.rows.iter_mut().for_each(|row| row[column] = 0.0);
+                }
+            }
+            linear
+        };
+        let begun = self.begun.clone();
+        let holds = begun.assembled(&self.robot.links, &self.freedoms, &follow);
+        let start = match holds {
+            Some(_) => None,
+            None => self.start.clone(),
+        };
+        (kept, start)
     }
 
     /// How gladly a freedom follows.
@@ -348,19 +397,18 @@ impl<'a> Places<'a> {
     }
 
     /// A joint along which nothing has inertia, whatever follows it, has no equation of motion.
-    fn refuse_what_has_no_mass(&self, rows: &[Row], pivots: &[usize], findings: &Findings) {
+    fn refuse_what_has_no_mass(&self, kept: &[(usize, usize)], findings: &Findings) {
         let links = &self.robot.links;
         if findings.has_errors() || self.freedoms.len() > mass::MOST_FREEDOMS {
             return;
         }
-        let m = mass::matrix(links, &self.robot.tendons, anywhere);
-        let preferred: Vec<Option<usize>> = pivots.iter().copied().map(Some).collect();
-        let all = rows.iter().map(|row| row.anywhere.clone()).collect();
-        let Some((pivots, rows)) = eliminated(all, &preferred, &vec![1.0; self.freedoms.len()])
-        else {
-            return;
-        };
-        let rows: Vec<(usize, Vec<f64>)> = pivots.into_iter().zip(rows).collect();
+        let m = mass::matrix(links, &self.robot.tendons, &self.anywhere.poses(links));
+        let all = self.linear(&self.anywhere).rows;
+        let rows = kept.iter().map(|(row, _)| all[*row].clone()).collect();
+        let preferred: Vec<Option<usize>> = kept.iter().map(|(_, pivot)| Some(*pivot)).collect();
+        let reduced = eliminated(rows, &preferred, &vec![1.0; self.freedoms.len()]);
+        let rows = reduced.into_iter().map(|one| (one.pivot, one.entries));
+        let rows: Vec<(usize, Vec<f64>)> = rows.collect();
         if let Some(freedom) = mass::without_inertia(&m, &rows) {
             let body = &self.tree.bodies[self.follower(freedom).body];
             let (link, joint) = (&links[body.link].name, &body.joint.name);
@@ -426,7 +474,7 @@ fn place((link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
 
 /// The pose of one link in another while all is as drawn; none is the ground.
 pub(crate) fn drawn(links: &[Link], [first, second]: [Option<usize>; 2]) -> Pose {
-    let poses = poses(links, |_| 0.0);
+    let poses = Configuration::new(links, |_| 0.0).poses(links);
     let of = |link: Option<usize>| link.map_or(Pose::IDENTITY, |link| poses[link]);
     of(second).inverse().then(of(first))
 }

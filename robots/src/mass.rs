@@ -1,7 +1,8 @@
 //! The mass matrix at a pose, by composite inertias (Featherstone, *Rigid Body Dynamics Algorithms*, 2008, chapter 6).
 
+use crate::assembly::Configuration;
 use crate::inertia::Inertia;
-use crate::kinematics::{Freedom, Twist, poses};
+use crate::kinematics::{Freedom, Twist};
 use crate::model::{Link, Tendon};
 use crate::rotation::{Pose, Vector, add, cross, dot, scaled};
 
@@ -70,10 +71,9 @@ pub(crate) struct Mass {
     terms: Vec<f64>,
 }
 
-/// M of the tree with the armature of joints and tendons, where joints have moved by some way from how they are drawn.
-pub(crate) fn matrix(links: &[Link], tendons: &[Tendon], moved: impl Fn(usize) -> f64) -> Mass {
-    let poses = poses(links, moved);
-    let each = links.iter().zip(&poses);
+/// M of the tree with the armature of joints and tendons, where the links are.
+pub(crate) fn matrix(links: &[Link], tendons: &[Tendon], poses: &[Pose]) -> Mass {
+    let each = links.iter().zip(poses);
     let mut carried: Vec<Spatial> = each
         .map(|(link, pose)| Spatial::of(&link.inertia, *pose))
         .collect();
@@ -83,7 +83,7 @@ pub(crate) fn matrix(links: &[Link], tendons: &[Tendon], moved: impl Fn(usize) -
         }
     }
     let freedoms = Freedom::all(links);
-    let twists = freedoms.iter().map(|one| one.twist(links, &poses));
+    let twists = freedoms.iter().map(|one| one.twist(links, poses));
     let twists: Vec<Twist> = twists.collect();
     let mut first = vec![freedoms.len(); links.len() + 1];
     for (column, freedom) in freedoms.iter().enumerate().rev() {
@@ -172,7 +172,8 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     if Freedom::all(links).len() > MOST_FREEDOMS {
         return false;
     }
-    let mobility = inverse(matrix(links, tendons, |_| 0.0).entries);
+    let drawn = Configuration::new(links, |_| 0.0).poses(links);
+    let mobility = inverse(matrix(links, tendons, &drawn).entries);
     let mut first = 0;
     for joint in links.iter_mut().filter_map(|link| link.joint.as_mut()) {
         let next = first + joint.motion.freedoms();
@@ -262,7 +263,8 @@ mod tests {
             link
         };
         let links = [rod("a", None, 0.0), rod("b", Some(0), 1.0)];
-        let m = matrix(&links, &[], |link| [0.3, 0.7][link]).entries;
+        let poses = Configuration::new(&links, |link| [0.3, 0.7][link]).poses(&links);
+        let m = matrix(&links, &[], &poses).entries;
         let (own, cos) = (0.1 + 2.0 * 0.25, 0.7_f64.cos());
         let expected = [[2.0 * own + 2.0 + 2.0 * cos, own + cos], [own + cos, own]];
         for (row, expected) in m.iter().zip(expected) {

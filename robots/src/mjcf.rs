@@ -22,7 +22,7 @@ use crate::model::{LeftOut, Link, Robot};
 use crate::options::Options;
 use crate::rotation::{Pose, Rotation, Vector};
 use crate::without::Without;
-use crate::xml::{Element, Findings, Span, child, children, elements, exactly, tag};
+use crate::xml::{Element, Findings, Span, children, elements, exactly, tag};
 
 use compiler::{Compiler, InertiaFrom};
 use defaults::Defaults;
@@ -67,8 +67,8 @@ pub(crate) struct Reader<'x, 'f> {
     left_out: Vec<LeftOut>,
     /// Geoms that could touch others.
     touching: Vec<Span>,
-    /// Whether a body that moves has been read.
-    moves: bool,
+    /// Whether masses of bodies that no joint moves count as well.
+    all_count: bool,
     root: Element<'x>,
     /// The file, and those that it names.
     whole: &'f Whole<'f>,
@@ -79,6 +79,14 @@ pub(crate) struct Reader<'x, 'f> {
 struct Level<'x> {
     parent: Option<usize>,
     /// Of frames between the parent and here.
+    pose: Pose,
+    class: Option<&'x str>,
+}
+
+/// What a body holds, itself or by frames within it.
+struct Held<'x> {
+    element: Element<'x>,
+    /// Where the frames put it, and the class of their children.
     pose: Pose,
     class: Option<&'x str>,
 }
@@ -100,10 +108,11 @@ pub(crate) fn read(
         sites: BTreeMap::new(),
         left_out: Vec::new(),
         touching: Vec::new(),
-        moves: false,
+        all_count: options.floating,
         root,
         whole,
     };
+    reader.all_count |= reader.compiler.total_mass.is_some();
     schema::check(root, findings, &mut reader.left_out);
     let ground = Level {
         parent: None,
@@ -286,6 +295,12 @@ impl<'x> Reader<'x, '_> {
                     );
                 }
                 name if NOT_YET.contains(&name) => self.not_yet(inner),
+                name if READ.contains(&name) && level.parent.is_none() => self.findings.error(
+                    Code::NotAllowedHere,
+                    tag(inner),
+                    format!("the world holds a `{name}`"),
+                    "write `<body>` around it and what it moves",
+                ),
                 name if READ.contains(&name) => {}
                 name => self.leave_out(name.to_owned(), inner),
             }
@@ -342,12 +357,14 @@ impl<'x> Reader<'x, '_> {
         let name = element.attribute("name");
         let name = name.map_or_else(|| format!("body{}", self.links.len() + 1), str::to_owned);
         self.refuse_twice("bodies", &name, tag(element));
-        let joints = self.joints(element, &name, class);
+        let mut held = Vec::new();
+        self.hold(element, Pose::IDENTITY, class, &mut held);
+        let joints = self.joints(&held, &name);
         for joint in &joints {
             self.refuse_twice("joints", &joint.name, joint.place.clone());
         }
-        self.moves |= !joints.is_empty();
-        let inertia = self.inertia(element, &name, class);
+        let counts = self.all_count || !joints.is_empty() || self.moves(level.parent);
+        let inertia = self.inertia(element, &name, &held, counts);
         let carried = element.attribute_node("gravcomp");
         let carried = carried.and_then(|given| exactly(self.findings, &given, "`gravcomp`"));
         let own = Link::fixed(name, level.parent, pose, tag(element));
@@ -366,6 +383,12 @@ impl<'x> Reader<'x, '_> {
             class,
         };
         self.level(element, inside);
+    }
+
+    /// Whether a joint moves a link, or what carries it.
+    fn moves(&self, link: Option<usize>) -> bool {
+        let mut behind = std::iter::successors(link, |&link| self.links[link].parent);
+        behind.any(|link| self.links[link].joint.is_some())
     }
 
     /// Names of one kind are different.
@@ -387,20 +410,52 @@ impl<'x> Reader<'x, '_> {
         self.leave_out("site".to_owned(), element);
     }
 
+    /// Collects what a body or a frame holds, in the order of the file.
+    fn hold(
+        &self,
+        holder: Element<'x>,
+        pose: Pose,
+        class: Option<&'x str>,
+        held: &mut Vec<Held<'x>>,
+    ) {
+        for element in elements(holder) {
+            if element.has_tag_name("frame") {
+                let class = self.class(element, "childclass").or(class);
+                self.hold(element, pose.then(self.pose(element, None)), class, held);
+            } else {
+                held.push(Held {
+                    element,
+                    pose,
+                    class,
+                });
+            }
+        }
+    }
+
     /// The inertia of a body in its frame.
-    fn inertia(&mut self, body: Element<'x>, name: &str, class: Option<&'x str>) -> Inertia {
-        let inertial = child(body, "inertial");
+    fn inertia(
+        &mut self,
+        body: Element<'x>,
+        name: &str,
+        held: &[Held<'x>],
+        counts: bool,
+    ) -> Inertia {
+        let is_one = |held: &&Held<'_>| held.element.has_tag_name("inertial");
+        // The last one holds.
+        let inertial = held.iter().rfind(is_one);
         let from = self.compiler.inertia_from;
         let inertia = match inertial {
-            Some(inertial) if from != InertiaFrom::Geoms => self.inertial(inertial),
+            Some(inertial) if from != InertiaFrom::Geoms => {
+                self.inertial(inertial.element).placed(inertial.pose)
+            }
             None if from == InertiaFrom::Inertial => Inertia::NONE,
-            _ => self.of_geoms(body, class, self.moves),
+            _ => self.of_geoms(held, counts),
         };
         let inertia = self.compiler.corrected(inertia).without_rounding();
         if let Some(reason) = inertia.impossible() {
             self.findings.warning(
                 Code::NotPhysical,
-                tag(inertial.unwrap_or(body)),
+                tag(inertial.map_or(body, |inertial| inertial.element)),
                 format!("no body can have the inertia of `{name}`: {reason}"),
                 "it is taken as it is; the motion is right wherever the mass matrix is positive definite",
             );

@@ -10,6 +10,7 @@ mod units;
 
 use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
+use crate::assembly::Configuration;
 use crate::format::Format;
 use crate::letters::{Numbers, Parameter};
 use crate::loops::Equations;
@@ -47,6 +48,8 @@ pub(crate) struct Writer<'a> {
     numbers: Numbers<'a>,
     /// Names, points and masses of drives that have inertia, but no weight.
     weightless: Vec<(String, String, String)>,
+    /// Where the motion begins, where that is not as the file has it.
+    start: Option<&'a Configuration>,
     coordinates: Section,
     inputs: Section,
     frames: Section,
@@ -79,6 +82,7 @@ pub(crate) fn write(
     // The folder may be another one where the spec is read.
     let file = file.rsplit('/').next().unwrap_or(file);
     let mut writer = Writer::new(robot, tree, options);
+    writer.start = equations.start.as_ref();
     let letters = writer.gravity(robot.gravity);
     writer.mark(&(0..0));
     for (index, body) in tree.bodies.iter().enumerate() {
@@ -166,6 +170,7 @@ impl<'a> Writer<'a> {
             places,
             numbers: Numbers::new(&options.letters),
             weightless: Vec::new(),
+            start: None,
             coordinates: Section::default(),
             inputs: Section::default(),
             frames: Section::default(),
@@ -302,5 +307,18 @@ fn plus(expression: &str, number: &str) -> String {
             || format!("{expression} + {number}"),
             |number| format!("{expression} - {number}"),
         ),
+    }
+}
+
+/// An expression that can be a factor or a base: a name or the rate of one as it is, all else in brackets.
+fn operand(expression: &str) -> String {
+    let rate = expression
+        .strip_prefix("dot(")
+        .and_then(|rest| rest.strip_suffix(')'));
+    let name = rate.unwrap_or(expression);
+    if name.contains(|c: char| !c.is_alphanumeric() && c != '_') {
+        format!("({expression})")
+    } else {
+        expression.to_owned()
     }
 }

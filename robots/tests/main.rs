@@ -2,7 +2,9 @@
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
+mod equality;
 mod files;
 mod includes;
+mod masses;
 mod mjcf;
 mod orientations;

@@ -125,6 +125,7 @@ fn connection<'x>(
             };
             connected((first, position), second, pose)
         }
+        None if weld && !rigid => connected((first, drawn.inverse().of(anchor)), second, drawn),
         // The same wherever it is anchored.
         None if weld => connected((first, [0.0; 3]), second, drawn),
         None => connected((first, anchor), second, drawn),

@@ -3,12 +3,14 @@
 use std::f64::consts::PI;
 
 use appell_spec::{Code, did_you_mean};
+use roxmltree::Attribute;
 
 use crate::inertia::Inertia;
 use crate::rotation::{Pose, Rotation, Vector, add, dot, minus, scaled, unit};
-use crate::xml::{Element, children, elements, exactly, numbers, tag};
+use crate::xml::{Element, children, exactly, numbers, tag};
 
-use super::Reader;
+use super::meshes::called;
+use super::{Held, Reader};
 
 /// Density of what has none, that of water.
 const DENSITY: f64 = 1000.0;
@@ -26,13 +28,15 @@ const SHAPES: [&str; 9] = [
 
 impl<'x> Reader<'x, '_> {
     /// The geoms of a body together, in its frame.
-    pub(super) fn of_geoms(
-        &self,
-        body: Element<'x>,
-        class: Option<&'x str>,
-        matters: bool,
-    ) -> Inertia {
-        self.geoms_within(body, class, Pose::IDENTITY, matters)
+    pub(super) fn of_geoms(&self, held: &[Held<'x>], matters: bool) -> Inertia {
+        let geoms = held.iter().filter(|held| held.element.has_tag_name("geom"));
+        geoms.fold(Inertia::NONE, |sum, held| {
+            let class = self.class(held.element, "class").or(held.class);
+            match self.geom(held.element, class, matters) {
+                Some((own, within)) => sum.with(&own.placed(held.pose.then(within))),
+                None => sum,
+            }
+        })
     }
 
     /// Keeps the place of a geom that others could touch.
@@ -46,29 +50,6 @@ impl<'x> Reader<'x, '_> {
         if touches("contype") || touches("conaffinity") {
             self.touching.push(tag(geom));
         }
-    }
-
-    /// Geoms stand in a body, or in frames within it.
-    fn geoms_within(
-        &self,
-        holder: Element<'x>,
-        class: Option<&'x str>,
-        pose: Pose,
-        matters: bool,
-    ) -> Inertia {
-        let mut sum = Inertia::NONE;
-        for geom in children(holder, "geom") {
-            let class = self.class(geom, "class").or(class);
-            if let Some((own, within)) = self.geom(geom, class, matters) {
-                sum = sum.with(&own.placed(pose.then(within)));
-            }
-        }
-        for frame in elements(holder).filter(|inner| inner.tag_name().name() == "frame") {
-            let class = self.class(frame, "childclass").or(class);
-            let pose = pose.then(self.pose(frame, None));
-            sum = sum.with(&self.geoms_within(frame, class, pose, matters));
-        }
-        sum
     }
 
     /// A geom about its own axes, and where it is.
@@ -102,28 +83,19 @@ impl<'x> Reader<'x, '_> {
         let given_mass = number("mass");
         let density = number("density").unwrap_or(DENSITY);
         let massless = given_mass == Some(0.0) || (given_mass.is_none() && density == 0.0);
-        if massless || ["plane", "hfield"].contains(&shape) {
+        if massless || (shape == "plane" && given_mass.is_none()) {
             return None;
         }
         let of_surface = attribute("shellinertia").is_some_and(|given| given.value() == "true");
-        // Of a mesh it is said elsewhere.
-        let of_surface = of_surface && shape != "mesh";
-        if of_surface || shape == "sdf" {
+        let unknown = match shape {
+            "mesh" => None,
+            _ if of_surface => Some("with `shellinertia`".to_owned()),
+            "plane" | "sdf" => Some(format!("of type `{shape}`")),
+            _ => attribute("mesh").map(|_| format!("a {shape} that is fitted to a mesh")),
+        };
+        if let Some(what) = unknown {
             if matters {
-                self.mass_unknown(
-                    geom,
-                    if of_surface {
-                        "with `shellinertia`"
-                    } else {
-                        "of type `sdf`"
-                    },
-                );
-            }
-            return None;
-        }
-        if attribute("mesh").is_some() && shape != "mesh" {
-            if matters {
-                self.mass_unknown(geom, &format!("a {shape} that is fitted to a mesh"));
+                self.mass_unknown(geom, &what);
             }
             return None;
         }
@@ -161,7 +133,10 @@ impl<'x> Reader<'x, '_> {
             return None;
         }
         let (pose, half) = self.placed(geom, class)?;
-        let size = self.size(geom, class, shape, half)?;
+        let size = match shape {
+            "hfield" => self.field(geom, attribute("hfield"))?,
+            _ => self.size(geom, class, shape, half)?,
+        };
         let (volume, moments) = homogeneous(shape, size);
         let mass = given_mass.unwrap_or(density * volume);
         let [xx, yy, zz] = moments.map(|moment| moment * mass);
@@ -206,6 +181,42 @@ impl<'x> Reader<'x, '_> {
             position: scaled(add(from, to), 0.5),
         };
         Some((pose, Some(0.5 * dot(way, way).sqrt())))
+    }
+
+    /// Half lengths of the box that a field of heights counts as, whatever its heights: a quarter of the highest one and
+    /// half its base.
+    fn field(&self, geom: Element<'x>, named: Option<Attribute<'x, 'x>>) -> Option<Vector> {
+        let name = named.map_or("", |named| named.value());
+        let fields = children(self.root, "asset").flat_map(|asset| children(asset, "hfield"));
+        let known: Vec<(String, Element<'x>)> = fields
+            .filter_map(|field| Some((called(field)?, field)))
+            .collect();
+        let Some((_, field)) = known.iter().find(|(own, _)| own == name) else {
+            self.findings.error(
+                Code::UnknownReference,
+                named.map_or_else(|| tag(geom), |named| named.range_value()),
+                format!("there is no `hfield` `{}`", appell_spec::shown(name)),
+                did_you_mean(name, known.iter().map(|(own, _)| own.as_str()), || {
+                    "name one of the assets".to_owned()
+                }),
+            );
+            return None;
+        };
+        let size = field.attribute_node("size");
+        let what = "a size, half lengths, height and base,";
+        let [x, y, top, base] = match size {
+            Some(given) => exactly(self.findings, &given, what)?,
+            None => {
+                self.findings.error(
+                    Code::MissingKey,
+                    tag(*field),
+                    "`hfield` has no `size`",
+                    "write `size=\"x y height base\"`, in m",
+                );
+                return None;
+            }
+        };
+        Some([x, y, 0.25 * top + 0.5 * base])
     }
 
     /// Radii and half lengths along the own axes.
@@ -258,7 +269,7 @@ impl<'x> Reader<'x, '_> {
 /// Volume, and principal moments over the mass.
 fn homogeneous(shape: &str, [a, b, c]: Vector) -> (f64, Vector) {
     match shape {
-        "box" => {
+        "box" | "hfield" => {
             let [x, y, z] = [a * a, b * b, c * c];
             (
                 8.0 * a * b * c,

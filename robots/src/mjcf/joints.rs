@@ -4,24 +4,20 @@ use appell_spec::{Code, did_you_mean};
 use roxmltree::Attribute;
 
 use crate::model::{Joint, Motion};
-use crate::rotation::{Pose, Vector, is_zero, unit};
-use crate::xml::{Element, elements, exactly, tag};
+use crate::rotation::{Vector, is_zero, unit};
+use crate::xml::{Element, exactly, tag};
 
-use super::Reader;
+use super::{Held, Reader};
 
 impl<'x> Reader<'x, '_> {
     /// The joints of a body, in the order in which they move it.
-    pub(super) fn joints(
-        &self,
-        body: Element<'x>,
-        name: &str,
-        class: Option<&'x str>,
-    ) -> Vec<Joint> {
-        let mut elements = Vec::new();
-        self.joint_elements(body, class, Pose::IDENTITY, &mut elements);
-        let count = elements.len();
-        let joints = elements.into_iter().enumerate();
-        let joints = joints.filter_map(|(index, (element, class, within))| {
+    pub(super) fn joints(&self, held: &[Held<'x>], name: &str) -> Vec<Joint> {
+        let joints = held
+            .iter()
+            .filter(|held| ["joint", "freejoint"].contains(&held.element.tag_name().name()));
+        let count = joints.clone().count();
+        let joints = joints.enumerate().filter_map(|(index, held)| {
+            let (element, within) = (held.element, held.pose);
             let given = element.attribute("name").map(str::to_owned);
             if element.has_tag_name("freejoint") {
                 // Defaults of joints do not apply.
@@ -34,6 +30,7 @@ impl<'x> Reader<'x, '_> {
                 1 => format!("joint_{name}"),
                 _ => format!("joint_{name}_{}", index + 1),
             });
+            let class = self.class(element, "class").or(held.class);
             let joint = self.joint_of(element, name, class)?;
             Some(Joint {
                 axis: within.rotation.of(joint.axis),
@@ -46,27 +43,6 @@ impl<'x> Reader<'x, '_> {
             })
         });
         joints.collect()
-    }
-
-    /// Joints stand in a body, or in frames within it; with their classes, and the poses of the frames.
-    fn joint_elements(
-        &self,
-        holder: Element<'x>,
-        class: Option<&'x str>,
-        within: Pose,
-        found: &mut Vec<(Element<'x>, Option<&'x str>, Pose)>,
-    ) {
-        for inner in elements(holder) {
-            match inner.tag_name().name() {
-                "freejoint" => found.push((inner, class, within)),
-                "joint" => found.push((inner, self.class(inner, "class").or(class), within)),
-                "frame" => {
-                    let class = self.class(inner, "childclass").or(class);
-                    self.joint_elements(inner, class, within.then(self.pose(inner, None)), found);
-                }
-                _ => {}
-            }
-        }
     }
 
     fn joint_of(

@@ -17,19 +17,10 @@ pub(crate) type Triangle = [Vector; 3];
 impl<'x> Reader<'x, '_> {
     /// Volume of a mesh, and its inertia with a mass of 1; in words why not.
     pub(super) fn mesh(&self, root: Element<'x>, name: &str) -> Result<(f64, Inertia), String> {
-        let stem = |file: &str| {
-            let file = file.rsplit(['/', '\\']).next().unwrap_or(file);
-            file.rsplit_once('.')
-                .map_or(file, |(stem, _)| stem)
-                .to_owned()
-        };
         let assets = children(root, "asset").flat_map(|asset| children(asset, "mesh"));
         let element = assets
             .into_iter()
-            .find(|mesh| {
-                let own = mesh.attribute("name").map(str::to_owned);
-                own.or_else(|| mesh.attribute("file").map(stem)).as_deref() == Some(name)
-            })
+            .find(|mesh| called(*mesh).as_deref() == Some(name))
             .ok_or_else(|| format!("there is no mesh `{}`", appell_spec::shown(name)))?;
         let attribute = |key: &str| {
             let own = element.attribute_node(key);
@@ -81,6 +72,18 @@ impl<'x> Reader<'x, '_> {
         let pyramids = pyramids(&triangles);
         of_triangles(&pyramids).ok_or_else(|| format!("`{path}` has no volume"))
     }
+}
+
+/// The name of an asset, that of its file where it has none itself.
+pub(super) fn called(asset: Element<'_>) -> Option<String> {
+    let stem = |file: &str| {
+        let file = file.rsplit(['/', '\\']).next().unwrap_or(file);
+        file.rsplit_once('.')
+            .map_or(file, |(stem, _)| stem)
+            .to_owned()
+    };
+    let own = asset.attribute("name").map(str::to_owned);
+    own.or_else(|| asset.attribute("file").map(stem))
 }
 
 /// Tetrahedra over the faces from the centre of the surface.

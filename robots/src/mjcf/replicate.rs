@@ -134,8 +134,11 @@ fn edits(root: Element<'_>, element: Element<'_>, copies: &[(Pose, String)]) -> 
     for (pose, ending) in copies {
         let [x, y, z] = pose.position;
         let [w, i, j, k] = pose.rotation.to_quaternion();
-        let open = format!("<frame pos=\"{x:e} {y:e} {z:e}\" quat=\"{w:e} {i:e} {j:e} {k:e}\">");
+        let open = format!("<frame pos=\"{x:e} {y:e} {z:e}\" quat=\"{w:e} {i:e} {j:e} {k:e}\" ");
         within.push(Edit::Insert(open, own.start));
+        let class = element.attribute_node("childclass");
+        within.extend(class.map(|class| Edit::Keep(class.range())));
+        within.push(Edit::Insert(">".to_owned(), own.start));
         let ends = element
             .descendants()
             .skip(1)

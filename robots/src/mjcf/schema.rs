@@ -130,7 +130,7 @@ const TABLE: &[Row] = &[
         "builtin content_type face material maxhullvert normal params smoothnormal texcoord vertex",
     ),
     Row::idle_element("plugin", "mesh geom actuator sensor"),
-    Row::idle_element("hfield", "asset"),
+    Row::read("hfield", "asset", "file name size").idle("content_type elevation ncol nrow"),
     Row::idle_element("skin", "asset deformable"),
     Row::idle_element("texture", "asset default"),
     Row::idle_element("material", "asset default"),
@@ -144,7 +144,7 @@ const TABLE: &[Row] = &[
     .idle("fuse simple sleep user")
     .left_out(&[("mocap", "false", "it stands still")]),
     Row::read("frame", "body", "axisangle childclass euler name pos quat xyaxes zaxis"),
-    Row::read("replicate", "mujoco body", "count euler offset sep"),
+    Row::read("replicate", "mujoco body", "childclass count euler offset sep"),
     Row::read("attach", "body", "body frame model prefix"),
     Row::read(
         "inertial",
@@ -169,11 +169,11 @@ const TABLE: &[Row] = &[
     Row::read(
         "geom",
         "body default",
-        "axisangle class conaffinity contype density euler fromto group mass mesh name pos quat shellinertia size type \
+        "axisangle class conaffinity contype density euler fromto group hfield mass mesh name pos quat shellinertia size type \
          xyaxes zaxis",
     )
     .idle(
-        "adhesion castshadow condim fitscale fluidcoef fluidshape friction gap hfield margin material priority rgba \
+        "adhesion castshadow condim fitscale fluidcoef fluidshape friction gap margin material priority rgba \
          solimp solmix solref surfacevel user",
     ),
     Row::read(

@@ -8,7 +8,7 @@ use crate::rotation::{Vector, dot, is_zero, right_angles};
 use crate::table::{Item, list};
 use crate::tree::Part;
 
-use super::{Writer, plus};
+use super::{Writer, operand, plus};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -235,8 +235,7 @@ impl Writer<'_> {
             let component = &mut at[body.axis.index];
             *component = match (component.as_str(), body.axis.backwards) {
                 ("0", false) => way,
-                ("0", true) if !way.contains(' ') => format!("-{way}"),
-                ("0", true) => format!("-({way})"),
+                ("0", true) => format!("-{}", operand(&way)),
                 (constant, false) => format!("{constant} + {way}"),
                 (constant, true) => format!("{constant} - ({way})"),
             };

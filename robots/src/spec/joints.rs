@@ -2,11 +2,12 @@
 
 use crate::letters::plain;
 use crate::model::{Joint, Motion};
+use crate::rotation::Pose;
 use crate::table::{Item, list};
 
 use super::resistances::Owner;
 use super::units::Units;
-use super::{Writer, sentence};
+use super::{Writer, operand, sentence};
 
 impl Writer<'_> {
     /// The coordinate of a joint, its speed, its input, and what resists it.
@@ -19,7 +20,7 @@ impl Writer<'_> {
         let q = self.called.coordinates[index].clone();
         let units = Units::of(joint.motion);
         let rate = format!("dot({q})");
-        self.coordinate(joint, &q, &units);
+        self.coordinate(index, &q, &units);
         self.drive(joint, &q, &units);
         let owner = Owner {
             called: &q,
@@ -71,13 +72,14 @@ impl Writer<'_> {
         let body = &self.tree.bodies[index];
         let named = sentence(&format!("joint {}", body.joint.name));
         let is_free = body.joint.motion == Motion::Free;
-        let place = body.start.position.map(|value| (value, "m"));
         // A ball joint begins as its file has it.
-        let attitude = if is_free {
-            body.start.rotation.to_quaternion()
-        } else {
-            [1.0, 0.0, 0.0, 0.0]
+        let drawn = if is_free { body.start } else { Pose::IDENTITY };
+        let start = match self.start {
+            Some(start) => drawn.then(start.turned[body.link]),
+            None => drawn,
         };
+        let place = start.position.map(|value| (value, "m"));
+        let attitude = start.rotation.to_quaternion();
         let attitude = attitude.map(|value| (value, "1"));
         let values = place[if is_free { 0 } else { 3 }..].iter().chain(&attitude);
         for (name, &(value, unit)) in self.called.several[index].iter().zip(values) {
@@ -178,7 +180,9 @@ impl Writer<'_> {
         self.rotor(&rotor, &rotor, ("O", "0"), &inertia, &of);
     }
 
-    fn coordinate(&mut self, joint: &Joint, q: &str, units: &Units) {
+    fn coordinate(&mut self, index: usize, q: &str, units: &Units) {
+        let body = &self.tree.bodies[index];
+        let joint = &body.joint;
         let item = Item::default().text("unit", units.coordinate);
         let item = if joint.name == q {
             item
@@ -189,7 +193,10 @@ impl Writer<'_> {
             Some(range) => item.raw("range", &list(&range.map(plain))),
             None => item,
         };
-        let start = joint.start();
+        let start = match self.start {
+            Some(start) => joint.zero + start.ways[body.link],
+            None => joint.start(),
+        };
         let item = if start == 0.0 {
             item
         } else {
@@ -223,8 +230,10 @@ impl Writer<'_> {
         let (by, inertia) = match units.coordinate {
             "rad" => (by.to_owned(), inertia),
             // A turn of a radian a metre.
-            _ if by.contains(' ') => (format!("({by})/(1 [m])"), format!("{inertia}*(1 [m])^2")),
-            _ => (format!("{by}/(1 [m])"), format!("{inertia}*(1 [m])^2")),
+            _ => (
+                format!("{}/(1 [m])", operand(by)),
+                format!("{inertia}*(1 [m])^2"),
+            ),
         };
         let item = Item::default()
             .text("parent", "ground")

@@ -6,7 +6,7 @@ use crate::rotation::is_zero;
 use crate::table::Item;
 
 use super::units::Units;
-use super::{Writer, plus};
+use super::{Writer, operand, plus};
 
 /// Rates below which dry friction fades out.
 const SLOW: f64 = 0.01;
@@ -88,7 +88,7 @@ impl Writer<'_> {
     pub(super) fn damping(&mut self, owner: &Owner<'_>, damping: Polynomial, rate: &str) {
         let ("coordinate", [linear, 0.0, 0.0]) = (owner.along.0, damping) else {
             if !is_zero(damping) {
-                let factor = one(rate);
+                let factor = operand(rate);
                 let powers = [
                     factor.clone(),
                     format!("{factor}*abs({rate})"),
@@ -156,7 +156,7 @@ impl Writer<'_> {
 
     /// The force of a spring by how far it is strained.
     pub(super) fn elastic(&mut self, owner: &Owner<'_>, stiffness: Polynomial, strain: &str) {
-        let x = one(strain);
+        let x = operand(strain);
         let powers = [x.clone(), format!("{x}^2"), format!("{x}^3")];
         let force = self.opposing(
             owner,
@@ -177,14 +177,5 @@ impl Writer<'_> {
         let slow = quantity(SLOW, owner.units.rate);
         let force = format!("-{friction}*smooth_sign({rate}, {slow})");
         self.resist(owner, "friction", &force);
-    }
-}
-
-/// A sum in brackets.
-fn one(expression: &str) -> String {
-    if expression.contains(' ') || expression.starts_with('-') {
-        format!("({expression})")
-    } else {
-        expression.to_owned()
     }
 }

@@ -8,7 +8,7 @@ use crate::table::Item;
 
 use super::resistances::Owner;
 use super::units::Units;
-use super::{Writer, plus};
+use super::{Writer, operand, plus};
 
 impl Writer<'_> {
     /// In which units a sum is: a length, where one of its joints slides.
@@ -140,12 +140,7 @@ impl Writer<'_> {
         let x = coupling.other.as_ref().map(|other| {
             let units = self.units(other);
             let shift = quantity(other.constant - coupling.zeros[1], units.coordinate);
-            let x = plus(&self.sum(other, &units, str::to_owned), &shift);
-            let x = if x.contains(' ') || x.starts_with('-') {
-                format!("({x})")
-            } else {
-                x
-            };
+            let x = operand(&plus(&self.sum(other, &units, str::to_owned), &shift));
             (x, units.coordinate)
         });
         let mut value = "0".to_owned();

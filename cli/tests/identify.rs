@@ -21,6 +21,26 @@ fit  = ["a.csv", "b.csv"]
 test = ["c.csv"]
 "#;
 
+/// The columns of a CSV file of `simulate`, by their names.
+fn simulated(folder: &Folder, file: &str, names: &[&str]) -> Vec<Vec<f64>> {
+    let text = folder.read(file);
+    let mut lines = text.lines().filter(|line| !line.starts_with('#'));
+    let heading: Vec<&str> = lines.next().expect("a heading").split(',').collect();
+    let rows: Vec<Vec<f64>> = lines
+        .map(|line| {
+            line.split(',')
+                .map(|cell| cell.parse().expect("a number"))
+                .collect()
+        })
+        .collect();
+    let column = |name: &&str| {
+        let is_named = |own: &&str| own.split_whitespace().next() == Some(name);
+        let index = heading.iter().position(is_named).expect("a column");
+        rows.iter().map(|row| row[index]).collect()
+    };
+    names.iter().map(column).collect()
+}
+
 /// A pendulum of l = 0.53 m and I = 0.03 kg m², driven by held torques, seen with noise of 0.1°.
 fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Random) {
     let initial = format!("theta={start}");
@@ -43,24 +63,11 @@ fn rig(folder: &Folder, name: &str, start: &str, noise: &mut Random) {
         "exact.csv",
     ];
     folder.done(&[&["simulate", "pendulum"], &set[..], &start, &run].concat());
-    let exact = folder.read("exact.csv");
-    let mut lines = exact.lines().filter(|line| !line.starts_with('#'));
-    let heading: Vec<&str> = lines.next().expect("a heading").split(',').collect();
-    let column = |name: &str| {
-        let mut columns = heading.iter();
-        columns
-            .position(|own| own.split_whitespace().next() == Some(name))
-            .expect("a column")
-    };
-    let (t, theta, tau) = (column("t"), column("theta"), column("tau"));
+    let columns = simulated(folder, "exact.csv", &["t", "theta", "tau"]);
     let mut text = "t,theta,tau\n".to_owned();
-    for line in lines {
-        let values: Vec<f64> = line
-            .split(',')
-            .map(|value| value.parse().expect("a number"))
-            .collect();
-        let seen = values[theta].to_degrees() + 0.1 * noise.normal();
-        let _ = writeln!(text, "{},{seen},{}", values[t], values[tau]);
+    for (row, t) in columns[0].iter().enumerate() {
+        let seen = columns[1][row].to_degrees() + 0.1 * noise.normal();
+        let _ = writeln!(text, "{t},{seen},{}", columns[2][row]);
     }
     folder.write(name, &text);
 }
@@ -234,4 +241,165 @@ fn a_parameter_that_changes_on_the_way_is_followed() {
     }
     let outcome = folder.run(&["identify", "pendulum", "--data", ".", "--drifting", "l=0"]);
     assert_eq!(outcome.status, 2, "{}", outcome.stderr);
+}
+
+/// A swing whose rate is read by a gyroscope with an offset; I and the offset are stated at several times their sizes.
+const SWING: &str = r#"
+[mechanism]
+name  = "swing"
+title = "A swing read by a rate gyroscope"
+[parameters]
+m = { value = 2,    unit = "kg" }
+l = { value = 0.3,  unit = "m" }
+I = { value = 0.18, unit = "kg m^2", at_least = 0 }
+c = { value = 0.02, unit = "N m s",  at_least = 0 }
+o = { value = 1.4,  unit = "rad/s" }
+[coordinates]
+theta = { unit = "rad", initial = 0.3 }
+[frames]
+fork = { parent = "ground", about_axis = "-y", by = "theta" }
+[points]
+G = { from = "O", in = "fork", at = [0, 0, "-l"] }
+[bodies]
+fork = { frame = "fork", centre = "G", mass = "m", inertia = { in = "fork", diagonal = ["I", "I", "I"] } }
+[pseudo_velocities]
+omega = "dot(theta)"
+[loads]
+weight = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
+air    = { kind = "damper", coordinate = "theta", damping = "c" }
+[outputs]
+gyro = { value = "o + omega", unit = "rad/s" }
+"#;
+
+const SWING_DESCRIPTION: &str = r#"
+mechanism   = "swing.toml"
+description = "free swing"
+[parameters]
+I = { value = 0.1, unit = "kg m^2", std = 0.1 }
+c = { value = 0.001, unit = "N m s", std = 0.05 }
+o = { value = 2.4, unit = "rad/s", std = 2 }
+[channels]
+gyro = { measures = "gyro", unit = "rad/s" }
+[runs]
+fit = ["a.csv"]
+"#;
+
+/// Whether all parameters lie near the truth.
+fn assert_near(found: &serde_json::Value, truth: &[(&str, f64)], relative: f64) {
+    for (place, (name, truth)) in truth.iter().enumerate() {
+        let parameter = &found["parameters"][place];
+        assert_eq!(parameter["name"], *name);
+        let value = parameter["value"].as_f64().expect("a number");
+        assert!(
+            (value / truth - 1.0).abs() < relative,
+            "{name}: {parameter}"
+        );
+    }
+}
+
+#[test]
+fn a_swing_is_identified_by_its_rate_alone_from_a_wrong_offset() {
+    let folder = Folder::new();
+    folder.write("swing.toml", SWING);
+    folder.write("recording.toml", SWING_DESCRIPTION);
+    let run = ["--t-end-s", "12", "--dt-s", "0.01", "--csv", "exact.csv"];
+    folder.done(&[&["simulate", "swing.toml"], &run[..]].concat());
+    let columns = simulated(&folder, "exact.csv", &["t", "gyro"]);
+    let mut noise = Random::new(4);
+    let mut text = "t,gyro\n".to_owned();
+    for (t, rate) in columns[0].iter().zip(&columns[1]) {
+        let _ = writeln!(text, "{t},{}", rate + 0.01 * noise.normal());
+    }
+    folder.write("a.csv", &text);
+    for start in ["nominal", "shooting"] {
+        let run = [
+            "identify",
+            "swing.toml",
+            "--data",
+            ".",
+            "--json",
+            "found.json",
+        ];
+        folder.done(&[&run[..], &["--start", start]].concat());
+        let found = folder.json("found.json");
+        assert_eq!(found["is_optimum"], true, "{start}");
+        // Some standard deviations.
+        assert_near(&found, &[("I", 0.18), ("c", 0.02), ("o", 1.4)], 0.05);
+    }
+}
+
+/// Time constant of a lag in s, and its steps per row.
+const LAG: f64 = 0.05;
+const FINE: u32 = 10;
+
+#[test]
+fn a_lag_that_begins_away_from_its_input_is_found() {
+    let folder = Folder::new();
+    folder.write("recording.toml", DESCRIPTION);
+    let mut noise = Random::new(2);
+    for (name, phase) in [("a.csv", 1.0), ("b.csv", 2.0), ("c.csv", -1.5)] {
+        let command = |row: u32| 0.8 * (2.0 * f64::from(row) / 100.0 + phase).sin();
+        let (mut torque, part) = (0.0, (-0.01 / (LAG * f64::from(FINE))).exp());
+        let mut inputs = "t,tau\n".to_owned();
+        for step in 0..=400 * FINE {
+            let next = command(step / FINE) * (1.0 - part) + torque * part;
+            let t = f64::from(step) / f64::from(100 * FINE);
+            let _ = writeln!(inputs, "{t},{}", 0.5 * (torque + next));
+            torque = next;
+        }
+        folder.write("inputs.csv", &inputs);
+        let set = ["--set", "m=1", "--set", "l=0.53", "--set", "I=0.03"];
+        let run = ["--inputs", "inputs.csv", "--t-end-s", "4", "--dt-s", "0.01"];
+        let to = ["--csv", "exact.csv"];
+        folder.done(&[&["simulate", "pendulum"], &set[..], &run, &to].concat());
+        let mut text = "t,theta,tau\n".to_owned();
+        let columns = simulated(&folder, "exact.csv", &["t", "theta"]);
+        for (row, (t, theta)) in (0_u32..).zip(columns[0].iter().zip(&columns[1])) {
+            let seen = theta.to_degrees() + 0.1 * noise.normal();
+            let _ = writeln!(text, "{t},{seen},{}", command(row));
+        }
+        folder.write(name, &text);
+    }
+    let run = [
+        "identify",
+        "pendulum",
+        "--data",
+        ".",
+        "--json",
+        "found.json",
+    ];
+    folder.done(&[&run[..], &["--also", "tau.lag"]].concat());
+    let found = folder.json("found.json");
+    assert_near(&found, &[("l", 0.53), ("I", 0.03), ("tau.lag", LAG)], 0.1);
+    // Nothing disturbs this rig.
+    let level = found["disturbances"][0]["fitted"]
+        .as_f64()
+        .expect("a level");
+    assert!(level < 1e-4, "{level}");
+}
+
+#[test]
+fn what_misses_held_out_runs_is_said_before_its_intervals() {
+    let folder = data_set();
+    let text = folder.read("c.csv");
+    let (heading, rows) = text.split_once('\n').expect("rows");
+    let mut mirrored = format!("{heading}\n");
+    for row in rows.lines() {
+        let cells: Vec<&str> = row.split(',').collect();
+        let theta: f64 = cells[1].parse().expect("a number");
+        let _ = writeln!(mirrored, "{},{},{}", cells[0], -0.3 * theta, cells[2]);
+    }
+    folder.write("c.csv", &mirrored);
+    let outcome = folder.done(&[
+        "identify",
+        "pendulum",
+        "--data",
+        ".",
+        "--html",
+        "found.html",
+    ]);
+    for text in [outcome.stdout, folder.read("found.html")] {
+        let (first, _) = text.split_once("95 % intervals").expect("intervals");
+        assert!(first.contains("misses the held-out runs"), "{first}");
+    }
 }

@@ -2,9 +2,10 @@
 //!
 //! ```text
 //! data set --start--> values to begin with: levels of noise, states at the first rows
+//!          --steps--> whether the filter may step from row to row
 //!          --problem--> what is looked for: parameters within their tolerances, levels
 //!          --basin, fit (estimate)--> the most likely values, beside the most likely nominal ones
-//!          --shooting--> other parameters to begin with, where these do not do what was recorded
+//!          --basin, shooting--> other parameters to begin with, where these do not do what was recorded
 //!          --answer--> intervals, correlation, combinations that are known
 //!          --repeatability--> values of the single runs, and their spread
 //!          --held_out--> errors of predictions on the runs that no fit has seen
@@ -26,8 +27,9 @@ mod problem;
 mod repeatability;
 mod shooting;
 mod start;
+mod steps;
 
-use appell_estimate::{Estimation, Recording, Setup};
+use appell_estimate::{Estimation, Fit, Recording, Setup};
 use appell_runtime::model::Model;
 
 use appell_recordings::{DataSet, Part, Run};
@@ -73,17 +75,28 @@ pub fn identify(
     if recordings.is_empty() {
         return Err(IdentifyError::NothingToFit);
     }
-    let estimation = Estimation::new(&setup, &recordings)?;
-    let problem = Problem::of(set, &estimation, (options, &additions))?;
-
-    stage("fitting the levels of noise to the nominal model");
-    let search = Search {
-        estimation: &estimation,
-        problem: &problem,
-        options,
+    let problem = {
+        let estimation = Estimation::new(&setup, &recordings)?;
+        Problem::of(set, &estimation, (options, &additions))?
     };
-    let nominal = search.levels(&problem.start)?;
-    let fit = search.best(&nominal, &mut stage)?;
+    setup.has_corners = steps::are_too_long(&setup, &recordings, &problem.start)?;
+    let mut fits = |setup: &Setup<'_>| -> Result<(Fit, Fit), IdentifyError> {
+        stage("fitting the levels of noise to the nominal model");
+        let search = Search {
+            estimation: &Estimation::new(setup, &recordings)?,
+            problem: &problem,
+            options,
+        };
+        let nominal = search.levels(&problem.start)?;
+        let fit = search.best(&nominal, &mut stage)?;
+        Ok((nominal, fit))
+    };
+    let (mut nominal, mut fit) = fits(&setup)?;
+    if steps::are_too_long(&setup, &recordings, &fit.values)? {
+        setup.has_corners = true;
+        (nominal, fit) = fits(&setup)?;
+    }
+    let estimation = Estimation::new(&setup, &recordings)?;
     stage("weighing what the recordings tell");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
     let runs: Vec<&Run> = set

@@ -6,7 +6,7 @@ mod page;
 use std::fmt::Write as _;
 use std::ops::Range;
 
-use appell_gap::identify::{AHEAD, Answer, Estimate, Known};
+use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
 use appell_recordings::{Channel, DataSet};
 
 use crate::recording;
@@ -60,9 +60,12 @@ impl Part {
 /// The report as text tables.
 pub fn text(set: &DataSet, answer: &Answer) -> String {
     let mut text = recording::text(set);
+    for warning in warnings(answer) {
+        // Writing to a string cannot fail.
+        let _ = writeln!(text, "\n{warning}");
+    }
     for part in parts(set, answer) {
         let rows = table(&part.rows, part.numbers);
-        // Writing to a string cannot fail.
         let _ = write!(text, "\n{}\n\n{rows}", part.heading);
         if !part.note.is_empty() {
             let _ = writeln!(text, "\n{}", part.note);
@@ -137,9 +140,7 @@ fn parameters(answer: &Answer) -> Part {
 
 /// Whether the fitted model predicts worse than the nominal one on held-out runs.
 fn is_bent(answer: &Answer) -> bool {
-    let mut errors = answer.held_out.iter();
-    let ahead = errors.find(|error| error.column.is_none() && error.horizon >= AHEAD);
-    ahead.is_some_and(|error| error.fitted > WORSE * error.nominal)
+    ahead(answer).is_some_and(|(error, _)| error.fitted > WORSE * error.nominal)
 }
 
 fn remark(estimate: &Estimate) -> &'static str {
@@ -365,26 +366,53 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
     part
 }
 
-/// What the errors of all channels mean, about a second ahead.
-fn verdict(answer: &Answer) -> Option<String> {
+/// What forbids to rely on the values, for the first lines.
+fn warnings(answer: &Answer) -> Vec<String> {
+    let mut warnings = Vec::new();
+    if !answer.is_optimum {
+        warnings.push(
+            "The search ended before an optimum: do not rely on the parameters or their intervals. The likelihood is \
+             rough, or a combination of parameters changes nothing: free fewer of them, state tolerances, or begin \
+             nearer to the truth."
+                .to_owned(),
+        );
+    }
+    if let Some((error, times)) = ahead(answer)
+        && error.fitted > FAIR
+    {
+        let when = horizon(error.horizon);
+        warnings.push(format!(
+            "The fitted model misses the held-out runs by {times} times the noise, {when} ahead: do not rely on its \
+             parameters, whatever their intervals. An effect is missing, a unit is wrong, or the search began too far \
+             from the truth: `appell diagnose` searches for an effect."
+        ));
+    }
+    warnings
+}
+
+/// The error of all channels about a second ahead, and its size.
+fn ahead(answer: &Answer) -> Option<(&HeldOut, String)> {
     let mut errors = answer.held_out.iter();
     let ahead = errors.find(|error| error.column.is_none() && error.horizon >= AHEAD)?;
-    let [times, when] = [size(ahead.fitted), horizon(ahead.horizon)];
-    Some(if ahead.fitted <= GOOD {
-        format!(
+    Some((ahead, size(ahead.fitted)))
+}
+
+/// What that error means where [`warnings`] do not say so.
+fn verdict(answer: &Answer) -> Option<String> {
+    let (error, times) = ahead(answer)?;
+    let when = horizon(error.horizon);
+    if error.fitted <= GOOD {
+        Some(format!(
             "The fitted model predicts the held-out runs to within the noise ({times} times it, {when} ahead)."
-        )
-    } else if ahead.fitted <= FAIR {
-        format!(
+        ))
+    } else if error.fitted <= FAIR {
+        Some(format!(
             "The fitted model predicts the held-out runs to {times} times the noise, {when} ahead: disturbances may \
              explain that, or a small effect is missing."
-        )
+        ))
     } else {
-        format!(
-            "The fitted model misses the held-out runs by {times} times the noise, {when} ahead: do not rely on its \
-             parameters. An effect is missing or a unit is wrong: `appell diagnose` searches for it."
-        )
-    })
+        None
+    }
 }
 
 /// Size of a prediction error; a prediction that overflowed has diverged.

@@ -365,7 +365,7 @@ def inputs_may_be_joined_by_lines(run):
         near(found[name]["value"], right, 0.002 * right, name)
 
 
-@case("18_identify_rate_only_swing", is_open=True)
+@case("18_identify_rate_only_swing")
 def a_swing_is_identified_by_its_rate(run):
     for start in [[], ["--start", "shooting"]]:
         found = identified(run, "swing.toml", "--data", ".", *start)
@@ -373,14 +373,21 @@ def a_swing_is_identified_by_its_rate(run):
             near(found[name]["value"], right, 0.01 * right, f"{name} {start}")
 
 
-@case("19_identify_servo_lag", is_open=True)
+@case("19_identify_servo_lag")
 def the_lag_of_a_servo_is_identified(run):
-    found = identified(run, "full.toml", "--data", ".", "--also", "u.lag")
-    for name, right in {"Ja": 0.012, "d": 0.08, "f": 0.15, "u.lag": 0.04}.items():
-        inside(found[name]["interval95"], right, name)
-        near(found[name]["value"], right, 0.15 * right, name)
+    # What least_squares.py finds; friction in MuJoCo is not that of the spec.
+    best = {"Ja": 0.01236, "d": 0.0791, "f": 0.1489, "u.lag": 0.0401}
+    made_with = {"Ja": 0.012, "d": 0.08, "f": 0.15, "u.lag": 0.04}
+
+    def holds_for(spec):
+        found = identified(run, spec, "--data", ".", "--also", "u.lag")
+        for name in best:
+            inside(found[name]["interval95"], best[name], name)
+            near(found[name]["value"], made_with[name], 0.05 * made_with[name], name)
+
+    holds_for("full.toml")
     run.write("recording.toml", run.read("recording_truth.toml"))
-    identified(run, "truth.toml", "--data", ".", "--also", "u.lag")
+    holds_for("truth.toml")
 
 
 @case("20_time_column_name")

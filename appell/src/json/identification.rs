@@ -61,6 +61,7 @@ pub fn identification(set: &DataSet, answer: &Answer) -> Value {
     json!({
         "schema": "identified/1",
         "mechanism": set.mechanism.name,
+        "is_optimum": answer.is_optimum,
         "parameters": parameters.collect::<Vec<_>>(),
         "correlation": correlation.collect::<Vec<_>>(),
         "combinations": combinations.collect::<Vec<_>>(),

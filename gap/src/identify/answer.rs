@@ -75,6 +75,8 @@ pub struct Known {
 /// Result of an identification.
 #[derive(Debug, Clone)]
 pub struct Answer {
+    /// Whether the search ended at an optimum. If not, deviations are enlarged by the step that it could not take.
+    pub is_optimum: bool,
     /// Parameters in the requested order.
     pub parameters: Vec<Estimate>,
     /// Correlation of their errors.
@@ -115,7 +117,7 @@ impl Answer {
         let mut parameters = Vec::new();
         let wanted = problem.wanted.iter().zip(&problem.quantities);
         for (place, (free, quantity)) in wanted.enumerate() {
-            let std = covariance[(place, place)].sqrt();
+            let std = fit.deviation(place)?;
             let tolerance = free.prior.map(|[_, deviation]| deviation);
             parameters.push(Estimate {
                 quantity: quantity.clone(),
@@ -150,6 +152,7 @@ impl Answer {
         let noise = columns.iter().enumerate();
         let speeds = info.states[..info.speeds].iter().enumerate();
         Ok(Self {
+            is_optimum: fit.is_optimum(),
             combinations: combinations(&sensitivity, fit, &problem.wanted),
             noise: noise
                 .map(|(index, column)| level(Unknown::Noise(index), column.clone()))

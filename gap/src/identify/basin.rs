@@ -1,19 +1,34 @@
-//! The search for an optimum, and its start: at the parameters of the rig, or at those of multiple shooting.
+//! The search for an optimum, and its starts.
 //!
 //! Where the model does not do what was recorded, its disturbances do; they hide which parameters would do better, and
-//! the likelihood has an optimum near wherever the search began. An optimum whose motion runs away from the recordings
-//! is therefore held against the one from the other start, and the more likely one counts.
+//! the likelihood has an optimum near many a start. Where predictions of what was found miss the recordings by far more
+//! than their noise, or where a search ended before an optimum, it therefore begins elsewhere as well: at the parameters
+//! that are the most likely ones if disturbances are so small that the model itself has to follow the recordings, as in
+//! an output-error fit (L. Ljung, *System Identification*, 1999), and at those of multiple shooting. All results are
+//! compared by the same posterior, and the most likely one counts.
 
-use appell_estimate::{EstimateError, Estimation, Fit, Free};
+use appell_estimate::{Effort, EstimateError, Estimation, Fit, Free, Predicted, Unknown};
 
 use super::options::Begin;
 use super::problem::{EFFORT, Problem, most_likely};
 use super::{IdentifyError, Options, shooting};
+use crate::held_out::{AHEAD, origins};
 
 /// Part of a recorded motion, as a root mean square, that a free run of a fitted model may miss.
 const MISSED: f64 = 0.05;
+/// Error a second ahead, in units of the noise of the sensor, that disturbances may explain.
+const MISSED_AHEAD: f64 = 3.0;
+/// Most rows of a run from which it is predicted a second ahead.
+const ORIGINS: usize = 20;
 /// A free run begins after this part of a recording, when the filter knows the state.
 const KNOWN: usize = 8;
+/// Small disturbances as parts of the forces, over one second.
+const SMALL: [f64; 2] = [1e-3, 1e-4];
+/// Searches for a start need not end at an optimum.
+const START: Effort = Effort {
+    gain: EFFORT.gain,
+    steps: 40,
+};
 
 /// A search for the free values of a problem.
 pub(super) struct Search<'p, 'e> {
@@ -22,13 +37,36 @@ pub(super) struct Search<'p, 'e> {
     pub(super) options: &'p Options,
 }
 
+/// What a model misses, of the channel that is missed most.
+struct Missed {
+    /// By free runs, relative to the recorded motion.
+    of_motion: f64,
+    /// A second ahead, relative to the noise of the sensor.
+    of_noise: f64,
+}
+
+impl Missed {
+    const NOTHING: Self = Self {
+        of_motion: 0.0,
+        of_noise: 0.0,
+    };
+    const EVERYTHING: Self = Self {
+        of_motion: f64::INFINITY,
+        of_noise: f64::INFINITY,
+    };
+
+    fn is_little(&self) -> bool {
+        self.of_motion <= MISSED && self.of_noise <= MISSED_AHEAD
+    }
+}
+
 impl Search<'_, '_> {
     /// The optimum of the levels for the nominal parameters.
     pub(super) fn levels(&self, start: &[f64]) -> Result<Fit, EstimateError> {
         self.of(start, &self.problem.levels)
     }
 
-    /// The optimum of all free values, from the nominal one of the levels.
+    /// The most likely optimum of all free values that is found, given the nominal one of the levels.
     pub(super) fn best(
         &self,
         nominal: &Fit,
@@ -36,23 +74,35 @@ impl Search<'_, '_> {
     ) -> Result<Fit, IdentifyError> {
         let first = self.options.begin;
         let found = self.from(first, nominal, stage);
-        let is_poor = match &found {
-            Ok(fit) => self.misses(fit)? > MISSED,
-            Err(_) => true,
-        };
-        if !is_poor || self.problem.wanted.is_empty() {
+        if self.problem.wanted.is_empty() {
             return found;
+        }
+        let is_enough = |fit: &&Fit| fit.is_optimum() || self.options.rough;
+        let ended = found.as_ref().ok().filter(is_enough);
+        if self.missed(ended)?.is_little() {
+            return found;
+        }
+        stage("fitting with little process noise");
+        let mut best = found;
+        let is_likelier = |best: &Result<Fit, _>, fit: &Fit| {
+            (best.as_ref()).map_or(true, |best| best.log_posterior < fit.log_posterior)
+        };
+        let mut quiet = SMALL.iter().filter_map(|&part| self.quiet(part).ok());
+        if let Some(start) = quiet.find(|fit| is_likelier(&best, fit)) {
+            stage("fitting the parameters");
+            let again = self.all(&start.values).ok();
+            let fits = again.into_iter().chain([start]);
+            best = likelier(fits).map_or(best, Ok);
+        }
+        if self.missed(best.as_ref().ok())?.of_motion <= MISSED {
+            return best;
         }
         let other = match first {
             Begin::Nominal => Begin::Shooting,
             Begin::Shooting => Begin::Nominal,
         };
-        match (found, self.from(other, nominal, stage)) {
-            (Ok(fit), Ok(other)) if other.log_posterior > fit.log_posterior => Ok(other),
-            (Ok(fit), _) => Ok(fit),
-            (Err(_), Ok(other)) => Ok(other),
-            (Err(error), Err(_)) => Err(error),
-        }
+        let other = self.from(other, nominal, stage);
+        likelier(best.iter().chain(&other).cloned()).map_or(best, Ok)
     }
 
     fn from(
@@ -65,25 +115,42 @@ impl Search<'_, '_> {
             Begin::Nominal => nominal.values.clone(),
             Begin::Shooting => {
                 stage("shooting at the recordings");
-                let shots = shooting::shots(self.estimation, self.problem, &nominal.values)?;
-                let mut best: Option<Fit> = None;
-                for shot in &shots {
-                    // The filter may fail although the motion did not.
-                    let levels = most_likely(self.estimation, shot, &self.problem.sizes)
-                        .and_then(|start| Ok(self.levels(&start)?));
-                    if let Ok(levels) = levels
-                        && (best.as_ref())
-                            .is_none_or(|best| best.log_posterior < levels.log_posterior)
-                    {
-                        best = Some(levels);
-                    }
-                }
-                best.map_or_else(|| nominal.values.clone(), |best| best.values)
+                // Levels that are likely for other parameters than the right ones mislead.
+                let start = &self.problem.start;
+                let shots = shooting::shots(self.estimation, self.problem, start)?;
+                // The filter may fail although the motion did not.
+                let levels = shots.iter().filter_map(|shot| {
+                    let start = most_likely(self.estimation, shot, &self.problem.sizes).ok()?;
+                    self.levels(&start).ok()
+                });
+                likelier(levels).map_or_else(|| nominal.values.clone(), |best| best.values)
             }
         };
         stage("fitting the parameters");
-        let all = [self.problem.wanted.as_slice(), &self.problem.levels].concat();
-        Ok(self.of(&start, &all)?)
+        Ok(self.all(&start)?)
+    }
+
+    /// All free values.
+    fn free(&self) -> Vec<Free> {
+        [self.problem.wanted.as_slice(), &self.problem.levels].concat()
+    }
+
+    /// The optimum of all free values from a start.
+    fn all(&self, start: &[f64]) -> Result<Fit, EstimateError> {
+        self.of(start, &self.free())
+    }
+
+    /// The likely values near those which are the most likely ones if disturbances are this part of the forces.
+    fn quiet(&self, part: f64) -> Result<Fit, EstimateError> {
+        let layout = self.estimation.layout();
+        let mut start = self.problem.start.clone();
+        for (index, size) in self.problem.sizes.iter().enumerate() {
+            start[layout.place(Unknown::Disturbance(index))?] = part * size;
+        }
+        let mut free = self.free();
+        free.retain(|free| !matches!(free.unknown, Unknown::Disturbance(_)));
+        let held = Fit::quick(self.estimation, &start, &free, START)?;
+        Fit::quick(self.estimation, &held.values, &self.free(), START)
     }
 
     /// An optimum; where the likelihood is rough and no better values are found, what scoring reaches, with the step
@@ -98,29 +165,72 @@ impl Search<'_, '_> {
         }
     }
 
-    /// The largest part of a channel that free runs of the model miss.
-    fn misses(&self, fit: &Fit) -> Result<f64, IdentifyError> {
+    /// What a fitted model misses; everything without one.
+    fn missed(&self, fit: Option<&Fit>) -> Result<Missed, IdentifyError> {
+        let Some(fit) = fit else {
+            return Ok(Missed::EVERYTHING);
+        };
         let recordings = self.estimation.recordings();
-        let channels = self.estimation.setup().channels.len();
-        let (mut left, mut size) = (vec![0.0; channels], vec![0.0; channels]);
+        let layout = self.estimation.layout();
+        let mut sums = vec![Sums::default(); self.estimation.setup().channels.len()];
         for (run, recording) in recordings.iter().enumerate() {
-            let origin = recording.times().len() / KNOWN;
-            let predicted =
+            let predictions = |horizon: f64, origins: &[usize]| {
                 self.estimation
-                    .predictions(&fit.values, run, f64::INFINITY, &[origin])?;
-            for channel in 0..channels {
-                let own = || predicted.iter().filter(|one| one.channel == channel);
-                let values = own().map(|one| recording.measured(one.row)[channel]);
-                let count = own().count().max(1) as f64;
+                    .predictions(&fit.values, run, horizon, origins)
+            };
+            let origin = recording.times().len() / KNOWN;
+            let free_run = predictions(f64::INFINITY, &[origin])?;
+            let ahead = predictions(AHEAD, &origins(recording, ORIGINS))?;
+            for (channel, sums) in sums.iter_mut().enumerate() {
+                let own = |one: &&Predicted| one.channel == channel;
+                let values = free_run.iter().filter(own);
+                let values = values.map(|one| recording.measured(one.row)[channel]);
+                let count = values.clone().count().max(1) as f64;
                 let mean = values.clone().sum::<f64>() / count;
-                size[channel] += values.map(|value| (value - mean).powi(2)).sum::<f64>();
-                left[channel] += own().map(|one| one.residual.powi(2)).sum::<f64>();
+                let squares = |list: &[Predicted]| -> f64 {
+                    list.iter()
+                        .filter(own)
+                        .map(|one| one.residual.powi(2))
+                        .sum()
+                };
+                sums.motion += values.map(|value| (value - mean).powi(2)).sum::<f64>();
+                sums.free_run += squares(&free_run);
+                sums.ahead += squares(&ahead);
+                sums.count += ahead.iter().filter(own).count() as f64;
             }
         }
-        let parts = left.iter().zip(&size).map(|(left, size)| {
-            let part = (left / f64::max(*size, f64::MIN_POSITIVE)).sqrt();
-            if part.is_nan() { f64::INFINITY } else { part }
-        });
-        Ok(parts.fold(0.0, f64::max))
+        let mut missed = Missed::NOTHING;
+        for (channel, sums) in sums.iter().enumerate() {
+            let noise = self.problem.start[layout.place(Unknown::Noise(channel))?];
+            let of_motion = relative(sums.free_run, sums.motion);
+            let of_noise = relative(sums.ahead, sums.count * noise.powi(2));
+            missed.of_motion = missed.of_motion.max(of_motion);
+            missed.of_noise = missed.of_noise.max(of_noise);
+        }
+        Ok(missed)
     }
+}
+
+/// Sums of squares of a channel over all runs.
+#[derive(Debug, Clone, Default)]
+struct Sums {
+    /// Of the recorded motion about its mean.
+    motion: f64,
+    /// Of the errors of free runs.
+    free_run: f64,
+    /// Of those a second ahead, and their count.
+    ahead: f64,
+    count: f64,
+}
+
+/// The root of a ratio of sums of squares, which may be empty or have overflowed.
+fn relative(squares: f64, to: f64) -> f64 {
+    let part = (squares / to.max(f64::MIN_POSITIVE)).sqrt();
+    if part.is_nan() { f64::INFINITY } else { part }
+}
+
+/// The most likely one of some fits.
+fn likelier(fits: impl Iterator<Item = Fit>) -> Option<Fit> {
+    fits.filter(|fit| fit.log_posterior.is_finite())
+        .max_by(|a, b| a.log_posterior.total_cmp(&b.log_posterior))
 }

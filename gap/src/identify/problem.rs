@@ -185,9 +185,22 @@ pub(crate) fn begin(
             values[layout.place(Unknown::Initial { run, state })?] = expected;
             values[layout.place(Unknown::Spread { run, state })?] = spread;
         }
+        for (lag, &input) in setup.lagging.iter().enumerate() {
+            let state = start.state.len() + lag;
+            values[layout.place(Unknown::Spread { run, state })?] = course(recording, input);
+        }
         starts.push(start);
     }
     Ok(starts)
+}
+
+/// How far an input goes from its first value, as a root mean square. Before the first row it was somewhere there, so
+/// that what lags behind it may begin as far from it.
+fn course(recording: &Recording, input: usize) -> f64 {
+    let rows = 0..recording.times().len();
+    let first = recording.inputs(0)[input];
+    let squares = rows.map(|row| (recording.inputs(row)[input] - first).powi(2));
+    (squares.sum::<f64>() / recording.times().len() as f64).sqrt()
 }
 
 /// The values with the most likely ones of some initial levels of disturbances.

@@ -4,7 +4,7 @@ use appell_gap::identify::Answer;
 use appell_recordings::DataSet;
 use maud::{Markup, PreEscaped, html};
 
-use super::{Part, figure, parts};
+use super::{Part, figure, parts, warnings};
 use crate::page_shell::PageShell;
 use crate::recording;
 
@@ -17,6 +17,9 @@ pub fn page(set: &DataSet, answer: &Answer) -> String {
     let title = format!("{name}: parameters");
     PageShell::new(&title, STYLE).around(&html! {
         h1 { (name) ": parameters from recordings" }
+        @for warning in warnings(answer) {
+            p { strong { (warning) } }
+        }
         @for (index, part) in parts(set, answer).iter().enumerate() {
             h2 { (part.heading) }
             (table(part))

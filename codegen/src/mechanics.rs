@@ -34,6 +34,7 @@ pub mod linear_bound;
 pub mod loads;
 pub mod motion;
 pub mod motions;
+mod open_system;
 mod outputs;
 pub mod positions;
 pub mod prescribed;
@@ -152,7 +153,7 @@ impl Derivation {
 /// told with its findings.
 pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut findings = divisors::findings(mechanism);
-    match equations(mechanism) {
+    match equations(mechanism, false) {
         Ok(derivation) if findings.is_empty() => {
             if !divisors::holds_doubles(&derivation.algebra.graph, &derivation.all_equations()) {
                 return Err(vec![divisors::beyond_double("the motion", Item::Mechanism)]);
@@ -175,8 +176,14 @@ pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
     }
 }
 
-fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
-    let (mut derivation, all_loads) = without_reactions(mechanism)?;
+/// The same equations for readers: generalised velocities that are quotients by sums keep their letters, as do
+/// their partial derivatives.
+pub fn derive_in_letters(mechanism: &Mechanism) -> Outcome<Derivation> {
+    equations(mechanism, true)
+}
+
+fn equations(mechanism: &Mechanism, in_letters: bool) -> Outcome<Derivation> {
+    let (mut derivation, all_loads) = without_reactions(mechanism, in_letters)?;
     derivation.let_all_loads_act(mechanism, all_loads)?;
     if let Some(creeping) = creep::creeping_motion(&mut derivation, mechanism)? {
         derivation.given.refuse_beside("contacts that creep")?;
@@ -194,10 +201,11 @@ fn equations(mechanism: &Mechanism) -> Outcome<Derivation> {
 
 /// The equations while loads that depend on reactions do not act and no contact creeps; and all loads,
 /// with symbols for reactions and for dependent speeds.
-fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedLoad>)> {
-    let mut graph = Graph::new();
-    let symbols = Symbols::new(&mut graph, mechanism);
-    let mut algebra = Algebra::new(graph, mechanism, &symbols);
+fn without_reactions(
+    mechanism: &Mechanism,
+    in_letters: bool,
+) -> Outcome<(Derivation, Vec<AppliedLoad>)> {
+    let (symbols, mut algebra) = tools(mechanism, in_letters);
     algebra.given = explicit::given_coordinates(&mut algebra, mechanism, &symbols);
     let Bound {
         constraints,
@@ -295,6 +303,14 @@ fn without_reactions(mechanism: &Mechanism) -> Outcome<(Derivation, Vec<AppliedL
         warnings,
     };
     Ok((derivation, all_loads))
+}
+
+fn tools(mechanism: &Mechanism, in_letters: bool) -> (Symbols, Algebra) {
+    let mut graph = Graph::new();
+    let symbols = Symbols::new(&mut graph, mechanism);
+    let mut algebra = Algebra::new(graph, mechanism, &symbols);
+    algebra.in_letters = in_letters;
+    (symbols, algebra)
 }
 
 /// What binds the motion.

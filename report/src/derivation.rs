@@ -34,7 +34,7 @@ pub use appell_codegen::symbolic::print::{Letter, Math};
 pub use display::Equation;
 
 use appell_codegen::linearisation::Linearisation;
-use appell_codegen::mechanics::{Derivation, finding};
+use appell_codegen::mechanics::{Derivation, derive_in_letters, finding};
 use writer::Writer;
 
 /// Writes the derivation of a mechanism, up to a stage.
@@ -42,6 +42,32 @@ use writer::Writer;
 /// The derivation must be that of this mechanism; the expressions of the page are added to it.
 /// Findings are those of the reactions, only at [`Stage::All`].
 pub fn page(
+    mechanism: &Mechanism,
+    derivation: &mut Derivation,
+    stage: Stage,
+) -> finding::Outcome<Page> {
+    let as_derived = page_of(mechanism, derivation, stage)?;
+    let length = as_derived.length();
+    let graph = &derivation.algebra.graph;
+    let mut rates = derivation.velocities.rates.iter();
+    let has_quotients = rates.any(|&rate| graph.divisor_count(rate) > 0);
+    if length <= LONGEST_TO_READ || !has_quotients {
+        return Ok(as_derived);
+    }
+    let in_letters = derive_in_letters(mechanism).ok().and_then(|mut other| {
+        let is_solved = other.dependent.system.by_division;
+        page_of(mechanism, &mut other, stage)
+            .ok()
+            .filter(|_| is_solved)
+    });
+    let shorter = in_letters.filter(|page| 3 * page.length() < 2 * length);
+    Ok(shorter.unwrap_or(as_derived))
+}
+
+/// Of a page with more characters in its formulas, generalised velocities that are quotients keep their letters.
+const LONGEST_TO_READ: usize = 5_000;
+
+fn page_of(
     mechanism: &Mechanism,
     derivation: &mut Derivation,
     stage: Stage,

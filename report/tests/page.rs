@@ -5,7 +5,7 @@ use appell_spec::mechanism::{
     BodyId, CoordinateId, FrameId, LoadId, OutputId, ParameterId, PointId,
 };
 
-use crate::support::{EQUATIONS, WHOLE, page_of, spec};
+use crate::support::{EQUATIONS, WHOLE, page_of, page_of_spec, spec};
 
 /// The handouts under snapshot.
 const HANDOUTS: [&str; 3] = ["unicycle", "euc_3dof", "pendulum"];
@@ -240,6 +240,28 @@ fn what_the_page_says_is_true() {
         let by_system = derivation::text(page).contains("solved with pivoting");
         assert!(checked > 0 || by_system, "{name}: nothing was checked");
     }
+}
+
+/// A quotient by a sum in a rate, and a root that loads share.
+const SCOOTER: &str = include_str!("scooter.toml");
+
+#[test]
+fn a_page_that_is_too_long_keeps_quotients_and_roots_as_letters() {
+    let page = page_of_spec(SCOOTER, Stage::Equations);
+    let text = derivation::text(&page);
+    // With both written out everywhere it has three times as many.
+    assert!(text.len() < 20_000, "{}", text.len());
+    assert_eq!(text.matches("√((").count(), 1, "{text}");
+    for shown in ["ψ̇ = ", "∂ψ̇/∂v = ", "where n − L cos δ ≠ 0"] {
+        assert!(text.contains(shown), "{shown} is not in {text}");
+    }
+    assert!(crate::support::check(&page, 7) > 0);
+    let mechanism = appell_spec::load("scooter.toml", SCOOTER)
+        .expect("a spec")
+        .mechanism;
+    let in_letters = appell_codegen::mechanics::derive_in_letters(&mechanism).expect("equations");
+    let verdict = appell_codegen::formulations::compare(&mechanism, &in_letters).expect("others");
+    assert!(verdict.agrees(), "{verdict:#?}");
 }
 
 #[test]

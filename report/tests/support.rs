@@ -34,7 +34,12 @@ pub(crate) fn spec(name: &str) -> String {
 
 /// Page of a shipped mechanism.
 pub(crate) fn page_of(name: &str, stage: Stage) -> Page {
-    written(&mechanism(&spec(name)), stage)
+    page_of_spec(&spec(name), stage)
+}
+
+/// Page of the mechanism of a spec.
+pub(crate) fn page_of_spec(text: &str, stage: Stage) -> Page {
+    written(&mechanism(text), stage)
 }
 
 /// Names of all shipped mechanisms with their whole pages.

@@ -56,6 +56,8 @@ pub struct Algebra {
     pub(crate) given: Vec<(Expr, Expr)>,
     /// Whether long expressions stand as a recursion made them.
     pub(super) recursive: bool,
+    /// Whether generalised velocities that are quotients keep their letters, for readers.
+    pub in_letters: bool,
 }
 
 impl Algebra {
@@ -82,6 +84,7 @@ impl Algebra {
             quaternions,
             given: Vec::new(),
             recursive: false,
+            in_letters: false,
         }
     }
 

@@ -52,6 +52,9 @@ impl ContactRows {
         bodies: &[BodyMotion],
     ) -> Outcome<Vec<Self>> {
         let mut all = Vec::new();
+        if elimination.open.by_division {
+            return Ok(all);
+        }
         for (index, constraint) in mechanism.constraints.entries() {
             let ConstraintKind::Rolling {
                 body,

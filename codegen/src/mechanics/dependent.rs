@@ -209,9 +209,7 @@ impl DependentSpeeds {
 
     /// λ in `Cᵀ λ = work`, named.
     pub fn solved_multipliers(&self, graph: &mut Graph, work: &[Expr]) -> Vec<Expr> {
-        let n = self.values.len();
-        let transposed = (0..n * n).map(|k| self.system.matrix[k % n * n + k / n]);
-        let solved = graph.solve_numerically(transposed.collect(), work.to_vec());
+        let solved = self.system.transposed_for(graph, work);
         let names = self.multipliers.clone();
         solved
             .into_iter()

@@ -10,11 +10,13 @@ use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::kinematics::{Effort, Kinematics};
 use super::motions::motions;
+use super::open_system::Equation;
+pub use super::open_system::OpenSystem;
 use super::quaternion::{is_norm, quaternions, rates as rates_of};
 use super::rank::{LinearRow, Standing, standings};
 use super::row::Row;
 use super::symbols::{Symbols, ids};
-use crate::symbolic::{Expr, Graph, Intervals, Substitution, SymbolId, vector};
+use crate::symbolic::{Expr, Graph, Intervals, Node, Substitution, SymbolId, vector};
 
 /// The generalised velocities in terms of the pseudo-velocities.
 #[derive(Debug, Clone)]
@@ -51,29 +53,6 @@ pub struct Elimination {
     violating: (Vec<Expr>, Vec<Expr>),
     violation_rates: Vec<Expr>,
     carried_rates: Vec<Expr>,
-}
-
-/// What no safe pivot solves: `matrix · unknowns = right`.
-#[derive(Debug, Clone, Default)]
-pub struct OpenSystem {
-    /// Coordinates whose rates it determines.
-    pub coordinates: Vec<usize>,
-    /// Symbols of these rates; at the vector part of a quaternion they stand for the angular velocity.
-    pub unknowns: Vec<Expr>,
-    /// The constraint row behind each equation; none behind the definition of a pseudo-velocity.
-    pub rows: Vec<Option<usize>>,
-    /// Its matrix, row by row: a function of coordinates and time.
-    pub matrix: Vec<Expr>,
-    /// Its right-hand side, linear in the pseudo-velocities.
-    pub right: Vec<Expr>,
-}
-
-/// An equation `Σ coefficient · q̇ = right`.
-struct Equation {
-    /// The constraint row that it was.
-    row: Option<usize>,
-    coefficients: Vec<Expr>,
-    right: Expr,
 }
 
 /// Solves for q̇. Pivots are taken where they cannot vanish in the declared ranges; what is left
@@ -238,7 +217,11 @@ impl Elimination {
                 coordinate_rates,
                 carried_rates,
             },
-            solved_numerically: open.coordinates,
+            solved_numerically: if open.by_division {
+                Vec::new()
+            } else {
+                open.coordinates
+            },
             solved,
         })
     }
@@ -253,26 +236,6 @@ pub struct TurnedRow {
     pub right: Expr,
     /// The equation as a sum of those that it stands for.
     pub factors: Vec<Expr>,
-}
-
-impl OpenSystem {
-    /// Its unknowns for another right-hand side.
-    pub fn solved_for(&self, graph: &mut Graph, right: &[Expr]) -> Vec<Expr> {
-        graph.solve_numerically(self.matrix.clone(), right.to_vec())
-    }
-
-    /// Expressions with values in place of the unknowns.
-    fn put_in(&self, algebra: &mut Algebra, values: &[Expr], exprs: &[Expr]) -> Outcome<Vec<Expr>> {
-        let parts: Vec<(Expr, Expr)> = self
-            .unknowns
-            .iter()
-            .copied()
-            .zip(values.iter().copied())
-            .collect();
-        let mut actual = Substitution::of_parts(&algebra.graph, &parts);
-        let put_in = actual.apply_all(&mut algebra.graph, exprs);
-        put_in.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
-    }
 }
 
 /// What the spec defines the pseudo-velocities by, with symbols for q̇.
@@ -415,6 +378,28 @@ struct Solved {
     column: usize,
     coefficients: Vec<(usize, Expr)>,
     right: Expr,
+    /// The equation that it solves, where the quotient may keep a letter.
+    whole: Option<Equation>,
+}
+
+impl Solved {
+    /// Puts the unknown into the other equations.
+    fn take_out_of(&self, algebra: &mut Algebra, equations: &mut [Equation]) {
+        for equation in equations {
+            let factor = equation.coefficients[self.column];
+            if factor == Graph::ZERO {
+                continue;
+            }
+            for &(other, ratio) in &self.coefficients {
+                let change = algebra.graph.mul(factor, ratio);
+                let value = algebra.graph.sub(equation.coefficients[other], change);
+                equation.coefficients[other] = algebra.shortest(value);
+            }
+            let change = algebra.graph.mul(factor, self.right);
+            equation.right = algebra.graph.sub(equation.right, change);
+            equation.coefficients[self.column] = Graph::ZERO;
+        }
+    }
 }
 
 /// The unknowns, and the system of those that need a pivoted solve; the others are in terms of these.
@@ -430,11 +415,16 @@ fn solve(
     let mut solved: Vec<Solved> = Vec::new();
     while let Some((row, column)) = safest_pivot(algebra, &equations, &open, intervals) {
         let Equation {
+            row: at,
             coefficients,
             right,
-            ..
         } = equations.swap_remove(row);
         let pivot = coefficients[column];
+        let whole = keeps_letter(algebra, pivot, symbols).then(|| Equation {
+            row: at,
+            coefficients: coefficients.clone(),
+            right,
+        });
         let right = algebra.graph.div(right, pivot);
         let right = algebra.shortest(right);
         let mut rest = Vec::new();
@@ -445,26 +435,15 @@ fn solve(
             let ratio = algebra.graph.div(coefficients[other], pivot);
             rest.push((other, algebra.shortest(ratio)));
         }
-        for equation in &mut equations {
-            let factor = equation.coefficients[column];
-            if factor == Graph::ZERO {
-                continue;
-            }
-            for &(other, ratio) in &rest {
-                let change = algebra.graph.mul(factor, ratio);
-                let value = algebra.graph.sub(equation.coefficients[other], change);
-                equation.coefficients[other] = algebra.shortest(value);
-            }
-            let change = algebra.graph.mul(factor, right);
-            equation.right = algebra.graph.sub(equation.right, change);
-            equation.coefficients[column] = Graph::ZERO;
-        }
         open.retain(|&c| c != column);
-        solved.push(Solved {
+        let unknown = Solved {
             column,
             coefficients: rest,
             right,
-        });
+            whole,
+        };
+        unknown.take_out_of(algebra, &mut equations);
+        solved.push(unknown);
     }
     if !are_independent(algebra, &equations, &open) {
         return None;
@@ -507,12 +486,22 @@ fn solve(
             system.rows.push(equation.row);
         }
     }
+    let may_keep = open.is_empty();
     for Solved {
         column,
         coefficients,
         right,
+        whole,
     } in solved.into_iter().rev()
     {
+        if let Some(whole) = whole.filter(|_| may_keep)
+            && system.keep(algebra, (column, &rates), &whole)
+        {
+            rates[column] = symbols.rates[column];
+            system.unknowns.push(rates[column]);
+            open.push(column);
+            continue;
+        }
         let mut parts = vec![right];
         for (other, coefficient) in coefficients {
             let part = algebra.graph.mul(coefficient, rates[other]);
@@ -523,6 +512,13 @@ fn solve(
     }
     system.coordinates = open;
     Some((rates, system))
+}
+
+/// Whether a quotient by a pivot may keep a letter: by a sum of several terms that depend on the position.
+fn keeps_letter(algebra: &Algebra, pivot: Expr, symbols: &Symbols) -> bool {
+    let graph = &algebra.graph;
+    let is_sum = matches!(graph.node(pivot), Node::Sum(terms) if terms.len() > 1);
+    algebra.in_letters && is_sum && graph.mentions(pivot, &ids(graph, &symbols.coordinates))
 }
 
 /// The pivot that fills in least, among those that cannot vanish.

@@ -30,6 +30,21 @@ pub struct Page {
     pub sections: Vec<Section>,
 }
 
+impl Page {
+    /// Characters of its displayed formulas.
+    pub(super) fn length(&self) -> usize {
+        let blocks = self.sections.iter().flat_map(|section| &section.blocks);
+        let equations = blocks.filter_map(|block| match block {
+            Block::Equations(equations) => Some(equations),
+            _ => None,
+        });
+        let lengths = equations
+            .flatten()
+            .map(|e| e.left.width() + e.right.width());
+        lengths.sum()
+    }
+}
+
 /// A section.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Section {

@@ -1,6 +1,6 @@
 //! Letters of symbols and of named intermediate quantities.
 
-use appell_spec::mechanism::Mechanism;
+use appell_spec::mechanism::{CoordinateId, Mechanism};
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::Letter;
@@ -82,7 +82,23 @@ impl Lexicon {
             kept: FxHashSet::default(),
         };
         lexicon.name_intermediates(mechanism);
+        if derivation.algebra.in_letters {
+            lexicon.keep_dependent(mechanism, derivation);
+        }
         lexicon
+    }
+
+    /// Generalised velocities that are quotients, with what they bring about.
+    fn keep_dependent(&mut self, mechanism: &Mechanism, derivation: &Derivation) {
+        for &q in &derivation.dependent.system.coordinates {
+            let q = &mechanism.coordinates[CoordinateId::new(q)].label.name;
+            let rate = Letter::of(q).dot();
+            for w in &mechanism.pseudo_velocities {
+                self.kept.insert(format!("d_{q}_dot_d_{}", w.label.name));
+            }
+            self.keep(format!("a0_{q}"), rate.clone().dot().above("0"));
+            self.keep(format!("{q}_dot"), rate);
+        }
     }
 
     fn name_intermediates(&mut self, mechanism: &Mechanism) {

@@ -39,7 +39,8 @@ pub(super) struct Writer<'a> {
 
 impl<'a> Writer<'a> {
     pub(super) fn new(mechanism: &'a Mechanism, derivation: &'a mut Derivation) -> Self {
-        let setter = Setter::new(Lexicon::new(mechanism, derivation));
+        let setter = Setter::new(Lexicon::new(mechanism, derivation))
+            .with_functions_apart(derivation.algebra.in_letters);
         let mut accelerations = derivation.symbols.accelerations.clone();
         accelerations.extend(&derivation.motion.accelerations);
         let mut velocities = derivation.symbols.rates.clone();

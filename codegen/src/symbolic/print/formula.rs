@@ -10,6 +10,8 @@ use crate::symbolic::{Expr, Factor, Function, Graph, Node, Rational, Relation, S
 const WIDEST_PART: usize = 160;
 /// A part that nests deeper than this becomes a letter of its own.
 const DEEPEST_PART: usize = 12;
+/// A root or another function that prints wider becomes a letter of its own, where these are asked for.
+const WIDEST_FUNCTION: usize = 24;
 
 /// Letters of symbols and names, and their order in a product.
 pub trait Vocabulary {
@@ -52,6 +54,8 @@ pub struct Setter<V> {
     vocabulary: V,
     /// Whether definitions stand in the places of their names.
     inline: bool,
+    /// Whether wide functions get letters.
+    functions_apart: bool,
     /// Parts that got a letter, by first use.
     parts: FxHashMap<Expr, usize>,
     /// Letters of parts and of unknowns, once they are chosen.
@@ -69,6 +73,7 @@ impl<V: Vocabulary> Setter<V> {
         Self {
             vocabulary,
             inline: false,
+            functions_apart: false,
             parts: FxHashMap::default(),
             bases: None,
         }
@@ -92,6 +97,13 @@ impl<V: Vocabulary> Setter<V> {
     #[must_use]
     pub fn with_definitions_inline(mut self) -> Self {
         self.inline = true;
+        self
+    }
+
+    /// Gives wide roots and other functions letters of their own.
+    #[must_use]
+    pub fn with_functions_apart(mut self, apart: bool) -> Self {
+        self.functions_apart = apart;
         self
     }
 
@@ -120,7 +132,13 @@ impl<V: Vocabulary> Setter<V> {
         let mut known: FxHashMap<Expr, Formula> = FxHashMap::default();
         for part in written(graph, expr, self.inline) {
             let set = self.step(graph, part, &known);
-            let large = part != expr && (set.width > WIDEST_PART || set.depth > DEEPEST_PART);
+            let is_function = matches!(graph.node(part), Node::Function(..));
+            let widest = if is_function && self.functions_apart {
+                WIDEST_FUNCTION
+            } else {
+                WIDEST_PART
+            };
+            let large = part != expr && (set.width > widest || set.depth > DEEPEST_PART);
             let set = if large {
                 self.leaf(graph, part, true)
             } else {

@@ -1,0 +1,110 @@
+//! The generalised velocities that no formula gives: a system that is solved with pivoting, or quotients that keep
+//! letters for readers.
+
+use super::algebra::Algebra;
+use super::finding::{Item, Outcome, division_by_zero};
+use super::symbols::ids;
+use crate::symbolic::{Expr, Graph, Substitution};
+
+/// An equation `Σ coefficient · q̇ = right`.
+pub struct Equation {
+    /// The constraint row that it was.
+    pub row: Option<usize>,
+    /// Coefficients of q̇.
+    pub coefficients: Vec<Expr>,
+    /// Its right-hand side.
+    pub right: Expr,
+}
+
+/// What no safe pivot solves: `matrix · unknowns = right`.
+#[derive(Debug, Clone, Default)]
+pub struct OpenSystem {
+    /// Coordinates whose rates it determines.
+    pub coordinates: Vec<usize>,
+    /// Symbols of these rates; at the vector part of a quaternion they stand for the angular velocity.
+    pub unknowns: Vec<Expr>,
+    /// The constraint row behind each equation; none behind the definition of a pseudo-velocity.
+    pub rows: Vec<Option<usize>>,
+    /// Its matrix, row by row: a function of coordinates and time.
+    pub matrix: Vec<Expr>,
+    /// Its right-hand side, linear in the pseudo-velocities.
+    pub right: Vec<Expr>,
+    /// Whether each equation has one unknown, with a coefficient that cannot vanish.
+    pub by_division: bool,
+}
+
+impl OpenSystem {
+    /// Its unknowns for another right-hand side.
+    pub fn solved_for(&self, graph: &mut Graph, right: &[Expr]) -> Vec<Expr> {
+        self.solved(graph, self.matrix.clone(), right)
+    }
+
+    /// The same for the transposed matrix.
+    pub fn transposed_for(&self, graph: &mut Graph, right: &[Expr]) -> Vec<Expr> {
+        let n = right.len();
+        let transposed = (0..n * n).map(|k| self.matrix[k % n * n + k / n]);
+        self.solved(graph, transposed.collect(), right)
+    }
+
+    fn solved(&self, graph: &mut Graph, matrix: Vec<Expr>, right: &[Expr]) -> Vec<Expr> {
+        if !self.by_division {
+            return graph.solve_numerically(matrix, right.to_vec());
+        }
+        let diagonal = matrix.iter().step_by(right.len() + 1);
+        let equations = right.iter().zip(diagonal);
+        equations
+            .map(|(&right, &by)| graph.div(right, by))
+            .collect()
+    }
+
+    /// Takes an equation as that of one unknown, a column of it; the others have `rates`. False where these have
+    /// unknowns of the system in them.
+    pub fn keep(
+        &mut self,
+        algebra: &mut Algebra,
+        (column, rates): (usize, &[Expr]),
+        equation: &Equation,
+    ) -> bool {
+        let graph = &mut algebra.graph;
+        let mut parts = vec![equation.right];
+        for (other, &coefficient) in equation.coefficients.iter().enumerate() {
+            if other != column {
+                let part = graph.mul(coefficient, rates[other]);
+                parts.push(graph.neg(part));
+            }
+        }
+        let right = graph.sum(&parts);
+        if graph.mentions(right, &ids(graph, &self.unknowns)) {
+            return false;
+        }
+        let n = self.right.len();
+        let mut matrix = vec![Graph::ZERO; (n + 1) * (n + 1)];
+        for k in 0..n {
+            matrix[k * (n + 2)] = self.matrix[k * (n + 1)];
+        }
+        matrix[n * (n + 2)] = equation.coefficients[column];
+        self.matrix = matrix;
+        self.right.push(right);
+        self.rows.push(equation.row);
+        self.by_division = true;
+        true
+    }
+
+    /// Expressions with values in place of the unknowns.
+    pub fn put_in(
+        &self,
+        algebra: &mut Algebra,
+        values: &[Expr],
+        exprs: &[Expr],
+    ) -> Outcome<Vec<Expr>> {
+        let parts: Vec<(Expr, Expr)> = self
+            .unknowns
+            .iter()
+            .copied()
+            .zip(values.iter().copied())
+            .collect();
+        let mut actual = Substitution::of_parts(&algebra.graph, &parts);
+        let put_in = actual.apply_all(&mut algebra.graph, exprs);
+        put_in.ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
+    }
+}

@@ -6,7 +6,7 @@ use crate::model::{Link, Motion};
 use crate::rotation::{Pose, Rotation, Vector, add, minus};
 
 /// Deviations that count as none, against the longest lever.
-const HELD: f64 = 1e-9;
+pub(crate) const HELD: f64 = 1e-9;
 /// Most steps, most halvings of one, and the longest one, in m or rad.
 const MOST_STEPS: usize = 60;
 const MOST_HALVINGS: usize = 8;
@@ -32,7 +32,7 @@ pub(crate) struct Linear {
 
 impl Linear {
     /// The largest deviation against the longest lever.
-    fn size(&self) -> f64 {
+    pub(crate) fn size(&self) -> f64 {
         let lever = self.rows.iter().map(|row| largest(row)).fold(1.0, f64::max);
         largest(&self.off) / lever
     }
@@ -80,22 +80,21 @@ impl Configuration {
         }
     }
 
-    /// The nearest place where equations hold; none is found where they contradict each other or are far from holding.
+    /// The nearest place where equations hold, and by how much they deviate there: where they contradict each other, or
+    /// are far from holding, it is the last one that was better than those before.
     pub(crate) fn assembled(
         mut self,
         links: &[Link],
         freedoms: &[Freedom],
         equations: &dyn Fn(&Self) -> Linear,
-    ) -> Option<Self> {
+    ) -> (Self, Linear) {
         let mut now = equations(&self);
         for _ in 0..MOST_STEPS {
-            let size = now.size();
-            if size <= HELD {
-                return Some(self);
+            if now.size() <= HELD {
+                break;
             }
             let step = least(&now.rows, &now.off);
-            let longest = largest(&step);
-            let mut share = (LONGEST_STEP / longest).min(1.0);
+            let mut share = (LONGEST_STEP / largest(&step)).min(1.0);
             let mut better = None;
             for _ in 0..MOST_HALVINGS {
                 let by: Vec<f64> = step.iter().map(|way| -share * way).collect();
@@ -108,9 +107,12 @@ impl Configuration {
                 }
                 share /= 2.0;
             }
-            (self, now) = better?;
+            let Some(next) = better else {
+                break;
+            };
+            (self, now) = next;
         }
-        None
+        (self, now)
     }
 }
 

@@ -4,7 +4,7 @@
 
 use appell_spec::Code;
 
-use crate::assembly::{Configuration, Linear};
+use crate::assembly::{Configuration, HELD, Linear};
 use crate::elimination::{eliminated, matched};
 use crate::kinematics::{Freedom, anywhere};
 use crate::mass;
@@ -17,6 +17,8 @@ use crate::xml::Findings;
 const DRIVEN: f64 = 1e-2;
 /// How far places lie at which ranks are taken, as shares of [`anywhere`]: the next one where none is found.
 const BESIDE: [f64; 3] = [1.0, 0.1, 0.01];
+/// Deviations that rounded numbers of a file leave.
+const CLOSED: f64 = 1e-4;
 /// Most entries of the equations' matrix.
 const MOST_ENTRIES: usize = 1 << 18;
 
@@ -114,6 +116,7 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
         }));
         equations.meetings.push((connection.name.clone(), meetings));
     }
+    places.refuse_what_stays_open(&rows, findings);
     let (kept, start) = places.followers(&rows);
     for (row, pivot) in &kept {
         let (row, follower) = (&rows[*row], places.follower(*pivot));
@@ -164,27 +167,71 @@ impl<'a> Places<'a> {
             start: None,
             anywhere: begun,
         };
-        places.start = places.assembled(&places.begun);
-        let from = places.start.as_ref().unwrap_or(&places.begun);
-        let beside = |share: f64| {
-            let columns = 0..places.freedoms.len();
-            let by: Vec<f64> = columns.map(|column| share * anywhere(column)).collect();
-            let mut beside = from.clone();
-            beside.step(links, &places.freedoms, &by);
-            beside
-        };
-        let found = BESIDE
-            .into_iter()
-            .find_map(|share| places.assembled(&beside(share)));
-        places.anywhere = found.unwrap_or_else(|| beside(BESIDE[0]));
+        places.start = places.assembled(&places.begun).or_else(|| places.beside());
+        places.anywhere = places
+            .beside()
+            .unwrap_or_else(|| places.displaced(BESIDE[0]));
         places
     }
 
     /// The nearest place where all equations hold.
     fn assembled(&self, from: &Configuration) -> Option<Configuration> {
+        let (at, linear) = self.nearest(from);
+        (linear.size() <= CLOSED).then_some(at)
+    }
+
+    fn nearest(&self, from: &Configuration) -> (Configuration, Linear) {
         let links = &self.robot.links;
         from.clone()
             .assembled(links, &self.freedoms, &|at| self.linear(at))
+    }
+
+    /// A place beside the start where no link is in line with another by chance, and all equations hold.
+    fn beside(&self) -> Option<Configuration> {
+        let each = BESIDE.into_iter();
+        each.map(|share| self.displaced(share))
+            .find_map(|from| self.assembled(&from))
+    }
+
+    /// The start, displaced along all freedoms.
+    fn displaced(&self, share: f64) -> Configuration {
+        let columns = 0..self.freedoms.len();
+        let by: Vec<f64> = columns.map(|column| share * anywhere(column)).collect();
+        let mut displaced = self.start.as_ref().unwrap_or(&self.begun).clone();
+        displaced.step(&self.robot.links, &self.freedoms, &by);
+        displaced
+    }
+
+    /// Refuses what cannot hold.
+    fn refuse_what_stays_open(&self, rows: &[Row], findings: &Findings) {
+        if self.start.is_some() {
+            return;
+        }
+        let (_, linear) = self.nearest(&self.begun);
+        let off = linear.off.iter().map(|off| off.abs()).enumerate();
+        let Some((row, off)) = off.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
+            return;
+        };
+        let (name, place) = match rows[row].of {
+            Of::Coupling(index) => {
+                let coupling = &self.robot.couplings[index];
+                (&coupling.name, &coupling.place)
+            }
+            Of::Meeting(index, ..) => {
+                let connection = &self.robot.connections[index];
+                (&connection.name, &connection.place)
+            }
+        };
+        findings.error(
+            Code::NotAllowedHere,
+            place.clone(),
+            format!(
+                "`{}` holds nowhere near where the joints stand: it stays off by {} in SI units",
+                appell_spec::shown(name),
+                crate::letters::plain((off * 1e6).round() / 1e6)
+            ),
+            "correct places, lengths or values, or import without it: `--without couplings`",
+        );
     }
 
     /// All equations at a place.
@@ -337,20 +384,26 @@ impl<'a> Places<'a> {
         } else {
             anywhere
         };
+        // Only followers move, until what is kept holds.
         let follow = |at: &Configuration| {
-            let mut linear = self.linear(at);
-            for (column, _) in self.freedoms.iter().enumerate() {
-                if kept.iter().all(|(_, pivot)| *pivot != column) {
-                    linear.rows.iter_mut().for_each(|row| row[column] = 0.0);
+            let all = self.linear(at);
+            let mut linear = Linear::default();
+            for (row, _) in &kept {
+                let mut entries = vec![0.0; self.freedoms.len()];
+                for (_, pivot) in &kept {
+                    entries[*pivot] = all.rows[*row][*pivot];
                 }
+                linear.rows.push(entries);
+                linear.off.push(all.off[*row]);
             }
             linear
         };
         let begun = self.begun.clone();
-        let holds = begun.assembled(&self.robot.links, &self.freedoms, &follow);
-        let start = match holds {
-            Some(_) => None,
-            None => self.start.clone(),
+        let (_, linear) = begun.assembled(&self.robot.links, &self.freedoms, &follow);
+        let start = if linear.size() <= HELD {
+            None
+        } else {
+            self.start.clone()
         };
         (kept, start)
     }

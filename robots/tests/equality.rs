@@ -2,13 +2,29 @@
 
 use appell_robots::{Failure, Options, import};
 
+fn told(text: &str) -> Result<String, String> {
+    match import("robot.xml", text, &Options::default()) {
+        Ok(robot) => Ok(robot.spec),
+        Err(Failure::File(report)) => Err(report.plain()),
+        Err(Failure::Unknown { name, .. } | Failure::Lock(name)) => Err(name),
+    }
+}
+
 fn spec(text: &str) -> String {
-    let imported = import("robot.xml", text, &Options::default());
-    let told = imported.map_err(|failure| match failure {
-        Failure::File(report) => report.plain(),
-        Failure::Unknown { name, .. } | Failure::Lock(name) => name,
-    });
-    told.unwrap().spec
+    told(text).unwrap()
+}
+
+/// Names of the speeds, and of the coordinates that follow.
+fn freedoms(spec: &str) -> (Vec<&str>, Vec<&str>) {
+    let speeds = spec.lines().filter(|line| line.starts_with("v_"));
+    let speeds = speeds.filter_map(|line| line.split_whitespace().next());
+    let followers = spec.split("dependent = \"").skip(1);
+    (
+        speeds.collect(),
+        followers
+            .filter_map(|rest| rest.split('"').next())
+            .collect(),
+    )
 }
 
 /// Two hinges, or two slides, and a tendon of the second with a factor.
@@ -92,4 +108,60 @@ fn a_weld_that_lets_turn_has_its_point_in_the_second_body() {
     ] {
         assert!(to_world.contains(words), "{words}\n{to_world}");
     }
+}
+
+#[test]
+fn loops_are_counted_where_they_close() {
+    // In the file the sites are neither at one place nor turned alike; in a plane three equations say all.
+    let sites = planar(r#"<weld site1="A" site2="B"/>"#)
+        .replace("pos=\"0.1 0.2 0\"", "pos=\"0.1 0.2 0\" euler=\"0 0 0.4\"");
+    let of_sites = spec(&sites);
+    assert_eq!(freedoms(&of_sites).0.len(), 1, "{of_sites}");
+    assert_eq!(freedoms(&of_sites).1.len(), 3, "{of_sites}");
+    // A loop to the world in which one row of the weld says nothing where it is closed.
+    let chain = r#"<mujoco><worldbody><body name="p" pos="1 0 0"><joint name="p1" type="slide" axis="1 0 0"/>
+<joint name="p2" type="slide" axis="0 1 0"/><joint name="p3" axis="0 0 1"/><geom type="box" size="0.1 0.1 0.3" pos="0.1 0 0"/>
+<body name="pp" pos="0.3 0 0"><joint name="pp1" axis="0 0 1"/><joint name="pp2" axis="0 1 0"/><geom size="0.1" pos="0.1 0 0"/>
+</body></body></worldbody><equality><weld body1="pp"/></equality></mujoco>"#;
+    let welded = spec(chain);
+    assert!(
+        welded.contains("z) - position(weld_1_2_2, z)\", dependent = \"pp2\""),
+        "{welded}"
+    );
+    assert_eq!(freedoms(&welded).0.len(), 1, "{welded}");
+}
+
+#[test]
+fn motions_begin_where_loops_close() {
+    // The sites can only meet with the slides elsewhere than in the file, which the followers do by themselves.
+    let near = spec(&planar(r#"<connect site1="A" site2="B"/>"#));
+    assert!(!near.contains("initial"), "{near}");
+    // A rod of 0.5 m whose hinge is 0.8 m from the slide's line: it meets nowhere for this value of the slide.
+    let rod = |line: f64| {
+        format!(
+            r#"<mujoco><worldbody><body name="rod"><joint name="h" axis="0 1 0" armature="1"/><geom size="0.1" pos="0.5 0 0"/>
+<site name="a" pos="0.5 0 0"/></body><body name="cart" pos="1 0 {line}"><joint name="s" type="slide" axis="1 0 0"/>
+<geom size="0.1"/><site name="b"/></body></worldbody><actuator><motor joint="h"/></actuator>
+<equality><connect site1="a" site2="b"/></equality></mujoco>"#
+        )
+    };
+    let turned = spec(&rod(0.3));
+    assert_eq!(freedoms(&turned).1.len(), 2, "{turned}");
+    let wrong = told(&rod(0.8)).unwrap_err();
+    for words in [
+        "robot.xml:4:",
+        "`connect_1` holds nowhere near",
+        "off by 0.3",
+        "--without couplings",
+    ] {
+        assert!(wrong.contains(words), "{words}\n{wrong}");
+    }
+    // What no joint moves has to hold as it is.
+    let still = planar(r#"<weld site1="A" site2="B"/>"#)
+        .replace("<site name=\"B\"", "<site name=\"B\" euler=\"0.3 0 0\"");
+    assert!(
+        told(&still)
+            .unwrap_err()
+            .contains("`weld_1` holds nowhere near")
+    );
 }

@@ -8,9 +8,11 @@ use crate::rotation::{Pose, Rotation, Vector, add, minus};
 /// Deviations that count as none, against the longest lever.
 pub(crate) const HELD: f64 = 1e-9;
 /// Most steps, most halvings of one, and the longest one, in m or rad.
-const MOST_STEPS: usize = 60;
-const MOST_HALVINGS: usize = 8;
+const MOST_STEPS: usize = 40;
+const MOST_HALVINGS: usize = 6;
 const LONGEST_STEP: f64 = 0.5;
+/// The sum of squares after a step that leads somewhere, as a share of that before.
+const BETTER: f64 = 0.99;
 /// The square of the share of a gradient at which a linear problem is solved.
 const SOLVED: f64 = 1e-26;
 
@@ -101,7 +103,7 @@ impl Configuration {
                 let mut next = self.clone();
                 next.step(links, freedoms, &by);
                 let there = equations(&next);
-                if squares(&there.off) < squares(&now.off) {
+                if squares(&there.off) < BETTER * squares(&now.off) {
                     better = Some((next, there));
                     break;
                 }

@@ -150,6 +150,8 @@ struct Places<'a> {
     /// Where the equations hold, if that is found.
     start: Option<Configuration>,
     anywhere: Configuration,
+    /// By how much the equations deviate nearest to where the motion begins, if they do not come to hold there.
+    open: Vec<f64>,
 }
 
 impl<'a> Places<'a> {
@@ -166,12 +168,23 @@ impl<'a> Places<'a> {
             begun: begun.clone(),
             start: None,
             anywhere: begun,
+            open: Vec::new(),
         };
-        places.start = places.assembled(&places.begun).or_else(|| places.beside());
-        places.anywhere = places
-            .beside()
-            .unwrap_or_else(|| places.displaced(BESIDE[0]));
+        let beside = places.start_and_beside();
+        places.anywhere = beside.unwrap_or_else(|| places.displaced(BESIDE[0]));
         places
+    }
+
+    /// Finds where the motion can begin; the result is a place beside it.
+    fn start_and_beside(&mut self) -> Option<Configuration> {
+        let (at, linear) = self.nearest(&self.begun);
+        if linear.size() <= CLOSED {
+            self.start = Some(at);
+            return self.beside();
+        }
+        self.open = linear.off;
+        self.start = self.beside();
+        self.start.clone()
     }
 
     /// The nearest place where all equations hold.
@@ -207,8 +220,7 @@ impl<'a> Places<'a> {
         if self.start.is_some() {
             return;
         }
-        let (_, linear) = self.nearest(&self.begun);
-        let off = linear.off.iter().map(|off| off.abs()).enumerate();
+        let off = self.open.iter().map(|off| off.abs()).enumerate();
         let Some((row, off)) = off.max_by(|(_, a), (_, b)| a.total_cmp(b)) else {
             return;
         };

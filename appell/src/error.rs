@@ -228,6 +228,7 @@ impl Error {
             | Self::Unreadable(_)
             | Self::Recording(_)
             | Self::Table { .. } => Class::Data,
+            Self::Simulate(SimulationError::Undetermined { .. }) => Class::Computation,
             Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
             Self::Stability(_) | Self::Fmu(_) | Self::Json(_) | Self::Computation(_) => {
                 Class::Computation

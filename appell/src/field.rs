@@ -32,6 +32,7 @@ fields! {
     Initial "initial" "Initial values.",
     Input "input" "Inputs as expressions.",
     Recorded "recorded inputs" "Inputs from a file.",
+    Interpolation "interpolation" "How recorded inputs run from row to row.",
     Feedback "feedback" "Feedback laws.",
     End "end" "Final time of a motion.",
     Interval "interval" "Output interval of a motion.",

@@ -4,11 +4,12 @@ use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
-use appell_codegen::schedule::{Schedule, interpret, pi, schedule};
+use appell_codegen::schedule::{Schedule, enclose_along, interpret, pi, schedule};
 use appell_codegen::symbolic::{Derivatives, Expr, Graph};
 use appell_runtime::Signal;
-use appell_runtime::model::{At, ModelInfo};
-use appell_runtime::series::{Cubic, differentiated};
+use appell_runtime::model::{Along, At, ModelInfo};
+use appell_runtime::real::{Enclosure, Real};
+use appell_runtime::series::{Cubic, differentiated, enclosed};
 use appell_runtime::signal::SignalError;
 use appell_spec::Mechanism;
 use appell_spec::expr::Expr as SpecExpr;
@@ -205,6 +206,17 @@ impl StateFunction {
         let derivatives = self.derivatives.iter();
         let derivatives = derivatives.map(|&(signal, order)| (&self.signals[signal], order));
         derivatives.chain(self.signals.iter().map(|signal| (signal, 0)))
+    }
+
+    /// Bounds along a stretch of a motion, written to the first entries of `values`; the inputs of the stretch do not
+    /// matter.
+    pub(crate) fn bounds(&self, along: &Along<'_>, values: &mut [Enclosure]) {
+        let since = along.t - Enclosure::constant(along.start);
+        let mut u = vec![Enclosure::UNKNOWN; self.declared];
+        u.extend(self.tabulated().map(|(signal, order)| {
+            enclosed(differentiated(signal.polynomial(along.start), order), since)
+        }));
+        enclose_along(&self.schedule, &Along { u: &u, ..*along }, values);
     }
 
     /// Evaluates at time `t`, state `x` and parameters `p` into the first entries of `values`.

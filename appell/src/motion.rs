@@ -7,7 +7,7 @@ use std::sync::Arc;
 use appell_codegen::schedule::Schedule;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::{Ending, Options};
-use appell_runtime::model::Model;
+use appell_runtime::model::{Interpolation, Model};
 use appell_runtime::series::Cubic;
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
 use appell_runtime::trajectory::{Extras, NotFinite};
@@ -75,6 +75,8 @@ pub struct Motion {
     pub inputs: Vec<Assignment>,
     /// Inputs from a CSV file, or from a run of a data set, such as `rig/recording.toml:run1.csv`.
     pub recorded: Option<PathBuf>,
+    /// How the inputs of a CSV file run from row to row; held where nothing is stated.
+    pub interpolation: Option<Interpolation>,
     /// Inputs as functions or tables of a program.
     pub driven: Vec<Driven>,
     /// Feedback laws.
@@ -98,6 +100,8 @@ pub struct Simulated {
     pub undriven: bool,
     /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
     pub held_from: Option<f64>,
+    /// What is doubtful about recorded inputs that are held because nothing was stated.
+    pub smooth: Option<String>,
 }
 
 impl Motion {
@@ -112,6 +116,7 @@ impl Motion {
             initial: Vec::new(),
             inputs: Vec::new(),
             recorded: None,
+            interpolation: None,
             driven: Vec::new(),
             laws: Vec::new(),
             extras: Extras {
@@ -227,6 +232,7 @@ impl Motion {
         let held_from = plan
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
+        let smooth = plan.recorded_smooth().and_then(smooth_inputs);
         let wiring = plan.wiring(&setup, self.t_end)?;
         Ok(Ready {
             wiring,
@@ -236,6 +242,7 @@ impl Motion {
             options,
             undriven,
             held_from,
+            smooth,
         })
     }
 
@@ -300,7 +307,7 @@ impl Motion {
         }
         if let Some(file) = &self.recorded {
             plan.recording(
-                tabulated::read(file, name, setup, model, self.t_end)?,
+                tabulated::read(file, name, setup, model, self.t_end, self.interpolation)?,
                 setup,
             )?;
         }
@@ -317,6 +324,7 @@ pub(crate) struct Ready {
     pub(crate) options: Options,
     undriven: bool,
     held_from: Option<f64>,
+    smooth: Option<String>,
 }
 
 impl Ready {
@@ -348,8 +356,22 @@ impl Ready {
             failure,
             undriven: self.undriven,
             held_from: self.held_from,
+            smooth: self.smooth.clone(),
         })
     }
+}
+
+/// A remark on inputs that look sampled from a continuous signal.
+fn smooth_inputs(inputs: &[(String, f64)]) -> Option<String> {
+    let one = |(name, late): &(String, f64)| format!("`{name}` by {:.2} %", 100.0 * late);
+    let texts: Vec<String> = inputs.iter().map(one).collect();
+    (!texts.is_empty()).then(|| {
+        format!(
+            "inputs change smoothly from row to row, and each row is held to the next: if they were sampled from a \
+             continuous signal, they act half a row late ({} of their size); write `linear` or `hold`",
+            texts.join(", ")
+        )
+    })
 }
 
 /// Which inputs, outputs and energies of a motion are no numbers, and from when on.

@@ -10,6 +10,7 @@ pub(crate) fn flag(field: Field) -> Option<&'static str> {
         Field::Initial => "--initial",
         Field::Input => "--input",
         Field::Recorded | Field::Inputs => "--inputs",
+        Field::Interpolation => "--interpolation",
         Field::Feedback => "--feedback",
         Field::End => "--t-end-s",
         Field::Interval => "--dt-s",

@@ -33,6 +33,7 @@ static ALLOCATOR: MiMalloc = MiMalloc;
 fn main() -> ExitCode {
     CompleteEnv::with_factory(completion::command).complete();
     interrupt::install();
+    quiet_parquet();
     let given = Arguments::command().try_get_matches();
     match run(&given.unwrap_or_else(|error| failure::usage(&error))) {
         Ok(()) => ExitCode::SUCCESS,
@@ -41,6 +42,17 @@ fn main() -> ExitCode {
             ExitCode::from(failure::status(&failure))
         }
     }
+}
+
+/// A damaged file may show a slip of the library for Parquet, which is told as an error of the file.
+fn quiet_parquet() {
+    let usual = std::panic::take_hook();
+    std::panic::set_hook(Box::new(move |slip| {
+        let file = slip.location().map_or("", std::panic::Location::file);
+        if !file.contains("parquet") {
+            usual(slip);
+        }
+    }));
 }
 
 fn run(given: &ArgMatches) -> Result<(), failure::Error> {

@@ -6,13 +6,13 @@
 use std::sync::OnceLock;
 
 use appell_runtime::differences;
-use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo, Switching};
+use appell_runtime::model::{Along, At, Energies, Gradient, Model, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
 use appell_runtime::series::Series;
 use appell_runtime::switching::Counts;
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, enclose, interpret_weighted, schedule};
+use crate::schedule::{Schedule, enclose, enclose_along, interpret_weighted, schedule};
 use crate::taylor::{InterpretedSeries, Lengths, expand};
 
 /// A model that interprets its schedules. Functions that the program lacks give NaN.
@@ -254,6 +254,15 @@ impl Switching for InterpretedModel {
     }
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
-        self.evaluate(FunctionKind::Crossings, at, &mut [("crossings", crossings)]);
+        let count = self.program.switch_counts().crossings;
+        let (crossings, pulses) = crossings.split_at_mut(count);
+        let all = &mut [("crossings", crossings), ("pulses", pulses)];
+        self.evaluate(FunctionKind::Crossings, at, all);
+    }
+
+    fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
+        if let Some(schedule) = self.schedule(FunctionKind::Crossings) {
+            enclose_along(schedule, along, crossings);
+        }
     }
 }

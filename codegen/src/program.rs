@@ -48,6 +48,7 @@ impl Program {
             answers: self.switch_len(),
             shapes: self.result_len(FunctionKind::TimeFunctions, "shapes"),
             crossings: self.result_len(FunctionKind::Crossings, "crossings"),
+            pulses: self.result_len(FunctionKind::Crossings, "pulses"),
         }
     }
 
@@ -484,7 +485,7 @@ impl FunctionKind {
             Self::Crossings => (
                 "crossings",
                 "Crossings",
-                "Functions at whose zeros the state switches the equations.",
+                "Functions at whose zeros the state switches the equations, and those that rise and fall with it.",
             ),
             Self::PositionConstraints => (
                 "position_constraints",

@@ -30,7 +30,7 @@ mod tuning;
 mod without;
 
 pub use cost::OperationCount;
-pub use interpret::{enclose, interpret, interpret_weighted};
+pub use interpret::{enclose, enclose_along, interpret, interpret_weighted};
 pub use pi::pi;
 pub use steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 pub use tuning::Tuning;

@@ -9,6 +9,8 @@ use appell::{
     CsvOptions, Driven, Extras, InputSource, Law, Method, Motion, TabulatedInputs, Trajectory,
 };
 use appell_report::figure::Figure;
+use appell_runtime::Signal;
+use appell_runtime::model::{Interpolation, SignalTable};
 use numpy::{PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -51,24 +53,43 @@ fn lock<T>(value: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// One input over time, held from row to row.
+/// One input over time.
 fn table(
     inputs: usize,
     input: usize,
     times: &[f64],
     values: &[f64],
+    interpolation: Interpolation,
 ) -> Result<TabulatedInputs, appell::Error> {
-    let columns = (0..inputs).map(|one| match one {
-        _ if one == input => values.to_vec(),
-        _ => vec![0.0; times.len()],
-    });
-    Ok(TabulatedInputs::held(times, &columns.collect::<Vec<_>>())?)
+    let signal = |one: usize| {
+        let is_given = one == input;
+        Signal::new(&SignalTable {
+            name: format!("input {one}").into(),
+            times: if is_given { times.to_vec() } else { vec![0.0] }.into(),
+            values: if is_given { values.to_vec() } else { vec![0.0] }.into(),
+            interpolation,
+        })
+    };
+    let signals = (0..inputs).map(signal).collect::<Result<_, _>>()?;
+    Ok(TabulatedInputs::new(signals))
+}
+
+/// The interpolation of that name.
+fn interpolation(name: &str) -> PyResult<Interpolation> {
+    match name {
+        "hold" => Ok(Interpolation::Hold),
+        "linear" => Ok(Interpolation::Linear),
+        other => {
+            let message = format!("interpolation is `hold` or `linear`, not `{other}`");
+            Err(PyValueError::new_err(message))
+        }
+    }
 }
 
 /// Integrates the equations of motion: one motion, or one for each row of `starts`. Of the inputs, texts are
 /// expressions, pairs of arrays are tables, and the rest are functions of time and state.
 #[pyfunction]
-#[pyo3(signature = (model, t_end, *, starts, dt, parameters, initial, expressions, tables, functions, recorded, laws, method, step, tolerances, max_steps, extras))]
+#[pyo3(signature = (model, t_end, *, starts, dt, parameters, initial, expressions, tables, functions, recorded, interpolated, laws, method, step, tolerances, max_steps, extras))]
 #[expect(clippy::too_many_arguments, reason = "called by name from Python")]
 pub(crate) fn simulate(
     py: Python<'_>,
@@ -82,6 +103,7 @@ pub(crate) fn simulate(
     tables: Vec<(String, PyReadonlyArray1<'_, f64>, PyReadonlyArray1<'_, f64>)>,
     functions: Vec<(String, Py<PyAny>)>,
     recorded: Option<PathBuf>,
+    interpolated: Option<String>,
     laws: Vec<String>,
     method: &str,
     step: Option<f64>,
@@ -101,6 +123,7 @@ pub(crate) fn simulate(
         .map(|(name, value)| Assignment::new(name, value))
         .collect();
     motion.recorded = recorded;
+    motion.interpolation = interpolated.as_deref().map(interpolation).transpose()?;
     motion.laws = laws
         .into_iter()
         .map(|text| Law::Text {
@@ -147,6 +170,7 @@ pub(crate) fn simulate(
             index(name),
             times.as_slice()?,
             values.as_slice()?,
+            motion.interpolation.unwrap_or(Interpolation::Hold),
         );
         motion.driven.push(Driven {
             inputs: vec![name.clone()],
@@ -268,6 +292,7 @@ pub(crate) fn restored(
         undefined,
         undriven: false,
         held_from,
+        smooth: None,
     };
     Ok(Simulated {
         model: Arc::clone(model),
@@ -343,6 +368,12 @@ impl Simulated {
     #[getter]
     fn held_from(&self) -> Option<f64> {
         self.simulated.held_from
+    }
+
+    /// Recorded inputs that look sampled from a continuous signal.
+    #[getter]
+    fn smooth(&self) -> Option<&str> {
+        self.simulated.smooth.as_deref()
     }
 
     /// Steps, rejected steps, evaluations.

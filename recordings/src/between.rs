@@ -10,6 +10,9 @@ use crate::{DataSet, Finding, FindingKind, Part, Run};
 const FEWEST: usize = 32;
 /// Part of the rows that may repeat the one before: a command that is held for several rows does so in most.
 const REPEATED: f64 = 0.05;
+/// Part of the differences that jumps may make, and how many times the mean of the other squares theirs are at least.
+const JUMPS: f64 = 0.15;
+const FAR: f64 = 16.0;
 /// Mean square of second differences over that of first ones: (ω h)² for a frequency ω, 2 for steps at random, 3 for
 /// noise. Below this a period has ten rows and more.
 const SMOOTH: f64 = 0.4;
@@ -65,29 +68,42 @@ impl DataSet {
 }
 
 /// The mean error of an input that acts half a row late, relative to its size, if it changes smoothly.
-fn half_a_row<'v>(runs: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
+pub fn half_a_row<'v>(runs: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
     let (mut rows, mut repeated) = (0_usize, 0_usize);
-    let (mut first, mut second) = (0.0, 0.0);
+    let (mut first, mut second) = (Vec::new(), Vec::new());
     let (mut sum, mut squares) = (0.0, 0.0);
     for values in runs {
         rows += values.len();
         for pair in values.windows(2) {
-            first += (pair[1] - pair[0]).powi(2);
+            first.push((pair[1] - pair[0]).powi(2));
             repeated += usize::from(pair[1].to_bits() == pair[0].to_bits());
         }
         for three in values.windows(3) {
-            second += (three[2] - 2.0 * three[1] + three[0]).powi(2);
+            second.push((three[2] - 2.0 * three[1] + three[0]).powi(2));
         }
         sum += values.iter().sum::<f64>();
         squares += values.iter().map(|value| value * value).sum::<f64>();
     }
     let count = rows as f64;
+    let (first, second) = (without_jumps(first), without_jumps(second));
     let is_smooth = rows >= FEWEST
         && (repeated as f64) < REPEATED * count
         && second < SMOOTH * first
         && first > 0.0;
     let spread = (squares / count - (sum / count).powi(2)).max(f64::MIN_POSITIVE);
-    is_smooth.then(|| 0.5 * (first / count / spread).sqrt())
+    is_smooth.then(|| 0.5 * (first / spread).sqrt())
+}
+
+/// The mean of squared differences without the largest ones, which are jumps of a signal that is smooth elsewhere; zero
+/// without any.
+fn without_jumps(mut squares: Vec<f64>) -> f64 {
+    squares.sort_by(f64::total_cmp);
+    let mean = |of: &[f64]| of.iter().sum::<f64>() / (of.len() as f64).max(1.0);
+    // A part of a number of rows.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let jumps = (JUMPS * squares.len() as f64) as usize;
+    let usual = mean(&squares[..squares.len() - jumps]);
+    mean(&squares[..squares.partition_point(|square| *square <= FAR * usual)])
 }
 
 #[cfg(test)]
@@ -100,6 +116,11 @@ mod tests {
         let sine: Vec<f64> = rows().map(|row| (0.1 * row).sin()).collect();
         let late = half_a_row([sine.as_slice()].into_iter()).unwrap_or_default();
         assert!((late - 0.05).abs() < 1e-3, "{late}");
+        // Its jumps do not hide that it is smooth between them.
+        let jumping: Vec<f64> = rows()
+            .map(|row| (0.1 * row).sin() + 0.5 * (0.14 * row).sin().signum())
+            .collect();
+        assert!(half_a_row([jumping.as_slice()].into_iter()).is_some());
         let steps: Vec<f64> = rows().map(|row| (row / 10.0).floor().sin()).collect();
         // Steps at random, a new one in each row.
         let noise: Vec<f64> = rows().map(|row| (row * row).sin()).collect();

@@ -37,7 +37,7 @@
 //! computed values; findings about them concern their form.
 
 mod bare;
-mod between;
+pub mod between;
 mod c3d;
 mod channel;
 mod clock;

@@ -1,7 +1,8 @@
 //! What drives a model: inputs as functions of time and state.
 
-use crate::model::{Interpolation, ModelInfo, SignalTable, Switching};
-use crate::series::{Cubic, Series, differentiated};
+use crate::model::{Along, Interpolation, ModelInfo, SignalTable, Switching};
+use crate::real::{Enclosure, Real};
+use crate::series::{Cubic, Series, differentiated, enclosed};
 use crate::signal::{Signal, SignalError};
 
 /// The declared inputs of a model as functions of time and state.
@@ -22,6 +23,12 @@ pub trait InputSource {
     fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
         let _ = (t, x, u);
         false
+    }
+
+    /// Bounds on the declared inputs along a stretch of a motion, whose inputs do not matter.
+    fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
+        let _ = along;
+        u.fill(Enclosure::UNKNOWN);
     }
 
     /// What switches the inputs at times that are not known in advance, where anything does.
@@ -55,6 +62,10 @@ impl InputSource for ZeroInputs {
     fn polynomials(&self, _: f64, _: &[f64], u: &mut [Cubic]) -> bool {
         u.fill(Cubic::default());
         true
+    }
+
+    fn bounds(&self, _: &Along<'_>, u: &mut [Enclosure]) {
+        u.fill(Enclosure::constant(0.0));
     }
 }
 
@@ -125,6 +136,14 @@ impl InputSource for TabulatedInputs {
         true
     }
 
+    fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
+        let since = along.t - Enclosure::constant(along.start);
+        u.fill(Enclosure::constant(0.0));
+        for (u, signal) in u.iter_mut().zip(&self.signals) {
+            *u = enclosed(signal.polynomial(along.start), since);
+        }
+    }
+
     fn switching_times(&self) -> Vec<f64> {
         let mut times: Vec<f64> = self
             .signals
@@ -188,6 +207,21 @@ impl<'a> ModelInputs<'a> {
             *u = differentiated(polynomial.unwrap_or([f64::NAN; 4]), order);
         }
         self.source.polynomials(t, x, declared)
+    }
+
+    /// Bounds on all inputs of the model along a stretch of a motion.
+    pub fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
+        let (declared, signals) = u.split_at_mut(self.declared.min(u.len()));
+        self.source.bounds(along, declared);
+        let since = along.t - Enclosure::constant(along.start);
+        for (u, &(signal, order)) in signals.iter_mut().zip(self.signal_inputs) {
+            *u = self
+                .signals
+                .get(signal)
+                .map_or(Enclosure::UNKNOWN, |signal| {
+                    enclosed(differentiated(signal.polynomial(along.start), order), since)
+                });
+        }
     }
 
     /// What switches the declared inputs at times that are not known in advance.

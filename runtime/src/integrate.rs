@@ -23,6 +23,7 @@
 mod block;
 mod block_lanes;
 mod block_stages;
+mod crossings;
 mod dense_output;
 mod dop853_coefficients;
 mod error;
@@ -48,7 +49,7 @@ pub use block_lanes::BlockMotion;
 pub use block_stages::Places;
 pub use dense_output::DenseOutput;
 pub use error::{Cause, Failure, IntegrationError};
-pub use events::{Direction, Event, EventFunction, EventHit};
+pub use events::{Direction, Event, EventFunction, EventHit, HidingFunction};
 pub use options::Options;
 pub use outcome::{Ending, Outcome, Statistics};
 pub use pairs::{Coefficients, Dop853, Dopri5, EmbeddedPair};
@@ -56,6 +57,8 @@ pub use pieces::{Piece, Sought, Walk};
 pub use range::Range;
 pub use rk4::Rk4;
 pub use solver::Solver;
-pub use switches::{BoundFunction, CrossingFunction, SwitchFunction, Switches};
+pub use switches::{
+    BoundFunction, CrossingFunction, Stretch, StretchFunction, SwitchFunction, Switches,
+};
 pub use taylor::{BlockTaylor, Expanded, ExpandedTogether, InputPolynomials, MotionInputs, Taylor};
 pub use watch::{NoObserver, Observer, Projection, ProjectionFunction, Step, Watch};

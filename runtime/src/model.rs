@@ -348,6 +348,11 @@ pub trait Model: Sync {
     }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
+    /// Bounds on the outputs along a stretch of a motion, where the model has them.
+    fn outputs_within(&self, along: &Along<'_>, outputs: &mut [Enclosure]) {
+        let _ = along;
+        outputs.fill(Enclosure::UNKNOWN);
+    }
     /// [`Model::rates`] at every place of a block, see [`crate::lanes`]; `rates` are component by
     /// component as the arguments are. Emitted models compute with the functions of
     /// [`crate::elementary`]. The answer of this trait is the *plain mode*: it goes place by place with
@@ -461,8 +466,26 @@ pub trait Switching {
     /// Over an interval of time, the functions whose signs are the answers, followed by the other functions of
     /// time alone that rise and fall.
     fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]);
-    /// The functions whose signs the state or the inputs decide as well.
+    /// The functions whose signs the state or the inputs decide as well, followed by the functions of them that rise
+    /// and fall within a small part of their arguments' range.
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]);
+    /// Bounds on these along a stretch of a motion.
+    fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]);
+}
+
+/// A stretch of a motion within a step; otherwise as [`At`].
+#[derive(Debug, Clone, Copy)]
+pub struct Along<'a> {
+    /// Start of the step in s, from which tables are polynomials.
+    pub start: f64,
+    /// Time.
+    pub t: Enclosure,
+    /// State.
+    pub x: &'a [Enclosure],
+    /// Inputs, then signals.
+    pub u: &'a [Enclosure],
+    /// Parameters.
+    pub p: &'a [f64],
 }
 
 /// A model whose numbers have names, as those of emitted models do.

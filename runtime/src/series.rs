@@ -6,6 +6,7 @@
 //! coefficients, Σ aⱼ bₖ₋ⱼ for 1 ≤ j < k, which the caller takes.
 
 use crate::lanes::{AtLanes, LANES};
+use crate::real::{Enclosure, Real};
 use std::borrow::Cow;
 
 /// Equations ẋ = f(t, x, u, p) with the recurrences of their Taylor coefficients.
@@ -31,6 +32,12 @@ pub trait SeriesInLanes: Send + Sync {
 
 /// An input as a polynomial of the time since some moment, up to the third power.
 pub type Cubic = [f64; 4];
+
+/// Bounds on a polynomial over an interval of the time since its moment.
+pub fn enclosed(cubic: Cubic, since: Enclosure) -> Enclosure {
+    let [a, b, c, d] = cubic.map(Enclosure::constant);
+    a + since * (b + since * (c + since * d))
+}
 
 /// The derivative of a polynomial of some order.
 pub fn differentiated(polynomial: Cubic, order: u8) -> Cubic {

@@ -9,6 +9,8 @@ pub struct Counts {
     pub shapes: usize,
     /// Functions of the state, and of inputs.
     pub crossings: usize,
+    /// Functions of these that rise and fall.
+    pub pulses: usize,
 }
 
 impl Counts {

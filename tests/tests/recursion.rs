@@ -239,3 +239,65 @@ fn the_rates_of_a_chain_cost_as_much_more_as_it_is_longer() {
     let growth = (cost(24) / cost(12)).log2();
     assert!(growth < 1.2, "operations grow as n^{growth}");
 }
+
+/// A carriage on a free body, and a wheel that turns on it about another axis than the one along which it is placed; what
+/// moves the carriage has no inertia, so the constraint has no force.
+const CARRIAGE: &str = r#"
+[mechanism]
+name = "carriage_on_a_body"
+title = "Carriage on a free body"
+[coordinates]
+X = { unit = "m" }
+e0 = { unit = "1" }
+e1 = { unit = "1" }
+e2 = { unit = "1" }
+e3 = { unit = "1" }
+j = { unit = "rad" }
+k = { unit = "m" }
+l = { unit = "rad" }
+[frames]
+b = { parent = "ground", quaternion = ["e0", "e1", "e2", "e3"] }
+e = { parent = "b", about_axis = "y", by = "l" }
+[points]
+P = { from = "O", in = "ground", at = ["X", 0, 0] }
+D = { from = "P", in = "b", at = ["k", 0, 0] }
+E = { from = "D", in = "e", at = [0, 0, 0] }
+[bodies]
+b = { frame = "b", centre = "P", mass = "1 [kg]", inertia = { in = "b", diagonal = ["0.1 [kg*m^2]", "0.1 [kg*m^2]", "0.1 [kg*m^2]"] } }
+e = { frame = "e", centre = "CENTRE", mass = "1 [kg]", inertia = { in = "e", diagonal = ["0.1 [kg*m^2]", "0.1 [kg*m^2]", "0.1 [kg*m^2]"] } }
+[constraints]
+k_follows = { kind = "position", zero = "k - 0.1 [m]*j", dependent = "k" }
+[pseudo_velocities]
+V = "dot(X)"
+wx = "angular_velocity(b, x, b)"
+wy = "angular_velocity(b, y, b)"
+wz = "angular_velocity(b, z, b)"
+vj = "dot(j)"
+vl = "dot(l)"
+"#;
+
+#[test]
+fn a_centre_placed_in_other_axes_than_its_bodys_feels_the_same_forces() {
+    let [in_body, beside] = ["E", "D"]
+        .map(|centre| shipped::read("carriage.toml", &CARRIAGE.replace("CENTRE", centre)));
+    assert!(shipped::derive(&beside).recursion.is_some());
+    assert_one_answer(&beside);
+    let models = [interpreter(&in_body), interpreter(&beside)];
+    let mut random = Random::of("carriage");
+    for _ in 0..POINTS {
+        let mut point = Point::random(models[0].info(), &mut random);
+        normalised(&in_body, &mut point);
+        let [e, other] = models
+            .each_ref()
+            .map(|model| Evaluation::of(model, point.at()));
+        // The acceleration energy among them.
+        assert_close(
+            "energies",
+            &other.energies,
+            &e.energies,
+            TOLERANCE,
+            TOLERANCE,
+        );
+        assert!(other.reactions.iter().all(|force| force.abs() < TOLERANCE));
+    }
+}

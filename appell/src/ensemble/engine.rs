@@ -14,6 +14,7 @@ use appell_runtime::integrate::{
 };
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::ModelInfo;
+use appell_runtime::real::Enclosure;
 use appell_runtime::series::Cubic;
 use appell_runtime::simulate::{
     Observed, Prepared, Response, SimulationError, Validity, Viewer, observe_together,
@@ -213,10 +214,10 @@ impl Ensemble {
             }
         };
         let kept: Vec<Quantity> = task.which.iter().map(|&k| variant.kept[k]).collect();
-        let gauges = starts.iter().zip(&inputs);
+        let gauges = starts.iter().zip(inputs.iter().zip(&sources));
         let gauges: Vec<_> = gauges
-            .map(|(start, inputs)| {
-                RefCell::new(Gauge::new(model, inputs, &start.parameters, &kept))
+            .map(|(start, drives)| {
+                RefCell::new(Gauge::new(model, drives, &start.parameters, &kept))
             })
             .collect();
         let (mut awaited, mut simulations) = (Vec::new(), Vec::new());
@@ -460,6 +461,11 @@ impl Awaited {
             Event {
                 terminal: task.keep[index].kept == Kept::When { stop: true },
                 longest: task.layout.interval,
+                hides: Some(Box::new(move |piece, start, interior| {
+                    let (within, size) = ((start, interior), piece.size());
+                    let keeps = Enclosure::keeps_its_sign;
+                    gauge.borrow_mut().hides(index, piece, within, keeps, size)
+                })),
                 ..Event::new(Direction::Rising, g)
             }
         };

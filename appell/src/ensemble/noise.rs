@@ -6,7 +6,8 @@ use std::cell::Cell;
 use appell_ensemble::normal;
 use appell_ensemble::random::Stream;
 use appell_runtime::inputs::InputSource;
-use appell_runtime::model::Switching;
+use appell_runtime::model::{Along, Switching};
+use appell_runtime::real::Enclosure;
 use appell_runtime::series::Cubic;
 
 use crate::inputs::closed_loop::Onto;
@@ -98,6 +99,15 @@ impl Noisy<'_> {
         })
     }
 
+    /// Writes the noises of a time to parameters.
+    pub(super) fn parameters_at(&self, t: f64, p: &mut [f64]) {
+        for (onto, value) in self.values(t) {
+            if let Onto::Parameter(parameter) = onto {
+                p[parameter] = value;
+            }
+        }
+    }
+
     /// Calls a function with the parameters and the state that laws see.
     fn with_seen(&self, t: f64, x: &[f64], call: impl FnOnce(&[f64], &[f64])) {
         let parameters = self.controller.parameters();
@@ -159,6 +169,14 @@ impl InputSource for Noisy<'_> {
         times.sort_by(f64::total_cmp);
         times.dedup();
         times
+    }
+
+    fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
+        if self.noises.is_empty() {
+            self.controller.bounds(along, u);
+        } else {
+            u.fill(Enclosure::UNKNOWN);
+        }
     }
 
     fn switching(&self) -> Option<&dyn Switching> {

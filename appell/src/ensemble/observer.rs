@@ -6,16 +6,20 @@ use std::ops::ControlFlow;
 use appell_ensemble::study::{Keep, Kept};
 use appell_runtime::inputs::ModelInputs;
 use appell_runtime::integrate::{DenseOutput, Observer, Piece, Sought, Step, Walk};
-use appell_runtime::model::{At, Model};
+use appell_runtime::model::{Along, At, Model};
+use appell_runtime::real::Enclosure;
 
 use super::layout::{Layout, Moment};
+use super::noise::Noisy;
 use super::spec::Quantity;
 
 /// The kept quantities at a time and state, of which the last ones are remembered.
 pub(super) struct Gauge<'a> {
     model: &'a dyn Model,
     inputs: &'a ModelInputs<'a>,
-    p: &'a [f64],
+    source: &'a Noisy<'a>,
+    /// Parameters, with the noises of the time.
+    p: Vec<f64>,
     kept: &'a [Quantity],
     u: Vec<f64>,
     outputs: Vec<f64>,
@@ -23,13 +27,23 @@ pub(super) struct Gauge<'a> {
     x: Vec<f64>,
     has_outputs: bool,
     has_inputs: bool,
+    bounds: Bounds,
+}
+
+/// Bounds on the outputs over a stretch of time.
+#[derive(Default)]
+struct Bounds {
+    span: Option<[f64; 2]>,
+    x: Vec<Enclosure>,
+    u: Vec<Enclosure>,
+    outputs: Vec<Enclosure>,
 }
 
 impl<'a> Gauge<'a> {
     pub(super) fn new(
         model: &'a dyn Model,
-        inputs: &'a ModelInputs<'a>,
-        p: &'a [f64],
+        (inputs, source): (&'a ModelInputs<'a>, &'a Noisy<'a>),
+        p: &[f64],
         kept: &'a [Quantity],
     ) -> Self {
         let info = model.info();
@@ -38,7 +52,8 @@ impl<'a> Gauge<'a> {
         Self {
             model,
             inputs,
-            p,
+            source,
+            p: p.to_vec(),
             kept,
             u: vec![0.0; info.input_len()],
             outputs: vec![0.0; info.output_len()],
@@ -46,7 +61,50 @@ impl<'a> Gauge<'a> {
             x: Vec::new(),
             has_outputs,
             has_inputs,
+            bounds: Bounds {
+                u: vec![Enclosure::UNKNOWN; info.input_len()],
+                outputs: vec![Enclosure::UNKNOWN; info.output_len()],
+                ..Bounds::default()
+            },
         }
+    }
+
+    /// Whether a kept quantity may do more in a piece of a step than its values there show, unless enough is known of it
+    /// from its bounds.
+    pub(super) fn hides(
+        &mut self,
+        keep: usize,
+        piece: &Piece,
+        (start, interior): (f64, &DenseOutput),
+        is_known: impl FnOnce(&Enclosure) -> bool,
+        size: f64,
+    ) -> bool {
+        let Quantity::Output(output) = self.kept[keep] else {
+            return false;
+        };
+        let span = piece.span();
+        let bounds = &mut self.bounds;
+        if bounds.span != Some(span) {
+            bounds.span = Some(span);
+            self.source.parameters_at(start, &mut self.p);
+            interior.within(span, &mut bounds.x);
+            let along = Along {
+                start,
+                t: Enclosure::time(span[0], span[1]),
+                x: &bounds.x,
+                u: &[],
+                p: &self.p,
+            };
+            self.inputs.bounds(&along, &mut bounds.u);
+            let along = Along {
+                u: &bounds.u,
+                ..along
+            };
+            self.model.outputs_within(&along, &mut bounds.outputs);
+        }
+        let [least, most] = piece.ends();
+        let of = &bounds.outputs[output];
+        !is_known(of) && of.may_hide(most - least, span[1] - span[0], size)
     }
 
     /// A kept quantity.
@@ -59,11 +117,12 @@ impl<'a> Gauge<'a> {
                 self.inputs.fill(t, x, &mut self.u);
             }
             if self.has_outputs {
+                self.source.parameters_at(t, &mut self.p);
                 let at = At {
                     t,
                     x,
                     u: &self.u,
-                    p: self.p,
+                    p: &self.p,
                 };
                 self.model.outputs(at, &mut self.outputs);
             }
@@ -93,6 +152,8 @@ struct Followed {
     first: f64,
     /// The largest absolute value so far.
     size: f64,
+    /// Whether it was no number at some time.
+    is_undefined: bool,
 }
 
 impl Followed {
@@ -148,6 +209,7 @@ impl<'a> Keeper<'a> {
                 when: t,
                 first: value,
                 size: 0.0,
+                is_undefined: !value.is_finite(),
             });
         }
         let mut keeper = Self {
@@ -179,6 +241,13 @@ impl<'a> Keeper<'a> {
     pub(super) fn finish(self, layout: &Layout, t: f64) -> &'a mut [f64] {
         for followed in &self.followed {
             let column = layout.first[followed.keep];
+            if followed.is_undefined {
+                self.row[column] = f64::NAN;
+                if followed.kept != Kept::Mean {
+                    self.row[column + 1] = f64::NAN;
+                }
+                continue;
+            }
             let sign = match followed.kept {
                 Kept::Min => -1.0,
                 _ => 1.0,
@@ -245,24 +314,35 @@ impl Sought for Following<'_, '_> {
         }
     }
 
-    fn is_enough(&self, which: usize, piece: &Piece) -> bool {
+    fn is_enough(&mut self, which: usize, piece: &Piece) -> bool {
         let followed = &self.followed[which];
         let (size, [least, most]) = (followed.size.max(piece.size()), piece.ends());
         let (spread, [from, to]) = (most - least, piece.span());
         // What is not finite has no mean and no top.
-        !piece.is_finite()
-            || piece.is_resolved(size)
+        if !piece.is_finite() {
+            return true;
+        }
+        let is_enough = piece.is_resolved(size)
             || match followed.kept {
                 Kept::Max => most + 2.0 * spread < followed.best,
                 Kept::Min => 2.0 * spread - least < followed.best,
                 _ => spread * (to - from) <= TOLERANCE * size * (self.step.t - self.step.t_old),
-            }
+            };
+        let (kept, best) = (followed.kept, followed.best);
+        let is_known = |of: &Enclosure| match kept {
+            Kept::Max => of.range().hi <= best,
+            Kept::Min => -of.range().lo <= best,
+            _ => false,
+        };
+        let within = (self.step.t_old, self.interior);
+        is_enough && !(self.gauge).hides(followed.keep, piece, within, is_known, size)
     }
 
     fn see(&mut self, pieces: &[Piece]) {
         for (place, piece) in pieces.iter().enumerate() {
             let followed = &mut self.followed[place];
             followed.size = followed.size.max(piece.size());
+            followed.is_undefined |= !piece.is_finite();
             let [from, to] = piece.span();
             let (sign, piece) = match followed.kept {
                 Kept::Mean => {

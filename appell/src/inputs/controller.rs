@@ -1,5 +1,7 @@
 //! The inputs of a simulation as one function of time and state.
 
+mod bounds;
+
 use std::cell::Cell;
 use std::sync::Arc;
 
@@ -10,7 +12,8 @@ use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
 use appell_codegen::taylor::{Lengths, expand_under};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
-use appell_runtime::model::{At, Model, ModelInfo, Switching};
+use appell_runtime::model::{Along, At, Model, ModelInfo, Switching};
+use appell_runtime::real::Enclosure;
 use appell_runtime::series::{Cubic, Series};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;
@@ -114,6 +117,11 @@ impl Plan {
     /// The last time of a recording in s.
     pub fn recorded_until(&self) -> Option<f64> {
         self.recorded.as_ref().map(|table| table.until)
+    }
+
+    /// Recorded inputs that change smoothly though they are held, see [`Table::smooth`].
+    pub fn recorded_smooth(&self) -> Option<&[(String, f64)]> {
+        self.recorded.as_ref().map(|table| table.smooth.as_slice())
     }
 
     fn take(&mut self, field: Field, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
@@ -524,6 +532,10 @@ impl InputSource for Controller<'_> {
 
     fn switching_times(&self) -> Vec<f64> {
         self.switching_times.clone()
+    }
+
+    fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
+        self.bounds_along(along, u);
     }
 
     fn switching(&self) -> Option<&dyn Switching> {

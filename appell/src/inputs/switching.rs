@@ -3,7 +3,7 @@
 use appell_codegen::mechanics::switches::{Switches, switches};
 use appell_codegen::schedule::enclose;
 use appell_codegen::symbolic::Expr;
-use appell_runtime::model::{At, ModelInfo, Switching};
+use appell_runtime::model::{Along, At, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
 use appell_runtime::signal::SignalError;
 use appell_runtime::switching::Counts;
@@ -37,16 +37,18 @@ impl InputSwitches {
             functions,
             shapes,
             crossings,
+            pulses,
         } = found;
         Ok(Some(Self {
             counts: Counts {
                 answers: answers.len(),
                 shapes: shapes.len(),
                 crossings: crossings.len(),
+                pulses: pulses.len(),
             },
             answers: bench.clone().function(info, answers)?,
             of_time: bench.clone().function(info, [functions, shapes].concat())?,
-            crossings: bench.function(info, crossings)?,
+            crossings: bench.function(info, [crossings, pulses].concat())?,
         }))
     }
 }
@@ -67,5 +69,9 @@ impl Switching for InputSwitches {
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
         self.crossings.values(at.t, at.x, at.p, crossings);
+    }
+
+    fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
+        self.crossings.bounds(along, crossings);
     }
 }

@@ -3,6 +3,7 @@
 use std::io::BufRead;
 use std::path::Path;
 
+use appell_recordings::between::half_a_row;
 use appell_recordings::csv::Rows;
 use appell_recordings::limits::MAX_MISTAKES;
 use appell_recordings::{DataError, MANIFEST, Role};
@@ -26,25 +27,39 @@ pub struct Table {
     pub given: Vec<usize>,
     /// The last time in s, after which the last values are held.
     pub until: f64,
+    /// Inputs that change smoothly though they are held, with the part of their size by which that is wrong; only where
+    /// nothing says whether they were held.
+    pub smooth: Vec<(String, f64)>,
 }
 
 /// The inputs of a CSV file, for a motion until a time in s.
 ///
 /// The header names `t` in s and inputs in the units of the spec; columns of the mechanism's other
-/// quantities are ignored, so that a written trajectory can be fed back. A `recording.toml` with the
-/// name of a run defines the names and units itself.
+/// quantities are ignored, so that a written trajectory can be fed back. Rows are held if `interpolation` is not given.
+/// A `recording.toml` with the name of a run defines names, units and interpolation itself.
 pub fn read(
     path: &Path,
     name: &str,
     setup: &Setup<'_>,
     model: &dyn Model,
     until: f64,
+    interpolation: Option<Interpolation>,
 ) -> Result<Table, Error> {
     let file = path.to_string_lossy();
     let columns = match described(&file) {
+        Some(_) if interpolation.is_some() => {
+            let message = "a data set says itself how its inputs run from row to row: write `interpolation` in the line of the channel";
+            return Err(Error::request(Field::Interpolation, message));
+        }
         Some((description, run)) => recorded(description, run, name, setup.spec)?,
-        None => tabulated(path, setup, model)?,
+        None => tabulated(
+            path,
+            setup,
+            model,
+            interpolation.unwrap_or(Interpolation::Hold),
+        )?,
     };
+    let is_stated = described(&file).is_some() || interpolation.is_some();
     let [from, to] =
         [columns.times.first(), columns.times.last()].map(|end| end.copied().unwrap_or(0.0));
     if from > until {
@@ -54,6 +69,21 @@ pub fn read(
         return Err(Error::data(file, message));
     }
     let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
+    let smooth = columns
+        .inputs
+        .iter()
+        .filter(|_| !is_stated)
+        .filter_map(|column| {
+            let late = half_a_row([column.values.as_slice()].into_iter())?;
+            Some((
+                setup.mechanism.inputs[InputId::new(column.input)]
+                    .label
+                    .name
+                    .clone(),
+                late,
+            ))
+        });
+    let smooth = smooth.collect();
     let mut own: Vec<Option<Column>> = Vec::new();
     own.resize_with(setup.mechanism.inputs.len(), || None);
     for column in columns.inputs {
@@ -82,6 +112,7 @@ pub fn read(
         values: TabulatedInputs::new(signals),
         given,
         until: to,
+        smooth,
     })
 }
 
@@ -145,11 +176,17 @@ fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Colu
 }
 
 /// The inputs of a CSV file.
-fn tabulated(path: &Path, setup: &Setup<'_>, model: &dyn Model) -> Result<Columns, Error> {
+fn tabulated(
+    path: &Path,
+    setup: &Setup<'_>,
+    model: &dyn Model,
+    interpolation: Interpolation,
+) -> Result<Columns, Error> {
     let text = files::read(path, files::MAX_DATA)?;
     let reader = Reader {
         rows: Rows::new(path, text.as_bytes())?,
         recorded: trajectory::recorded(model, Extras::ALL),
+        interpolation,
         mistakes: Vec::new(),
     };
     Ok(reader.columns(setup)?)
@@ -175,6 +212,7 @@ struct Reader<R> {
     rows: Rows<R>,
     /// The columns that a written trajectory may have.
     recorded: Vec<Quantity>,
+    interpolation: Interpolation,
     mistakes: Vec<DataError>,
 }
 
@@ -243,7 +281,7 @@ impl<R: BufRead> Reader<R> {
                     position,
                     input,
                     scale: inputs[InputId::new(input)].label.unit.scale,
-                    interpolation: Interpolation::Hold,
+                    interpolation: self.interpolation,
                     values: Vec::new(),
                 });
             } else if name == "t" {

@@ -9,7 +9,7 @@ use appell_report::figure::Figure;
 use appell_report::text::number;
 use appell_runtime::Trajectory;
 use appell_runtime::integrate::Options;
-use appell_runtime::model::ModelInfo;
+use appell_runtime::model::{Interpolation, ModelInfo};
 use appell_runtime::simulate::{Method, Response, Validity};
 use appell_runtime::trajectory::{CsvOptions, Extras};
 
@@ -68,6 +68,9 @@ pub(crate) struct Simulate {
     /// a run of a data set, such as rig/recording.toml:run1.csv
     #[arg(long, value_name = "FILE")]
     inputs: Option<PathBuf>,
+    /// How the inputs of a CSV file run from row to row [default: hold]
+    #[arg(long, value_enum, value_name = "HOW", requires = "inputs")]
+    interpolation: Option<Between>,
     /// A feedback law (docs/examples/feedback)
     #[arg(long, value_name = "FILE.toml")]
     feedback: Vec<PathBuf>,
@@ -120,6 +123,24 @@ enum Integrator {
     Taylor,
 }
 
+/// Inputs between the rows of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Between {
+    /// Held until the next row, as a drive does with a command
+    Hold,
+    /// Straight lines from row to row, for rows of a continuous signal
+    Linear,
+}
+
+impl Between {
+    fn of_rows(self) -> Interpolation {
+        match self {
+            Self::Hold => Interpolation::Hold,
+            Self::Linear => Interpolation::Linear,
+        }
+    }
+}
+
 /// The response to an event.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
 enum OnEvent {
@@ -153,6 +174,7 @@ impl Simulate {
             initial: self.initial.clone(),
             inputs: self.input.clone(),
             recorded: self.inputs.clone(),
+            interpolation: self.interpolation.map(Between::of_rows),
             laws: self.feedback.iter().cloned().map(Law::File).collect(),
             extras: Extras {
                 outputs: true,
@@ -171,6 +193,7 @@ impl Simulate {
             undefined,
             undriven,
             held_from,
+            smooth,
         } = simulated(&model, &motion)?;
         let failure = failure.or(undefined);
 
@@ -179,6 +202,9 @@ impl Simulate {
                 "the recorded inputs end at {} s; their last values are held from there on",
                 number(from)
             ));
+        }
+        if let Some(remark) = smooth {
+            note(&format!("{remark} after --interpolation"));
         }
         for [wanted, name] in trajectory.renamed() {
             note(&format!(

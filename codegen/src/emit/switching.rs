@@ -20,17 +20,30 @@ pub(super) fn implementation(
     if counts.is_none() {
         return Ok(Default::default());
     }
-    let [of_time, of_state] = [FunctionKind::Switches, FunctionKind::Crossings].map(|kind| {
-        let to = known(kind.name());
-        match types.program.function(kind) {
-            Some(_) => written(types, kind, &[quote!(#to)]),
-            None => Ok(quote!(let _ = (at, #to);)),
+    let has = |kind| types.program.function(kind).is_some();
+    let of_time = if has(FunctionKind::Switches) {
+        written(types, FunctionKind::Switches, &[quote!(switches)])?
+    } else {
+        quote!(let _ = (at, switches);)
+    };
+    let [answers, shapes, crossings, pulses] = [
+        counts.answers,
+        counts.shapes,
+        counts.crossings,
+        counts.pulses,
+    ]
+    .map(Literal::usize_unsuffixed);
+    let of_state = if has(FunctionKind::Crossings) {
+        let slices = [quote!(crossings), quote!(pulses)];
+        let written = written(types, FunctionKind::Crossings, &slices)?;
+        quote! {
+            let (crossings, pulses) = crossings.split_at_mut(#crossings);
+            #written
         }
-    });
-    let (of_time, of_state) = (of_time?, of_state?);
-    let within = within(types);
-    let [answers, shapes, crossings] =
-        [counts.answers, counts.shapes, counts.crossings].map(Literal::usize_unsuffixed);
+    } else {
+        quote!(let _ = (at, crossings);)
+    };
+    let [within, along] = [bounds_in_time(types), bounds_along(types)];
     let blank = blank_tokens();
     let items = quote! {
         #blank
@@ -40,6 +53,7 @@ pub(super) fn implementation(
                     answers: #answers,
                     shapes: #shapes,
                     crossings: #crossings,
+                    pulses: #pulses,
                 }
             }
 
@@ -57,6 +71,11 @@ pub(super) fn implementation(
             fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
                 #of_state
             }
+
+            #blank
+            fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
+                #along
+            }
         }
     };
     let method = quote! {
@@ -67,6 +86,7 @@ pub(super) fn implementation(
     };
     let items = quote! {
         use #runtime::Enclosure;
+        use #runtime::model::Along;
         use #runtime::switching::Counts;
         #items
     };
@@ -74,28 +94,62 @@ pub(super) fn implementation(
 }
 
 /// The functions of time between two times. They are functions of time and parameters alone.
-fn within(types: &Types<'_>) -> TokenStream {
+fn bounds_in_time(types: &Types<'_>) -> TokenStream {
     let kind = FunctionKind::TimeFunctions;
     if types.program.function(kind).is_none() {
         return quote!(let _ = (time, p, functions););
     }
-    let [parameters, state, inputs] =
-        [Space::Parameters, Space::State, Space::Inputs].map(|space| {
-            let name = known(Types::type_name(space));
-            match (types.fields(space), space) {
-                ([], _) => quote!(#name {}),
-                (_, Space::Parameters) => {
-                    quote!(#name::from(first(p).map(Enclosure::constant)))
-                }
-                _ => quote!(#name::from(core::array::from_fn(|_| Enclosure::UNKNOWN))),
-            }
-        });
-    let function = known(kind.name());
-    let time = types.program.info.explicit_time.then(|| quote!(time,));
+    let unknown = quote!(core::array::from_fn(|_| Enclosure::UNKNOWN));
+    let call = call(types, kind, &quote!(p), [&unknown, &unknown]);
     quote! {
-        let all = self::#function(#time &#parameters, &#state, &#inputs);
+        let all = #call;
         for (to, from) in functions.iter_mut().zip(all.functions.into_iter().chain(all.shapes)) {
             *to = from;
         }
     }
+}
+
+/// The functions of the state along a stretch of a motion.
+fn bounds_along(types: &Types<'_>) -> TokenStream {
+    let kind = FunctionKind::Crossings;
+    if types.program.function(kind).is_none() {
+        return quote!(let _ = (along, crossings););
+    }
+    let call = call(
+        types,
+        kind,
+        &quote!(along.p),
+        [&quote!(first(along.x)), &quote!(first(along.u))],
+    );
+    let time = types.program.info.explicit_time;
+    let time = time.then(|| quote!(let time = along.t;));
+    quote! {
+        #time
+        let all = #call;
+        for (to, from) in crossings.iter_mut().zip(all.crossings.into_iter().chain(all.pulses)) {
+            *to = from;
+        }
+    }
+}
+
+/// A function of bounds; those of the states and the inputs are given.
+fn call(
+    types: &Types<'_>,
+    kind: FunctionKind,
+    p: &TokenStream,
+    [states, inputs]: [&TokenStream; 2],
+) -> TokenStream {
+    let arguments = [Space::Parameters, Space::State, Space::Inputs].map(|space| {
+        let name = known(Types::type_name(space));
+        match (types.fields(space), space) {
+            ([], _) => quote!(#name {}),
+            (_, Space::Parameters) => quote!(#name::from(first(#p).map(Enclosure::constant))),
+            (_, Space::State) => quote!(#name::from(#states)),
+            _ => quote!(#name::from(#inputs)),
+        }
+    });
+    let [parameters, state, inputs] = arguments;
+    let function = known(kind.name());
+    let time = types.program.info.explicit_time.then(|| quote!(time,));
+    quote!(self::#function(#time &#parameters, &#state, &#inputs))
 }

@@ -6,7 +6,7 @@ use std::sync::{Arc, OnceLock};
 
 use appell_runtime::differences;
 use appell_runtime::lanes::{AtLanes, LANES};
-use appell_runtime::model::{At, Energies, Gradient, Model, ModelInfo, Switching};
+use appell_runtime::model::{Along, At, Energies, Gradient, Model, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
 use appell_runtime::series::Series;
 use appell_runtime::switching::Counts;
@@ -16,7 +16,7 @@ use super::on_demand::OnDemand;
 use super::series::JitSeries;
 use super::{JitError, Sizes, Target};
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, Tree, enclose};
+use crate::schedule::{Schedule, Tree, enclose, enclose_along};
 use crate::symbolic::Rational;
 use crate::taylor::{Lengths, expand};
 
@@ -113,7 +113,10 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
             let counts = program.switch_counts();
             vec![("functions", counts.answers), ("shapes", counts.shapes)]
         }
-        FunctionKind::Crossings => vec![("crossings", program.switch_counts().crossings)],
+        FunctionKind::Crossings => {
+            let counts = program.switch_counts();
+            vec![("crossings", counts.crossings), ("pulses", counts.pulses)]
+        }
         FunctionKind::PositionConstraints => {
             let count = program.dependent.len();
             let coordinates = info.state_len() - info.speeds;
@@ -339,6 +342,11 @@ impl Model for JitModel {
         self.evaluate(FunctionKind::Outputs, at, [outputs]);
     }
 
+    fn outputs_within(&self, along: &Along<'_>, outputs: &mut [Enclosure]) {
+        let part = self.at(along.p).part(FunctionKind::Outputs);
+        enclose_along(part.schedule(&self.program), along, outputs);
+    }
+
     fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
         self.evaluate_lanes(FunctionKind::Rates, at, [rates]);
     }
@@ -478,7 +486,14 @@ impl Switching for JitModel {
     }
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
-        self.evaluate(FunctionKind::Crossings, at, [crossings]);
+        let count = self.program.switch_counts().crossings;
+        let (crossings, pulses) = crossings.split_at_mut(count);
+        self.evaluate(FunctionKind::Crossings, at, [crossings, pulses]);
+    }
+
+    fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
+        let part = self.at(along.p).part(FunctionKind::Crossings);
+        enclose_along(part.schedule(&self.program), along, crossings);
     }
 }
 

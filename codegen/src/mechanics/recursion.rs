@@ -21,6 +21,7 @@ use appell_spec::mechanism::{Load, LoadKind, Mechanism};
 use super::algebra::{Algebra, named3};
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
+use super::frames::FrameVector;
 use super::gibbs_appell::{BodyMotion, GibbsForm, Rotation, Translation};
 use super::kinematics::{Effort, Kinematics};
 use super::loads::{AppliedLoad, generalized_forces};
@@ -139,7 +140,14 @@ impl Recursion {
             let at_rest = LinkMotion::at_rest(vector::ZERO);
             let motion = place.link.map_or(&at_rest, |link| &motions[link]);
             let central = central_inertia(&mut algebra.graph, &lowering, id, body)?;
-            let velocity = kinematics.velocity(body.centre);
+            // In the axes of the link, as its acceleration.
+            let mut velocity = kinematics.velocity(body.centre);
+            if let Some(frame) = body.frame.filter(|&frame| frame != velocity.frame) {
+                let v = kinematics
+                    .frames
+                    .express(&mut algebra.graph, velocity, frame);
+                velocity = FrameVector { frame, v };
+            }
             let turned = algebra.graph.mat_vec(&motion.turning, place.arm);
             let bias = algebra.graph.add3(motion.a, turned);
             let point = &mechanism.points[body.centre].name;

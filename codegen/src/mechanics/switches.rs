@@ -21,6 +21,9 @@ pub struct Switches {
     pub shapes: Vec<Expr>,
     /// The functions whose signs states or inputs decide as well.
     pub crossings: Vec<Expr>,
+    /// Functions of states that rise and fall within a small part of their arguments' range: exponentials, hyperbolic
+    /// tangents, and roots of a square and a constant, as in smoothed signs.
+    pub pulses: Vec<Expr>,
 }
 
 /// What an expression depends on.
@@ -85,6 +88,13 @@ pub fn switches(graph: &mut Graph, symbols: &Symbols, roots: &[Expr]) -> Switche
         if nature.by_time && !nature.by_others && !nature.jumps && is_shape(graph, expr) {
             all.shapes.push(expr);
         }
+        let is_constant = |part: Expr| {
+            let nature = natures.get(&part).copied().unwrap_or_default();
+            !nature.by_others && !nature.by_time
+        };
+        if nature.by_others && !nature.jumps && is_pulse(graph, expr, is_constant) {
+            all.pulses.push(expr);
+        }
     }
     all
 }
@@ -102,7 +112,10 @@ impl Derivation {
                 list("functions", "Their signs switch.", all.functions),
                 list("shapes", "They rise and fall.", all.shapes),
             ],
-            FunctionKind::Crossings => vec![list("crossings", "Crossings.", all.crossings)],
+            FunctionKind::Crossings => vec![
+                list("crossings", "Their zeros switch.", all.crossings),
+                list("pulses", "They rise and fall.", all.pulses),
+            ],
             _ => vec![list("switches", "Switches.", all.answers)],
         }
     }
@@ -111,7 +124,9 @@ impl Derivation {
 impl Switches {
     /// Whether nothing switches, and nothing rises and falls with time.
     pub fn is_empty(&self) -> bool {
-        self.answers.is_empty() && self.shapes.is_empty() && self.crossings.is_empty()
+        [&self.answers, &self.shapes, &self.crossings, &self.pulses]
+            .iter()
+            .all(|list| list.is_empty())
     }
 
     fn add(&mut self, graph: &mut Graph, decides: Nature, function: Expr, answer: Expr) {
@@ -127,6 +142,18 @@ impl Switches {
             self.answers.push(answer);
             self.functions.push(function);
         }
+    }
+}
+
+/// Whether an expression may rise and fall within a small part of its arguments' range.
+fn is_pulse(graph: &Graph, expr: Expr, is_constant: impl Fn(Expr) -> bool) -> bool {
+    match *graph.node(expr) {
+        Node::Function(Function::Exp | Function::Tanh, _) => true,
+        Node::Function(Function::Sqrt, argument) => match graph.node(argument) {
+            Node::Sum(terms) => terms.iter().any(|term| is_constant(term.expr)),
+            _ => false,
+        },
+        _ => false,
     }
 }
 

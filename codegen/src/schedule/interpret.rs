@@ -1,7 +1,7 @@
 //! Executes a schedule step by step: the reference for emitted and compiled code.
 
 use appell_runtime::dense::lu_solve_in_place;
-use appell_runtime::model::At;
+use appell_runtime::model::{Along, At};
 use appell_runtime::real::{Enclosure, Real};
 
 use super::steps::{Argument, Operation, Schedule, Step, Tree, Value};
@@ -32,11 +32,24 @@ pub fn interpret_weighted(schedule: &Schedule, at: At<'_>, weights: &[f64]) -> V
 
 /// Bounds on the results over an interval of time, for functions of time and parameters, one array after the other.
 pub fn enclose(schedule: &Schedule, time: Enclosure, p: &[f64], bounds: &mut [Enclosure]) {
-    let p: Vec<Enclosure> = p.iter().map(|&p| Enclosure::constant(p)).collect();
+    let along = Along {
+        start: f64::NAN,
+        t: time,
+        x: &[],
+        u: &[],
+        p,
+    };
+    enclose_along(schedule, &along, bounds);
+}
+
+/// Bounds on the results along a stretch of a motion, one array after the other.
+pub fn enclose_along(schedule: &Schedule, along: &Along<'_>, bounds: &mut [Enclosure]) {
+    let p: Vec<Enclosure> = along.p.iter().map(|&p| Enclosure::constant(p)).collect();
     let unknown = |_: &mut [Enclosure], unknowns: &mut [Enclosure]| {
         unknowns.fill(Enclosure::UNKNOWN);
     };
-    let results = Machine::new(schedule, time, [&[], &[], &p, &[]], unknown).results(schedule);
+    let arguments = [along.x, along.u, &p, &[]];
+    let results = Machine::new(schedule, along.t, arguments, unknown).results(schedule);
     for (bound, found) in bounds.iter_mut().zip(results.iter().flatten()) {
         *bound = *found;
     }

@@ -265,6 +265,7 @@ class Model(_appell.Model):
         inputs: Mapping[str, Any] | Callable[[float, Vector], Any] | None = None,
         feedback: Design | str | Path | Sequence[Design | str | Path] = (),
         recorded: str | Path | None = None,
+        interpolation: str | None = None,
         method: str = "dop853",
         step: float | None = None,
         rtol: float | None = None,
@@ -277,10 +278,11 @@ class Model(_appell.Model):
         With an array (N, n) of initial states the N motions are integrated eight at a time, and come as `Motions`.
 
         `inputs` gives each input a number in SI, a text (an expression in t, states and parameters, in units of the
-        spec), a function of t and x, or a pair of arrays: times in s and values in SI, each held until the next; or it
-        is one function of t and x that returns all inputs. `feedback` takes designs of `control`, and the texts and
+        spec), a function of t and x, or a pair of arrays: times in s and values in SI; or it is one function of t and
+        x that returns all inputs. `feedback` takes designs of `control`, and the texts and
         paths of feedback files. `recorded` is a table of inputs, or a run of a data set such as
-        `rig/recording.toml:run1.csv`. `record` adds columns: `reactions`, `contacts`, `conditions`, `residuals`.
+        `rig/recording.toml:run1.csv`. Rows of tables are held until the next, as a drive does with a command;
+        `interpolation="linear"` joins them by lines, right for samples of a continuous signal. `record` adds columns: `reactions`, `contacts`, `conditions`, `residuals`.
         A function sees the state before a step is accepted too, and should be smooth. `method` is `dop853`, `dopri5`,
         `rk4` with its `step`, or `taylor`, the fastest for smooth motions, whose inputs cannot be functions.
 
@@ -322,6 +324,7 @@ class Model(_appell.Model):
             tables=tables,
             functions=functions,
             recorded=None if recorded is None else str(recorded),
+            interpolated=interpolation,
             laws=[_law(law) for law in laws],
             method=method,
             step=step,
@@ -334,6 +337,8 @@ class Model(_appell.Model):
             if native.failure is not None:
                 reason = native.failure.partition("; state:")[0]
                 warnings.warn(f"{which} ends early: {reason}", EndsEarly, stacklevel=2)
+            if native.smooth is not None:
+                warnings.warn(native.smooth, RuntimeWarning, stacklevel=2)
             if native.undefined is not None:
                 warnings.warn(f"{which}: {native.undefined}", RuntimeWarning, stacklevel=2)
         motions = [Motion(native, self) for native in natives]

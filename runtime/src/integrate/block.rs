@@ -371,6 +371,10 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                     (lane.steps.next_h, lane.restart) = (Some(shorter), false);
                     return Some(false);
                 }
+            } else if let Some(shorter) = lane.watcher.too_long(&ends) {
+                lane.statistics.rejected += 1;
+                (lane.steps.next_h, lane.restart) = (Some(shorter), false);
+                return Some(false);
             } else if lane.watcher.wants_interior(&ends) {
                 return None;
             }
@@ -395,8 +399,10 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             Some(true)
         };
         let mut wanted = [false; LANES];
-        for (l, lane) in on_their_way(lanes).filter(|&(l, _)| accepted[l]) {
-            wanted[l] = accept(self, l, lane, false).is_none();
+        let exact = accepted;
+        for (l, lane) in on_their_way(lanes).filter(|&(l, _)| exact[l]) {
+            let outcome = accept(self, l, lane, false);
+            (wanted[l], accepted[l]) = (outcome.is_none(), outcome != Some(false));
         }
         let (clock, new_rates) = (self.clock, P::TABLEAU.new_rates());
         if wanted.contains(&true) {

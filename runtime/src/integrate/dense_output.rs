@@ -1,5 +1,7 @@
 //! The solution between the ends of a step.
 
+use crate::real::Enclosure;
+
 /// Start and end of a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Ends<'a> {
@@ -85,6 +87,40 @@ impl DenseOutput {
         }
         let theta = (t - self.t_old) / self.h;
         [theta, 1.0 - theta]
+    }
+
+    /// How many states it has.
+    pub(super) fn states(&self) -> usize {
+        self.n
+    }
+
+    /// Bounds on the state between two times within the step, written to `x`.
+    pub fn within(&self, [from, to]: [f64; 2], x: &mut Vec<Enclosure>) {
+        let half = 0.5 * (to - from);
+        let factors = self.factors(from + half);
+        let turns = if self.is_taylor {
+            [half; 2]
+        } else {
+            [half / self.h, -half / self.h]
+        };
+        let orders = self.coefficients.len() / self.n.max(1);
+        // In the departure from the middle, in halves of the time.
+        let mut polynomial = vec![0.0; orders];
+        x.clear();
+        for i in 0..self.n {
+            polynomial.fill(0.0);
+            for c in (0..orders).rev() {
+                let (factor, turn) = (factors[c % 2], turns[c % 2]);
+                let mut below = 0.0;
+                for term in &mut polynomial[..orders - c] {
+                    let own = *term;
+                    *term = factor * own + turn * below;
+                    below = own;
+                }
+                polynomial[0] += self.coefficients[c * self.n + i];
+            }
+            x.push(Enclosure::polynomial(&polynomial, half));
+        }
     }
 
     /// The derivative of a Taylor polynomial at `t`, written to `slopes`.

@@ -24,6 +24,8 @@ impl Direction {
     }
 }
 
+/// Whether a function may do more in a piece of a step, which starts at a time in s, than its values show; boxed.
+pub type HidingFunction<'a> = Box<dyn FnMut(&Piece, f64, &DenseOutput) -> bool + 'a>;
 /// g(t, x), boxed.
 pub type EventFunction<'a> = Box<dyn FnMut(f64, &[f64]) -> f64 + 'a>;
 
@@ -31,8 +33,8 @@ pub type EventFunction<'a> = Box<dyn FnMut(f64, &[f64]) -> f64 + 'a>;
 ///
 /// A crossing counts when g reaches zero or changes its sign. Where g is zero at the start of
 /// the integration there is no crossing: its sign is taken from the first instant it has one.
-/// Within a step g is resolved to some 1e-7 of its size; what lies between the samples of a shortest piece, a ninth of
-/// `longest`, can be missed.
+/// Within a step g is resolved to some 1e-7 of its size; what lies between the samples of a shortest piece, which are up
+/// to a fifth of `longest` apart, can be missed unless `hides` tells.
 pub struct Event<'a> {
     /// The function.
     pub function: EventFunction<'a>,
@@ -42,6 +44,8 @@ pub struct Event<'a> {
     pub terminal: bool,
     /// The longest time in s on which the function is taken for a polynomial, however long the steps are.
     pub longest: f64,
+    /// Tells whether the function may do more in a piece of a step than its values show, where that is known.
+    pub hides: Option<HidingFunction<'a>>,
 }
 
 impl<'a> Event<'a> {
@@ -52,6 +56,7 @@ impl<'a> Event<'a> {
             direction,
             terminal: false,
             longest: f64::INFINITY,
+            hides: None,
         }
     }
 
@@ -206,9 +211,16 @@ impl Sought for Seen<'_, '_> {
         }
     }
 
-    fn is_enough(&self, which: usize, piece: &Piece) -> bool {
-        piece.keeps_its_sign()
-            || piece.is_resolved(piece.size().max(ROUNDING * self.crossings.sizes[which]))
+    fn is_enough(&mut self, which: usize, piece: &Piece) -> bool {
+        let size = piece.size().max(ROUNDING * self.crossings.sizes[which]);
+        if !piece.keeps_its_sign() && !piece.is_resolved(size) {
+            return false;
+        }
+        let start = self.ends.t[0];
+        let hides = &mut self.events[which].hides;
+        !hides
+            .as_mut()
+            .is_some_and(|hides| hides(piece, start, self.dense))
     }
 
     fn see(&mut self, pieces: &[Piece]) {

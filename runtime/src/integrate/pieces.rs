@@ -246,7 +246,7 @@ pub trait Sought {
     /// Writes their values at a time.
     fn evaluate(&mut self, t: f64, values: &mut [f64]);
     /// Whether no more has to be known of a function on a piece.
-    fn is_enough(&self, which: usize, piece: &Piece) -> bool;
+    fn is_enough(&mut self, which: usize, piece: &Piece) -> bool;
     /// Sees a piece, one after the other in the order of time: each function on it.
     fn see(&mut self, pieces: &[Piece]);
 }
@@ -331,7 +331,7 @@ mod tests {
             values[0] = (self.f)(t);
         }
 
-        fn is_enough(&self, _: usize, piece: &Piece) -> bool {
+        fn is_enough(&mut self, _: usize, piece: &Piece) -> bool {
             piece.is_resolved(1.0)
         }
 

@@ -61,7 +61,7 @@ impl Rk4 {
         }
         self.stages.prepare(x, TABLEAU.new_rates() + 1);
         self.dense.prepare(x.len(), 4);
-        let mut watcher = Watcher::new(watch, observer, span);
+        let mut watcher = Watcher::new(watch, observer, span).paced(span[0]);
         let mut statistics = Statistics::default();
         let mut counted = |t: f64, x: &[f64], rates: &mut [f64]| {
             statistics.evaluations += 1;
@@ -106,6 +106,11 @@ impl Rk4 {
             loop {
                 if let Err(cause) = self.attempt(f, t, stride, watcher) {
                     return End::failed(t, cause);
+                }
+                let ends = self.stages.ends([t, stride.t_new], new_rates);
+                if let Some(shorter) = watcher.too_long(&ends) {
+                    stride = Stride::to(t, t + shorter);
+                    continue;
                 }
                 // No error shows that a step across a switch is wrong: steps come near it until it is at hand.
                 if !watcher.stops.has_crossings() {

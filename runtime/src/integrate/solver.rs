@@ -215,6 +215,9 @@ impl<P: EmbeddedPair> Solver<P> {
             self.stages.evaluate_at_end(f, new_rates, stride.t_new);
         }
         let ends = self.stages.ends(span, new_rates);
+        if let Some(shorter) = watcher.too_long(&ends) {
+            return Err(shorter);
+        }
         if !watcher.wants_interior(&ends) {
             return Ok(watcher.accept(&ends, None, x));
         }

@@ -1,8 +1,11 @@
 //! Times at which a step has to end: the rates jump or lose smoothness there.
 
+use super::crossings::CrossingSearch;
+use super::dense_output::{DenseOutput, Ends};
 use super::pace::Pace;
 use super::switches::{SwitchSearch, Switches};
 use crate::real::Enclosure;
+use crate::switching::Counts;
 
 /// Where a step has to end.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -55,12 +58,27 @@ impl Stride {
     }
 }
 
+/// Part of the way to a switch that a series does not show.
+const BEFORE: f64 = 0.9;
+/// A step that is hardly one, in parts of the time.
+const SLIVER: f64 = 1e-9;
+
+/// The longest sliver that ends at a time.
+pub(super) fn sliver(t: f64) -> f64 {
+    SLIVER * t.abs().max(1.0)
+}
+
 /// All times at which steps have to end.
 pub(super) struct Stops<'w, 'a> {
     /// The known ones after the start, increasing.
     times: Vec<f64>,
     end: f64,
-    pub(super) switches: Option<(&'w mut Switches<'a>, SwitchSearch)>,
+    switches: Option<(&'w mut Switches<'a>, SwitchSearch)>,
+    crossings: CrossingSearch,
+    /// Whether switches by the state are sought in series.
+    of_series: bool,
+    /// Where the state switches the equations soon, in s.
+    expected: f64,
     pace: Pace,
 }
 
@@ -73,7 +91,13 @@ impl<'w, 'a> Stops<'w, 'a> {
         let inside = |t: &f64| start < *t && *t <= end;
         let mut times: Vec<f64> = switching_times.iter().copied().filter(inside).collect();
         times.sort_by(f64::total_cmp);
+        let counts = switches
+            .as_ref()
+            .map_or(Counts::default(), |switches| switches.counts);
         Self {
+            crossings: CrossingSearch::new(counts),
+            of_series: false,
+            expected: f64::NEG_INFINITY,
             times,
             end,
             switches: switches.map(|switches| {
@@ -116,9 +140,18 @@ impl<'w, 'a> Stops<'w, 'a> {
         )
     }
 
+    /// The next step that begins a sliver before a time ends a sliver after it.
+    pub(super) fn expect(&mut self, switch: f64) {
+        self.expected = switch;
+    }
+
     /// A step from `t` of length `h`, or less where there is a stop before.
     pub(super) fn stride(&mut self, t: f64, h: f64) -> Stride {
-        let h = self.pace.longest(t, h);
+        let mut h = self.pace.longest(t, h);
+        let near = sliver(self.expected);
+        if t <= self.expected && self.expected - t <= near {
+            h = h.min(self.expected - t + near);
+        }
         let known = self.known_after(t);
         // The step ends at the stop rather than a sliver before it.
         let known = (t + 1.01 * h >= known.t).then_some(known);
@@ -146,15 +179,57 @@ impl<'w, 'a> Stops<'w, 'a> {
 
     /// Whether the state switches the equations.
     pub(super) fn has_crossings(&self) -> bool {
-        let switches = self.switches.as_ref();
-        switches.is_some_and(|(_, search)| search.has_crossings())
+        !self.of_series && self.crossings.has_crossings()
     }
 
-    /// Leaves switches by the state to whoever finds them otherwise.
-    pub(super) fn ignore_crossings(&mut self) {
-        if let Some((_, search)) = &mut self.switches {
-            search.ignore_crossings();
+    /// The first time within a step at which the state switches the equations, with the state there.
+    pub(super) fn crossing(
+        &mut self,
+        ends: &Ends<'_>,
+        dense: &DenseOutput,
+    ) -> Option<(f64, &[f64])> {
+        let (switches, _) = self.switches.as_mut()?;
+        self.crossings.first(switches, ends, dense)
+    }
+
+    /// Whether anything switches the equations.
+    pub(super) fn has_switches(&self) -> bool {
+        self.switches.is_some()
+    }
+
+    /// Leaves switches by the state to whoever finds them in series.
+    pub(super) fn leave_crossings(&mut self) {
+        self.of_series = true;
+    }
+
+    /// The length of the step to be tried instead of one whose series shows nothing of what the state does along its
+    /// polynomial.
+    pub(super) fn shorter_series(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
+        let (switches, _) = self.switches.as_mut()?;
+        let [t, until] = ends.t;
+        let crossing = self.crossings.first(switches, ends, dense).map(|(s, _)| s);
+        let near = sliver(t);
+        let to = match crossing {
+            Some(s) if s - t > near && until - s > near => t + BEFORE * (s - t),
+            // So near to it the series shows it.
+            Some(s) if until - s > 2.0 * near => s + near,
+            _ => until,
+        };
+        let longest = self.crossings.longest(switches, [t, to], dense);
+        (to < until || longest < BEFORE * (to - t)).then_some(longest)
+    }
+
+    /// The longest step that passes over nothing that the state does along an interpolant.
+    pub(super) fn longest(&mut self, span: [f64; 2], dense: &DenseOutput) -> f64 {
+        match &mut self.switches {
+            Some((switches, _)) => self.crossings.longest(switches, span, dense),
+            None => span[1] - span[0],
         }
+    }
+
+    /// Whether the state may do something between the ends of a step.
+    pub(super) fn has_pulses(&self) -> bool {
+        self.crossings.has_pulses()
     }
 
     /// The first change of the switches after `t` and not after `t_new`, to the last digit.

@@ -1,7 +1,6 @@
-//! Where a motion is switched: by time alone, which bounds on functions of time find for certain, and by its state.
+//! What switches a motion, and where time alone does, which bounds on functions of time find for certain.
 
-use super::dense_output::{DenseOutput, Ends};
-use super::sign_changes::{first_change, neighbours};
+use super::sign_changes::neighbours;
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
@@ -14,8 +13,21 @@ pub struct Switches<'a> {
     /// Writes bounds on functions of time between two times in s: those whose signs are the answers, then the others.
     /// Without it answers are compared at eighths of a step.
     pub within: Option<BoundFunction<'a>>,
-    /// Writes the functions of time and state whose signs decide.
+    /// Writes the functions of time and state whose signs decide, then those that rise and fall.
     pub crossings: CrossingFunction<'a>,
+    /// Writes bounds on these. Without it their signs are compared at eighths of a step and where they come near zero.
+    pub along: Option<StretchFunction<'a>>,
+}
+
+/// A stretch of a motion within a step.
+#[derive(Debug, Clone, Copy)]
+pub struct Stretch<'a> {
+    /// Start of the step in s.
+    pub start: f64,
+    /// Time.
+    pub t: Enclosure,
+    /// State.
+    pub x: &'a [Enclosure],
 }
 
 /// Values at a time, boxed.
@@ -24,6 +36,9 @@ pub type SwitchFunction<'a> = Box<dyn FnMut(f64, &mut [f64]) + 'a>;
 pub type BoundFunction<'a> = Box<dyn FnMut([f64; 2], &mut [Enclosure]) + 'a>;
 /// Values at a time and a state, boxed.
 pub type CrossingFunction<'a> = Box<dyn FnMut(f64, &[f64], &mut [f64]) + 'a>;
+
+/// Bounds along a stretch, boxed.
+pub type StretchFunction<'a> = Box<dyn FnMut(Stretch<'_>, &mut [Enclosure]) + 'a>;
 
 impl std::fmt::Debug for Switches<'_> {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
@@ -45,6 +60,7 @@ impl<'a> Switches<'a> {
             answers: Box::new(answers),
             within: None,
             crossings: Box::new(|_, _, _| {}),
+            along: None,
         }
     }
 }
@@ -56,8 +72,6 @@ const MOST_INTERVALS: usize = 4096;
 /// The shortest of them, relative to the time: some spacings of numbers. Times below the second count as that.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
 const NEAR_ZERO: f64 = 1e-6;
-/// The time after which a function that begins at zero has a sign, in parts of the step.
-const SOON: f64 = 1e-9;
 
 /// The arrays in which switches are sought.
 #[derive(Debug, Default)]
@@ -65,9 +79,6 @@ pub(super) struct SwitchSearch {
     before: Vec<f64>,
     after: Vec<f64>,
     bounds: Vec<Enclosure>,
-    signs: Vec<f64>,
-    values: Vec<f64>,
-    x: Vec<f64>,
 }
 
 impl SwitchSearch {
@@ -76,20 +87,7 @@ impl SwitchSearch {
             before: vec![0.0; counts.answers],
             after: vec![0.0; counts.answers],
             bounds: vec![Enclosure::UNKNOWN; counts.answers + counts.shapes],
-            signs: vec![0.0; counts.crossings],
-            values: vec![0.0; counts.crossings],
-            x: Vec::new(),
         }
-    }
-
-    /// Leaves switches by the state to whoever finds them otherwise.
-    pub(super) fn ignore_crossings(&mut self) {
-        self.signs.clear();
-    }
-
-    /// Whether the state switches the equations.
-    pub(super) fn has_crossings(&self) -> bool {
-        !self.signs.is_empty()
     }
 
     /// The first time after `t` and not after `t_new` at which an answer of time alone is another, to the last digit.
@@ -137,56 +135,7 @@ impl SwitchSearch {
         let from = waiting.last().map_or(t, |&[from, _]| from);
         by_parts(changed, [from, t_new])
     }
-
-    /// The first time within a step at which its interpolant switches the equations; `x` becomes the state there.
-    pub(super) fn of_state(
-        &mut self,
-        switches: &mut Switches<'_>,
-        ends: &Ends<'_>,
-        dense: &DenseOutput,
-    ) -> Option<(f64, &[f64])> {
-        if !self.has_crossings() {
-            return None;
-        }
-        let Self {
-            signs, values, x, ..
-        } = self;
-        x.resize(ends.x[0].len(), 0.0);
-        let crossings = &mut switches.crossings;
-        // Whoever begins at zero has the sign that follows.
-        crossings(ends.t[0], ends.x[0], signs);
-        let [t, t_new] = ends.t;
-        if signs.contains(&0.0) {
-            let soon = t + (t_new - t) * SOON;
-            dense.state(soon, x);
-            crossings(soon, x, values);
-            for (sign, value) in signs.iter_mut().zip(&*values) {
-                if *sign == 0.0 {
-                    *sign = *value;
-                }
-            }
-        }
-        let mut first: Option<f64> = None;
-        for (i, &sign) in signs.iter().enumerate() {
-            let g = |s: f64| {
-                dense.state(s, x);
-                crossings(s, x, values);
-                values[i]
-            };
-            let to = first.unwrap_or(t_new);
-            let change = first_change(g, |value| value * sign < 0.0, [t, to]);
-            first = change.map(|[_, other]| other).or(first);
-        }
-        let first = first?;
-        // As far beyond as rounding may hide it from the rates.
-        let t_new = (first + BEYOND * first.abs()).min(t_new);
-        dense.state(t_new, x);
-        Some((t_new, x))
-    }
 }
-
-/// Rounding of a state in the equations, relative to it.
-const BEYOND: f64 = 64.0 * f64::EPSILON;
 
 /// The first change that eighths of an interval show.
 fn by_parts(mut changed: impl FnMut(f64) -> bool, [from, to]: [f64; 2]) -> Option<f64> {

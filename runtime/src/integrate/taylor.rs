@@ -103,7 +103,7 @@ impl Taylor {
         self.prepare(equations, x, order(options))?;
         let mut watcher = Watcher::new(watch, observer, span).paced(span[0]);
         // The guards of the series are the same functions.
-        watcher.stops.ignore_crossings();
+        watcher.stops.leave_crossings();
         let mut statistics = Statistics::default();
         let end = match watcher.start(span[0], x) {
             Ok(()) => self.run(
@@ -244,6 +244,15 @@ impl Taylor {
                 Some(change) => (t + change.before, t + change.before),
                 None => (stride.t_new, stride.last),
             };
+            let ends = Ends {
+                t: [t, end],
+                x: [&self.x, &self.x],
+                rates: [&self.rates, &self.rates],
+            };
+            if let Some(shorter) = watcher.stops.shorter_series(&ends, &self.dense) {
+                h = shorter;
+                continue;
+            }
             if self.attempt(equations, [t, end], last, options, watcher, statistics) {
                 statistics.steps += 1;
                 let end = match change {

@@ -1,11 +1,11 @@
 //! What happens after each accepted step: ranges, events, observers.
 
-use super::dense_output::{DenseOutput, Ends};
+use super::dense_output::{DenseOutput, Ends, HERMITE};
 use super::error::{Cause, Failure, IntegrationError};
 use super::events::{Crossings, Event, EventHit};
 use super::outcome::{Ending, Outcome, Statistics};
 use super::range::Range;
-use super::stops::Stops;
+use super::stops::{Stops, sliver};
 use super::switches::Switches;
 use std::ops::ControlFlow;
 
@@ -131,12 +131,12 @@ pub(super) struct Watcher<'w, 'a, O> {
     at_switch: [Vec<f64>; 2],
     /// Steps in a row that are hardly steps, since such a switch.
     slivers: Option<usize>,
+    /// The cubic between the ends of a step.
+    between: DenseOutput,
 }
 
-/// A step that is hardly one, in parts of the time.
-const SLIVER: f64 = 1e-9;
-/// The part of a step of which its stages tell too little.
-const EARLY: f64 = 0.5;
+/// Steps nearer to the longest that is possible are not tried anew.
+const NOT_SHORTER: f64 = 0.9;
 /// So many of these in a row after a switch are one place that the motion does not leave.
 const MOST_SLIVERS: usize = 300;
 
@@ -153,6 +153,7 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             switched: None,
             at_switch: Default::default(),
             slivers: None,
+            between: DenseOutput::default(),
         }
     }
 
@@ -232,20 +233,34 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         end.or(chatters.then(|| End::failed(t, Cause::Chattering)))
     }
 
-    /// Looks for a switch in a step. The length of the one to be tried instead, where the switch is early in it: most
-    /// stages are then beyond, and the error tells nothing of the rates before. That one ends a sliver before it.
+    /// The length of the step to be tried instead of one that passes over what the state does.
+    pub(super) fn too_long(&mut self, ends: &Ends<'_>) -> Option<f64> {
+        if !self.stops.has_pulses() {
+            return None;
+        }
+        self.between.prepare(ends.x[0].len(), HERMITE);
+        self.between.set_hermite(ends);
+        let longest = self.stops.longest(ends.t, &self.between);
+        (longest < NOT_SHORTER * (ends.t[1] - ends.t[0])).then_some(longest)
+    }
+
+    /// Looks for a switch in a step. The length of the one to be tried instead, which ends a sliver before it: stages
+    /// beyond the switch spoil the interpolant, and the error does not tell where they are those of the interior alone.
     pub(super) fn shorter(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
         let switch = self.switch_within(ends, dense)?;
         let (before, length) = (switch - ends.t[0], ends.t[1] - ends.t[0]);
-        let is_early = sliver(switch) < before && before < EARLY * length;
-        is_early.then(|| before - 0.5 * sliver(switch))
+        let near = sliver(switch);
+        let is_within = near < before && near < length - before;
+        is_within.then(|| {
+            self.stops.expect(switch);
+            before - 0.5 * near
+        })
     }
 
     /// Where the state first switches the equations within a step; the time, the state and the rates are kept.
     pub(super) fn switch_within(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
         self.switched = None;
-        let (switches, search) = self.stops.switches.as_mut()?;
-        let (t, x) = search.of_state(switches, ends, dense)?;
+        let (t, x) = self.stops.crossing(ends, dense)?;
         let [state, rates] = &mut self.at_switch;
         state.clear();
         state.extend_from_slice(x);
@@ -330,9 +345,4 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             })),
         }
     }
-}
-
-/// The longest sliver that ends at a time.
-fn sliver(t: f64) -> f64 {
-    SLIVER * t.abs().max(1.0)
 }

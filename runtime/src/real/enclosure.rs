@@ -38,6 +38,53 @@ impl Enclosure {
         }
     }
 
+    /// A polynomial `c[0] + c[1] s + …` of a time within an interval whose half has a length in s, where s is the
+    /// departure from the middle in such halves. Bounds are as wide as the sum of the coefficients' sizes, and by their
+    /// rounding.
+    pub fn polynomial(coefficients: &[f64], half: f64) -> Self {
+        let Some((&middle, others)) = coefficients.split_first() else {
+            return Self::constant(0.0);
+        };
+        let sum = |of: &dyn Fn(usize, f64) -> f64| -> f64 {
+            others
+                .iter()
+                .enumerate()
+                .map(|(i, c)| of(i + 1, c.abs()))
+                .sum()
+        };
+        let rounding = ROUNDING * (middle.abs() + sum(&|_, c| c));
+        let around = |middle: f64, radius: f64| {
+            Range::of(Interval {
+                lo: middle - radius,
+                hi: middle + radius,
+            })
+        };
+        let first = others.first().copied().unwrap_or(0.0);
+        let bend = sum(&|k, c| if k > 1 { k as f64 * c } else { 0.0 });
+        let slope = around(first / half, (bend + rounding) / half);
+        Self {
+            range: around(middle, sum(&|_, c| c) + rounding),
+            middle: around(middle, rounding),
+            slope: if half > 0.0 { slope } else { Range::ANY },
+            half,
+        }
+    }
+
+    /// The largest absolute value of the slope.
+    pub fn steepness(&self) -> f64 {
+        let Interval { lo, hi } = self.slope.interval;
+        lo.abs().max(hi.abs())
+    }
+
+    /// Whether a function may rise and fall between samples that are no farther apart than `spread`, over a time of a
+    /// length in s: at its largest slope it would come many times as far. It is as large as `size` elsewhere. False where
+    /// nothing is known of it.
+    pub fn may_hide(&self, spread: f64, length: f64, size: f64) -> bool {
+        let Interval { lo, hi } = self.middle.interval;
+        let flat = FLAT * lo.abs().max(hi.abs()).max(size) + NOTHING;
+        lo.is_finite() && hi.is_finite() && !(self.steepness() * length <= STEEP * spread + flat)
+    }
+
     /// Bounds on the values.
     pub fn range(&self) -> Interval {
         self.range.interval
@@ -108,6 +155,15 @@ impl Enclosure {
         }
     }
 }
+
+/// How many times as far as its samples are apart a function comes at its largest slope that hides nothing between them.
+const STEEP: f64 = 8.0;
+/// What a function may change by that is taken for a constant, relative to its size.
+const FLAT: f64 = 1e-9;
+/// What is nothing in any unit.
+const NOTHING: f64 = 1e-100;
+/// Rounding of a polynomial, relative to its terms.
+const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
 /// A number without an error.
 fn thin(value: f64) -> Range {
@@ -325,6 +381,19 @@ mod tests {
             );
             of
         }};
+    }
+
+    #[test]
+    fn a_polynomial_and_what_is_made_of_it_stay_within_their_bounds() {
+        // 1 - 2 s + 3 s^2 over times from 2 to 2.5.
+        let [from, to] = [2.0, 2.5];
+        let of = Enclosure::polynomial(&[1.0, -2.0, 3.0], 0.25);
+        let departure = |t: f64| (t - 2.25) / 0.25;
+        let f = |t: f64| 1.0 - 2.0 * departure(t) + 3.0 * departure(t).powi(2);
+        assert!(holds(of, [from, to], f));
+        assert!(holds(of.sin(), [from, to], |t| libm::sin(f(t))));
+        // The largest slope is 8 halves a half.
+        assert!((of.steepness() - 32.0).abs() < 1e-9, "{of:?}");
     }
 
     fn n<T: Real>(value: f64) -> T {

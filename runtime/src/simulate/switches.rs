@@ -1,8 +1,8 @@
 //! What switches a model and its inputs, as an integrator asks for it.
 
 use crate::inputs::ModelInputs;
-use crate::integrate::Switches;
-use crate::model::{At, Model, Switching};
+use crate::integrate::{Stretch, Switches};
+use crate::model::{Along, At, Model, Switching};
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
@@ -23,6 +23,7 @@ pub(super) fn switches<'a>(
         answers: total(|counts| counts.answers),
         shapes: total(|counts| counts.shapes),
         crossings: total(|counts| counts.crossings),
+        pulses: total(|counts| counts.pulses),
     };
     if counts.is_none() {
         return None;
@@ -31,7 +32,9 @@ pub(super) fn switches<'a>(
     // Neither states nor inputs decide these, but every function has such arguments.
     let (x, u) = (vec![0.0; info.state_len()], vec![0.0; info.input_len()]);
     let mut inputs_now = u.clone();
-    let [of_time, bounded, of_state] = [parts.clone(), parts.clone(), parts];
+    let mut u_along = vec![Enclosure::UNKNOWN; u.len()];
+    let [of_time, bounded, of_state, bounded_by_state] =
+        [parts.clone(), parts.clone(), parts.clone(), parts];
     Some(Switches {
         counts,
         answers: Box::new(move |t, mut answers| {
@@ -42,30 +45,66 @@ pub(super) fn switches<'a>(
             }
         }),
         within: Some(Box::new(move |[from, to], functions| {
-            let (mut answers, mut shapes) = functions.split_at_mut(counts.answers);
-            let mut all = Vec::new();
-            for (part, counts) in &bounded {
-                all.clear();
-                all.resize(counts.answers + counts.shapes, Enclosure::UNKNOWN);
+            let mut sorted = Sorted::new(functions, counts.answers);
+            for (part, own) in &bounded {
+                let mut all = vec![Enclosure::UNKNOWN; own.answers + own.shapes];
                 part.within(Enclosure::time(from, to), p, &mut all);
-                for (to, own) in [
-                    (&mut answers, &all[..counts.answers]),
-                    (&mut shapes, &all[counts.answers..]),
-                ] {
-                    let (now, others) = std::mem::take(to).split_at_mut(own.len());
-                    now.copy_from_slice(own);
-                    *to = others;
-                }
+                sorted.take(&all, own.answers);
             }
         })),
-        crossings: Box::new(move |t, x, mut crossings| {
+        crossings: Box::new(move |t, x, functions| {
             inputs.fill(t, x, &mut inputs_now);
             let u = &inputs_now[..];
-            for (part, counts) in &of_state {
-                let (own, others) = crossings.split_at_mut(counts.crossings);
-                part.crossings(At { t, x, u, p }, own);
-                crossings = others;
+            let mut sorted = Sorted::new(functions, counts.crossings);
+            for (part, own) in &of_state {
+                let mut all = vec![0.0; own.crossings + own.pulses];
+                part.crossings(At { t, x, u, p }, &mut all);
+                sorted.take(&all, own.crossings);
             }
         }),
+        along: Some(Box::new(move |stretch, functions| {
+            let Stretch { start, t, x } = stretch;
+            let of_inputs = Along {
+                start,
+                t,
+                x,
+                u: &[],
+                p,
+            };
+            inputs.bounds(&of_inputs, &mut u_along);
+            let along = Along {
+                u: &u_along,
+                ..of_inputs
+            };
+            let mut sorted = Sorted::new(functions, counts.crossings);
+            for (part, own) in &bounded_by_state {
+                let mut all = vec![Enclosure::UNKNOWN; own.crossings + own.pulses];
+                part.crossings_within(&along, &mut all);
+                sorted.take(&all, own.crossings);
+            }
+        })),
     })
+}
+
+/// Functions of all parts: those of one kind before those of the other.
+struct Sorted<'f, T> {
+    first: &'f mut [T],
+    second: &'f mut [T],
+}
+
+impl<'f, T: Copy> Sorted<'f, T> {
+    fn new(functions: &'f mut [T], count: usize) -> Self {
+        let (first, second) = functions.split_at_mut(count);
+        Self { first, second }
+    }
+
+    /// Takes those of the next part, of which `count` are of the first kind.
+    fn take(&mut self, all: &[T], count: usize) {
+        let (first, second) = all.split_at(count);
+        for (to, own) in [(&mut self.first, first), (&mut self.second, second)] {
+            let (now, others) = std::mem::take(to).split_at_mut(own.len());
+            now.copy_from_slice(own);
+            *to = others;
+        }
+    }
 }

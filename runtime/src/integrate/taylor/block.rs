@@ -17,6 +17,7 @@ use crate::integrate::error::{Cause, IntegrationError};
 use crate::integrate::options::Options;
 use crate::integrate::outcome::Outcome;
 use crate::integrate::step_size::power_of_all;
+use crate::integrate::stops::Stride;
 use crate::integrate::watch::Observer;
 use crate::lanes::{LANES, dispatch};
 use crate::series::{Cubic, SeriesInLanes};
@@ -132,7 +133,7 @@ impl BlockTaylor {
                 self.expansion.begin(l, &of.x, of.parameters);
                 let mut lane = Lane::new(motion, of, Steps::new(options.first_step));
                 // The guards of the series are the same functions.
-                lane.watcher.stops.ignore_crossings();
+                lane.watcher.stops.leave_crossings();
                 Some(lane)
             };
             let Some(beside) = refill(&mut lanes, &mut begin, &mut results) else {
@@ -244,15 +245,33 @@ impl BlockTaylor {
         }
         let may_change = self.expansion.may_change(&within);
         for (l, lane) in on_their_way(lanes) {
-            lane.steps.change = None;
             if may_change[l] {
                 gather(&self.expansion.guards, l, &mut self.guards);
-                lane.steps.change = first_change(guards, &self.guards, within[l]);
             }
-            lane.steps.until = match lane.steps.change {
-                Some(change) => [lane.t + change.before; 2],
-                None => [lane.stride.t_new, lane.stride.last],
-            };
+            loop {
+                let within = lane.stride.up_to_stop(lane.t);
+                let change = may_change[l].then(|| first_change(guards, &self.guards, within));
+                lane.steps.change = change.flatten();
+                lane.steps.until = match lane.steps.change {
+                    Some(change) => [lane.t + change.before; 2],
+                    None => [lane.stride.t_new, lane.stride.last],
+                };
+                if !lane.watcher.stops.has_switches() {
+                    break;
+                }
+                gather(self.expansion.coefficients(), l, self.dense.taylor(lane.t));
+                let x = &mut self.ends[0];
+                gather(&self.expansion.x, l, x);
+                let ends = Ends {
+                    t: [lane.t, lane.steps.until[0]],
+                    x: [x, x],
+                    rates: [x, x],
+                };
+                match lane.watcher.stops.shorter_series(&ends, &self.dense) {
+                    Some(shorter) => lane.stride = Stride::to(lane.t, lane.t + shorter),
+                    None => break,
+                }
+            }
         }
     }
 

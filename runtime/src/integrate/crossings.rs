@@ -1,0 +1,231 @@
+//! Where the state of a motion switches its equations within a step, and how long steps may be lest they pass over
+//! what the state does.
+//!
+//! Bounds on the switching functions along the interpolant decide: where they keep a function off zero it does not
+//! switch, where they keep its slope off zero it switches once at most, and what remains is halved.
+
+use super::dense_output::{DenseOutput, Ends};
+use super::pace::Pace;
+use super::sign_changes::{first_change, neighbours};
+use super::switches::{Stretch, Switches};
+use crate::real::Enclosure;
+use crate::switching::Counts;
+
+/// Stretches that are looked at in one step; what is not decided then is left to samples.
+const MOST_STRETCHES: usize = 512;
+/// The shortest of them, in parts of the step.
+const SHORTEST: f64 = 1e-13;
+/// The time after which a function that begins at zero has a sign, in parts of the step.
+const SOON: f64 = 1e-9;
+/// Rounding of a state in the equations, relative to it.
+const BEYOND: f64 = 64.0 * f64::EPSILON;
+/// The arrays in which crossings are sought.
+#[derive(Debug, Default)]
+pub(super) struct CrossingSearch {
+    /// Signs at the start of the step.
+    signs: Vec<f64>,
+    values: Vec<f64>,
+    x: Vec<f64>,
+    along: Vec<Enclosure>,
+    bounds: Vec<Enclosure>,
+    pulses: usize,
+}
+
+impl CrossingSearch {
+    pub(super) fn new(counts: Counts) -> Self {
+        let all = counts.crossings + counts.pulses;
+        Self {
+            signs: vec![0.0; counts.crossings],
+            values: vec![0.0; all],
+            bounds: vec![Enclosure::UNKNOWN; all],
+            pulses: counts.pulses,
+            ..Self::default()
+        }
+    }
+
+    /// Whether the state switches the equations.
+    pub(super) fn has_crossings(&self) -> bool {
+        !self.signs.is_empty()
+    }
+
+    /// Whether the state lets functions rise and fall.
+    pub(super) fn has_pulses(&self) -> bool {
+        self.pulses > 0
+    }
+
+    /// The first time within a step at which its interpolant switches the equations, with the state there.
+    pub(super) fn first(
+        &mut self,
+        switches: &mut Switches<'_>,
+        ends: &Ends<'_>,
+        dense: &DenseOutput,
+    ) -> Option<(f64, &[f64])> {
+        if !self.has_crossings() {
+            return None;
+        }
+        let [t, t_new] = ends.t;
+        self.start(switches, ends, dense);
+        let mut known = self.known(switches, ends.t, dense);
+        let mut first = self.by_bounds(switches, ends.t, dense, &mut known);
+        for i in (0..self.signs.len()).filter(|&i| !known[i]) {
+            let sign = self.signs[i];
+            let g = |s: f64| self.at(switches, s, dense)[i];
+            let to = first.unwrap_or(t_new);
+            let change = first_change(g, |value| value * sign < 0.0, [t, to]);
+            first = change.map(|[_, other]| other).or(first);
+        }
+        let first = first?;
+        // As far beyond as rounding may hide it from the rates.
+        let t_new = (first + BEYOND * first.abs()).min(t_new);
+        dense.state(t_new, &mut self.x);
+        Some((t_new, &self.x))
+    }
+
+    /// The longest step from its start that passes over nothing that the state does along an interpolant.
+    pub(super) fn longest(
+        &mut self,
+        switches: &mut Switches<'_>,
+        [t, t_new]: [f64; 2],
+        dense: &DenseOutput,
+    ) -> f64 {
+        let h = t_new - t;
+        if self.pulses == 0 || switches.along.is_none() {
+            return h;
+        }
+        let first = self.signs.len();
+        let states = dense.states();
+        self.x.resize(states, 0.0);
+        let middle = f64::midpoint(t, t_new);
+        let mut ranges = vec![[f64::INFINITY, f64::NEG_INFINITY]; self.pulses];
+        for s in [t, middle, t_new] {
+            let values = self.at(switches, s, dense);
+            for (range, value) in ranges.iter_mut().zip(&values[first..]) {
+                *range = [range[0].min(*value), range[1].max(*value)];
+            }
+        }
+        let of_step = self.bound(switches, t, [t, t_new], dense);
+        let pulses = of_step[first..].iter().zip(&ranges).enumerate();
+        let sought: Vec<usize> = pulses
+            .filter(|(_, (of, [low, high]))| of.may_hide(high - low, h, 0.0))
+            .map(|(i, _)| first + i)
+            .collect();
+        if sought.is_empty() {
+            return h;
+        }
+        let mut known = None;
+        let pace = Pace::new([t, t_new], sought.len(), |i, part| {
+            if known != Some(part) {
+                self.bound(switches, t, part, dense);
+                known = Some(part);
+            }
+            self.bounds[sought[i]]
+        });
+        pace.longest(t, h)
+    }
+
+    /// The values of all functions at a time within a step.
+    fn at(&mut self, switches: &mut Switches<'_>, t: f64, dense: &DenseOutput) -> &[f64] {
+        dense.state(t, &mut self.x);
+        (switches.crossings)(t, &self.x, &mut self.values);
+        &self.values
+    }
+
+    /// Bounds on all functions between two times within a step.
+    fn bound(
+        &mut self,
+        switches: &mut Switches<'_>,
+        start: f64,
+        part: [f64; 2],
+        dense: &DenseOutput,
+    ) -> &[Enclosure] {
+        dense.within(part, &mut self.along);
+        let [from, to] = part;
+        if let Some(along) = &mut switches.along {
+            let (t, x) = (Enclosure::time(from, to), &self.along[..]);
+            along(Stretch { start, t, x }, &mut self.bounds);
+        }
+        &self.bounds
+    }
+
+    /// Takes the signs at the start of a step.
+    fn start(&mut self, switches: &mut Switches<'_>, ends: &Ends<'_>, dense: &DenseOutput) {
+        let count = self.signs.len();
+        let [t, t_new] = ends.t;
+        self.x.resize(ends.x[0].len(), 0.0);
+        (switches.crossings)(t, ends.x[0], &mut self.values);
+        self.signs.copy_from_slice(&self.values[..count]);
+        if self.signs.contains(&0.0) {
+            // Whoever begins at zero has the sign that follows.
+            self.at(switches, t + (t_new - t) * SOON, dense);
+            for (sign, value) in self.signs.iter_mut().zip(&self.values) {
+                if *sign == 0.0 {
+                    *sign = *value;
+                }
+            }
+        }
+    }
+
+    /// The switching functions of which there are bounds.
+    fn known(
+        &mut self,
+        switches: &mut Switches<'_>,
+        [t, t_new]: [f64; 2],
+        dense: &DenseOutput,
+    ) -> Vec<bool> {
+        let count = self.signs.len();
+        if switches.along.is_none() {
+            return vec![false; count];
+        }
+        let bounds = self.bound(switches, t, [f64::midpoint(t, t_new); 2], dense);
+        let ranges = bounds[..count].iter().map(Enclosure::range);
+        ranges
+            .map(|range| range.lo.is_finite() && range.hi.is_finite())
+            .collect()
+    }
+
+    /// The first time at which one of the known functions switches. They are not known any more where that remains
+    /// open.
+    fn by_bounds(
+        &mut self,
+        switches: &mut Switches<'_>,
+        [t, t_new]: [f64; 2],
+        dense: &DenseOutput,
+        known: &mut [bool],
+    ) -> Option<f64> {
+        if !known.contains(&true) {
+            return None;
+        }
+        let mut waiting = vec![[t, t_new]];
+        for _ in 0..MOST_STRETCHES {
+            let [from, to] = waiting.pop()?;
+            let bounds = self
+                .bound(switches, t, [from, to], dense)
+                .iter()
+                .enumerate();
+            let undecided: Vec<(usize, bool)> = bounds
+                .take(known.len())
+                .filter(|&(i, of)| known[i] && !of.keeps_its_sign())
+                .map(|(i, of)| (i, of.is_monotonic()))
+                .collect();
+            if undecided.is_empty() {
+                continue;
+            }
+            let middle = f64::midpoint(from, to);
+            let is_short = to - from <= SHORTEST * (t_new - t) || middle <= from || middle >= to;
+            if is_short || undecided.iter().all(|(_, is_monotonic)| *is_monotonic) {
+                let mut changed = |s: f64| {
+                    self.at(switches, s, dense);
+                    let signs = |&(i, _): &(usize, bool)| self.values[i] * self.signs[i] < 0.0;
+                    undecided.iter().any(signs)
+                };
+                if changed(to) {
+                    return Some(neighbours(changed, [from, to])[1]);
+                }
+                continue;
+            }
+            waiting.extend([[middle, to], [from, middle]]);
+        }
+        known.fill(false);
+        None
+    }
+}

@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::effects::{Candidate, Scales, candidates, shipped};
+use appell_gap::effects::{Candidate, Scales, candidates, shipped, written};
 use appell_models::ALL;
 use appell_recordings::Spec;
 use appell_report::text::table;
@@ -20,7 +20,9 @@ pub struct Example {
     pub mechanism: String,
     /// The sites there, as reports name them.
     pub sites: Vec<String>,
-    /// What the first of them adds to the spec; empty where a spec cannot express it.
+    /// The site of `items`: the first one where the effect can be written.
+    pub shown: Option<String>,
+    /// What the effect adds to the spec there; empty where a spec cannot express it.
     pub items: String,
 }
 
@@ -36,10 +38,13 @@ pub fn named(name: &str) -> Result<Vec<Effect>, Error> {
     let own: Vec<Effect> = all.into_iter().filter(|one| one.name == name).collect();
     if own.is_empty() {
         let known = names.iter().map(String::as_str);
-        let help =
-            appell_spec::did_you_mean(name, known, || "`appell effects` lists them".to_owned());
+        let begun = known.clone().find(|own| own.starts_with(name));
+        let help = appell_spec::did_you_mean(name, known, || match begun {
+            Some(own) => format!("did you mean `{own}`?"),
+            None => "`appell effects` lists them".to_owned(),
+        });
         let message = format!("there is no effect `{}`; {help}", appell_spec::shown(name));
-        return Err(Error::request(Field::Effects, message));
+        return Err(Error::request(Field::Effect, message));
     }
     Ok(own)
 }
@@ -75,7 +80,7 @@ impl Example {
         let mut last = None;
         for shipped in ALL {
             let example = Self::of(effect.clone(), &Source::shipped(shipped.name)?)?;
-            if !example.sites.is_empty() {
+            if example.shown.is_some() {
                 return Ok(example);
             }
             last = Some(example);
@@ -94,12 +99,19 @@ impl Example {
         let all = candidates(&mechanism, &spec, effects, &scales).map_err(Error::computation)?;
         let mut sites: Vec<String> = all.iter().map(Candidate::name).collect();
         sites.dedup();
-        let items = all.first().map(|one| one.items().to_owned());
+        let mut shown = None;
+        for candidate in &all {
+            shown = written(&spec, candidate).map_err(Error::computation)?;
+            if shown.is_some() {
+                break;
+            }
+        }
         Ok(Self {
             effect,
             mechanism: mechanism.name,
             sites,
-            items: items.unwrap_or_default(),
+            shown: shown.as_ref().map(Candidate::name),
+            items: shown.map_or_else(String::new, |one| one.items().to_owned()),
         })
     }
 
@@ -124,7 +136,10 @@ impl Example {
                 self.sites.join(", ")
             }
         );
-        let Some(first) = self.sites.first() else {
+        let Some(shown) = &self.shown else {
+            if !self.sites.is_empty() {
+                text += "\nNo input drives one of them through a constant lever, without which it cannot be told.\n";
+            }
             return text;
         };
         if self.items.trim().is_empty() {
@@ -133,7 +148,7 @@ impl Example {
         } else {
             let _ = writeln!(
                 text,
-                "\nIn a spec, {first} is (sizes at zero, where `appell apply` writes those that it found):\n\n{}",
+                "\nIn a spec, {shown} is (sizes at zero, where `appell apply` writes those that it found):\n\n{}",
                 self.items.trim()
             );
         }

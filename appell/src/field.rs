@@ -58,6 +58,7 @@ fields! {
     Also "also" "Lags, delays, biases and scales to estimate.",
     Drifting "drifting" "Parameters that drift, with their rates.",
     Effects "effects" "Library of effects.",
+    Effect "effect" "An effect by its name.",
     Hypothesis "hypothesis" "Hypothesis of a gap report.",
     Sources "sources" "Sources of an FMU without machine code.",
     Bias "bias" "Columns with a constant bias.",

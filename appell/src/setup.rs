@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use appell_runtime::model::ModelInfo;
+use appell_runtime::model::{ModelInfo, tidy};
 use appell_spec::expr::Expr;
 pub use appell_spec::mechanism::InputId;
 use appell_spec::mechanism::{CoordinateId, ParameterId, SpeedId};
@@ -353,7 +353,7 @@ fn inside(name: &str, value: f64, [low, high]: [f64; 2], unit: &Unit) -> Result<
     } else {
         String::new()
     };
-    let [value, low, high] = [value, low, high].map(|si| unit.from_si(si));
+    let [value, low, high] = [value, low, high].map(|si| tidy(unit.from_si(si)));
     Err(format!(
         "`{name}` = {value} {unit} is outside its limits {low} … {high} {unit}{instead}",
         unit = unit.text

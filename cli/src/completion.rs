@@ -5,6 +5,7 @@
 use std::ffi::OsStr;
 use std::path::Path;
 
+use appell::robot::Without;
 use appell::{Model, ModelInfo, Quantity};
 use appell_analysis::Term;
 use appell_models::ALL;
@@ -22,6 +23,8 @@ pub(crate) fn command() -> Command {
 
 fn with_models(command: Command) -> Command {
     let command = command.mut_subcommands(with_models);
+    let is_import = command.get_name() == "import";
+    let is_effects = command.get_name() == "effects";
     command.mut_args(|argument| match argument.get_id().as_str() {
         "model" | "models" => argument.add(ArgValueCompleter::new(models)),
         "set" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
@@ -33,11 +36,41 @@ fn with_models(command: Command) -> Command {
         "input" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             names(typed, |info| own(&info.inputs[..info.declared_inputs]))
         })),
+        // Commands have lists of different things to go without.
+        "without" if is_import => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+            listed(typed, Without::ALL.map(Without::word))
+        })),
+        "name" if is_effects => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+            let library = appell::effects::library().unwrap_or_default();
+            beginning(typed, library.iter().map(|effect| effect.name.as_str()))
+        })),
         "fix" | "at" | "along" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             names(typed, Term::names)
         })),
         _ => argument,
     })
+}
+
+/// Words that begin as one that is typed, each once.
+fn beginning<'w>(typed: &OsStr, words: impl Iterator<Item = &'w str>) -> Vec<CompletionCandidate> {
+    let begins = typed.to_string_lossy();
+    let mut words: Vec<&str> = words.filter(|word| word.starts_with(&*begins)).collect();
+    words.dedup();
+    words.into_iter().map(CompletionCandidate::new).collect()
+}
+
+/// Words of a list with commas: those that may follow what is typed of it.
+fn listed<const N: usize>(typed: &OsStr, words: [&str; N]) -> Vec<CompletionCandidate> {
+    let typed = typed.to_string_lossy();
+    let (before, last) = typed
+        .rfind(',')
+        .map_or(("", &*typed), |comma| typed.split_at(comma + 1));
+    let given: Vec<&str> = before.split(',').collect();
+    let words = words.into_iter();
+    let words = words.filter(|word| word.starts_with(last) && !given.contains(word));
+    words
+        .map(|word| CompletionCandidate::new(format!("{before}{word}")))
+        .collect()
 }
 
 fn own(quantities: &[Quantity]) -> Vec<String> {

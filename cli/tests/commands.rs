@@ -423,6 +423,15 @@ fn every_effect_has_a_law_a_picture_sites_and_an_example() {
         assert!(told.contains(says), "{told}");
     }
     folder.fails(2, &["effects", "sprnig"], &["did you mean `spring`?"]);
+    let failed = folder.fails(
+        2,
+        &["effects", "coulom"],
+        &["there is no effect `coulom`; did you mean `coulomb_friction`?"],
+    );
+    assert!(!failed.stderr.contains("--"), "{}", failed.stderr);
+    // What is brought to a drive has its numbers.
+    let told = folder.done(&["effects", "backlash", "--model", "cart_pole"]);
+    assert!(!told.stdout.contains("{inertia}") && !told.stdout.contains("{drive}"));
 }
 
 #[test]

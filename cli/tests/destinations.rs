@@ -95,24 +95,35 @@ fn a_shell_completes_models_and_specs() {
     let folder = Folder::new();
     folder.write("unfinished.toml", "");
     folder.write("unrelated.csv", "");
-    let told = std::process::Command::new(env!("CARGO_BIN_EXE_appell"))
-        .args(["--", "appell", "check", "un"])
-        .current_dir(folder.path("."))
-        .envs([
-            ("COMPLETE", "bash"),
-            ("_CLAP_COMPLETE_INDEX", "2"),
-            ("_CLAP_IFS", "\n"),
-        ])
-        .output()
-        .expect("the program runs");
-    let told = String::from_utf8_lossy(&told.stdout).into_owned();
-    let all: Vec<&str> = told.lines().collect();
-    assert!(
-        all.contains(&"unicycle") && all.contains(&"unfinished.toml"),
-        "{told}"
+    let completed = |words: &[&str]| {
+        let index = (words.len() - 1).to_string();
+        let told = std::process::Command::new(env!("CARGO_BIN_EXE_appell"))
+            .arg("--")
+            .args(words)
+            .current_dir(folder.path("."))
+            .envs([
+                ("COMPLETE", "bash"),
+                ("_CLAP_COMPLETE_INDEX", index.as_str()),
+                ("_CLAP_IFS", "\n"),
+            ])
+            .output()
+            .expect("the program runs");
+        let told = String::from_utf8_lossy(&told.stdout).into_owned();
+        told.lines().map(str::to_owned).collect::<Vec<String>>()
+    };
+    let all = completed(&["appell", "check", "un"]);
+    let has = |name: &str| all.iter().any(|one| one == name);
+    assert!(has("unicycle") && has("unfinished.toml"), "{all:?}");
+    assert!(all.iter().all(|name| name.starts_with("un")), "{all:?}");
+    assert!(!has("unrelated.csv"), "{all:?}");
+    let import = ["appell", "import", "arm.urdf", "--without"];
+    let without = |typed: &str| completed(&[&import[..], &[typed]].concat());
+    assert_eq!(without("da"), ["damping"]);
+    assert_eq!(without("damping,sp"), ["damping,springs"]);
+    assert_eq!(
+        completed(&["appell", "effects", "coul"]),
+        ["coulomb_friction"]
     );
-    assert!(all.iter().all(|name| name.starts_with("un")), "{told}");
-    assert!(!all.contains(&"unrelated.csv"), "{told}");
     let script = folder.done(&["completions", "bash"]).stdout;
     assert!(script.contains("COMPLETE=\"bash\""), "{script}");
 }

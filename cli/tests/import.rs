@@ -67,6 +67,12 @@ fn numbers_become_letters_by_name() {
         );
     }
     assert!(!told.stdout.contains("m_slide"), "{}", told.stdout);
+    let says = "wrote the spec to standard output:";
+    assert!(
+        told.stderr.contains(says) && !told.stderr.contains("check -"),
+        "{}",
+        told.stderr
+    );
     let wrong = [
         "import",
         "robot/arm.xml",

@@ -36,7 +36,7 @@ pub(crate) use hysteresis::Hysteresis;
 pub use library::shipped;
 pub(crate) use memory::Memory;
 pub(crate) use model::ACTING;
-pub use model::{EffectModel, ModelError, candidates, with_candidates};
+pub use model::{EffectModel, ModelError, candidates, with_candidates, written};
 pub(crate) use site::driven;
 pub use site::{Scales, SiteKind};
 
@@ -93,5 +93,77 @@ mod tests {
         for word in effect::choices() {
             assert!(manual.contains(&format!("`{word}`")), "{word}");
         }
+    }
+
+    /// A cart and a pole on a driven arm, with all that has a site.
+    const SPEC: &str = r#"[mechanism]
+name = "arm"
+title = "An arm and a cart"
+[parameters]
+m = { value = 1.0, unit = "kg", at_least = 0 }
+l = { value = 0.3, unit = "m" }
+c = { value = 0.05, unit = "N*m*s", at_least = 0 }
+[coordinates]
+th = { unit = "deg" }
+s = { unit = "m" }
+[inputs]
+tau = { unit = "N*m" }
+u = { unit = "N" }
+[frames]
+arm = { parent = "ground", about_axis = "-y", by = "th" }
+[points]
+B = { from = "O", in = "arm", at = [0, 0, "-l"] }
+S = { from = "O", in = "ground", at = ["s", 0, 0] }
+[bodies]
+arm = { frame = "arm", centre = "O", mass = "0.5 [kg]", inertia = "0.05 [kg*m^2]" }
+load = { centre = "B", mass = "m" }
+cart = { centre = "S", mass = "m" }
+[pseudo_velocities]
+om = { value = "dot(th)", unit = "deg/s" }
+v = { value = "dot(s)", unit = "m/s" }
+[loads]
+w = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
+mot = { kind = "torque", on = "arm", in = "ground", vector = [0, "-2*tau", 0] }
+push = { kind = "generalized", coordinate = "s", force = "u" }
+fr = { kind = "damper", coordinate = "th", damping = "c" }
+"#;
+
+    #[test]
+    fn every_effect_is_written_as_a_spec_that_loads() {
+        let spec = appell_recordings::Spec {
+            file: "arm.toml".to_owned(),
+            text: SPEC.to_owned(),
+        };
+        let mechanism = appell_spec::load(&spec.file, &spec.text)
+            .expect("a spec")
+            .mechanism;
+        let scales = Scales {
+            rates: vec![1.0; 2],
+            narrow: vec![0.005; 2],
+            largest: vec![1.0; 2],
+            channels: vec!["th".to_owned(), "s".to_owned()],
+            uncertain: vec![0, 1, 2],
+        };
+        let effects = shipped().expect("a library");
+        let all = candidates(&mechanism, &spec, &effects, &scales).expect("candidates");
+        let mut of = std::collections::BTreeSet::new();
+        for candidate in &all {
+            let name = candidate.name();
+            let Some(written) = written(&spec, candidate).expect("a model") else {
+                panic!("nothing drives {name}");
+            };
+            let items = written.items();
+            let open = items.match_indices('{').find(|(at, _)| {
+                let next = items[at + 1..].chars().next();
+                next.is_some_and(char::is_alphabetic)
+            });
+            assert!(open.is_none(), "a word is left in {name}: {items}");
+            let text = with_candidates(SPEC, std::slice::from_ref(&written)).expect("a spec");
+            if let Err(report) = appell_spec::load("arm.toml", &text) {
+                panic!("{name}: {}", report.plain());
+            }
+            of.insert(candidate.kind.clone());
+        }
+        assert!(of.contains("backlash") && of.len() > 10, "{of:?}");
     }
 }

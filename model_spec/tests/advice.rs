@@ -220,3 +220,12 @@ fn a_body_without_mass_may_have_a_share_of_an_inertia() {
         assert_eq!(told.contains("not-physical"), says, "{body}: {told}");
     }
 }
+
+#[test]
+fn milliseconds_in_the_place_of_metres_are_told() {
+    let told = told("acceleration = \"g\"", "acceleration = \"9.81 [ms^-2]\"");
+    assert!(
+        told.contains("`ms^-2` has milliseconds in it; write `m/s^2`"),
+        "{told}"
+    );
+}

@@ -140,6 +140,12 @@ def test_frames_of_pandas_and_polars_are_recordings():
     run = appell.Recordings([frame, frame], "pendulum")["run1"]
     assert run["t"][-1] == pytest.approx(2.99, abs=1e-9)
     assert np.isnan(run["theta"][7]) and not np.isnan(run["theta"][8])
+    # Dates with a time zone, and those of the standard library, are objects to numpy.
+    zoned = stamps.tz_localize("UTC")
+    for times in [zoned, zoned.tz_convert("Europe/Berlin"), stamps, stamps - stamps[0]]:
+        for column in [times, pandas.Series(list(times), dtype=object)]:
+            frame = pandas.DataFrame({"t": column, "theta": columns["theta"]})
+            assert np.allclose(appell.Recordings([frame], "pendulum")["run1"]["t"], 0.01 * np.arange(300), atol=1e-9)
     polars = pytest.importorskip("polars")
     frame = polars.DataFrame({"time": 0.01 * np.arange(300), "theta": columns["theta"]})
     run = appell.Recordings({"a": frame, "b": frame}, "pendulum")["b"]

@@ -258,17 +258,28 @@ impl<R: BufRead> CsvFile<R> {
             _ if MISSING.iter().any(|word| text.eq_ignore_ascii_case(word)) => f64::NAN,
             _ => {
                 let message = format!("`{}` is not a finite number", shown(text));
-                let help = if text.contains(',') {
-                    "write numbers with a decimal point"
-                } else {
-                    "leave the cell empty where a value is missing"
-                };
+                let help = instead(text);
                 let at = self.rows.place(column);
-                self.tell(Code::WrongType, message, at, Some(help.to_owned()));
+                self.tell(Code::WrongType, message, at, Some(help));
                 f64::NAN
             }
         }
     }
+}
+
+/// What to write in the place of a text that is no number.
+fn instead(text: &str) -> String {
+    let with_point = text.replace(',', ".");
+    if with_point.parse::<f64>().is_ok() {
+        return format!("write numbers with a decimal point: `{with_point}`");
+    }
+    let is_part = |part: &str| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit());
+    if text.contains(['-', ':']) && text.split(['-', ':', '.', 'T', ' ', 'Z', '+']).any(is_part) {
+        return "write times as numbers, such as seconds since the first row; the Python package also reads the dates \
+                of a data frame"
+            .to_owned();
+    }
+    "leave the cell empty where a value is missing".to_owned()
 }
 
 /// What stands for a missing value, besides `nan`.

@@ -170,7 +170,7 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
     let good = swing(60, 1, 1e-3);
     let row = "0.30,";
     let with = |replacement: &str| good.replacen(row, replacement, 1);
-    let cases: [(String, &[&str]); 14] = [
+    let cases: [(String, &[&str]); 15] = [
         (String::new(), &["run.csv: the file is empty"]),
         ("t,theta,tau\n".to_owned(), &["0 rows", "needs 8"]),
         ("t,theta,tau\n0,0,0\n".to_owned(), &["1 row;"]),
@@ -201,11 +201,19 @@ fn bad_recordings_are_refused_with_file_line_and_column() {
         (with("0.30,inf\"\","), &["run.csv:32"]),
         (
             with("12:30,"),
-            &["run.csv:32:1", "`12:30` is not a finite number"],
+            &[
+                "run.csv:32:1",
+                "`12:30` is not a finite number",
+                "seconds since the first row",
+            ],
+        ),
+        (
+            with("2024-01-01T00:00:00.3Z,"),
+            &["run.csv:32:1", "seconds since the first row"],
         ),
         (
             good.replace(',', ";").replace("0.30;", "0,30;"),
-            &["decimal point"],
+            &["with a decimal point: `0.30`"],
         ),
         (good.replace("0.30,", "0.30,\u{1}"), &["run.csv:32"]),
         (

@@ -70,10 +70,20 @@ impl Quantity {
         si / self.scale
     }
 
+    /// The same without what rounding adds to it: 120, not 119.99999999999999.
+    pub fn shown(&self, si: f64) -> f64 {
+        tidy(self.to_unit(si))
+    }
+
     /// A value in the unit for people, in SI.
     pub fn to_si(&self, value: f64) -> f64 {
         value * self.scale
     }
+}
+
+/// A number without what rounding of conversions adds to it, for people.
+pub fn tidy(x: f64) -> f64 {
+    format!("{x:.13e}").parse().unwrap_or(x)
 }
 
 /// How a tabulated signal runs between its rows. Before the first and after the last row every

@@ -95,10 +95,12 @@ impl Import {
         let file = shell(&out.to_string_lossy());
         let bodies = if robot.bodies == 1 { "body" } else { "bodies" };
         let joints = if robot.joints == 1 { "joint" } else { "joints" };
-        let told = format!(
-            "wrote {file}: {} {bodies}, {} {joints}; next:\n  appell check {file}\n",
-            robot.bodies, robot.joints
-        );
+        let counts = format!("{} {bodies}, {} {joints}", robot.bodies, robot.joints);
+        let told = if files::is_stdout(out) {
+            format!("wrote the spec to standard output: {counts}\n")
+        } else {
+            format!("wrote {file}: {counts}; next:\n  appell check {file}\n")
+        };
         output::print_beside(&told, &[&Some(out.clone())])
     }
 

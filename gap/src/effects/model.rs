@@ -107,6 +107,19 @@ pub fn candidates(
     Ok(all)
 }
 
+/// A candidate with all its words, as a spec has it beside no other; nothing where it acts on a drive, and none is there.
+pub fn written(spec: &Spec, candidate: &Candidate) -> Result<Option<Candidate>, ModelError> {
+    let centre = candidate.centre.clone().unwrap_or_default();
+    let candidate = candidate.told(&[(LAST_CENTRE.trim_matches(['{', '}']), &centre)]);
+    let Some(speed) = candidate.brings else {
+        return Ok(Some(candidate));
+    };
+    let (mechanism, model) = derive((&spec.file, &spec.text), &FunctionKind::ALL)?;
+    let parameters = model.info().default_parameters();
+    let drive = Drive::of(model.as_ref(), &parameters, speed);
+    Ok(drive.map(|drive| candidate.driven(&mechanism, &drive)))
+}
+
 /// Whether the effect of a user makes a spec wrong: that is told in the words of its file.
 fn check(spec: &Spec, candidate: &Candidate) -> Result<(), ModelError> {
     let Some(source) = &candidate.source else {
@@ -119,6 +132,16 @@ fn check(spec: &Spec, candidate: &Candidate) -> Result<(), ModelError> {
     match appell_spec::load(&spec.file, &text) {
         Ok(_) => Ok(()),
         Err(report) => Err(source.blamed(&report, &text).into()),
+    }
+}
+
+impl Candidate {
+    /// With the words about what drives it.
+    fn driven(&self, mechanism: &Mechanism, drive: &Drive) -> Self {
+        let inputs = mechanism.inputs.iter();
+        let force = drive.written(inputs.map(|input| input.label.name.as_str()));
+        let inertia = number(drive.inertia);
+        self.told(&[("drive", &force), ("inertia", &inertia)])
     }
 }
 
@@ -198,13 +221,7 @@ impl EffectModel {
     }
 
     fn augmented(&self, index: usize, drive: &Drive) -> Result<Augmented, ModelError> {
-        let inputs = self.mechanism.inputs.iter();
-        let force = drive.written(inputs.map(|input| input.label.name.as_str()));
-        let words = [
-            ("drive", force.as_str()),
-            ("inertia", &number(drive.inertia)),
-        ];
-        let candidate = self.candidates[index].told(&words);
+        let candidate = self.candidates[index].driven(&self.mechanism, drive);
         let others = self.candidates.iter().filter(|one| !one.creeps());
         let beside = others.enumerate().map(|(other, one)| match one.brings {
             Some(_) if other == index => candidate.clone(),

@@ -61,6 +61,20 @@ impl Typed {
             format!("write the unit after the number: `[{unit}]`")
         })
     }
+
+    /// What to write where a number has milliseconds in the place of metres and seconds, as in `9.81 [ms^-2]`.
+    fn milliseconds(&self, wanted: Dimension) -> Option<String> {
+        let unit = Unit::si(wanted).text;
+        let Dim::Known(found) = self.dim else {
+            return None;
+        };
+        let power = ["m/s", "m/s^2"].iter().position(|own| *own == unit)? + 1;
+        let per_time = Exponent::from_integer(-i32::try_from(power).ok()?);
+        let second = crate::units::parse("s").ok()?.dimension;
+        let is_number = matches!(self.expr.kind, ExprKind::Number(_));
+        let meant = is_number && second.power(per_time).ok()? == found;
+        meant.then(|| format!("`ms^-{power}` has milliseconds in it; write `{unit}`"))
+    }
 }
 
 impl Dim {
@@ -139,7 +153,11 @@ impl Resolver<'_> {
                 ),
             )
             .at(typed.span(), unit_words(found))
-            .maybe_help(typed.missing_unit(wanted)),
+            .maybe_help(
+                typed
+                    .missing_unit(wanted)
+                    .or_else(|| typed.milliseconds(wanted)),
+            ),
         );
     }
 

@@ -310,8 +310,14 @@ fn lookup(symbol: &str) -> Option<Product> {
 
 /// A symbol, whole or with a prefix: its unit, and the power of ten before it.
 fn entry(symbol: &str) -> Option<(&'static UnitEntry, i32)> {
-    // The sign of the degree is read, and written as `deg`.
-    let symbol = if symbol == "°" { "deg" } else { symbol };
+    // The sign of the degree is read, and written as `deg`; the Greek letter of keyboards is the sign of micro.
+    let micro = symbol
+        .strip_prefix('\u{3bc}')
+        .map(|rest| format!("\u{b5}{rest}"));
+    let symbol = match symbol {
+        "°" => "deg",
+        symbol => micro.as_deref().unwrap_or(symbol),
+    };
     let whole = UNITS.iter().find(|unit| unit.symbol == symbol);
     if let Some(unit) = whole {
         return Some((unit, 0));
@@ -333,19 +339,58 @@ fn product(powers: [i32; 7], size: (i64, i64), times_pi: bool, ten: i32) -> Prod
     }
 }
 
-/// A symbol as a product of a few units.
-fn factors(symbol: &str, is_unit: &dyn Fn(&str) -> bool) -> Option<String> {
+/// A symbol as a product of up to three different units: the first with a prefix or whole, the others whole; or else of
+/// two of any kind.
+fn factors(symbol: &str) -> Option<String> {
     const MOST: usize = 3;
-    fn split(symbol: &str, is_unit: &dyn Fn(&str) -> bool, most: usize) -> Option<String> {
-        if is_unit(symbol) {
-            return Some(symbol.to_owned());
+    const LONGEST: usize = 8;
+    type Is<'f> = &'f dyn Fn(&str) -> bool;
+    fn split(
+        symbol: &str,
+        [first, others]: [Is<'_>; 2],
+        before: &[&str],
+        most: usize,
+    ) -> Option<String> {
+        let is_one = |part: &str| first(part) && !before.contains(&part);
+        if most == 1 {
+            return is_one(symbol).then(|| symbol.to_owned());
         }
-        let most = most.checked_sub(1).filter(|most| *most > 0)?;
         let cuts = (1..symbol.len()).filter_map(|at| symbol.split_at_checked(at));
-        let mut firsts = cuts.filter(|(first, _)| is_unit(first));
-        firsts.find_map(|(first, rest)| Some(format!("{first}*{}", split(rest, is_unit, most)?)))
+        let mut cuts = cuts.filter(|(own, _)| is_one(own));
+        cuts.find_map(|(own, rest)| {
+            let before = [before, &[own]].concat();
+            let rest = split(rest, [others; 2], &before, most - 1)?;
+            Some(format!("{own}*{rest}"))
+        })
     }
-    (symbol.len() <= 8).then(|| split(symbol, is_unit, MOST))?
+    // `Nms` has seconds in it rather than milliseconds, `Nmm` millimetres rather than square metres.
+    let whole = |part: &str| part == "kg" || UNITS.iter().any(|unit| unit.symbol == part);
+    let any = |part: &str| lookup(part).is_some();
+    let few = |kinds: [Is<'_>; 2], most: usize| {
+        (2..=most).find_map(|most| split(symbol, kinds, &[], most))
+    };
+    if symbol.len() > LONGEST {
+        return None;
+    }
+    few([&whole, &whole], MOST)
+        .or_else(|| few([&any, &whole], MOST))
+        .or_else(|| few([&any, &any], 2))
+}
+
+/// A unit that is written with other cases: of prefixes only that of `k` is without doubt.
+fn in_other_case(symbol: &str) -> Option<String> {
+    let same = |a: &str| {
+        UNITS
+            .iter()
+            .find(|unit| unit.symbol.eq_ignore_ascii_case(a))
+    };
+    if symbol.len() > 1
+        && let Some(unit) = same(symbol)
+    {
+        return Some(unit.symbol.to_owned());
+    }
+    let unit = same(symbol.strip_prefix(['k', 'K'])?).filter(|unit| unit.prefixed)?;
+    Some(format!("k{}", unit.symbol))
 }
 
 fn similar(symbol: &str) -> Option<String> {
@@ -361,22 +406,19 @@ fn similar(symbol: &str) -> Option<String> {
         "meter" | "meters" => Some("m"),
         "degrees" | "degree" => Some("deg"),
         "radians" => Some("rad"),
-        "Kg" | "KG" | "kilogram" => Some("kg"),
+        "kilogram" => Some("kg"),
         "degC" | "celsius" => Some("K"),
         "kmh" | "kph" => Some("km/h"),
+        "mps" => Some("m/s"),
+        "dps" => Some("deg/s"),
         "Ω" => Some("ohm"),
         "L" => Some("l"),
         _ => None,
     };
-    // `Nm` is a product without its sign; `Nms` has seconds in it rather than milliseconds.
-    let product = || {
-        let whole = |part: &str| part == "kg" || UNITS.iter().any(|unit| unit.symbol == part);
-        let any = |part: &str| lookup(part).is_some();
-        factors(symbol, &whole).or_else(|| factors(symbol, &any))
-    };
     spoken
         .or_else(|| common.map(str::to_owned))
-        .or_else(product)
+        .or_else(|| in_other_case(symbol))
+        .or_else(|| factors(symbol))
         .or_else(|| suggest::closest(symbol, UNITS.iter().map(|u| u.symbol)).map(str::to_owned))
 }
 
@@ -403,6 +445,8 @@ mod tests {
         assert_eq!(scale("%"), 0.01);
         assert_eq!(scale("1/min"), 1.0 / 60.0);
         assert_eq!(scale("mm²"), 1e-6);
+        assert_eq!(scale("\u{b5}m"), scale("um"));
+        assert_eq!(scale("\u{3bc}m"), scale("um"));
     }
 
     #[test]
@@ -456,6 +500,16 @@ mod tests {
     }
 
     #[test]
+    fn what_is_no_product_of_units_is_not_proposed_as_one() {
+        for text in ["slug", "furlong"] {
+            let Err(UnitError::Unknown { similar, .. }) = parse(text) else {
+                panic!("{text} is a unit");
+            };
+            assert!(!similar.is_some_and(|one| one.contains('*')), "{text}");
+        }
+    }
+
+    #[test]
     fn similar_units_are_proposed() {
         for (text, expected) in [
             ("Nm", "N*m"),
@@ -463,6 +517,18 @@ mod tests {
             ("kgm2", "kg*m^2"),
             ("kgm^2", "kg*m^2"),
             ("Nms", "N*m*s"),
+            ("Nmm", "N*mm"),
+            ("mNm", "mN*m"),
+            ("kNm", "kN*m"),
+            ("kNms", "kN*m*s"),
+            ("Nmm2", "N*mm^2"),
+            ("KN", "kN"),
+            ("kn", "kN"),
+            ("KG", "kg"),
+            ("HZ", "Hz"),
+            ("khz", "kHz"),
+            ("dps", "deg/s"),
+            ("mps", "m/s"),
             ("Nm/rad", "N*m"),
             ("kgm2/s", "kg*m^2"),
             ("sec", "s"),

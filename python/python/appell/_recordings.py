@@ -310,13 +310,20 @@ def _numbers(column: Any) -> np.ndarray | None:
         unit = np.timedelta64(1, "ns")
         passed = (values - (values[:1] if values.dtype.kind == "M" else np.timedelta64(0, "ns"))) / unit
         return np.ascontiguousarray(1e-9 * passed)
-    if values.dtype.kind == "O":
-        values = np.array([np.nan if _is_missing(value) else value for value in values], dtype=object)
     try:
+        if values.dtype.kind == "O":
+            first = next((value for value in values if not _is_missing(value)), None)
+            values = np.array([np.nan if _is_missing(value) else _passed(value, first) for value in values], dtype=object)
         numbers = np.ascontiguousarray(values, dtype=float)
     except (TypeError, ValueError):
         return None
     return numbers if numbers.ndim == 1 else None
+
+
+def _passed(value: Any, first: Any) -> Any:
+    """Seconds of a date with a time zone from the first one on, and of a span of time; other values as they are."""
+    span = value - first if hasattr(value, "timestamp") else value
+    return span.total_seconds() if hasattr(span, "total_seconds") else value
 
 
 def _is_missing(value: Any) -> bool:

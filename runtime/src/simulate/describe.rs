@@ -28,7 +28,7 @@ pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
         Cause::TooManySteps { steps } => format!("the limit of {steps} steps was reached"),
         Cause::OutOfRange { component, range } => match info.states.get(component) {
             Some(state) => {
-                let [lower, upper] = range.map(|limit| state.to_unit(limit));
+                let [lower, upper] = range.map(|limit| state.shown(limit));
                 format!(
                     "`{}` leaves its range {lower} … {upper} {}",
                     state.name, state.unit

@@ -94,7 +94,7 @@ impl Breach {
         let contact = |index: usize| info.contacts.get(index).map_or("?", |c| c.name.as_ref());
         match self.limit {
             Limit::Range { state } => info.states.get(state).map_or_else(String::new, |state| {
-                let [lower, upper] = state.range.map(|limit| state.to_unit(limit));
+                let [lower, upper] = state.range.map(|limit| state.shown(limit));
                 let value = state.to_unit(self.value);
                 let (name, unit) = (&state.name, &state.unit);
                 format!("`{name}` = {value:.6} {unit} leaves its range {lower} … {upper} {unit}")

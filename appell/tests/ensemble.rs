@@ -362,6 +362,72 @@ fn noise_moves_a_mass_as_far_as_it_should() {
 }
 
 #[test]
+fn a_kept_noise_is_what_acts() {
+    let scratch = Scratch::new("kept_noise");
+    let study = "[study]\nmodel = \"oscillator.toml\"\ncases = 50\n[motion]\nt_end_s = 1\ninput.F = \"gust\"\n\
+        [noise]\ngust = { deviation = 2, every_s = 0.3, unit = \"N\" }\n\
+        [keep]\nforce = { end = \"F\" }\nnoise = { end = \"gust\" }\nboth = { max = \"abs(F - gust)\" }\n";
+    let ensemble = scratch.ensemble(study);
+    let rows = ensemble.rows(0..50);
+    let of = |name: &str| &rows.values[column(&ensemble, name)];
+    assert_eq!(of("force"), of("noise"));
+    assert!(of("noise").iter().any(|value| *value != of("noise")[0]));
+    assert!(of("both").iter().all(|value| *value == 0.0));
+}
+
+/// A free mass that passes a place: x = t.
+const PASSING: &str = "[study]\nmodel = \"oscillator.toml\"\ncases = 20\n[motion]\nt_end_s = 10\ndt_s = 0.2\nset.k = 0\n\
+    [vary]\nv = { uniform = [1, 1] }\nx = { uniform = [0, 0.3] }\n[keep]\n";
+
+#[test]
+fn what_comes_and_goes_between_samples_counts() {
+    let scratch = Scratch::new("passing");
+    let kept = "wide = { when = \"if(abs(x - 5.5[m]) < 0.0125[m], 1, 0) > 0.5\" }\n\
+        smooth = { when = \"exp(-((x - 5.5[m])/1e-3[m])^2) > 0.5\" }\n\
+        peak = { max = \"exp(-((x - 5.5[m])/1e-3[m])^2)\" }\n\
+        part = { mean = \"if(sin(30[1/m]*x) > 0.9, 1, 0)\" }\n";
+    let study = PASSING.replace("uniform = [1, 1]", "uniform = [0.999, 1]") + kept;
+    for method in ["dop853", "dopri5", "taylor"] {
+        let study = study.replace("t_end_s", &format!("method = \"{method}\"\nt_end_s"));
+        let ensemble = scratch.ensemble(&study);
+        let rows = ensemble.rows(0..20);
+        let of = |name: &str| &rows.values[column(&ensemble, name)];
+        for name in ["wide", "smooth"] {
+            assert!(
+                of(name).iter().all(|happened| *happened == 1.0),
+                "{method} {name}"
+            );
+        }
+        assert!(
+            of("peak").iter().all(|peak| (peak - 1.0).abs() < STATED),
+            "{method}"
+        );
+        // Of 47.7 periods; the part of one that counts is acos(.9)/π.
+        let share = 0.9_f64.acos() / std::f64::consts::PI;
+        assert!(
+            of("part")
+                .iter()
+                .all(|part| (part - share).abs() < 0.02 * share),
+            "{method}"
+        );
+    }
+}
+
+#[test]
+fn a_quantity_that_is_no_number_for_a_part_of_the_motion_is_missing() {
+    let scratch = Scratch::new("undefined");
+    let study = PASSING.replace("uniform = [1, 1]", "uniform = [0.999, 1]")
+        + "least = { min = \"acos(x/5[m])\" }\nmost = { max = \"sqrt(x/1[m] - 3)\" }\n\
+           all = { mean = \"sqrt(x/1[m] - 3)\" }\n";
+    let ensemble = scratch.ensemble(&study);
+    let rows = ensemble.rows(0..20);
+    for name in ["least", "most", "all"] {
+        let of = &rows.values[column(&ensemble, name)];
+        assert!(of.iter().all(|value| value.is_nan()), "{name}: {of:?}");
+    }
+}
+
+#[test]
 fn a_motion_under_a_law_is_that_of_simulate() {
     let scratch = Scratch::new("laws");
     let model = Model::shipped("cart_pole").unwrap();

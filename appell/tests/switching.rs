@@ -66,6 +66,74 @@ fn no_pulse_of_an_input_is_missed_between_long_steps() {
     }
 }
 
+/// What entering and leaving a hundred pulses leaves of the tolerances.
+const OVER_ALL_PULSES: f64 = 1e-6;
+
+#[test]
+fn no_pulse_of_the_state_is_missed_between_long_steps() {
+    // Each passage of a place where x is fixed does the work F times the width.
+    let passed = |work: f64| (1.0 + 2.0 * work).sqrt();
+    let bell = (std::f64::consts::PI).sqrt();
+    // A mass of 1 kg at 1 m/s; the pulses of the train are met one after the other.
+    let width = 2.0 * f64::acos(0.999) / 7.0;
+    let mut train = (0.0, 1.0, 0.0);
+    for pulse in 0.. {
+        let (x, v, t) = train;
+        let begin = std::f64::consts::TAU * (f64::from(pulse) + 0.25) / 7.0 - 0.5 * width;
+        let next = f64::sqrt(v * v + 200.0 * width);
+        let after = t + (begin - x) / v + (next - v) / 100.0;
+        if after > 7.0 {
+            break;
+        }
+        train = (begin + width, next, after);
+    }
+    let pulses = [
+        ("if(sin(7[1/m]*x) > 0.999, 100[N], 0[N])", train.1),
+        ("if((x - 5[m])^2 < 1e-8[m^2], 1e4[N], 0[N])", passed(2.0)),
+        (
+            "if(exp(-((x - 5[m])/1e-2[m])^2) > 0.9999, 1e3[N], 0[N])",
+            passed(20.0 * f64::sqrt(-f64::ln(0.9999))),
+        ),
+        (
+            "if(1/(1 + ((x - 5[m])/1e-4[m])^2) > 0.5, 1e4[N], 0[N])",
+            passed(2.0),
+        ),
+        ("100[N]*exp(-((x - 5[m])/1e-3[m])^2)", passed(0.1 * bell)),
+        (
+            "1000[N]*(smooth_sign(x - 5[m], 1e-5[m]) - smooth_sign(x - 5.001[m], 1e-5[m]))",
+            passed(2.0),
+        ),
+    ];
+    for (force, expected) in pulses {
+        for method in [Method::Dop853, Method::Dopri5, Method::Taylor] {
+            let motion = Motion {
+                method,
+                ..Motion::new(7.0).input("F", force).initial("v", 1.0)
+            };
+            let found = velocity(&motion);
+            let off = (found - expected).abs();
+            assert!(
+                off < OVER_ALL_PULSES,
+                "{force} {method:?}: {found} {expected}"
+            );
+        }
+    }
+}
+
+#[test]
+fn fixed_steps_are_shorter_at_a_pulse() {
+    let motion = Motion {
+        method: Method::Rk4 { step: 0.02 },
+        ..Motion::new(20.0).input("F", "1000*exp(-((t-5)/1e-4)^2)")
+    };
+    let (found, expected) = (velocity(&motion), 0.1 * std::f64::consts::PI.sqrt());
+    // Order 4 on parts of half a value each; longer steps miss the pulse, or count it thirty-fold.
+    assert!(
+        (found - expected).abs() < 3e-2 * expected,
+        "{found} {expected}"
+    );
+}
+
 #[test]
 fn a_pulse_that_a_program_computes_is_seen_between_rows() {
     let pulse = |t: f64, _: &[f64], u: &mut [f64]| u[0] = 10.0 * (-(t - 13.0).powi(2) * 1e4).exp();

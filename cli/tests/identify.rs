@@ -371,11 +371,11 @@ fn a_lag_that_begins_away_from_its_input_is_found() {
     folder.done(&[&run[..], &["--also", "tau.lag"]].concat());
     let found = folder.json("found.json");
     assert_near(&found, &[("l", 0.53), ("I", 0.03), ("tau.lag", LAG)], 0.1);
-    // Nothing disturbs this rig.
+    // Nothing disturbs this rig: what noise leaves.
     let level = found["disturbances"][0]["fitted"]
         .as_f64()
         .expect("a level");
-    assert!(level < 1e-4, "{level}");
+    assert!(level < 1e-3, "{level}");
 }
 
 #[test]

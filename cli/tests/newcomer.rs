@@ -31,7 +31,7 @@ fn a_start_that_the_pseudo_velocities_do_not_determine_ends_there() {
     let folder = Folder::new();
     folder.write("sleigh.toml", SLEIGH);
     let said = ["at the start", "do not determine", "psi = 90.000000 deg"];
-    folder.fails(2, &["simulate", "sleigh.toml"], &said);
+    folder.fails(4, &["simulate", "sleigh.toml"], &said);
     let check = folder.done(&["check", "sleigh.toml"]).stderr;
     assert!(
         check.contains("do not determine `dot(y)` at the initial state"),

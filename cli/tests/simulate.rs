@@ -170,7 +170,7 @@ fn a_smooth_input_without_a_stated_interpolation_is_remarked_on() {
         arguments.extend(how);
         folder.run(&arguments).stderr
     };
-    assert!(run(&[]).contains("half a row late (`F` by 5.00 % of their size)"));
+    assert!(run(&[]).contains("half a row late (`F` by 5.43 % of their size)"));
     for how in ["hold", "linear"] {
         assert!(!run(&["--interpolation", how]).contains("half a row"));
     }

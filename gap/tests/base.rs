@@ -212,3 +212,36 @@ fn one_short_run_has_intervals_as_wide_as_its_errors() {
     }
     assert!(covered >= 20, "{covered} of 24");
 }
+
+#[test]
+fn a_gain_of_the_inputs_that_is_estimated_leaves_no_scale() {
+    let spec = CART
+        .replace(
+            "[coordinates]",
+            "K = { value = 1, unit = \"1\" }\n[coordinates]",
+        )
+        .replace("force = \"u\"", "force = \"K*u\"");
+    let mut text = "t,s,phi,u\n".to_owned();
+    for row in 0..500 {
+        let t = f64::from(row) * STEP;
+        let [s, phi, u] = [(7.0 * t).sin(), (9.0 * t).cos(), (5.0 * t).sin()];
+        writeln!(text, "{t:.4},{s:.7},{phi:.7},{u:.6}").unwrap();
+    }
+    let folder = Folder::new();
+    folder
+        .write("cart.toml", spec.as_str())
+        .write("recording.toml", RECORDED)
+        .write("run.csv", text);
+    let set = folder.read().unwrap();
+    let program = appell_codegen::compile("cart.toml", &spec, &FunctionKind::ALL).unwrap();
+    let model = JitModel::new(&program).unwrap();
+    let regressor = compile::regressor("cart.toml", &spec).unwrap();
+    let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
+    let structure = base::structure(&model, &regressor, &p).unwrap();
+    let told = base::fit(&set, &model, &regressor, &structure).unwrap_err();
+    assert!(
+        told.to_string()
+            .contains("as a number of the spec instead: K"),
+        "{told}"
+    );
+}

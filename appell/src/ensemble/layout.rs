@@ -60,7 +60,7 @@ pub(super) fn layout(
         let quantity = match *source {
             Kind::State(state) => &info.states[state],
             Kind::Input(input) => &info.inputs[input],
-            Kind::Output(output) => &info.outputs[output],
+            Kind::Output(output, _) => &info.outputs[output],
         };
         let is_own = !keep.about.is_empty();
         let about = if is_own {

@@ -47,7 +47,7 @@ impl<'a> Gauge<'a> {
         kept: &'a [Quantity],
     ) -> Self {
         let info = model.info();
-        let has_outputs = kept.iter().any(|k| matches!(k, Quantity::Output(_)));
+        let has_outputs = kept.iter().any(|k| matches!(k, Quantity::Output(..)));
         let has_inputs = kept.iter().any(|k| matches!(k, Quantity::Input(_)));
         Self {
             model,
@@ -79,7 +79,7 @@ impl<'a> Gauge<'a> {
         is_known: impl FnOnce(&Enclosure) -> bool,
         size: f64,
     ) -> bool {
-        let Quantity::Output(output) = self.kept[keep] else {
+        let Quantity::Output(output, true) = self.kept[keep] else {
             return false;
         };
         let span = piece.span();
@@ -133,7 +133,7 @@ impl<'a> Gauge<'a> {
         match self.kept[keep] {
             Quantity::State(state) => x[state],
             Quantity::Input(input) => self.u[input],
-            Quantity::Output(output) => self.outputs[output],
+            Quantity::Output(output, _) => self.outputs[output],
         }
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 
 use appell_ensemble::study::{Keep, Kept, Text};
 use appell_spec::compose::Composition;
-use appell_spec::expr::Span;
+use appell_spec::expr::{BinaryOp, Expr, ExprKind, Function, Quantity as Named, Span};
 use appell_spec::units;
 use appell_spec::{Code, Diagnostic, Reading as Read, Severity};
 
@@ -20,7 +20,8 @@ use crate::{Error, Model};
 pub(super) enum Quantity {
     State(usize),
     Input(usize),
-    Output(usize),
+    /// Its place, and whether it may rise and fall faster than the state.
+    Output(usize, bool),
 }
 
 /// A quantity of the study's own.
@@ -73,7 +74,7 @@ pub(super) fn extended(
     let outputs = |name: &str| {
         let mut all = base.outputs.iter();
         all.position(|own| own.label.name == name)
-            .map(Quantity::Output)
+            .map(|place| Quantity::Output(place, true))
     };
     let mut kept = Vec::new();
     let mut count = base.outputs.len();
@@ -98,7 +99,7 @@ pub(super) fn extended(
         if take(reading, &together, &keep.of, Some((&name, &expression))) {
             composition.add(&fragment).map_err(Error::computation)?;
         }
-        kept.push(Quantity::Output(count));
+        kept.push(Quantity::Output(count, true));
         count += 1;
     }
     if reading.findings.len() > before {
@@ -110,10 +111,45 @@ pub(super) fn extended(
         shipped: None,
     };
     let model = Model::of(source, Some(Engine::Jit))?;
+    let outputs = model.setup()?.mechanism.outputs;
+    for kept in &mut kept {
+        if let Quantity::Output(place, is_fast) = kept {
+            *is_fast = outputs
+                .iter()
+                .nth(*place)
+                .is_none_or(|own| is_fast_of(&own.value));
+        }
+    }
     Ok(Some(Extended {
         model: Arc::new(model),
         kept: Arc::new(kept),
     }))
+}
+
+/// Whether an expression may rise and fall faster than what it is made of.
+fn is_fast_of(expr: &Expr) -> bool {
+    match &expr.kind {
+        ExprKind::Number(_) => false,
+        ExprKind::Quantity(quantity) => matches!(quantity, Named::Response(_)),
+        ExprKind::Negate(a) => is_fast_of(a),
+        ExprKind::Binary(operation, a, b) => {
+            let is_smooth = match operation {
+                BinaryOp::Add | BinaryOp::Subtract | BinaryOp::Multiply => true,
+                BinaryOp::Divide => is_constant(b),
+                BinaryOp::Power => matches!(b.kind, ExprKind::Number(_)),
+            };
+            !is_smooth || is_fast_of(a) || is_fast_of(b)
+        }
+        ExprKind::Call(Function::Abs, arguments) => arguments.iter().any(is_fast_of),
+        ExprKind::Call(..) | ExprKind::Choice { .. } => true,
+    }
+}
+
+/// Whether an expression has no value but one for a motion.
+fn is_constant(expr: &Expr) -> bool {
+    let mut is_constant = true;
+    expr.visit(&mut |quantity| is_constant &= matches!(quantity, Named::Parameter(_)));
+    is_constant
 }
 
 fn extend(composition: &Composition, fragment: &str) -> Result<String, Error> {

@@ -175,6 +175,15 @@ pub struct Energies<T> {
     pub power: T,
 }
 
+/// Result of [`crossings`].
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Crossings<T> {
+    /// Their zeros switch.
+    pub crossings: [T; 0],
+    /// They rise and fall.
+    pub pulses: [T; 1],
+}
+
 /// Result of [`contacts`].
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Contacts<T> {
@@ -701,6 +710,28 @@ pub fn outputs<T: Real>(
         pulling,
         pushing,
         a: v_dot,
+    }
+}
+
+/// Functions at whose zeros the state switches the equations, and those that rise and fall with it.
+///
+/// From `block.toml`.
+/// Operations: 1 (1 ÷), 1 function.
+#[must_use]
+#[inline]
+pub fn crossings<T: Real>(
+    parameters: &Parameters<T>,
+    state: &State<T>,
+    _inputs: &Inputs<T>,
+) -> Crossings<T> {
+    let &Parameters { eps, .. } = parameters;
+    let &State { v, .. } = state;
+
+    let pulses = (v / eps).tanh();
+
+    Crossings {
+        crossings: [],
+        pulses: [pulses],
     }
 }
 
@@ -1297,6 +1328,10 @@ const _: () = {
             );
         }
 
+        fn switching(&self) -> Option<&dyn model::Switching> {
+            Some(self)
+        }
+
         fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
             let all = self::contacts(&parameters(&at), &state(&at), &inputs(&at));
             write(normals, all.normals.as_flattened());
@@ -1432,6 +1467,49 @@ const _: () = {
 
         fn series(&self) -> Option<&dyn series::Series> {
             Some(&TaylorSeries)
+        }
+    }
+    use ::appell_runtime::Enclosure;
+    use ::appell_runtime::model::Along;
+    use ::appell_runtime::switching::Counts;
+
+    impl model::Switching for Block {
+        fn counts(&self) -> Counts {
+            Counts {
+                answers: 0,
+                shapes: 0,
+                crossings: 0,
+                pulses: 1,
+            }
+        }
+
+        fn answers(&self, at: At<'_>, switches: &mut [f64]) {
+            let _ = (at, switches);
+        }
+
+        fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
+            let _ = (time, p, functions);
+        }
+
+        fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
+            let (crossings, pulses) = crossings.split_at_mut(0);
+            let all = self::crossings(&parameters(&at), &state(&at), &inputs(&at));
+            let _ = crossings;
+            write(pulses, &all.pulses);
+        }
+
+        fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
+            let all = self::crossings(
+                &Parameters::from(first(along.p).map(Enclosure::constant)),
+                &State::from(first(along.x)),
+                &Inputs::from(first(along.u)),
+            );
+            for (to, from) in crossings
+                .iter_mut()
+                .zip(all.crossings.into_iter().chain(all.pulses))
+            {
+                *to = from;
+            }
         }
     }
 

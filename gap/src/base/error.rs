@@ -26,6 +26,15 @@ pub enum BaseError {
         /// Base parameters.
         count: usize,
     },
+    /// Every term of the equations has a parameter, those of the inputs too.
+    #[error(
+        "every term of the equations has a parameter that is estimated, so all may be scaled together; write the gain of \
+         the inputs as a number of the spec instead: {}", .parameters.join(", ")
+    )]
+    Scale {
+        /// The parameters that multiply inputs.
+        parameters: Vec<String>,
+    },
     /// The equations have no finite values on the recorded motions.
     #[error("inverse dynamics has no finite values on the recorded motions")]
     NotFinite,

@@ -93,10 +93,14 @@ pub(super) fn fit(
         })
     };
     let start = DVector::from_iterator(leading.len(), structure.base.iter().map(|own| own.nominal));
-    let adjusted = adjust(recorded, &equation, (start, speeds))?;
     let all: Vec<Rows> = (recorded.stretches.iter())
         .map(|stretch| rows(equations, &leading, stretch, model, p))
         .collect();
+    if all.iter().all(|rows| rows.right.iter().all(|r| *r == 0.0)) {
+        let parameters = gains(equations, structure, recorded, model, p);
+        return Err(BaseError::Scale { parameters });
+    }
+    let adjusted = adjust(recorded, &equation, (start, speeds))?;
     let training: Vec<&Rows> = all.iter().filter(|rows| rows.part == Part::Fit).collect();
     let test: Vec<&Rows> = all.iter().filter(|rows| rows.part == Part::Test).collect();
     let estimates = adjusted.values.iter().zip(adjusted.deviations.iter());
@@ -116,6 +120,37 @@ pub(super) fn fit(
         motions: training.iter().map(|rows| rows.right.len() / speeds).sum(),
         condition: adjusted.condition,
     })
+}
+
+/// The parameters that multiply inputs.
+fn gains(
+    equations: &Equations,
+    structure: &Structure,
+    recorded: &Recorded<'_>,
+    model: &dyn Model,
+    p: &[f64],
+) -> Vec<String> {
+    let mut moments = recorded.stretches.iter().flat_map(|own| &own.moments);
+    let Some(moment) = moments.next() else {
+        return Vec::new();
+    };
+    let columns = |input: f64| {
+        let mut u = moment.u.clone();
+        u[..model.info().declared_inputs].fill(input);
+        let at = At {
+            t: moment.t,
+            x: &moment.x,
+            u: &u,
+            p,
+        };
+        equations.at(at, &moment.accelerations).regressor
+    };
+    let change = columns(1.0) - columns(0.0);
+    let parameters = structure.parameters.iter().zip(change.column_iter());
+    parameters
+        .filter(|(_, column)| column.amax() > 0.0)
+        .map(|(parameter, _)| parameter.name.clone())
+        .collect()
 }
 
 fn rows(

@@ -65,7 +65,7 @@ impl CrossingSearch {
         }
         let [t, t_new] = ends.t;
         self.start(switches, ends, dense);
-        let mut known = self.known(switches, ends.t, dense);
+        let mut known = vec![false; self.signs.len()];
         let mut first = self.by_bounds(switches, ends.t, dense, &mut known);
         for i in (0..self.signs.len()).filter(|&i| !known[i]) {
             let sign = self.signs[i];
@@ -165,26 +165,8 @@ impl CrossingSearch {
         }
     }
 
-    /// The switching functions of which there are bounds.
-    fn known(
-        &mut self,
-        switches: &mut Switches<'_>,
-        [t, t_new]: [f64; 2],
-        dense: &DenseOutput,
-    ) -> Vec<bool> {
-        let count = self.signs.len();
-        if switches.along.is_none() {
-            return vec![false; count];
-        }
-        let bounds = self.bound(switches, t, [f64::midpoint(t, t_new); 2], dense);
-        let ranges = bounds[..count].iter().map(Enclosure::range);
-        ranges
-            .map(|range| range.lo.is_finite() && range.hi.is_finite())
-            .collect()
-    }
-
-    /// The first time at which one of the known functions switches. They are not known any more where that remains
-    /// open.
+    /// The first time at which one of the functions switches of which there are bounds. These are marked, unless it
+    /// remains open.
     fn by_bounds(
         &mut self,
         switches: &mut Switches<'_>,
@@ -192,24 +174,20 @@ impl CrossingSearch {
         dense: &DenseOutput,
         known: &mut [bool],
     ) -> Option<f64> {
-        if !known.contains(&true) {
-            return None;
+        switches.along.as_ref()?;
+        let (mut waiting, mut part) = (Vec::new(), [t, t_new]);
+        let bounds = self.bound(switches, t, part, dense);
+        for (known, of) in known.iter_mut().zip(bounds) {
+            let middle = of.middle();
+            *known = middle.lo.is_finite() && middle.hi.is_finite();
         }
-        let mut waiting = vec![[t, t_new]];
         for _ in 0..MOST_STRETCHES {
-            let [from, to] = waiting.pop()?;
-            let bounds = self
-                .bound(switches, t, [from, to], dense)
-                .iter()
-                .enumerate();
+            let [from, to] = part;
+            let bounds = self.bounds.iter().take(known.len()).enumerate();
             let undecided: Vec<(usize, bool)> = bounds
-                .take(known.len())
                 .filter(|&(i, of)| known[i] && !of.keeps_its_sign())
                 .map(|(i, of)| (i, of.is_monotonic()))
                 .collect();
-            if undecided.is_empty() {
-                continue;
-            }
             let middle = f64::midpoint(from, to);
             let is_short = to - from <= SHORTEST * (t_new - t) || middle <= from || middle >= to;
             if is_short || undecided.iter().all(|(_, is_monotonic)| *is_monotonic) {
@@ -218,12 +196,14 @@ impl CrossingSearch {
                     let signs = |&(i, _): &(usize, bool)| self.values[i] * self.signs[i] < 0.0;
                     undecided.iter().any(signs)
                 };
-                if changed(to) {
+                if !undecided.is_empty() && changed(to) {
                     return Some(neighbours(changed, [from, to])[1]);
                 }
-                continue;
+            } else {
+                waiting.extend([[middle, to], [from, middle]]);
             }
-            waiting.extend([[middle, to], [from, middle]]);
+            part = waiting.pop()?;
+            self.bound(switches, t, part, dense);
         }
         known.fill(false);
         None

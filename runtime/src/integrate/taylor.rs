@@ -14,6 +14,7 @@ use super::dense_output::{DenseOutput, Ends};
 use super::error::{Cause, IntegrationError};
 use super::options::Options;
 use super::outcome::{Outcome, Statistics};
+use super::sign_changes::neighbours;
 use super::step_size::power_of_all;
 use super::stops::Stride;
 use super::watch::{End, Observer, Watch, Watcher};
@@ -281,19 +282,14 @@ impl Taylor {
     ) -> f64 {
         let guard = equations.series.shape().guards[change.guard];
         let old = guard.answer(self.expansion.guards[change.guard]);
-        let (first, mut beyond) = ((t + change.after).max(t.next_up()), 0.0);
-        loop {
-            let end = (first + beyond).min(stride.t_new);
+        let mut is_new = |end: f64| {
             self.dense.state(end, &mut self.x_new);
             // Where this fails, the next step does.
             watcher.project(end, &mut self.x_new);
             self.start(equations, end, statistics);
-            let new = guard.answer(self.expansion.guards_new[change.guard]);
-            if new != old || end >= stride.t_new || beyond > FARTHEST * stride.h {
-                return end;
-            }
-            beyond = next_beyond(beyond, first);
-        }
+            guard.answer(self.expansion.guards_new[change.guard]) != old
+        };
+        passed(&mut is_new, t, stride, change)
     }
 
     /// The new state and its rates become the start of a step, and are expanded.
@@ -379,6 +375,30 @@ fn order(options: &Options) -> usize {
     // A small number, limited on both sides.
     let orders = (LEAST_ORDER..MOST_ORDER).take_while(|&order| (order as f64) < wanted);
     orders.last().map_or(LEAST_ORDER, |order| order + 1)
+}
+
+/// The first time at which the equations themselves give another answer than before a change that a polynomial shows in
+/// a step from `t`; the end of the step, or a time not far beyond, where they never do. It is evaluated last.
+fn passed(mut is_new: impl FnMut(f64) -> bool, t: f64, stride: Stride, change: Change) -> f64 {
+    let (first, mut beyond) = ((t + change.after).max(t.next_up()), 0.0);
+    let mut same = t + change.before;
+    loop {
+        let end = (first + beyond).min(stride.t_new);
+        if is_new(end) {
+            if beyond == 0.0 {
+                return end;
+            }
+            // The polynomial was early.
+            let [_, end] = neighbours(&mut is_new, [same, end]);
+            is_new(end);
+            return end;
+        }
+        if end >= stride.t_new || beyond > FARTHEST * stride.h {
+            return end;
+        }
+        same = end;
+        beyond = next_beyond(beyond, first);
+    }
 }
 
 /// How far beyond the first time of another answer the next try is.

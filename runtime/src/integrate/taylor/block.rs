@@ -5,9 +5,7 @@
 
 use super::block_expansion::BlockExpansion;
 use super::guards::{Change, first_change};
-use super::{
-    FARTHEST, LAST_TERM, MOST_SLIVERS, ROUNDING, SHORTER, SLIVER, next_beyond, not_finite, order,
-};
+use super::{LAST_TERM, MOST_SLIVERS, ROUNDING, SHORTER, SLIVER, not_finite, order, passed};
 use crate::integrate::block_lanes::{
     self, BlockMotion, all, gather, idle_lanes, on_their_way, refill, scatter,
 };
@@ -433,9 +431,8 @@ impl BlockTaylor {
         let guard = equations.series.shape().guards[change.guard];
         let old = guard.answer(self.expansion.guards[change.guard][l]);
         gather(self.expansion.coefficients(), l, self.dense.taylor(lane.t));
-        let (first, mut beyond) = ((lane.t + change.after).max(lane.t.next_up()), 0.0);
-        loop {
-            let end = (first + beyond).min(lane.stride.t_new);
+        let (t, stride) = (lane.t, lane.stride);
+        let is_new = |end: f64| {
             let x = &mut self.ends[1];
             self.dense.state(end, x);
             // Where this fails, the next step does.
@@ -444,11 +441,8 @@ impl BlockTaylor {
             lane.statistics.evaluations += 1;
             self.fill_inputs(equations, l, lane.motion, end);
             self.expansion.evaluate(equations.series, &[end; LANES]);
-            let new = guard.answer(self.expansion.guards_new[change.guard][l]);
-            if new != old || end >= lane.stride.t_new || beyond > FARTHEST * lane.stride.h {
-                return end;
-            }
-            beyond = next_beyond(beyond, first);
-        }
+            guard.answer(self.expansion.guards_new[change.guard][l]) != old
+        };
+        passed(is_new, t, stride, change)
     }
 }

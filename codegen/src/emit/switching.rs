@@ -119,7 +119,10 @@ fn bounds_along(types: &Types<'_>) -> TokenStream {
         types,
         kind,
         &quote!(along.p),
-        [&quote!(first(along.x)), &quote!(first(along.u))],
+        [
+            &quote!(core::array::from_fn(|i| along.x[i])),
+            &quote!(core::array::from_fn(|i| along.u[i])),
+        ],
     );
     let time = types.program.info.explicit_time;
     let time = time.then(|| quote!(let time = along.t;));

@@ -1501,8 +1501,8 @@ const _: () = {
         fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
             let all = self::crossings(
                 &Parameters::from(first(along.p).map(Enclosure::constant)),
-                &State::from(first(along.x)),
-                &Inputs::from(first(along.u)),
+                &State::from(core::array::from_fn(|i| along.x[i])),
+                &Inputs::from(core::array::from_fn(|i| along.u[i])),
             );
             for (to, from) in crossings
                 .iter_mut()

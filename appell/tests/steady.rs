@@ -2,7 +2,7 @@
 
 use appell::steady::{Answer, Question};
 use appell::{Error, Model};
-use appell_analysis::{Stability, SteadyError, SteadyMotion};
+use appell_analysis::{Kind, Stability, SteadyError, SteadyMotion};
 
 fn found(model: &str, question: &Question) -> Vec<(SteadyMotion, Stability)> {
     match Model::shipped(model).unwrap().steady(question).unwrap() {
@@ -93,4 +93,54 @@ fn angles_are_told_within_one_turn_and_equal_motions_once() {
     assert_eq!(angles.len(), 2, "{angles:?}");
     let turn = std::f64::consts::PI;
     assert!(angles.iter().all(|angle| angle.abs() <= turn), "{angles:?}");
+}
+
+/// A tractor with a trailer that is hitched behind its axle: at rest it may be at any angle.
+const TRAILER: &str = r#"
+[mechanism]
+name = "tractor_trailer"
+title = "Tractor with an off-axle trailer"
+[coordinates]
+x = { unit = "m" }
+y = { unit = "m" }
+psi = { unit = "deg" }
+phi = { unit = "deg", range = [-120, 120] }
+[inputs]
+F = { unit = "kN" }
+M = { unit = "N*m" }
+[frames]
+tractor = { parent = "ground", about_axis = "z", by = "psi" }
+trailer = { parent = "tractor", about_axis = "z", by = "phi" }
+[points]
+A = { from = "O", in = "ground", at = ["x", "y", 0] }
+G = { from = "A", in = "tractor", at = ["0.9 [m]", 0, 0] }
+H = { from = "A", in = "tractor", at = ["-0.6 [m]", 0, 0] }
+T = { from = "H", in = "trailer", at = ["-2 [m]", 0, 0] }
+Gt = { from = "H", in = "trailer", at = ["-1.6 [m]", 0, 0] }
+[bodies]
+tractor = { frame = "tractor", centre = "G", mass = "800 [kg]", inertia = "600 [kg*m^2]" }
+trailer = { frame = "trailer", centre = "Gt", mass = "500 [kg]", inertia = "300 [kg*m^2]" }
+[constraints]
+axle = { kind = "fixed_velocity", point = "A", in = "tractor", direction = [0, 1, 0] }
+trailing = { kind = "fixed_velocity", point = "T", in = "trailer", direction = [0, 1, 0] }
+[pseudo_velocities]
+v = { value = "velocity(A, x, tractor)", unit = "km/h" }
+w = { value = "dot(psi)", unit = "deg/s" }
+[loads]
+drive = { kind = "force", on = "A", in = "tractor", vector = ["F", 0, 0] }
+yaw = { kind = "torque", on = "tractor", in = "ground", vector = [0, 0, "M"] }
+drag = { kind = "generalized", velocity = "velocity(T, x, trailer)", force = "-50 [N*s/m]*velocity(T, x, trailer)" }
+"#;
+
+#[test]
+fn rests_at_one_speed_are_no_branch_that_turns_back() {
+    let model = Model::from_spec(TRAILER).unwrap();
+    let mut question = Question::default().fix("w", 0).along("v", -20, 20);
+    question.free = vec!["F".to_owned()];
+    let Answer::Branches(branches) = model.steady(&question).unwrap() else {
+        panic!("branches were asked for");
+    };
+    let specials = branches.iter().flat_map(|branch| &branch.specials);
+    let folds = specials.filter(|special| special.kind == Kind::Fold);
+    assert_eq!(folds.count(), 0);
 }

@@ -121,6 +121,27 @@ fn no_pulse_of_the_state_is_missed_between_long_steps() {
 }
 
 #[test]
+fn switches_that_follow_each_other_ever_faster_end_the_motion() {
+    for method in [Method::Dop853, Method::Dopri5, Method::Taylor] {
+        let motion = Motion {
+            method,
+            ..Motion::new(10.0).input("F", "if(sin(1/(5-t)) > 0, 1, 0)")
+        };
+        let simulated = Model::from_spec(CARRIAGE)
+            .unwrap()
+            .simulate(&motion)
+            .unwrap();
+        let steps = simulated.trajectory.statistics.steps;
+        assert!(steps < 50_000, "{method:?}: {steps} steps");
+        let told = simulated.failure.unwrap();
+        assert!(
+            told.contains("at t = 4.99") || told.contains("at t = 5"),
+            "{told}"
+        );
+    }
+}
+
+#[test]
 fn fixed_steps_are_shorter_at_a_pulse() {
     let motion = Motion {
         method: Method::Rk4 { step: 0.02 },

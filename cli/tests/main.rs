@@ -3,6 +3,7 @@
 mod browser;
 mod rig;
 mod support;
+mod tables;
 
 mod alternative;
 mod apply;

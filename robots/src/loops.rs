@@ -242,7 +242,7 @@ impl<'a> Places<'a> {
                 appell_spec::shown(name),
                 crate::letters::plain((off * 1e6).round() / 1e6)
             ),
-            "correct places, lengths or values, or import without it: `--without couplings`",
+            "correct places, lengths or values, or import it without couplings",
         );
     }
 

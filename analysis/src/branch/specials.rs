@@ -11,6 +11,9 @@ use crate::steady::equations::SteadyEquations;
 use appell_runtime::contact::{ContactForce, ContactForces};
 use appell_spectra::spectrum::{Complex, characteristic_polynomial};
 
+/// A slope along a branch that is rounding, relative to the gradient.
+const CONSTANT: f64 = 1e-9;
+
 impl Branches<'_> {
     /// The branch of a curve: its points and the special points between them.
     pub(super) fn describe(
@@ -81,10 +84,17 @@ impl Branches<'_> {
                 found.push((kind, z, None));
             }
         };
-        seek(Kind::Fold, &|z| {
-            let at = OnCurve::new(equations, z.clone(), &(&b.z - &a.z))?;
-            Some(equations.term(self.along, z).1.dot(&at.tangent))
+        // Along a family on which the quantity is constant, rounding alone turns it back.
+        let is_constant = [a, b].iter().all(|at| {
+            let gradient = equations.term(self.along, &at.z).1;
+            gradient.dot(&at.tangent).abs() <= CONSTANT * gradient.norm()
         });
+        if !is_constant {
+            seek(Kind::Fold, &|z| {
+                let at = OnCurve::new(equations, z.clone(), &(&b.z - &a.z))?;
+                Some(equations.term(self.along, z).1.dot(&at.tangent))
+            });
+        }
         let critical = |z: &DVector<f64>, which: usize| {
             let point = equations.point(z);
             let (_, matrix) = essential_matrix(model, self.problem.structure(), &point).ok()?;

@@ -64,8 +64,8 @@ pub enum Cause {
     },
     /// The equations are switched to and fro without getting on.
     #[error(
-        "the equations are switched to and fro without end: what they switch drives the motion back to where it is \
-         switched; smooth it, as `smooth_sign` does"
+        "the equations are switched to and fro without end, by time ever faster or because what they switch drives the \
+         motion back to where it is switched; smooth it, as `smooth_sign` does"
     )]
     Chattering,
     /// The limit on the number of steps was reached.

@@ -58,6 +58,10 @@ impl Stride {
     }
 }
 
+/// So many switches by time within this part of the motion are one place that it does not leave.
+const MANY_CHANGES: usize = 1000;
+const AT_ONE_PLACE: f64 = 1e-6;
+
 /// Part of the way to a switch that a series does not show.
 const BEFORE: f64 = 0.9;
 /// A step that is hardly one, in parts of the time.
@@ -79,6 +83,12 @@ pub(super) struct Stops<'w, 'a> {
     of_series: bool,
     /// Where the state switches the equations soon, in s.
     expected: f64,
+    start: f64,
+    /// How many changes time alone has made, the last one, and that before many others, in s.
+    changes: usize,
+    last_change: f64,
+    change_before: f64,
+    is_endless: bool,
     pace: Pace,
 }
 
@@ -98,6 +108,11 @@ impl<'w, 'a> Stops<'w, 'a> {
             crossings: CrossingSearch::new(counts),
             of_series: false,
             expected: f64::NEG_INFINITY,
+            start,
+            changes: 0,
+            last_change: f64::NEG_INFINITY,
+            change_before: start,
+            is_endless: false,
             times,
             end,
             switches: switches.map(|switches| {
@@ -235,6 +250,21 @@ impl<'w, 'a> Stops<'w, 'a> {
     /// The first change of the switches after `t` and not after `t_new`, to the last digit.
     fn change_within(&mut self, t: f64, t_new: f64) -> Option<Stop> {
         let (switches, search) = self.switches.as_mut()?;
-        search.of_time(switches, [t, t_new]).map(Stop::before)
+        let change = search.of_time(switches, [t, t_new])?;
+        if change > self.last_change {
+            self.last_change = change;
+            self.changes += 1;
+            if self.changes.is_multiple_of(MANY_CHANGES) {
+                let length = self.end - self.start;
+                self.is_endless |= change - self.change_before < AT_ONE_PLACE * length;
+                self.change_before = change;
+            }
+        }
+        Some(Stop::before(change))
+    }
+
+    /// Whether switches by time follow each other ever faster, so that the motion does not get on.
+    pub(super) fn is_endless(&self) -> bool {
+        self.is_endless
     }
 }

@@ -230,7 +230,8 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             self.show(ends, interior, x)
         };
         let chatters = self.slivers.is_some_and(|slivers| slivers > MOST_SLIVERS);
-        end.or(chatters.then(|| End::failed(t, Cause::Chattering)))
+        let is_endless = chatters || self.stops.is_endless();
+        end.or(is_endless.then(|| End::failed(t, Cause::Chattering)))
     }
 
     /// The length of the step to be tried instead of one that passes over what the state does.

@@ -371,7 +371,11 @@ fn a_kept_noise_is_what_acts() {
     let rows = ensemble.rows(0..50);
     let of = |name: &str| &rows.values[column(&ensemble, name)];
     assert_eq!(of("force"), of("noise"));
-    assert!(of("noise").iter().any(|value| *value != of("noise")[0]));
+    assert!(
+        of("noise")
+            .iter()
+            .any(|value| (value - of("noise")[0]).abs() > STATED)
+    );
     assert!(of("both").iter().all(|value| *value == 0.0));
 }
 
@@ -394,7 +398,7 @@ fn what_comes_and_goes_between_samples_counts() {
         let of = |name: &str| &rows.values[column(&ensemble, name)];
         for name in ["wide", "smooth"] {
             assert!(
-                of(name).iter().all(|happened| *happened == 1.0),
+                of(name).iter().all(|happened| *happened > 0.5),
                 "{method} {name}"
             );
         }

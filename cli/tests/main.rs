@@ -3,7 +3,6 @@
 mod browser;
 mod rig;
 mod support;
-mod tables;
 
 mod alternative;
 mod apply;
@@ -45,5 +44,6 @@ mod reproduce;
 mod simulate;
 mod steady;
 mod sticking;
+mod tables;
 mod walk_through;
 mod watch;

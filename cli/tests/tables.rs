@@ -1,5 +1,7 @@
 //! `appell simulate --inputs`: what runs between the rows of a table.
 
+use std::fmt::Write as _;
+
 use crate::support::{Folder, assert_close, number};
 
 #[test]
@@ -36,15 +38,11 @@ fn rows_of_a_continuous_signal_are_joined_by_lines_where_that_is_asked_for() {
 #[test]
 fn a_smooth_input_without_a_stated_interpolation_is_remarked_on() {
     let folder = Folder::new();
-    let rows: String = (0..100)
-        .map(|row| {
-            format!(
-                "{},{}\n",
-                f64::from(row) * 0.02,
-                (f64::from(row) * 0.1).sin()
-            )
-        })
-        .collect();
+    let mut rows = String::new();
+    for row in 0..100 {
+        let (t, force) = (f64::from(row) * 0.02, (f64::from(row) * 0.1).sin());
+        let _ = writeln!(rows, "{t},{force}");
+    }
     folder.write("force.csv", &format!("t,F\n{rows}"));
     let run = |how: &[&str]| {
         let mut arguments = vec![

@@ -86,6 +86,26 @@ fn interpolation(name: &str) -> PyResult<Interpolation> {
     }
 }
 
+/// Adds columns by name.
+fn recorded_too(all: &mut Extras, wanted: &[String]) -> PyResult<()> {
+    for extra in wanted {
+        let flag = match extra.as_str() {
+            "reactions" => &mut all.reactions,
+            "contacts" => &mut all.contacts,
+            "conditions" => &mut all.conditions,
+            "residuals" => &mut all.residuals,
+            other => {
+                let message = format!(
+                    "record names reactions, contacts, conditions, residuals, not `{other}`"
+                );
+                return Err(PyValueError::new_err(message));
+            }
+        };
+        *flag = true;
+    }
+    Ok(())
+}
+
 /// Integrates the equations of motion: one motion, or one for each row of `starts`. Of the inputs, texts are
 /// expressions, pairs of arrays are tables, and the rest are functions of time and state.
 #[pyfunction]
@@ -147,22 +167,7 @@ pub(crate) fn simulate(
     options.rtol = relative.unwrap_or(options.rtol);
     options.atol = absolute.unwrap_or(options.atol);
     options.max_steps = max_steps.unwrap_or(options.max_steps);
-    for extra in &extras {
-        let all = &mut motion.extras;
-        let flag = match extra.as_str() {
-            "reactions" => &mut all.reactions,
-            "contacts" => &mut all.contacts,
-            "conditions" => &mut all.conditions,
-            "residuals" => &mut all.residuals,
-            other => {
-                let message = format!(
-                    "record names reactions, contacts, conditions, residuals, not `{other}`"
-                );
-                return Err(PyValueError::new_err(message));
-            }
-        };
-        *flag = true;
-    }
+    recorded_too(&mut motion.extras, &extras)?;
     let index = |name: &str| info.input_index(name).unwrap_or(0);
     for (name, times, values) in &tables {
         let source = table(

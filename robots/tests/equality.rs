@@ -152,7 +152,7 @@ fn motions_begin_where_loops_close() {
         "robot.xml:4:",
         "`connect_1` holds nowhere near",
         "off by 0.3",
-        "--without couplings",
+        "without couplings",
     ] {
         assert!(wrong.contains(words), "{words}\n{wrong}");
     }

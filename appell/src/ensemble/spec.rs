@@ -116,7 +116,8 @@ pub(super) fn extended(
         if let Quantity::Output(place, is_fast) = kept {
             *is_fast = outputs
                 .iter()
-                .nth(*place)
+                .as_slice()
+                .get(*place)
                 .is_none_or(|own| is_fast_of(&own.value));
         }
     }

@@ -204,17 +204,16 @@ impl<'x> Reader<'x, '_> {
         };
         let size = field.attribute_node("size");
         let what = "a size, half lengths, height and base,";
-        let [x, y, top, base] = match size {
-            Some(given) => exactly(self.findings, &given, what)?,
-            None => {
-                self.findings.error(
-                    Code::MissingKey,
-                    tag(*field),
-                    "`hfield` has no `size`",
-                    "write `size=\"x y height base\"`, in m",
-                );
-                return None;
-            }
+        let [x, y, top, base] = if let Some(given) = size {
+            exactly(self.findings, &given, what)?
+        } else {
+            self.findings.error(
+                Code::MissingKey,
+                tag(*field),
+                "`hfield` has no `size`",
+                "write `size=\"x y height base\"`, in m",
+            );
+            return None;
         };
         Some([x, y, 0.25 * top + 0.5 * base])
     }

@@ -82,7 +82,8 @@ impl Enclosure {
     pub fn may_hide(&self, spread: f64, length: f64, size: f64) -> bool {
         let Interval { lo, hi } = self.middle.interval;
         let flat = FLAT * lo.abs().max(hi.abs()).max(size) + NOTHING;
-        lo.is_finite() && hi.is_finite() && !(self.steepness() * length <= STEEP * spread + flat)
+        let reach = self.steepness() * length;
+        lo.is_finite() && hi.is_finite() && (reach.is_nan() || reach > STEEP * spread + flat)
     }
 
     /// Bounds on the values.

@@ -181,6 +181,9 @@ fn doubt(set: &DataSet, finding: &Finding) -> Error {
 /// Warnings about the data that may affect the conclusions, one sentence each.
 pub fn warnings(set: &DataSet) -> Vec<String> {
     let findings = set.findings.iter();
-    let grave = findings.filter(|finding| finding.kind.severity() == Severity::Warning);
+    // How an input runs between rows decides what is found of the rig.
+    let grave = findings.filter(|finding| {
+        finding.kind.severity() == Severity::Warning || finding.kind == FindingKind::SmoothInput
+    });
     grave.map(sentence).collect()
 }

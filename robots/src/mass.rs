@@ -246,7 +246,7 @@ mod tests {
     use crate::model::{Joint, Motion};
 
     #[test]
-    fn a_double_pendulum_has_the_mass_matrix_of_the_textbook() {
+    fn two_hinged_links_have_the_mass_matrix_of_the_textbook() {
         let rod = |name: &str, parent, x: f64| {
             let mut link = Link::fixed(name.to_owned(), parent, Pose::IDENTITY, 0..0);
             link.pose.position = [x, 0.0, 0.0];

@@ -15,6 +15,7 @@ use zip::write::{SimpleFileOptions, ZipWriter};
 use crate::source::Source;
 use crate::{Error, files};
 
+pub use appell_codegen::fmu::InputsOfStep;
 pub use error::FmuError;
 
 /// C compilers that are tried where the environment variable `CC` names none.
@@ -34,6 +35,8 @@ const FLAGS: [&str; 6] = [
 pub struct Options {
     /// Leave the compilation to the tool that imports it.
     pub sources_only: bool,
+    /// Inputs within a communication step of co-simulation.
+    pub inputs: InputsOfStep,
 }
 
 /// An FMU of FMI 3.0, for model exchange and co-simulation.
@@ -56,13 +59,13 @@ impl Source {
     /// use appell::Source;
     /// use appell::fmu::Options;
     ///
-    /// let fmu = Source::shipped("pendulum")?.fmu(&Options { sources_only: true })?;
+    /// let fmu = Source::shipped("pendulum")?.fmu(&Options { sources_only: true, ..Options::default() })?;
     /// assert_eq!(fmu.name, "pendulum");
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn fmu(&self, options: &Options) -> Result<Fmu, Error> {
         let program = appell_codegen::compile(&self.file, &self.text, &fmu::functions())?;
-        let emitted = fmu::emit(&program);
+        let emitted = fmu::emit(&program, options.inputs);
         let (platform, binary) = if options.sources_only {
             (None, None)
         } else {

@@ -1,6 +1,7 @@
 //! A model as an FMU of FMI 3.0, for model exchange and co-simulation: its texts. Nothing is compiled or packed here.
 //!
 //! - `variables.rs`: names, value references, units;
+//! - `inputs.rs`: inputs within a step of co-simulation;
 //! - `structure.rs`: which variables depend on which;
 //! - `description.rs`: `modelDescription.xml` and `buildDescription.xml`;
 //! - `tables.rs`: the numbers of a model in C;
@@ -8,6 +9,7 @@
 //! - `c/`: what is the same for all models, in C99.
 
 mod description;
+mod inputs;
 mod structure;
 mod tables;
 mod units;
@@ -16,6 +18,7 @@ mod xml;
 
 use crate::c::{self, Real, adapted};
 use crate::program::{FunctionKind, Program};
+pub use inputs::InputsOfStep;
 use variables::Variables;
 
 /// What is to be compiled beside the equations.
@@ -50,7 +53,7 @@ pub fn functions() -> [FunctionKind; 7] {
 }
 
 /// The texts of an FMU. Equal programs have equal texts.
-pub fn emit(program: &Program) -> Emitted {
+pub fn emit(program: &Program, inputs: InputsOfStep) -> Emitted {
     let equations = c::emit(
         program,
         &c::Options {
@@ -61,7 +64,7 @@ pub fn emit(program: &Program) -> Emitted {
     );
     let name = equations.name;
     let variables = Variables::of(program);
-    let tables = tables::tables(program, &variables, &name);
+    let tables = tables::tables(program, &variables, &name, inputs);
     let mut sources: Vec<(String, String)> = TEMPLATES
         .iter()
         .map(|(name, text)| ((*name).to_owned(), (*text).to_owned()))

@@ -1,12 +1,15 @@
 //! FMUs: sources that compile without a warning, descriptions that no text of a spec breaks.
 
 use appell_codegen::compile;
-use appell_codegen::fmu::{Emitted, emit, functions};
+use appell_codegen::fmu::{Emitted, InputsOfStep, emit, functions};
 
 use crate::c_code::{compiled, compilers, folder, specs};
 
 fn fmu(file: &str, text: &str) -> Emitted {
-    emit(&compile(file, text, &functions()).expect("a valid spec"))
+    emit(
+        &compile(file, text, &functions()).expect("a valid spec"),
+        InputsOfStep::default(),
+    )
 }
 
 /// Compiles sources without a warning, with a prefix to their functions as in a program of several FMUs.

@@ -163,7 +163,7 @@ fn no_sentence_leaves_a_comment_of_c() {
 fn no_sentence_leaves_a_text_of_an_fmu() {
     let folder = folder("hostile", "fmu");
     let own = |program: &Program| {
-        let emitted = fmu::emit(program);
+        let emitted = fmu::emit(program, fmu::InputsOfStep::Held);
         let own = emitted
             .sources
             .into_iter()

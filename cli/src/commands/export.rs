@@ -2,9 +2,10 @@
 
 use std::path::PathBuf;
 
-use appell::fmu::{Fmu, Options};
+use appell::fmu::{Fmu, InputsOfStep, Options};
 use appell::{Source, files};
 
+use super::simulate::Between;
 use crate::destinations::extension;
 use crate::failure::Error;
 use crate::{output, progress};
@@ -27,6 +28,16 @@ pub(crate) struct Export {
     /// Leave out the machine code: the importing tool compiles the C
     #[arg(long)]
     sources_only: bool,
+    /// Inputs within a communication step of co-simulation: held from its start, or on the line through their values
+    /// at its start and at the start of the step before
+    #[arg(
+        long,
+        value_enum,
+        default_value = "hold",
+        hide_possible_values = true,
+        value_name = "hold|linear"
+    )]
+    interpolation: Between,
     /// The file [default: NAME.fmu, with the name of the mechanism]
     #[arg(long, short, value_name = "NAME.fmu")]
     out: Option<PathBuf>,
@@ -48,6 +59,10 @@ impl Export {
         let spinner = progress::spinner("deriving and compiling the equations of motion");
         let fmu = source.fmu(&Options {
             sources_only: self.sources_only,
+            inputs: match self.interpolation {
+                Between::Hold => InputsOfStep::Held,
+                Between::Linear => InputsOfStep::Lines,
+            },
         });
         spinner.finish_and_clear();
         let fmu = fmu?;

@@ -125,7 +125,7 @@ enum Integrator {
 
 /// Inputs between the rows of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Between {
+pub(super) enum Between {
     /// Held until the next row, as a drive does with a command
     Hold,
     /// Straight lines from row to row, for rows of a continuous signal

@@ -6,6 +6,7 @@ use appell_runtime::Signal;
 use appell_runtime::integrate::Dop853;
 use appell_runtime::model::Interpolation;
 
+use super::inputs::InputsOfStep;
 use super::variables::Variables;
 use crate::c::adapters;
 use crate::program::Program;
@@ -18,7 +19,12 @@ const LEAST_TOLERANCE: f64 = 1e-13;
 pub(super) const TOKEN: &str = "@TOKEN@";
 
 /// `fmi-equations.h`.
-pub(super) fn tables(program: &Program, variables: &Variables, name: &str) -> String {
+pub(super) fn tables(
+    program: &Program,
+    variables: &Variables,
+    name: &str,
+    inputs: InputsOfStep,
+) -> String {
     let info = &program.info;
     let mut text = format!(
         "/* What a model is made of, and its functions behind plain arrays. */\n\
@@ -35,6 +41,10 @@ pub(super) fn tables(program: &Program, variables: &Variables, name: &str) -> St
         ("SWITCHES", program.switch_len()),
         ("DEPENDENT", program.dependent.len()),
         ("SIGNALS", info.signals.len()),
+        (
+            "INPUTS_ARE_LINES",
+            usize::from(inputs == InputsOfStep::Lines),
+        ),
     ] {
         let _ = writeln!(text, "#define {name} {value}");
     }

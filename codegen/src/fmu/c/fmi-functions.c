@@ -94,6 +94,7 @@ static void set_defaults(Motion *m) {
     m->tolerance = DEFAULT_TOLERANCE;
     memcpy(m->x, initial_state, sizeof m->x);
     memcpy(m->p, default_parameters, sizeof m->p);
+    m->since_u = HUGE_VAL;
     m->floor = -HUGE_VAL;
     m->next_row = HUGE_VAL;
 }
@@ -373,6 +374,7 @@ EXPORT fmi3Status API(fmi3SetFloat64)(
             i->now.p[parameter] = values[k];
         } else if (within(v, FIRST_INPUT, FIRST_STATE)) {
             i->now.u[v - FIRST_INPUT] = values[k];
+            i->now.slopes[v - FIRST_INPUT] = 0;
         } else if (within(v, FIRST_STATE, FIRST_RATE)) {
             if (!(i->now.mode & early)) {
                 return told(i, "fmi3SetFloat64: state %d can only be set before the motion begins", v);
@@ -665,6 +667,7 @@ EXPORT fmi3Status API(fmi3DoStep)(
         );
     }
     i->now.t = currentCommunicationPoint;
+    draw_lines(&i->now);
     ending = move_to(&i->now, end);
     *lastSuccessfulTime = i->now.t;
     if (ending != DONE) {

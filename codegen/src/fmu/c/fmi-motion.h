@@ -26,6 +26,9 @@ typedef struct {
     double t;
     double x[STATES];
     double u[ROOM(INPUTS)];
+    double before_u[ROOM(INPUTS)];   /* co-simulation: inputs at the start of the last step */
+    double since_u;                  /* co-simulation: that start; infinite before the first step */
+    double slopes[ROOM(INPUTS)];     /* co-simulation: slopes of the inputs that are not held, from the start on */
     double p[ROOM(PARAMETERS)];
     double tolerance;
     double step;                     /* proposed length of the next step; 0 where none is known */
@@ -102,10 +105,12 @@ static double next_row(double t, double end) {
     return next;
 }
 
-/* All inputs of the equations: the declared ones are held, signals and their rates follow. */
+/* All inputs of the equations: the declared ones are held or run on along lines, signals and their rates follow. */
 static void fill_inputs(const Motion *m, double t, double *u) {
     int i;
-    memcpy(u, m->u, sizeof m->u);
+    for (i = 0; i < INPUTS; i++) {
+        u[i] = m->slopes[i] != 0 ? m->u[i] + m->slopes[i] * (t - m->since_u) : m->u[i];
+    }
     for (i = INPUTS; i < ALL_INPUTS; i++) {
         u[i] = signal_at(signal_of_input[i - INPUTS], order_of_input[i - INPUTS], t);
     }
@@ -359,6 +364,16 @@ static double attempt(const Motion *m, double t, double h, double t_new, double 
     square_3 /= STATES;
     denominator = square_5 + 0.01 * square_3;
     return denominator == 0 ? 0 : h * square_5 / sqrt(denominator);
+}
+
+/* Lets inputs run on in the step that begins: along the lines through their values at its start and at the last one's. */
+static void draw_lines(Motion *m) {
+    int i;
+    for (i = 0; i < INPUTS && INPUTS_ARE_LINES; i++) {
+        m->slopes[i] = m->t > m->since_u ? (m->u[i] - m->before_u[i]) / (m->t - m->since_u) : 0;
+    }
+    memcpy(m->before_u, m->u, sizeof m->u);
+    m->since_u = m->t;
 }
 
 /* Moves from the present time to `end` by the pair of order 8(5,3) of Dormand and Prince (Hairer, Norsett and Wanner,

@@ -29,13 +29,69 @@ pub(super) struct Pace {
 }
 
 impl Pace {
-    /// Divides a span; `bounds` tells those of a function by its number.
+    /// Divides a span; `bounds` tells those of a function by its number, and is asked for those of all functions that
+    /// need them on a part one after the other.
     pub(super) fn new(
         span: [f64; 2],
         count: usize,
         mut bounds: impl FnMut(usize, [f64; 2]) -> Enclosure,
     ) -> Self {
-        let by_function = (0..count).filter_map(|i| parts(span, |part| bounds(i, part)));
+        let [start, end] = span;
+        let length = (end - start) / FIRST_PARTS as f64;
+        let first = |i: usize| start + length * i as f64;
+        let mut all: Vec<Division> = (0..count).map(|_| Division::default()).collect();
+        let everyone: Vec<usize> = (0..count).collect();
+        let mut waiting: Vec<Part> = (0..FIRST_PARTS)
+            .map(|i| ([first(i), first(i + 1)], everyone.clone()))
+            .collect();
+        for _ in 0..HALVINGS {
+            let mut found = Vec::new();
+            for (part, functions) in &waiting {
+                for &i in functions {
+                    let of = bounds(i, *part);
+                    all[i].takes(of);
+                    found.push(of);
+                }
+            }
+            let mut found = found.iter();
+            let mut halves = Vec::new();
+            for (part, functions) in waiting {
+                let [from, to] = part;
+                let middle = f64::midpoint(from, to);
+                let mut unseen = functions.clone();
+                unseen.retain(|&i| {
+                    let is_seen = found.next().is_none_or(|of| all[i].sees(of));
+                    let is_done = is_seen || middle <= from || middle >= to;
+                    if is_done {
+                        all[i].done.push([from, to - from]);
+                    } else {
+                        all[i].waiting += 2;
+                    }
+                    !is_done
+                });
+                if !unseen.is_empty() {
+                    halves.extend([([from, middle], unseen.clone()), ([middle, to], unseen)]);
+                }
+            }
+            waiting = halves;
+            // Whoever varies throughout the span has no more of its parts halved.
+            for (part, functions) in &mut waiting {
+                functions.retain(|&i| all[i].goes_on_after(*part));
+            }
+            waiting.retain(|(_, functions)| !functions.is_empty());
+            if waiting.is_empty() {
+                break;
+            }
+            for of in &mut all {
+                of.waiting = 0;
+            }
+        }
+        for ([from, to], functions) in waiting {
+            for i in functions {
+                all[i].done.push([from, to - from]);
+            }
+        }
+        let by_function = all.into_iter().filter_map(Division::sorted);
         Self {
             by_function: by_function.collect(),
         }
@@ -56,47 +112,63 @@ impl Pace {
     }
 }
 
-/// The parts of a span by one function; nothing where they do not matter.
-fn parts(
-    [start, end]: [f64; 2],
-    mut bounds: impl FnMut([f64; 2]) -> Enclosure,
-) -> Option<Vec<[f64; 2]>> {
-    let length = (end - start) / FIRST_PARTS as f64;
-    let first = |i: usize| start + length * i as f64;
-    let mut waiting: Vec<[f64; 2]> = (0..FIRST_PARTS).map(|i| [first(i), first(i + 1)]).collect();
-    let mut done: Vec<[f64; 2]> = Vec::new();
-    let (mut lowest, mut highest) = (f64::INFINITY, f64::NEG_INFINITY);
-    for _ in 0..HALVINGS {
-        let found: Vec<Enclosure> = waiting.iter().map(|&part| bounds(part)).collect();
-        for Interval { lo, hi } in found.iter().map(Enclosure::middle) {
-            if lo.is_finite() && hi.is_finite() {
-                (lowest, highest) = (lowest.min(lo), highest.max(hi));
-            }
-        }
-        let mut halves = Vec::new();
-        for (&[from, to], of) in waiting.iter().zip(&found) {
-            let Interval { lo, hi } = of.range();
-            let rounding = NONE + ROUNDING * lo.abs().max(hi.abs());
-            let middle = f64::midpoint(from, to);
-            let passed = hi - lo;
-            let is_seen = passed.is_finite() && passed <= rounding.max(PASSED * (highest - lowest));
-            if is_seen || middle <= from || middle >= to {
-                done.push([from, to - from]);
-            } else {
-                halves.extend([[from, middle], [middle, to]]);
-            }
-        }
-        waiting = halves;
-        if waiting.is_empty() || done.len() + waiting.len() > MOST_PARTS {
-            break;
+/// A part of the span, and the functions that wait for their bounds on it.
+type Part = ([f64; 2], Vec<usize>);
+
+/// How one function divides the span.
+#[derive(Debug)]
+struct Division {
+    /// Starts and lengths of the parts that are short enough.
+    done: Vec<[f64; 2]>,
+    /// The others of the next round.
+    waiting: usize,
+    /// The range of its values, as far as it is known.
+    values: [f64; 2],
+}
+
+impl Default for Division {
+    fn default() -> Self {
+        Self {
+            done: Vec::new(),
+            waiting: 0,
+            values: [f64::INFINITY, f64::NEG_INFINITY],
         }
     }
-    done.extend(waiting.iter().map(|&[from, to]| [from, to - from]));
-    if done.len() <= FIRST_PARTS {
-        return None;
+}
+
+impl Division {
+    fn takes(&mut self, of: Enclosure) {
+        let Interval { lo, hi } = of.middle();
+        if lo.is_finite() && hi.is_finite() {
+            let [lowest, highest] = self.values;
+            self.values = [lowest.min(lo), highest.max(hi)];
+        }
     }
-    done.sort_by(|a, b| a[0].total_cmp(&b[0]));
-    Some(done)
+
+    /// Whether it passes through few of its values on a part with these bounds.
+    fn sees(&self, of: &Enclosure) -> bool {
+        let Interval { lo, hi } = of.range();
+        let [lowest, highest] = self.values;
+        let rounding = NONE + ROUNDING * lo.abs().max(hi.abs());
+        let passed = hi - lo;
+        passed.is_finite() && passed <= rounding.max(PASSED * (highest - lowest))
+    }
+
+    /// Whether a part of the next round is looked at; if not, it is done as it is.
+    fn goes_on_after(&mut self, [from, to]: [f64; 2]) -> bool {
+        let goes_on = self.done.len() + self.waiting <= MOST_PARTS;
+        if !goes_on {
+            self.done.push([from, to - from]);
+            self.waiting -= 1;
+        }
+        goes_on
+    }
+
+    /// The parts in the order of time; nothing where they do not matter.
+    fn sorted(mut self) -> Option<Vec<[f64; 2]>> {
+        self.done.sort_by(|a, b| a[0].total_cmp(&b[0]));
+        (self.done.len() > FIRST_PARTS).then_some(self.done)
+    }
 }
 
 #[cfg(test)]
@@ -121,6 +193,23 @@ mod tests {
         assert!(pace.longest(12.999, 1.0) < 0.03);
         let before = pace.longest(12.9, 20.0);
         assert!(12.9 + before < 13.03, "{before}");
+    }
+
+    #[test]
+    fn functions_are_bounded_together() {
+        let mut asked = Vec::new();
+        let count = 50;
+        let pace = Pace::new([0.0, 20.0], count, |i, [from, to]| {
+            if asked.last() != Some(&from) {
+                asked.push(from);
+            }
+            let since = Enclosure::time(from, to) - Real::constant(5.0 + 0.01 * i as f64);
+            (since * since * Real::constant(-1e4)).exp()
+        });
+        assert_eq!(pace.by_function.len(), count);
+        let parts: usize = pace.by_function.iter().map(Vec::len).sum();
+        // A part is asked for once, whoever needs it: a round begins anew with the first one.
+        assert!(asked.len() < parts / 5, "{} of {parts}", asked.len());
     }
 
     #[test]

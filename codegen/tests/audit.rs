@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant};
 
 use appell_codegen::audit::audit;
 use appell_codegen::{audited, derived};
@@ -12,10 +11,6 @@ use appell_spec::Report;
 
 /// Marks the line of a mistake in a spec.
 const MARK: &str = "# the mistake";
-/// An audit takes tens of milliseconds at most; the rest is room for a busy machine.
-const LONGEST_AUDIT: Duration = Duration::from_millis(200);
-/// How often a slow audit may try again: tests share their processors.
-const ATTEMPTS: usize = 4;
 
 fn specs(folder: &str) -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join(folder);
@@ -104,20 +99,5 @@ fn what_is_right_but_unusual_is_not_warned_of() {
 fn the_example_in_the_manual_audits_clean() {
     for path in specs("../docs/examples/own-mechanism/mechanisms") {
         assert!(told(&path).diagnostics().is_empty(), "{}", told(&path));
-    }
-}
-
-#[test]
-fn an_audit_takes_no_time_worth_mentioning() {
-    for path in shipped() {
-        let text = std::fs::read_to_string(&path).unwrap();
-        let derived = derived(name_of(&path), &text).unwrap();
-        let times = (0..ATTEMPTS).map(|_| {
-            let start = Instant::now();
-            audit(&derived.mechanism, &derived.derivation);
-            start.elapsed()
-        });
-        let fastest = times.min().unwrap();
-        assert!(fastest < LONGEST_AUDIT, "{}: {fastest:?}", name_of(&path));
     }
 }

@@ -80,6 +80,7 @@ impl Frames {
                 Effort::Recursive => algebra.shared3(&format!("w_{}", frame.name), w),
                 Effort::Plain | Effort::Shortest(_) => algebra.shortest3(w),
             };
+            algebra.check_size()?;
             frames.push(Frame {
                 parent: frame.parent,
                 rotations,

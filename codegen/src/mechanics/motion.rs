@@ -134,10 +134,19 @@ pub fn solve(
         }
         blocks.push(block);
     }
-    Ok(Motion {
+    let motion = Motion {
         blocks,
         accelerations,
-    })
+    };
+    // A factorization along the tree divides by what nothing has tested.
+    let singular = motion.pivots().into_iter().find(|&(_, pivot)| {
+        let value = algebra.graph.named_value(pivot).unwrap_or(pivot);
+        value == Graph::ZERO
+    });
+    match singular {
+        Some((speed, _)) => Err(vec![without_own_mass(mechanism, speed)]),
+        None => Ok(motion),
+    }
 }
 
 impl Motion {
@@ -379,7 +388,7 @@ pub fn simplest_pivot(
     if !algebra.test.is_zero(&algebra.graph, schur[k][k]) {
         return Ok(k);
     }
-    Err(vec![without_mass(mechanism, k)])
+    Err(vec![without_own_mass(mechanism, k)])
 }
 
 /// Fails where speeds move no mass at all, and names each.
@@ -406,6 +415,18 @@ fn without_mass(mechanism: &Mechanism, speed: usize) -> Finding {
         message: format!("`{name}` moves no mass"),
         item: Item::PseudoVelocity(SpeedId::new(speed)),
         help: "give mass or inertia to what it moves, or constrain it".to_owned(),
+    }
+}
+
+fn without_own_mass(mechanism: &Mechanism, speed: usize) -> Finding {
+    let name = &mechanism.pseudo_velocities[SpeedId::new(speed)].label.name;
+    Finding {
+        message: format!(
+            "the mass matrix is singular: `{name}` moves no mass otherwise than the others do"
+        ),
+        help: "give mass or inertia to what it moves, or leave it out, such as a second turn about the same axis"
+            .to_owned(),
+        ..without_mass(mechanism, speed)
     }
 }
 

@@ -12,9 +12,25 @@ impl Graph {
         if self.is_expanded(expr) {
             return Some(expr);
         }
+        let expanded = self.expanded(expr, limit);
+        if let Err(too_long) = expanded {
+            // The next frame of a chain contains this one: its failure is not found again term by term.
+            for part in [too_long, expr] {
+                let most = self.too_long.entry(part).or_default();
+                *most = limit.max(*most);
+            }
+        }
+        expanded.ok()
+    }
+
+    /// An expression multiplied out, or the part of it that has more terms than `limit`.
+    fn expanded(&mut self, expr: Expr, limit: usize) -> Result<Expr, Expr> {
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
         let mut stack = vec![expr];
         while let Some(&top) = stack.last() {
+            if self.too_long.get(&top).is_some_and(|&most| limit <= most) {
+                return Err(top);
+            }
             if known.contains_key(&top) {
                 stack.pop();
                 continue;
@@ -47,17 +63,20 @@ impl Graph {
                             .collect();
                         self.linear_combination(&parts)
                     }
-                    Node::Product(factors) => self.multiply_out(&factors, &known, limit)?,
+                    Node::Product(factors) => {
+                        let product = self.multiply_out(&factors, &known, limit);
+                        product.ok_or(top)?
+                    }
                     _ => top,
                 };
                 if self.terms(expanded).len() > limit {
-                    return None;
+                    return Err(top);
                 }
                 known.insert(top, expanded);
                 stack.pop();
             }
         }
-        Some(known[&expr])
+        Ok(known[&expr])
     }
 
     /// Whether no term is a product of sums.
@@ -198,4 +217,27 @@ fn is_unit(coefficient: &Rational) -> bool {
 fn power_cost(exponent: i32) -> usize {
     let n = exponent.unsigned_abs().max(1);
     (n.ilog2() + n.count_ones() - 1) as usize
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_too_long_is_not_multiplied_out_again_in_what_contains_it() {
+        let mut graph = Graph::new();
+        let symbols: Vec<Expr> = (0..8).map(|i| graph.symbol(&format!("a{i}"))).collect();
+        let mut product = Graph::ONE;
+        for pair in symbols.chunks(2) {
+            let sum = graph.add(pair[0], pair[1]);
+            product = graph.mul(product, sum);
+        }
+        let whole = graph.add(product, symbols[0]);
+        assert_eq!(graph.expand(whole, 10), None);
+        let beyond = graph.mul(whole, symbols[1]);
+        assert_eq!(graph.expanded(beyond, 10), Err(whole));
+        // More terms may be allowed later.
+        let expanded = graph.expand(whole, 100).map(|e| graph.terms(e).len());
+        assert_eq!(expanded, Some(17));
+    }
 }

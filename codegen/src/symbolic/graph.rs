@@ -22,6 +22,8 @@ pub struct Graph {
     names: FxHashMap<Expr, Expr>,
     systems: Vec<System>,
     system_index: FxHashMap<System, u32>,
+    /// Expressions that were seen to have more terms than this when multiplied out.
+    pub(super) too_long: FxHashMap<Expr, usize>,
 }
 
 impl Default for Graph {
@@ -49,6 +51,7 @@ impl Graph {
             names: FxHashMap::default(),
             systems: Vec::new(),
             system_index: FxHashMap::default(),
+            too_long: FxHashMap::default(),
         };
         graph.intern(Node::Number(Rational::ZERO));
         graph.intern(Node::Number(Rational::ONE));

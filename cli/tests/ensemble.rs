@@ -206,3 +206,20 @@ fn rows_go_to_an_object_store_as_to_a_folder() {
         );
     }
 }
+
+#[test]
+fn a_quantity_that_no_case_has_is_told_as_missing() {
+    let folder = Folder::new();
+    let study = STUDY
+        .replace("cases = 3000", "cases = 20")
+        .replace("chunk = 50\n", "");
+    folder.write(
+        "study.toml",
+        &format!("{study}never = {{ max = \"sqrt(-1 - theta*theta)\" }}\n"),
+    );
+    let told = folder
+        .done(&["ensemble", "study.toml", "-o", "rows"])
+        .stdout;
+    let row = told.lines().find(|line| line.contains("never"));
+    assert!(row.is_some_and(|row| row.ends_with("20")), "{told}");
+}

@@ -2,6 +2,7 @@
 
 use appell_ensemble::design::Sampling;
 use appell_ensemble::rows::{Column, Role};
+use appell_ensemble::statistics::moments::Moments;
 use appell_ensemble::statistics::sensitivity::Index;
 use appell_ensemble::summary::{Effects, Event, Number};
 
@@ -75,15 +76,14 @@ fn row(column: &Column, number: &Number) -> Vec<String> {
     let shown = |si: f64| short(column.to_unit(si));
     let quantile = |place: usize| number.quantiles.get(place).map(|q| q.value);
     let at = |place: usize| quantile(place).map_or_else(String::new, shown);
-    let deviation = number.moments.deviation();
+    let of_some = |known: bool, si: f64| {
+        if known { shown(si) } else { String::new() }
+    };
+    let Moments { count, mean, .. } = number.moments;
     vec![
         labelled(column),
-        shown(number.moments.mean),
-        if deviation.is_nan() {
-            String::new()
-        } else {
-            shown(deviation)
-        },
+        of_some(count > 0, mean),
+        of_some(count > 1, number.moments.deviation()),
         at(0),
         at(2),
         at(4),
@@ -127,7 +127,8 @@ fn numbers(about: &About<'_>) -> Part {
     ])];
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
-        if column.role != Role::Value || number.moments.count == 0 {
+        let Moments { count, missing, .. } = number.moments;
+        if column.role != Role::Value || count + missing == 0 {
             continue;
         }
         let mut row = row(column, number);
@@ -136,7 +137,7 @@ fn numbers(about: &About<'_>) -> Part {
             .interval()
             .map(|[low, high]| 0.5 * (high - low));
         row.push(half.map_or_else(String::new, |half| short(column.to_unit(half))));
-        row.push(match number.moments.missing {
+        row.push(match missing {
             0 => String::new(),
             missing => missing.to_string(),
         });

@@ -1,6 +1,7 @@
 //! Ensembles: statistics of motions whose distributions are known, and rows that depend on their cases alone.
 
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU32, Ordering};
 
 use appell::control::Request;
 use appell::ensemble::{Ensemble, Folder, Role, Rows, Running, Store, Summary, Watch};
@@ -53,9 +54,12 @@ path = { course = "x" }
 pub(crate) struct Scratch(pub(crate) PathBuf);
 
 impl Scratch {
+    /// One of its own, whoever else takes the name at the same time.
     pub(crate) fn new(name: &str) -> Self {
-        let process = std::process::id();
-        let path = Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{process}"));
+        static NEXT: AtomicU32 = AtomicU32::new(0);
+        let (process, number) = (std::process::id(), NEXT.fetch_add(1, Ordering::Relaxed));
+        let path =
+            Path::new(env!("CARGO_TARGET_TMPDIR")).join(format!("{name}-{process}-{number}"));
         std::fs::create_dir_all(&path).unwrap();
         std::fs::write(path.join("oscillator.toml"), OSCILLATOR).unwrap();
         Self(path)

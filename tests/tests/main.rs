@@ -13,6 +13,7 @@ mod dependencies;
 mod drawings;
 mod elementary;
 mod errata;
+mod estimate_closed_loop;
 mod estimate_corners;
 mod estimate_fit;
 mod estimate_gradient;

@@ -4,6 +4,10 @@
 //! so do not enter the Fisher information of the mean. Each column costs no more than one row of
 //! the covariance, be it for a parameter, a bias, a delay that is not part of the setup, or a
 //! candidate force.
+//!
+//! Every column is predictable: what it adds to a reading is known before that reading. A controller computes
+//! its command from the reading of the same row, so that the command holds the noise of it; a column with
+//! that command in it would find this noise in the innovation. So commands of a row act on what comes after it.
 
 use nalgebra::DMatrix;
 
@@ -148,6 +152,10 @@ struct Forward<'p, 'a> {
     tried: Vec<f64>,
     rates: Vec<f64>,
     scratch: Scratch,
+    /// The inputs that were held before those of the present row.
+    earlier: Vec<f64>,
+    /// Whether inputs have changed since the last step.
+    switched: bool,
     /// Derivatives of the whitened innovations.
     rows: Vec<f64>,
 }
@@ -194,15 +202,19 @@ impl<'p, 'a> Forward<'p, 'a> {
             tried: zeros(shapes.map_or(0, |shapes| shapes.count)),
             rates: zeros(n),
             scratch: pass.system.plant.scratch(),
+            earlier: pass.held.clone(),
+            switched: false,
             rows: Vec::new(),
             pass,
         }
     }
 
     fn act(&mut self, action: Action) -> Result<(), EstimateError> {
-        let before = self.pass.held.clone();
         let (records, samples) = (self.pass.records.len(), self.pass.samples.len());
         let recording = &self.estimation.recordings()[self.pass.run];
+        if matches!(action, Action::Advance(_)) && std::mem::take(&mut self.switched) {
+            self.switch();
+        }
         self.pass.act(recording, action)?;
         match action {
             Action::Advance(_) => {
@@ -216,9 +228,10 @@ impl<'p, 'a> Forward<'p, 'a> {
                 for step in steps {
                     self.advance(step);
                 }
+                self.earlier.clone_from(&self.pass.held);
             }
-            Action::Switch { .. } if records > 0 => self.switch(&before),
-            Action::Switch { .. } => {}
+            Action::Switch { .. } if records > 0 => self.switched = true,
+            Action::Switch { .. } => self.earlier.clone_from(&self.pass.held),
             Action::Measure { .. } => self.measure(samples),
         }
         self.close(action, recording);
@@ -361,14 +374,15 @@ impl<'p, 'a> Forward<'p, 'a> {
     }
 
     /// A later input would have had its previous values for longer.
-    fn switch(&mut self, before: &[f64]) {
+    fn switch(&mut self) {
         let plant = self.pass.system.plant;
         for (column, direction) in self.directions.iter().enumerate() {
             let Direction::LateInput(input) = *direction else {
                 continue;
             };
             let t = command::since(&self.pass.held, input);
-            let [old, new] = [before, &self.pass.held].map(|held| command::value(held, input, t));
+            let [old, new] =
+                [&self.earlier, &self.pass.held].map(|held| command::value(held, input, t));
             if old.to_bits() == new.to_bits() {
                 continue;
             }
@@ -391,7 +405,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             let t = self.pass.time_of(&sample.innovation);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
-            let at = (t, &*z, self.pass.held.as_slice());
+            let at = (t, &*z, self.earlier.as_slice());
             let place = Place::new(self.pass.system.layout, self.pass.values, at);
             let start = self.rows.len();
             self.rows.resize(start + columns, 0.0);
@@ -415,7 +429,7 @@ impl<'p, 'a> Forward<'p, 'a> {
                             .system
                             .plant
                             .rates(place, &mut self.scratch, &mut self.rates);
-                        dot(c, &self.rates) + command::by_time(&self.pass.held, &by_inputs)
+                        dot(c, &self.rates) + command::by_time(&self.earlier, &by_inputs)
                     }
                     Direction::LateInput(input) if !by_inputs.is_empty() => {
                         by_inputs[input] * command::slope(&self.pass.held, input)

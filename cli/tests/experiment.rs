@@ -61,7 +61,7 @@ fn a_tie_is_separated_by_the_experiment_that_was_proposed() {
     assert_eq!(again["verdict"], "explained", "{again:#}");
     let found = &again["which"][0];
     assert_eq!(found["effects"], serde_json::json!(["viscous_friction@x"]));
-    assert!(number(found, "probability") > 0.95, "{found}");
+    assert!(number(found, "probability") > 0.9, "{found}");
     assert!(again["experiment"].is_null());
 }
 

@@ -5,8 +5,8 @@
 //! data set --split--> runs to fit | runs held out, which the last step alone can read
 //!          --effects--> candidates: every effect at every place, derived at once with sizes of zero
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
-//!          --screen--> what each candidate would gain, to first order
-//!          --search, compare--> the best ones fitted, alone and together; evidence on equal terms
+//!          --sets--> what every set of candidates promises, to first order
+//!          --search, compare--> the best ones fitted; evidence on equal terms
 //!          (robots: --by_forces--> the same by forces of recorded motions, and the report)
 //!          --horizon--> whether simulations over windows agree; if not, they decide instead
 //!          --alternative--> other specs, fitted to the same recordings
@@ -44,6 +44,7 @@ mod force_history;
 mod force_law;
 mod forces;
 mod forms;
+mod gram;
 mod held_out;
 mod horizon;
 mod imperfection;
@@ -57,6 +58,7 @@ mod report;
 mod scales;
 mod screen;
 mod search;
+mod sets;
 mod starts;
 mod traces;
 mod twins;
@@ -91,7 +93,7 @@ use screen::Screen;
 
 /// Version of the engine. Every change that moves a number of some report raises it, so that scores and
 /// calibration tell which engine they are of.
-pub const ENGINE: u32 = 7;
+pub const ENGINE: u32 = 8;
 
 /// Rows that are fitted, and values in them: with so many, sizes are known far better than laws are right.
 const MOST_ROWS: usize = 4000;

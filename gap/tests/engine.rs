@@ -9,10 +9,11 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
-engine 7
+engine 8
 unknown NaN
 spring@theta 78.1
 viscous_friction@theta+spring@theta 80.1
+coulomb_friction@theta+spring@theta 79.7
  0.0
 ";
 

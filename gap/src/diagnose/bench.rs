@@ -245,24 +245,23 @@ impl<'a> Bench<'a> {
         setup
     }
 
-    /// What a hypothesis with late channels gains from one place to another. Such channels lose their first
-    /// rows, here no more than the delays at both places ask for.
-    pub(super) fn gain_of_late(
-        &self,
-        members: &[usize],
-        from: &[f64],
-        to: &[f64],
-    ) -> Result<f64, DiagnoseError> {
-        let mut setup = self.setup(members);
-        let layout = Estimation::new(&setup, &self.recordings)?.layout();
-        for (index, channel) in setup.channels.iter_mut().enumerate() {
-            if let Some(longest) = &mut channel.longest_delay {
-                let place = layout.place(Unknown::SensorDelay(index))?;
-                *longest = from[place].max(to[place]).max(f64::MIN_POSITIVE);
+    /// What a hypothesis with late channels gains over another one. Such channels lose their first rows: both are held
+    /// to those that its delays leave.
+    pub(super) fn gain_of_late(&self, from: &Fitted, to: &Fitted) -> Result<f64, DiagnoseError> {
+        let (mut before, mut after) = (self.setup(&from.members), self.setup(&to.members));
+        let channels = before.channels.iter_mut().zip(&mut after.channels);
+        for (index, (before, after)) in channels.enumerate() {
+            if let Some(longest) = &mut after.longest_delay {
+                let delay = to.fit.values[to.layout.place(Unknown::SensorDelay(index))?];
+                *longest = delay.max(f64::MIN_POSITIVE);
+                before.longest_delay = Some(*longest);
             }
         }
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        Ok(self.weight * (estimation.log_likelihood(to)? - estimation.log_likelihood(from)?))
+        let of = |setup: &Setup<'_>, fitted: &Fitted| {
+            let estimation = Estimation::new(setup, &self.recordings)?;
+            Ok::<f64, DiagnoseError>(estimation.log_likelihood(&self.carried(fitted, &estimation))?)
+        };
+        Ok(self.weight * (of(&after, to)? - of(&before, from)?))
     }
 
     /// Places of the parameters of a candidate, with what each is.

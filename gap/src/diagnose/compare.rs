@@ -10,7 +10,6 @@ use super::calibration::{
 };
 use super::evidence::Fitted;
 use super::prior::{NO_GAP, effects, prior};
-use super::screen::Screen;
 use super::search::{Look, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
@@ -152,11 +151,10 @@ impl Comparison {
     pub(super) fn of(
         bench: &Bench<'_>,
         known: (Fitted, Vec<Fitted>),
-        screen: &Screen,
         look: impl FnMut(&Fitted) -> Look,
     ) -> Result<Option<Self>, DiagnoseError> {
         let mut search = Search::new(bench, known);
-        let holds = search.run(screen, look)?;
+        let holds = search.run(look)?;
         holds.then(|| Self::found(bench, search)).transpose()
     }
 

@@ -20,6 +20,11 @@ pub(super) const LN_1000: f64 = 6.9;
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
 
+/// What the size of a pure number costs beside others of its kind, such as the relative error of a gain or of a scale:
+/// Student's t with three degrees of freedom, so that what is several times what is there takes much to be believed.
+const PURE: f64 = 0.5;
+const DEGREES: f64 = 3.0;
+
 /// A set of candidates, fitted.
 #[derive(Debug, Clone)]
 pub(super) struct Fitted {
@@ -103,7 +108,7 @@ impl Evidence {
                 let two_sided = free.range[0] < neutral;
                 let sides = if two_sided { 2.0_f64 } else { 1.0 };
                 // The density of the coordinate: 1/(size · sides · range) for plain ones.
-                -(d * deviations[place] * sides * LN_1000).ln()
+                -(d * deviations[place] * sides * LN_1000).ln() - price(bench, free.unknown, size)
             };
         }
         // A member whose size stands at zero is not there.
@@ -127,6 +132,20 @@ impl Evidence {
     /// Logarithm of the evidence.
     pub(super) fn log(&self) -> f64 {
         self.log_likelihood - self.told_by_inputs + self.occam
+    }
+}
+
+/// What a size costs beyond what its own deviation says of it.
+pub(super) fn price(bench: &Bench<'_>, unknown: Unknown, size: f64) -> f64 {
+    let is_pure = match unknown {
+        Unknown::Scale(_) => true,
+        Unknown::Parameter(index) => bench.effects.info().parameters[index].unit == "1",
+        _ => false,
+    };
+    if is_pure {
+        0.5 * (DEGREES + 1.0) * (1.0 + (size / PURE).powi(2) / DEGREES).ln()
+    } else {
+        0.0
     }
 }
 

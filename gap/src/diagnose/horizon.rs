@@ -57,7 +57,7 @@ pub(super) fn judged<'a>(
         bench: &bench,
         again: BTreeMap::new(),
     };
-    let stepwise = seen.one_step((&nominal, &known), &screen)?;
+    let stepwise = seen.one_step((&nominal, &known))?;
     let holds = stepwise.as_ref().filter(|(_, holds)| *holds);
     let again = holds.and_then(|(stepwise, _)| seen.again(stepwise.best()));
     let again = again.map(|again| again.fitted.clone());
@@ -79,7 +79,7 @@ pub(super) fn judged<'a>(
         let whole = if comparison.leads_unknown() && !none(&comparison) {
             let again = bench.fitted_again(&over, comparison.best());
             let known = again.into_iter().map(|(_, again)| again).collect();
-            nothing_left((&bench, &nominal, &screen), known, stepwise.take())?
+            nothing_left((&bench, &nominal), known, stepwise.take())?
         } else {
             None
         };
@@ -103,7 +103,7 @@ pub(super) fn judged<'a>(
     // One step has to do too where no simulation follows the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
-        None => Comparison::of(&bench, (nominal, known), &screen, |_| Look::Holds)?,
+        None => Comparison::of(&bench, (nominal, known), |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("looking for what no effect explains");
@@ -122,13 +122,13 @@ pub(super) fn judged<'a>(
 /// One-step predictions where they explain everything: a mechanism that falls over is lost in windows of any length.
 /// Some hypotheses are `known` from elsewhere.
 fn nothing_left(
-    (bench, nominal, screen): (&Bench<'_>, &Fitted, &Screen),
+    (bench, nominal): (&Bench<'_>, &Fitted),
     known: Vec<Fitted>,
     stepwise: Option<Comparison>,
 ) -> Result<Option<Comparison>, DiagnoseError> {
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise.with(bench, known)?),
-        None => Comparison::of(bench, (nominal.clone(), known), screen, |_| Look::Holds)?,
+        None => Comparison::of(bench, (nominal.clone(), known), |_| Look::Holds)?,
     };
     let Some(mut comparison) = comparison else {
         return Ok(None);
@@ -143,7 +143,7 @@ fn nothing_left(
 fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison), DiagnoseError> {
     let nominal = over.nominal()?;
     let screen = Screen::of(over, &nominal)?;
-    let comparison = Comparison::of(over, (nominal, known), &screen, |_| Look::Holds)?;
+    let comparison = Comparison::of(over, (nominal, known), |_| Look::Holds)?;
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
@@ -176,12 +176,11 @@ impl Seen<'_, '_> {
     fn one_step(
         &mut self,
         (nominal, known): (&Fitted, &[Fitted]),
-        screen: &Screen,
     ) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
         let (bench, over) = (self.bench, self.over);
         let known = (nominal.clone(), known.to_vec());
         let look = |fitted: &Fitted| self.look(fitted, nominal);
-        let Some(mut comparison) = Comparison::of(bench, known, screen, look)? else {
+        let Some(mut comparison) = Comparison::of(bench, known, look)? else {
             return Ok(None);
         };
         let of_nominal = self.again(nominal).map(Again::log_likelihood);

@@ -37,8 +37,6 @@ pub(super) struct Screened {
     pub(super) starts: Vec<Vec<(usize, f64)>>,
     /// By what disturbances are multiplied where its fit begins.
     pub(super) levels: f64,
-    /// Its signature along the best step, of length 1.
-    signature: DVector<f64>,
 }
 
 impl Screened {
@@ -57,7 +55,6 @@ impl Screened {
             sizes,
             starts,
             levels: 1.0,
-            signature: DVector::zeros(0),
         }
     }
 
@@ -73,15 +70,6 @@ impl Screened {
             gain: self.gain - told,
             told_by_inputs: told,
             ..self
-        }
-    }
-
-    /// Cosine of the angle between two signatures.
-    pub(super) fn alike(&self, other: &Self) -> f64 {
-        if self.signature.len() == other.signature.len() {
-            self.signature.dot(&other.signature)
-        } else {
-            0.0
         }
     }
 }
@@ -228,7 +216,7 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 impl Screen {
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let (mut screen, for_kicks) = Self::first_order((bench, fitted), 1.0)?;
+        let (mut screen, for_kicks) = Self::first_order((bench, fitted))?;
         let best = screen.list.first().map_or(0.0, |best| best.gain);
         let augmented = augmented::screened((bench, fitted), for_kicks, best)?;
         screen.list.extend(augmented);
@@ -236,25 +224,14 @@ impl Screen {
         Ok(screen)
     }
 
-    /// The same with smaller disturbances. The fitted ones follow what the model lacks, and beside them it gains
-    /// little: with a candidate that is right they would be smaller.
-    pub(super) fn quiet(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        Ok(Self::first_order((bench, fitted), QUIET)?.0)
-    }
-
-    /// All but those that bring a coordinate, with disturbances multiplied by `levels`; how much speaks for inputs that
-    /// know the motion.
-    fn first_order(
-        (bench, fitted): (&Bench<'_>, &Fitted),
-        levels: f64,
-    ) -> Result<(Self, f64), DiagnoseError> {
+    /// All but those that bring a coordinate; how much speaks for inputs that know the motion.
+    fn first_order((bench, fitted): (&Bench<'_>, &Fitted)) -> Result<(Self, f64), DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(fitted);
         let (directions, own) = others(bench, fitted, &free);
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
-        quieten(&estimation, &mut values, levels)?;
         let input_innovations = &bench.input_innovations;
         let kicks = |run: usize, at: At<'_>, to: &mut [f64]| input_innovations.kicks(run, at.t, to);
         let kicks = (input_innovations.count > 0).then_some(Shapes {
@@ -269,11 +246,10 @@ impl Screen {
         let beyond = Projected::new((&tangent, bench.weight), fitted, free.len(), kicked);
         let all = in_parallel(own, |(candidate, columns)| {
             let positive = positive(bench, candidate);
-            let mut one = screened(&projected, candidate, &columns, &positive)?;
+            let one = screened(&projected, candidate, &columns, &positive)?;
             let beyond = screened(&beyond, candidate, &columns, &positive);
             let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
             let told = (one.gain - beyond).clamp(0.0, for_kicks);
-            one.levels = levels;
             Some(one.told(told))
         });
         let mut list: Vec<Screened> = all.into_iter().flatten().collect();
@@ -338,7 +314,7 @@ fn others(
 }
 
 /// Shapes of candidates that are not members stand where their spec has them.
-fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
+pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
     let info = bench.effects.info();
     for (index, candidate) in bench.effects.candidates.iter().enumerate() {
         if members.contains(&index) {
@@ -361,7 +337,7 @@ pub(super) fn moving(fitted: &Fitted) -> Vec<Direction> {
         .collect()
 }
 
-fn moves_the_mean(direction: Direction) -> bool {
+pub(super) fn moves_the_mean(direction: Direction) -> bool {
     !matches!(
         direction,
         Direction::Value(Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. })
@@ -392,7 +368,7 @@ pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> 
 }
 
 /// Which directions have one side only.
-fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
+pub(super) fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
     let candidate = bench.candidate(candidate);
     let info = bench.effects.info();
     match candidate.acts {
@@ -443,8 +419,6 @@ fn screened(
             sizes[column] = step[place];
             deviations[column] = inverse[(place, place)].sqrt();
         }
-        let signature = &slopes * DVector::from_column_slice(&sizes);
-        let length = signature.norm();
         return Some(Screened {
             candidate,
             gain: 0.5 * right.dot(&step),
@@ -453,7 +427,6 @@ fn screened(
             deviations,
             starts: vec![Vec::new()],
             levels: 1.0,
-            signature: signature / length.max(f64::MIN_POSITIVE),
         });
     }
 }

@@ -1,7 +1,7 @@
-//! The best candidates fitted, alone and together.
+//! The sets of effects that promise most, fitted.
 //!
-//! Every hypothesis has the same effort. One effect joins another where the evidence for both
-//! outweighs that there are many pairs.
+//! About the nominal model all sets are valued to first order, the best of them fitted; then again about the best fit,
+//! where slopes are others, until nothing better comes. Every set has the same effort.
 
 use std::collections::BTreeSet;
 
@@ -12,25 +12,23 @@ use super::bench::{Bench, WRONG};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::prior::{effects, prior};
-use super::screen::{LEAST_GAIN, Screen, Screened, least, quieten};
+use super::screen::quieten;
+use super::sets::{Set, Sets, is_fixed};
 use crate::effects::{Acts, Part};
 
-/// Candidates that are fitted alone.
-const KEPT: usize = 8;
-/// Candidates that are fitted before the first look at what they explain.
-const FIRST: usize = 3;
-/// Candidates that are tried beside another.
-const KEPT_BESIDE: usize = 4;
-/// By how much a disturbance becomes smaller beside an effect that it has followed.
-const FOLLOWED: f64 = 3.0;
-/// Most effects of a hypothesis.
-const MOST_MEMBERS: usize = 4;
+/// Sets that are fitted before slopes are taken about the best of them, and rivals of what stays the best.
+const LEADING: usize = 2;
+const RIVALS: usize = 6;
+/// Fits about which sets are valued.
+const ROUNDS: usize = 4;
+/// By how much a set may promise less than the best one and yet be as probable, beyond this part of what that gains:
+/// slopes are those far from where large sizes end.
+const WORTH: f64 = 1.5 * TIED;
+const BY_SLOPES: f64 = 0.5;
 /// Part of the longest delay at which a search begins at most.
 const BELOW: f64 = 0.9;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
-/// Signatures that are this much alike are those of one effect in two guises.
-const ALIKE: f64 = 0.8;
 
 /// What is seen elsewhere of a hypothesis.
 pub(super) enum Look {
@@ -40,33 +38,6 @@ pub(super) enum Look {
     Lacks(usize),
     /// It does not hold.
     Refuted,
-}
-
-/// The candidates worth a fit beside some members: the best variant of each other effect at each place.
-fn kept(bench: &Bench<'_>, screen: &Screen, members: &[usize], most: usize) -> Vec<Screened> {
-    let mut kept: Vec<Screened> = Vec::new();
-    // What brings a coordinate was tried at some sizes and not to first order: it is no measure for others.
-    let is_plain = |one: &&Screened| bench.candidate(one.candidate).brings.is_none();
-    let best = screen
-        .list
-        .iter()
-        .find(is_plain)
-        .map_or(0.0, |one| one.gain);
-    for screened in (screen.list.iter()).filter(|one| one.gain > least(best)) {
-        let candidate = bench.candidate(screened.candidate);
-        let is_alike = |own: usize| bench.candidate(own).name() == candidate.name();
-        let is_part = |own: usize| is_alike(own) && !candidate.is_component;
-        let is_known = kept.iter().any(|own| is_alike(own.candidate))
-            || members.contains(&screened.candidate)
-            || members.iter().any(|&own| is_part(own));
-        let is_guise = kept
-            .first()
-            .is_some_and(|best| best.alike(screened) > ALIKE);
-        if !is_known && (kept.len() < most || is_guise && kept.len() < 2 * most) {
-            kept.push(screened.clone());
-        }
-    }
-    kept
 }
 
 /// A search for hypotheses.
@@ -98,123 +69,124 @@ impl<'b, 'a> Search<'b, 'a> {
         search
     }
 
-    /// Fits the candidates that a screen of the nominal model finds, alone and together. `look` is asked about the
-    /// best hypothesis before others are tried; whether none of them was refuted.
+    /// Fits sets about the nominal model, then about the best fits. `look` is asked about the best hypothesis of each
+    /// round; whether none of them was refuted.
     pub(super) fn run(
         &mut self,
-        screen: &Screen,
         mut look: impl FnMut(&Fitted) -> Look,
     ) -> Result<bool, DiagnoseError> {
-        let bench = self.bench;
-        for (place, screened) in kept(bench, screen, &[], KEPT).iter().enumerate() {
-            // The nominal model alone may be wrong; the best of the first ones may not be far off.
-            if place == FIRST && !self.goes_on(1, &mut look)? {
+        let mut first: Vec<Set> = Vec::new();
+        for round in 0..ROUNDS {
+            // The nominal model first, whatever is known from elsewhere.
+            let next = if round == 0 {
+                0
+            } else {
+                self.best().unwrap_or(0)
+            };
+            let members = self.fits[next].members.clone();
+            let log_posterior = self.log_posterior(&self.fits[next]);
+            let sets = Sets::about(self.bench, &self.fits[next], log_posterior)?;
+            let is_best = |search: &Self| {
+                let best = search.best().unwrap_or(0);
+                search.fits[best].members == members
+            };
+            let mut leading = self.worth_a_fit(&sets, LEADING, None);
+            if round == 0 {
+                // To first order neither need lead.
+                for effects in [1, 2] {
+                    leading.extend(self.worth_a_fit(&sets, LEADING, Some(effects)));
+                }
+            }
+            for set in leading {
+                self.take(next, set);
+            }
+            // Slopes far from where the best set ends say little of its rivals.
+            if is_best(self) || round + 1 == ROUNDS {
+                for set in self.worth_a_fit(&sets, RIVALS, None) {
+                    self.take(next, set);
+                }
+                let promised = first.first().map_or(0.0, |set| set.log_posterior);
+                let own = first
+                    .iter()
+                    .filter(|set| set.log_posterior > promised - WORTH);
+                for set in own.take(RIVALS) {
+                    self.take(0, set);
+                }
+            }
+            self.try_lags();
+            if let Some(best) = self.best().filter(|&best| best > 0)
+                && !self.goes_on(best, &mut look)?
+            {
                 return Ok(false);
             }
-            self.join(0, screened);
-        }
-        self.join_quiet(0)?;
-        for members in 1..MOST_MEMBERS {
-            self.try_lags(members);
-            if !self.betters(members) {
+            if is_best(self) {
                 break;
             }
-            if !self.goes_on(members, &mut look)? {
-                return Ok(false);
-            }
-            for base in self.bases(members) {
-                let screen = Screen::of(bench, &self.fits[base])?;
-                let members = self.fits[base].members.clone();
-                let kept = kept(bench, &screen, &members, KEPT_BESIDE);
-                for screened in &kept {
-                    self.join(base, screened);
-                }
-                self.join_quiet(base)?;
-                self.join_tied(base, &kept);
-                self.join_components(base, &screen);
+            if round == 0 {
+                first = sets;
             }
         }
         self.drop_idle();
         Ok(true)
     }
 
-    /// Whether the best hypothesis with so many members holds, or does with what it lacks.
+    /// The sets that promise most and are not fitted yet, all or those of so many effects.
+    fn worth_a_fit<'s>(&self, sets: &'s [Set], most: usize, size: Option<usize>) -> Vec<&'s Set> {
+        let log = |fit: usize| self.log_posterior(&self.fits[fit]);
+        let fitted = self.best().map_or(f64::NEG_INFINITY, log);
+        let best = sets
+            .first()
+            .map_or(fitted, |set| set.log_posterior.max(fitted));
+        let least = best - WORTH - BY_SLOPES * (best - log(0)).max(0.0);
+        let leading = self.best().map_or(&[][..], |best| &self.fits[best].members);
+        let is_new = |set: &&Set| {
+            let is_fitted = self.fits.iter().any(|own| own.members == set.members);
+            let is_of_size = size.is_none_or(|size| effects(self.bench, &set.members) == size);
+            // What needs more sizes than the best set and betters nothing is no rival of it.
+            let is_idle = set.log_posterior < fitted
+                && !leading.is_empty()
+                && self.bench.sizes_of(&set.members) > self.bench.sizes_of(leading);
+            set.log_posterior > least
+                && is_of_size
+                && !is_idle
+                && !is_fitted
+                && !self.settled.contains(&set.members)
+        };
+        sets.iter().filter(is_new).take(most).collect()
+    }
+
+    /// Whether the best hypothesis holds, or does with what it lacks.
     fn goes_on(
         &mut self,
-        members: usize,
+        best: usize,
         look: &mut impl FnMut(&Fitted) -> Look,
     ) -> Result<bool, DiagnoseError> {
-        let Some(best) = self.best_of(members) else {
-            return Ok(true);
-        };
         let lacks = match look(&self.fits[best]) {
             Look::Holds => return Ok(true),
             Look::Refuted => return Ok(false),
             Look::Lacks(candidate) => candidate,
-        };
-        let screen = Screen::of(self.bench, &self.fits[best])?;
-        let of_other = |one: &&Screened| one.candidate == lacks;
-        let Some(other) = screen.list.iter().find(of_other) else {
-            return Ok(false);
         };
         let mut members = self.fits[best].members.clone();
         members.push(lacks);
         members.sort_unstable();
         let both = |search: &Self| search.fits.iter().position(|own| own.members == members);
         if both(self).is_none() {
-            self.join(best, other);
+            let log_posterior = self.log_posterior(&self.fits[best]);
+            let sets = Sets::about(self.bench, &self.fits[best], log_posterior)?;
+            if let Some(set) = sets.iter().find(|set| set.members == members) {
+                self.take(best, set);
+            }
         }
         Ok(both(self).is_some_and(|both| matches!(look(&self.fits[both]), Look::Holds)))
     }
 
-    /// Where the disturbances of a hypothesis follow what it lacks, others may take their place as well as the one
-    /// that shows in spite of them.
-    fn join_quiet(&mut self, to: usize) -> Result<(), DiagnoseError> {
-        let members = self.fits[to].members.clone();
-        let Some(better) = self.best_of(members.len() + 1) else {
-            return Ok(());
-        };
-        if self.bench.is_over_windows() || !self.follows(to, better) {
-            return Ok(());
-        }
-        let screen = Screen::quiet(self.bench, &self.fits[to])?;
-        for screened in kept(self.bench, &screen, &members, KEPT_BESIDE) {
-            let name = |candidate: usize| self.bench.candidate(candidate).name();
-            let mut fits = self.fits.iter();
-            let is_known = fits.any(|own| {
-                let mut others = own.members.iter().filter(|one| !members.contains(one));
-                own.members.len() == members.len() + 1
-                    && others.any(|&one| name(one) == name(screened.candidate))
-            });
-            if !is_known {
-                self.join(to, &screened);
-            }
-        }
-        Ok(())
-    }
-
-    /// Whether a disturbance of a hypothesis is far larger than beside a better one.
-    fn follows(&self, own: usize, better: usize) -> bool {
-        let [own, better] = [own, better].map(|index| &self.fits[index]);
-        own.fit.is_optimum()
-            && (0..self.bench.effects.info().speeds).any(|index| {
-                let level = |fitted: &Fitted| {
-                    let place = fitted.layout.place(Unknown::Disturbance(index)).ok()?;
-                    Some(fitted.fit.values[place])
-                };
-                level(own) > level(better).map(|level| FOLLOWED * level)
-            })
-    }
-
-    /// Fits a candidate beside the members of a hypothesis.
-    fn join(&mut self, to: usize, screened: &Screened) {
-        let mut members = self.fits[to].members.clone();
-        members.push(screened.candidate);
-        members.sort_unstable();
+    /// Fits a set, from where another hypothesis ended.
+    fn take(&mut self, from: usize, set: &Set) {
+        let members = set.members.clone();
         if self.settled.contains(&members) {
             return;
         }
-        match self.fitted(to, screened, &members) {
+        match self.fitted(from, set) {
             Ok(fitted) if fitted.evidence.log().is_finite() => {
                 if fitted.fit.is_optimum() {
                     self.settled.insert(members);
@@ -240,117 +212,87 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// The hypotheses with so many members that others join: the best one; that with fewest sizes of those
-    /// tied with it, for a size that tells nothing hides what joins it; the best one whose search came to
-    /// its end.
-    fn bases(&self, members: usize) -> BTreeSet<usize> {
-        let own = self.ranked(members);
-        let log = |i: usize| self.log_posterior(&self.fits[i]);
-        let sizes = |i: &&usize| self.bench.sizes_of(&self.fits[**i].members);
-        let tied = own.iter().take_while(|i| log(own[0]) - log(**i) < TIED);
-        let bases = [
-            own.first(),
-            tied.min_by_key(sizes),
-            own.iter().find(|i| self.fits[**i].fit.is_optimum()),
-        ];
-        bases.into_iter().flatten().copied().collect()
-    }
-
-    /// What betters a hypothesis most may better those that are tied with it as much.
-    fn join_tied(&mut self, hypothesis: usize, joined: &[Screened]) {
-        let members = self.fits[hypothesis].members.len();
-        let log = self.log_posterior(&self.fits[hypothesis]);
-        let Some(better) = self.best_of(members + 1) else {
-            return;
-        };
-        let better = &self.fits[better];
-        let is_new = |one: &&Screened| better.members.contains(&one.candidate);
-        let Some(new) = joined.iter().find(is_new) else {
-            return;
-        };
-        if self.log_posterior(better) < log {
-            return;
-        }
-        let tied = |fitted: &Fitted| {
-            fitted.members.len() == members && log - self.log_posterior(fitted) < TIED
-        };
-        let others = (0..self.fits.len()).filter(|&i| i != hypothesis && tied(&self.fits[i]));
-        for other in others.collect::<Vec<_>>() {
-            if !self.fits[other].members.contains(&new.candidate) {
-                self.join(other, new);
-            }
-        }
-    }
-
-    /// What is tied with a hypothesis and is a component of a vector gets the other components.
-    fn join_components(&mut self, hypothesis: usize, screen: &Screen) {
-        let members = self.fits[hypothesis].members.len();
-        let log = self.log_posterior(&self.fits[hypothesis]);
-        for other in 0..self.fits.len() {
-            let fitted = &self.fits[other];
-            let is_tied =
-                fitted.members.len() == members && log - self.log_posterior(fitted) < TIED;
-            if !is_tied {
-                continue;
-            }
-            let own = fitted.members.clone();
-            let is_sibling = |one: &&Screened| {
-                let candidate = self.bench.candidate(one.candidate);
-                let name = candidate.name();
-                let mut own = own.iter().map(|&own| self.bench.candidate(own).name());
-                candidate.is_component && one.gain > LEAST_GAIN && own.any(|own| own == name)
-            };
-            let siblings: Vec<Screened> = (screen.list.iter())
-                .filter(is_sibling)
-                .filter(|one| !own.contains(&one.candidate))
-                .cloned()
-                .collect();
-            for one in &siblings {
-                self.join(other, one);
-            }
-        }
-    }
-
-    fn fitted(
-        &self,
-        to: usize,
-        screened: &Screened,
-        members: &[usize],
-    ) -> Result<Fitted, DiagnoseError> {
+    fn fitted(&self, from: usize, set: &Set) -> Result<Fitted, DiagnoseError> {
         let bench = self.bench;
-        let setup = bench.setup(members);
+        let from = &self.fits[from];
+        let setup = bench.setup(&set.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let from = &self.fits[to];
         let mut start = bench.carried(from, &estimation);
-        let begin = start.clone();
-        quieten(&estimation, &mut start, screened.levels)?;
-        place(bench, &estimation, screened, &mut start)?;
-        let fits = screened.starts.iter().map(|values| {
+        let carried = start.clone();
+        for &member in &from.members {
+            if !is_fixed(bench, member) {
+                self.take_away(member, from, &estimation, &mut start);
+            }
+        }
+        quieten(&estimation, &mut start, set.levels)?;
+        for (candidate, sizes, deviations) in &set.sizes {
+            place(
+                bench,
+                &estimation,
+                (*candidate, sizes, deviations),
+                &mut start,
+            )?;
+            if from.members.contains(candidate) {
+                // Its shape is known by now.
+                for (index, part) in bench.own(bench.candidate(*candidate)) {
+                    if part == Part::Shape {
+                        start[index] = carried[index];
+                    }
+                }
+            }
+        }
+        let new: Vec<usize> = (set.members.iter().copied())
+            .filter(|member| !from.members.contains(member))
+            .collect();
+        let fits = set.starts.iter().map(|values| {
             let mut start = start.clone();
             for &(place, value) in values {
                 start[place] = value;
             }
-            bench.hide(&[screened.candidate], &estimation, &mut start)?;
-            bench.fit(members, &estimation, &start)
+            bench.hide(&new, &estimation, &mut start)?;
+            bench.fit(&set.members, &estimation, &start)
         });
         let mut fitted = best_fit(fits)?;
-        fitted.evidence.told_by_inputs = from.evidence.told_by_inputs + screened.told_by_inputs;
-        self.count_late((from, &begin), &mut fitted)?;
+        fitted.evidence.told_by_inputs = set.told_by_inputs;
+        self.count_late(&mut fitted)?;
         Ok(fitted)
     }
 
-    /// A late channel loses rows, so that likelihoods compare by what is gained over another hypothesis, whose
-    /// values are `begin`.
-    fn count_late(
+    /// Values without what a member of a fit has done to them.
+    fn take_away(
         &self,
-        (from, begin): (&Fitted, &[f64]),
-        fitted: &mut Fitted,
-    ) -> Result<(), DiagnoseError> {
+        member: usize,
+        whole: &Fitted,
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) {
+        let (bench, neutral) = (self.bench, estimation.nominal());
+        let candidate = bench.candidate(member);
+        let own = bench.own(candidate).into_iter();
+        let mut places: Vec<usize> = own.map(|(place, _)| place).collect();
+        if let (Acts::Parameter(_), Some(index)) = (
+            candidate.acts,
+            bench.effects.info().parameter_index(&candidate.site),
+        ) {
+            values[index] = bench.set.parameters[index].value;
+        }
+        for free in bench.brought(member, &bench.setup(&whole.members)) {
+            // What the other filter does not have has no place there.
+            places.extend(estimation.layout().place(free.unknown));
+        }
+        for place in places {
+            values[place] = neutral[place];
+        }
+    }
+
+    /// A late channel loses rows, so that likelihoods compare by what is gained over the nominal model on the others.
+    fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
         let bench = self.bench;
         let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
         if fitted.members.iter().any(is_late) {
-            let gain = bench.gain_of_late(&fitted.members, begin, &fitted.fit.values)?;
-            fitted.evidence.log_likelihood = from.evidence.log_likelihood + gain;
+            let nominal = &self.fits[0];
+            let gain = bench.gain_of_late(nominal, fitted)?;
+            fitted.evidence.log_likelihood = nominal.evidence.log_likelihood + gain;
         }
         Ok(())
     }
@@ -374,17 +316,16 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// To first order a lag of a channel is a delay. The best hypotheses with a delay and so many members are fitted
-    /// with a lag in its place.
-    fn try_lags(&mut self, members: usize) {
-        let Some(best) = self.best_of(members) else {
+    /// To first order a lag of a channel is a delay. The best hypotheses with a delay are fitted with a lag in its
+    /// place.
+    fn try_lags(&mut self) {
+        let Some(best) = self.best() else {
             return;
         };
         let log = self.log_posterior(&self.fits[best]);
-        let tied = self.ranked(members).into_iter();
-        let tied = tied.take_while(|&own| log - self.log_posterior(&self.fits[own]) < TIED);
-        for own in tied.collect::<Vec<_>>() {
-            let fitted = self.fits[own].clone();
+        let tied = |fitted: &&Fitted| fitted.is_there() && log - self.log_posterior(fitted) < TIED;
+        let tied: Vec<Fitted> = self.fits.iter().filter(tied).cloned().collect();
+        for fitted in tied {
             for &late in &fitted.members {
                 if let Ok(Some(fitted)) = self.fitted_with_lag(&fitted, late) {
                     self.keep(fitted);
@@ -434,19 +375,11 @@ impl<'b, 'a> Search<'b, 'a> {
         members.retain(|&own| own != idle);
         let setup = bench.setup(&members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let (mut start, neutral) = (bench.carried(whole, &estimation), estimation.nominal());
-        let own = bench.own(bench.candidate(idle)).into_iter();
-        let mut places: Vec<usize> = own.map(|(place, _)| place).collect();
-        for free in bench.brought(idle, &setup) {
-            places.push(estimation.layout().place(free.unknown)?);
-        }
-        for place in places {
-            start[place] = neutral[place];
-        }
+        let mut start = bench.carried(whole, &estimation);
+        self.take_away(idle, whole, &estimation, &mut start);
         let mut fitted = bench.fit(&members, &estimation, &start)?;
         fitted.evidence.told_by_inputs = whole.evidence.told_by_inputs;
-        let nominal = &self.fits[0];
-        self.count_late((nominal, &bench.carried(nominal, &estimation)), &mut fitted)?;
+        self.count_late(&mut fitted)?;
         Ok(fitted)
     }
 
@@ -455,28 +388,6 @@ impl<'b, 'a> Search<'b, 'a> {
         let there = (0..self.fits.len()).filter(|&i| self.fits[i].is_there());
         let log = |i: usize| self.log_posterior(&self.fits[i]);
         there.max_by(|&a, &b| log(a).total_cmp(&log(b)))
-    }
-
-    /// Whether the last of so many members made a hypothesis more probable. Two are tried always: neither may
-    /// show without the other.
-    fn betters(&self, members: usize) -> bool {
-        let log = |members| Some(self.log_posterior(&self.fits[self.best_of(members)?]));
-        members < 2 || log(members) > log(members - 1)
-    }
-
-    /// The best hypothesis with so many members.
-    fn best_of(&self, members: usize) -> Option<usize> {
-        self.ranked(members).first().copied()
-    }
-
-    /// The hypotheses with so many members that are there, the most probable one first.
-    fn ranked(&self, members: usize) -> Vec<usize> {
-        let is_one = |fitted: &Fitted| fitted.members.len() == members && fitted.is_there();
-        let own = (0..self.fits.len()).filter(|&i| is_one(&self.fits[i]));
-        let mut own: Vec<usize> = own.collect();
-        let log = |i: usize| self.log_posterior(&self.fits[i]);
-        own.sort_by(|&a, &b| log(b).total_cmp(&log(a)));
-        own
     }
 
     /// Logarithm of the probability, up to a constant.
@@ -508,17 +419,17 @@ fn best_fit(
     }
 }
 
-/// Puts the best step of the screen into the values: no size starts at its bound.
+/// Puts the best sizes into the values: none starts at its bound.
 fn place(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
-    screened: &Screened,
+    (candidate, sizes, deviations): (usize, &[f64], &[f64]),
     values: &mut [f64],
 ) -> Result<(), DiagnoseError> {
     let layout = estimation.layout();
     let setup = estimation.setup();
-    let candidate = bench.candidate(screened.candidate);
-    let first = screened.sizes.first().copied().unwrap_or(0.0);
+    let candidate = bench.candidate(candidate);
+    let first = sizes.first().copied().unwrap_or(0.0);
     let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
     let values_now = bench
         .effects
@@ -542,8 +453,8 @@ fn place(
                         continue;
                     }
                     Part::Size | Part::Term(_) => {
-                        let size = screened.sizes[direction];
-                        let least = screened.deviations[direction];
+                        let size = sizes[direction];
+                        let least = deviations[direction];
                         let size = if size.abs() > 0.0 { size } else { least };
                         set(unknown, size)?;
                     }

@@ -1,0 +1,588 @@
+//! Sets of effects, all of them at once and to first order.
+//!
+//! One pass of the filter gives the slopes of its innovations by every candidate. With what the nominal parameters do
+//! within their tolerances taken off, the squares and scores of these slopes value each single effect, each pair and
+//! each three by a system of a few equations. So effects that show only together are found, and no order of joining
+//! decides. Disturbances that are fitted follow what the model lacks: the same is done with smaller ones, and a set
+//! counts where it is most probable.
+//!
+//! About a fit that has members, slopes are those there, and the innovations are extended to sizes of zero, so that
+//! every set keeps its value, also those without the members.
+
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use appell_estimate::{
+    Along, Coordinate, Direction, Estimation, Free, Shapes, Tangent, Unknown, in_parallel,
+};
+use appell_runtime::model::At;
+use nalgebra::{DMatrix, DVector};
+
+use super::DiagnoseError;
+use super::augmented;
+use super::bench::{Bench, WRONG};
+use super::evidence::{Fitted, LN_1000, occam, price};
+use super::feedback::KICKS;
+use super::gram::{Gram, Solved};
+use super::prior::prior;
+use super::screen::{Screened, directions, moves_the_mean, positive, quieten, shapes};
+use crate::effects::Acts;
+
+/// Disturbances as parts of those that were fitted.
+const LEVELS: [f64; 3] = [1.0, 0.1, 0.01];
+/// Most effects of a set whose members are all tried together.
+const TOGETHER: usize = 3;
+/// Choices of which all threes are tried: those that gain most alone or in a pair.
+const MOST_CHOICES: usize = 60;
+
+/// A set of candidates with what it promises.
+#[derive(Debug, Clone)]
+pub(super) struct Set {
+    pub(super) members: Vec<usize>,
+    /// The best sizes of those that have slopes, from zero, with their deviations.
+    pub(super) sizes: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    /// Logarithm of its probability as the fit about which it is valued has it.
+    pub(super) log_posterior: f64,
+    /// Part of its gain that inputs which follow the motion may explain.
+    pub(super) told_by_inputs: f64,
+    /// By what disturbances are multiplied where its fit begins.
+    pub(super) levels: f64,
+    /// What else its fit begins with, one list for each start.
+    pub(super) starts: Vec<Vec<(usize, f64)>>,
+}
+
+/// A candidate, or some components of one vector, as one effect.
+struct Choice {
+    name: String,
+    candidates: Vec<usize>,
+    columns: Vec<usize>,
+}
+
+/// A column of the slopes.
+struct Column {
+    candidate: usize,
+    /// Place among the directions of its candidate.
+    direction: usize,
+    is_positive: bool,
+    /// What it is a slope by, where that is a value.
+    unknown: Option<Unknown>,
+    /// Standard deviation of its size, where that is known beforehand.
+    known: Option<f64>,
+    /// Its size in the fit about which the slopes are.
+    size: f64,
+}
+
+/// What is free in every set, with what is known of it.
+struct Nuisance {
+    direction: Direction,
+    /// How far it is off what is expected, and the slope of that, in deviations.
+    known: Option<[f64; 2]>,
+}
+
+/// Squares and scores of the columns with one scale of the disturbances.
+struct Level {
+    scale: f64,
+    plain: Gram,
+    /// Beyond what inputs that follow the motion could tell; nothing where none does.
+    beyond: Option<Gram>,
+    /// How much the recordings speak for such inputs.
+    for_kicks: f64,
+}
+
+/// Everything that values sets about a fit.
+pub(super) struct Sets<'b, 'a> {
+    bench: &'b Bench<'a>,
+    columns: Vec<Column>,
+    levels: Vec<Level>,
+    /// Members of the fit.
+    members: Vec<usize>,
+    /// Those that every set has: nothing is known of what would be without them.
+    fixed: Vec<usize>,
+    choices: Vec<Choice>,
+    /// Logarithms of the probabilities beforehand, by the number of effects.
+    prior: Vec<f64>,
+    /// What a value lacks to be the logarithm of a probability as fits have it.
+    offset: f64,
+}
+
+impl<'b, 'a> Sets<'b, 'a> {
+    /// All sets about a fit, the most probable first; `log_posterior` is that of the fit.
+    pub(super) fn about(
+        bench: &'b Bench<'a>,
+        fitted: &Fitted,
+        log_posterior: f64,
+    ) -> Result<Vec<Set>, DiagnoseError> {
+        let sets = Self::of(bench, fitted, log_posterior)?;
+        let mut all = sets.all();
+        all.extend(sets.with_coordinates(fitted, log_posterior)?);
+        all.sort_by(|a, b| b.log_posterior.total_cmp(&a.log_posterior));
+        Ok(all)
+    }
+
+    fn of(
+        bench: &'b Bench<'a>,
+        fitted: &Fitted,
+        log_posterior: f64,
+    ) -> Result<Self, DiagnoseError> {
+        let setup = bench.whole_setup(&fitted.members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let mut values = bench.carried(fitted, &estimation);
+        shapes(bench, &mut values, &fitted.members);
+        let is_fixed = |&member: &usize| is_fixed(bench, member);
+        let fixed: Vec<usize> = fitted.members.iter().copied().filter(is_fixed).collect();
+        let (columns, of_columns) = columns(bench, fitted, (&estimation, &values))?;
+        let nuisances = nuisances(bench, fitted, (&of_columns, &columns));
+        let directions: Vec<Direction> = (nuisances.iter().map(|one| one.direction))
+            .chain(of_columns)
+            .collect();
+        let input_innovations = &bench.input_innovations;
+        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| input_innovations.kicks(run, at.t, to);
+        let kicks = (input_innovations.count > 0).then_some(Shapes {
+            along: Along::Disturbances,
+            count: input_innovations.count * KICKS,
+            values: &kicks,
+        });
+        let scales: &[f64] = if bench.is_over_windows() {
+            &LEVELS[..1]
+        } else {
+            &LEVELS
+        };
+        let levels = in_parallel(scales.to_vec(), |scale| {
+            let mut values = values.clone();
+            quieten(&estimation, &mut values, scale)?;
+            let tangent = estimation.tangent(&values, &directions, kicks)?;
+            Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, (&nuisances, &columns)))
+        });
+        // A filter that trusts the model more may lose a run.
+        let mut found = Vec::new();
+        let mut failure = None;
+        for level in levels {
+            match level {
+                Ok(level) => found.push(level),
+                Err(error) => failure = Some(error),
+            }
+        }
+        if let (true, Some(failure)) = (found.is_empty(), failure) {
+            return Err(failure);
+        }
+        let mut sets = Self {
+            bench,
+            levels: found,
+            choices: Vec::new(),
+            prior: (0..=TOGETHER + fixed.len())
+                .map(|effects| prior(bench.effects, effects))
+                .collect(),
+            columns,
+            members: fitted.members.clone(),
+            fixed,
+            offset: 0.0,
+        };
+        sets.choices = sets.choices();
+        let own = |column: &usize| fitted.members.contains(&sets.columns[*column].candidate);
+        let own: Vec<usize> = (0..sets.columns.len()).filter(own).collect();
+        let effects = super::prior::effects(bench, &fitted.members);
+        let value = sets
+            .levels
+            .first()
+            .and_then(|level| sets.value(level, &own, effects));
+        sets.offset = log_posterior - value.map_or(log_posterior, |(value, ..)| value);
+        Ok(sets)
+    }
+
+    /// Candidates that leave anything of their own; of a vector any of its components.
+    fn choices(&self) -> Vec<Choice> {
+        let mut by_candidate: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
+        for (place, column) in self.columns.iter().enumerate() {
+            if self
+                .levels
+                .iter()
+                .any(|level| !level.plain.is_imitated[place])
+            {
+                by_candidate
+                    .entry(column.candidate)
+                    .or_default()
+                    .push(place);
+            }
+        }
+        let mut choices: Vec<Choice> = Vec::new();
+        let mut vectors: BTreeMap<String, Vec<(usize, Vec<usize>)>> = BTreeMap::new();
+        for (candidate, columns) in by_candidate {
+            let own = self.bench.candidate(candidate);
+            if own.is_component {
+                vectors
+                    .entry(own.name())
+                    .or_default()
+                    .push((candidate, columns));
+            } else {
+                let (name, candidates) = (own.name(), vec![candidate]);
+                choices.push(Choice {
+                    name,
+                    candidates,
+                    columns,
+                });
+            }
+        }
+        for (name, components) in vectors {
+            for some in 1..1_usize << components.len().min(TOGETHER) {
+                let own = (0..components.len()).filter(|place| some >> place & 1 == 1);
+                let own = own.map(|place| &components[place]);
+                choices.push(Choice {
+                    name: name.clone(),
+                    candidates: own.clone().map(|(candidate, _)| *candidate).collect(),
+                    columns: own.flat_map(|(_, columns)| columns.clone()).collect(),
+                });
+            }
+        }
+        choices
+    }
+
+    /// All sets of at most three choices that have sizes on their side.
+    fn all(&self) -> Vec<Set> {
+        let mut sets: Vec<Set> = Vec::new();
+        let mut best = vec![f64::NEG_INFINITY; self.choices.len()];
+        for i in 0..self.choices.len() {
+            let set = self.set(&[i]);
+            best[i] = set
+                .as_ref()
+                .map_or(f64::NEG_INFINITY, |set| set.log_posterior);
+            sets.extend(set);
+        }
+        for i in 0..self.choices.len() {
+            for j in i + 1..self.choices.len() {
+                let Some(set) = self.set(&[i, j]) else {
+                    continue;
+                };
+                for place in [i, j] {
+                    best[place] = best[place].max(set.log_posterior);
+                }
+                sets.push(set);
+            }
+        }
+        let mut leading: Vec<usize> = (0..self.choices.len()).collect();
+        leading.sort_by(|&a, &b| best[b].total_cmp(&best[a]));
+        leading.truncate(MOST_CHOICES);
+        leading.sort_unstable();
+        let threes = in_parallel(leading.clone(), |i| {
+            let mut own = Vec::new();
+            for (place, &j) in leading.iter().enumerate().filter(|(_, j)| **j > i) {
+                let others = leading[place + 1..].iter();
+                own.extend(others.filter_map(|&k| self.set(&[i, j, k])));
+            }
+            own
+        });
+        sets.extend(threes.into_iter().flatten());
+        sets
+    }
+
+    /// A set of choices with different names, at the level where it is most probable.
+    fn set(&self, choices: &[usize]) -> Option<Set> {
+        let choices: Vec<&Choice> = choices.iter().map(|&place| &self.choices[place]).collect();
+        let of_fixed = |choice: &&Choice| {
+            let mut fixed = self.fixed.iter();
+            fixed.any(|&own| self.bench.candidate(own).name() == choice.name)
+        };
+        let is_twice =
+            (1..choices.len()).any(|i| choices[..i].iter().any(|own| own.name == choices[i].name));
+        if is_twice || choices.iter().any(of_fixed) {
+            return None;
+        }
+        let columns: Vec<usize> = choices.iter().flat_map(|own| own.columns.clone()).collect();
+        // A parameter scales what members do: where one is missing, its slope is another.
+        let lacks = |member: &usize| {
+            let mut own = choices.iter();
+            !self.fixed.contains(member) && !own.any(|own| own.candidates.contains(member))
+        };
+        let has_parameter = columns
+            .iter()
+            .any(|&column| self.columns[column].known.is_some());
+        if has_parameter && self.members.iter().any(lacks) {
+            return None;
+        }
+        let effects = choices.len() + self.fixed.len();
+        let valued = self
+            .levels
+            .iter()
+            .filter_map(|level| Some((level, self.value(level, &columns, effects)?)));
+        let (level, (value, told, solved)) = valued.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+        let mut members: Vec<usize> = choices
+            .iter()
+            .flat_map(|own| own.candidates.clone())
+            .collect();
+        let sizes = members.iter().map(|&candidate| {
+            let count = directions(self.bench, candidate).len();
+            let [mut sizes, mut deviations] = [vec![0.0; count], vec![0.0; count]];
+            for (place, &column) in columns.iter().enumerate() {
+                let column = &self.columns[column];
+                if column.candidate == candidate {
+                    sizes[column.direction] = solved.sizes[place];
+                    deviations[column.direction] = solved.deviations[place];
+                }
+            }
+            (candidate, sizes, deviations)
+        });
+        let sizes = sizes.collect();
+        members.extend(&self.fixed);
+        members.sort_unstable();
+        Some(Set {
+            members,
+            sizes,
+            log_posterior: value + self.offset,
+            told_by_inputs: told,
+            levels: level.scale,
+            starts: vec![Vec::new()],
+        })
+    }
+
+    /// Logarithm of the probability of some columns up to a constant, what inputs tell of it, and their best sizes;
+    /// nothing where a size is on the wrong side, or none at all.
+    fn value(
+        &self,
+        level: &Level,
+        columns: &[usize],
+        effects: usize,
+    ) -> Option<(f64, f64, Solved)> {
+        let solved = level.plain.solved(columns)?;
+        let is_wrong = |(place, &column): (usize, &usize)| {
+            self.columns[column].is_positive && solved.sizes[place] <= 0.0
+        };
+        if columns.iter().enumerate().any(is_wrong) {
+            return None;
+        }
+        let beyond = level.beyond.as_ref().map(|beyond| {
+            let gain = beyond.solved(columns).map_or(0.0, |solved| solved.gain);
+            (solved.gain - gain).clamp(0.0, level.for_kicks)
+        });
+        let told = beyond.unwrap_or(0.0);
+        let mut value = level.plain.log_likelihood + solved.gain - told + solved.log_volume;
+        for (place, &column) in columns.iter().enumerate() {
+            let Column {
+                is_positive, known, ..
+            } = self.columns[column];
+            value -= if let Some(deviation) = known {
+                deviation.ln() + 0.5 * TAU.ln()
+            } else {
+                let sides = if is_positive { 1.0 } else { 2.0 };
+                let size = solved.sizes[place].abs().max(solved.deviations[place]);
+                let price = self.columns[column].unknown.map_or(0.0, |unknown| {
+                    price(self.bench, unknown, solved.sizes[place])
+                });
+                (size * sides * LN_1000).ln() + price
+            };
+        }
+        value += self
+            .prior
+            .get(effects)
+            .copied()
+            .unwrap_or(f64::NEG_INFINITY);
+        Some((value, told, solved))
+    }
+
+    /// The fit with one candidate more that brings a coordinate: such have no slopes.
+    fn with_coordinates(
+        &self,
+        fitted: &Fitted,
+        log_posterior: f64,
+    ) -> Result<Vec<Set>, DiagnoseError> {
+        let bench = self.bench;
+        let for_kicks = self.levels.first().map_or(0.0, |level| level.for_kicks);
+        let own = super::prior::effects(bench, &fitted.members);
+        let singles = (0..self.choices.len()).filter_map(|place| {
+            let level = self.levels.first()?;
+            Some(level.plain.solved(&self.choices[place].columns)?.gain)
+        });
+        let best = singles.fold(0.0, f64::max);
+        let list = augmented::screened((bench, fitted), for_kicks, best)?;
+        let set = |one: Screened| {
+            let mut members = fitted.members.clone();
+            members.push(one.candidate);
+            members.sort_unstable();
+            let more = prior(bench.effects, own + 1) - prior(bench.effects, own);
+            Set {
+                members,
+                log_posterior: log_posterior + one.gain - occam(one.gain) + more,
+                told_by_inputs: fitted.evidence.told_by_inputs + one.told_by_inputs,
+                levels: one.levels,
+                sizes: vec![(one.candidate, one.sizes, one.deviations)],
+                starts: one.starts,
+            }
+        };
+        Ok(list.into_iter().map(set).collect())
+    }
+}
+
+/// Whether nothing can be said of a fit without a member by its slopes alone.
+pub(super) fn is_fixed(bench: &Bench<'_>, member: usize) -> bool {
+    let candidate = bench.candidate(member);
+    candidate.brings.is_some() || matches!(candidate.acts, Acts::Slow(_))
+}
+
+/// The columns of all candidates that have slopes, with their directions.
+fn columns(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    (estimation, values): (&Estimation<'_>, &[f64]),
+) -> Result<(Vec<Column>, Vec<Direction>), DiagnoseError> {
+    let (setup, layout) = (estimation.setup(), estimation.layout());
+    let at = |list: &[usize], input: usize| list.iter().position(|own| *own == input);
+    let mut list: Vec<Column> = Vec::new();
+    let mut of_columns: Vec<Direction> = Vec::new();
+    for candidate in 0..bench.effects.candidates.len() {
+        let own = bench.candidate(candidate);
+        let is_beside = bench.imperfections.iter().any(|one| one.acts == own.acts);
+        let is_member = fitted.members.contains(&candidate);
+        // To first order a lag of a channel is its delay.
+        let is_slow = matches!(own.acts, Acts::Slow(_));
+        if own.brings.is_some() || is_slow || is_beside || is_member && is_fixed(bench, candidate) {
+            continue;
+        }
+        let sides = positive(bench, candidate);
+        for (place, direction) in directions(bench, candidate).into_iter().enumerate() {
+            let inside = match (own.acts, is_member) {
+                (Acts::Lag(input), true) => at(&setup.lagging, input).map(Unknown::Lag),
+                (Acts::Delay(input), true) => at(&setup.delayed, input).map(Unknown::InputDelay),
+                (Acts::Late(channel), true) => Some(Unknown::SensorDelay(channel)),
+                _ => None,
+            };
+            let direction = inside.map_or(direction, Direction::Value);
+            let (neutral, known) = match (own.acts, direction) {
+                (Acts::Parameter(_), Direction::Value(Unknown::Parameter(index))) => {
+                    let nominal = bench.set.parameters[index].value;
+                    let wrong = WRONG * nominal.abs().max(f64::MIN_POSITIVE);
+                    (nominal, Some(wrong))
+                }
+                (_, Direction::Value(Unknown::Scale(_))) => (1.0, None),
+                _ => (0.0, None),
+            };
+            let size = match direction {
+                Direction::Value(unknown) if is_member => values[layout.place(unknown)?] - neutral,
+                _ => 0.0,
+            };
+            list.push(Column {
+                candidate,
+                direction: place,
+                is_positive: sides.get(place).copied().unwrap_or(false),
+                unknown: match direction {
+                    Direction::Value(unknown) => Some(unknown),
+                    _ => None,
+                },
+                known,
+                size,
+            });
+            of_columns.push(direction);
+        }
+    }
+    Ok((list, of_columns))
+}
+
+/// What is free in every set: what the nominal model has, and what fixed members and the shapes of others have.
+fn nuisances(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    (of_columns, columns): (&[Direction], &[Column]),
+) -> Vec<Nuisance> {
+    let mut all = Vec::new();
+    for (place, free) in fitted.fit.free.iter().enumerate() {
+        let direction = Direction::Value(free.unknown);
+        if !moves_the_mean(direction) {
+            continue;
+        }
+        let is_own = |(column, own): (&Column, &Direction)| {
+            *own == direction && fitted.members.contains(&column.candidate)
+        };
+        let of_member = columns.iter().zip(of_columns).any(is_own);
+        if !of_member {
+            let coordinate = fitted.fit.coordinates[place];
+            all.push(Nuisance {
+                direction,
+                known: known(free, coordinate),
+            });
+            continue;
+        }
+        // A parameter that is wrong in this fit stands within its tolerance in sets that do not have it.
+        let mut wanted = bench.problem.wanted.iter();
+        if let Some(own) = wanted.find(|own| own.unknown == free.unknown) {
+            let expected = own.prior.map_or(0.0, |[value, _]| own.to_coordinate(value));
+            all.push(Nuisance {
+                direction,
+                known: known(own, expected),
+            });
+        }
+    }
+    all
+}
+
+/// How far a coordinate is off what is expected, and the slope of that by its value.
+fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
+    let [expected, deviation] = free.prior?;
+    let stretch = match free.coordinate {
+        Coordinate::Plain => 1.0,
+        Coordinate::Logarithm => free.to_value(coordinate),
+    };
+    let off = coordinate - free.to_coordinate(expected);
+    Some([off / deviation, (deviation * stretch).recip()])
+}
+
+impl Level {
+    fn of(
+        bench: &Bench<'_>,
+        scale: f64,
+        tangent: &Tangent,
+        (nuisances, columns): (&[Nuisance], &[Column]),
+    ) -> Self {
+        let (free, own) = (nuisances.len(), columns.len());
+        let kicks = tangent.slopes.ncols() - free - own;
+        // Innovations with all sizes at zero.
+        let mut rest = DVector::from_iterator(
+            tangent.samples.len(),
+            tangent.samples.iter().map(|(_, sample)| sample.whitened()),
+        );
+        for (place, column) in columns.iter().enumerate() {
+            if column.size != 0.0 {
+                rest.axpy(-column.size, &tangent.slopes.column(free + place), 1.0);
+            }
+        }
+        let mut squares = bench.weight * tangent.slopes.tr_mul(&tangent.slopes);
+        let mut scores = bench.weight * tangent.slopes.tr_mul(&rest);
+        let mut square = bench.weight * rest.norm_squared();
+        for (place, nuisance) in nuisances.iter().enumerate() {
+            if let Some([off, slope]) = nuisance.known {
+                squares[(place, place)] += slope * slope;
+                scores[place] += slope * off;
+                square += off * off;
+            }
+        }
+        let scales: f64 = (tangent.samples.iter())
+            .map(|(_, sample)| (TAU * sample.white_variance).ln())
+            .sum();
+        let log_likelihood = -0.5 * (bench.weight * scales + square);
+        let of_kicks = free + own..free + own + kicks;
+        let plain = Gram::beside(0..free, (&squares, &scores), log_likelihood);
+        let (for_kicks, beyond) = if kicks == 0 {
+            (0.0, None)
+        } else {
+            let places: Vec<usize> = (own..own + kicks).collect();
+            let for_kicks = plain.evidence(&places);
+            let order: Vec<usize> = (0..free).chain(of_kicks).chain(free..free + own).collect();
+            let turned = DMatrix::from_fn(order.len(), order.len(), |i, j| {
+                squares[(order[i], order[j])]
+            });
+            let of_turned = DVector::from_fn(order.len(), |i, _| scores[order[i]]);
+            let beyond = Gram::beside(0..free + kicks, (&turned, &of_turned), log_likelihood);
+            (for_kicks, Some(beyond))
+        };
+        let mut level = Self {
+            scale,
+            plain,
+            beyond,
+            for_kicks,
+        };
+        for gram in std::iter::once(&mut level.plain).chain(&mut level.beyond) {
+            for (place, column) in columns.iter().enumerate() {
+                if let Some(deviation) = column.known {
+                    gram.squares[(place, place)] += deviation.powi(-2);
+                }
+            }
+        }
+        level
+    }
+}

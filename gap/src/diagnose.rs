@@ -7,6 +7,7 @@
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --sets--> what every set of candidates promises, to first order
 //!          --search, compare--> the best ones fitted; evidence on equal terms
+//!          --screen--> what each candidate would gain alone: sizes that would show, what windows miss
 //!          (robots: --by_forces--> the same by forces of recorded motions, and the report)
 //!          --horizon--> whether simulations over windows agree; if not, they decide instead
 //!          --alternative--> other specs, fitted to the same recordings

@@ -30,6 +30,8 @@ fn rows_of_a_continuous_signal_are_joined_by_lines_where_that_is_asked_for() {
     let (v, x) = end(&["--interpolation", "linear"]);
     assert_close(v, 2.0, 1e-12, "v");
     assert_close(x, 4.0 / 3.0, 1e-12, "x");
+    // A spline through a straight line is that line.
+    assert_close(end(&["--interpolation", "cubic"]).0, 2.0, 1e-12, "v");
     // Held: nothing for half a second, then 1 N.
     assert_close(end(&["--interpolation", "hold"]).0, 0.75, 1e-12, "v");
     assert_close(end(&[]).0, 0.75, 1e-12, "v");

@@ -297,7 +297,7 @@ fn judged_beside<'m>(
     stage("screening the effects");
     let screen = Screen::of(&bench, &nominal)?;
     stage("fitting the effects that remain");
-    let windows = horizon::windows(whole);
+    let windows = horizon::windows(whole)?;
     let over = Bench::over(&windows, (&bench, &nominal))?;
     let known = before.and_then(|before| known(&bench, before).ok());
     let hypotheses = (nominal, known.into_iter().collect());

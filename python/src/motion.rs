@@ -79,8 +79,9 @@ fn interpolation(name: &str) -> PyResult<Interpolation> {
     match name {
         "hold" => Ok(Interpolation::Hold),
         "linear" => Ok(Interpolation::Linear),
+        "cubic" => Ok(Interpolation::Cubic),
         other => {
-            let message = format!("interpolation is `hold` or `linear`, not `{other}`");
+            let message = format!("interpolation is `hold`, `linear` or `cubic`, not `{other}`");
             Err(PyValueError::new_err(message))
         }
     }

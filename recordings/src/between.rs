@@ -1,6 +1,7 @@
-//! Inputs between rows: held, or along lines; inputs that look as if they had been sampled from a continuous
+//! Inputs between rows: held, or along lines or splines; inputs that look as if they had been sampled from a continuous
 //! signal.
 
+use appell_estimate::{EstimateError, Recording};
 use appell_spec::mechanism::Interpolation;
 
 use crate::channel::{Channel, Role};
@@ -16,82 +17,125 @@ const FAR: f64 = 16.0;
 /// Mean square of second differences over that of first ones: (ω h)² for a frequency ω, 2 for steps at random, 3 for
 /// noise. Below this a period has ten rows and more.
 const SMOOTH: f64 = 0.4;
+/// Errors of lines, relative to the size of an input, that are told.
+const BENT: f64 = 1e-3;
 
 impl Channel {
-    /// Whether it is an input that is joined by straight lines from row to row.
+    /// Whether it is an input that runs on from row to row.
     pub fn is_joined(&self) -> bool {
-        self.interpolation == Some(Interpolation::Linear)
+        !matches!(self.interpolation, None | Some(Interpolation::Hold))
+    }
+
+    /// How it runs from row to row as an input.
+    pub fn between_rows(&self) -> appell_runtime::model::Interpolation {
+        use appell_runtime::model::Interpolation as Runs;
+        match self.interpolation {
+            None | Some(Interpolation::Hold) => Runs::Hold,
+            Some(Interpolation::Linear) => Runs::Linear,
+            Some(Interpolation::Cubic) => Runs::Cubic,
+        }
     }
 }
 
 impl DataSet {
-    /// Adds a note on every input without a stated interpolation that changes smoothly.
+    /// Adds a note on every input that changes smoothly and is held without a word, or that bends between rows which
+    /// are joined by lines.
     pub(crate) fn tell_smooth_inputs(&mut self) {
         let runs: Vec<&Run> = self.runs.iter().filter(|r| r.part == Part::Fit).collect();
         for (index, channel) in self.channels.iter().enumerate() {
-            if !matches!(channel.role, Role::Input(_)) || channel.interpolation.is_some() {
+            let stated = channel.interpolation;
+            if !matches!(channel.role, Role::Input(_))
+                || !matches!(stated, None | Some(Interpolation::Linear))
+            {
                 continue;
             }
             let values = runs.iter().map(|run| &*run.values[index]);
-            let Some(late) = half_a_row(values) else {
+            let Some(off) = Smooth::of(values) else {
                 continue;
             };
-            let step = runs.iter().map(|run| run.sampling.step).fold(0.0, f64::max);
-            let message = format!(
-                "it changes smoothly from row to row, and is held from each to the next. If it was sampled from a \
-                 continuous signal, it acts half a row ({:.3} ms) late, {:.2} % of its size off, and parameters \
-                 with it: write interpolation = \"linear\" in its line; write interpolation = \"hold\" if it was held",
-                500.0 * step,
-                100.0 * late
-            );
+            let message = if stated.is_none() {
+                let step = runs.iter().map(|run| run.sampling.step).fold(0.0, f64::max);
+                format!(
+                    "it changes smoothly from row to row, and is held from each to the next. If it was sampled from a \
+                     continuous signal, it acts half a row ({:.3} ms) late, {:.2} % of its size off, and parameters \
+                     with it: write interpolation = \"linear\" or \"cubic\" in its line; write interpolation = \
+                     \"hold\" if it was held",
+                    500.0 * step,
+                    100.0 * off.held
+                )
+            } else if off.by_lines > BENT {
+                format!(
+                    "it bends between its rows: the lines that join them are {:.2} % of its size off, and parameters \
+                     with it. If it is a smooth signal, write interpolation = \"cubic\" in its line",
+                    100.0 * off.by_lines
+                )
+            } else {
+                continue;
+            };
             let finding = Finding::new(FindingKind::SmoothInput, message);
             self.findings.push(finding.of_channel(&channel.column));
         }
     }
 
     /// The same recordings with every input held at its mean from row to row.
-    #[must_use]
-    pub(crate) fn held_at_means(mut self) -> Self {
+    pub(crate) fn held_at_means(mut self) -> Result<Self, EstimateError> {
         for (index, channel) in self.channels.iter_mut().enumerate() {
             if channel.is_joined() {
+                let between = [channel.between_rows()];
                 channel.interpolation = Some(Interpolation::Hold);
                 for run in &mut self.runs {
-                    let values = &mut run.values[index];
-                    for row in 1..values.len() {
-                        values[row - 1] = 0.5 * (values[row - 1] + values[row]);
-                    }
+                    let values = std::mem::take(&mut run.values[index]);
+                    let recording = Recording::new(run.times.clone(), values, Vec::new())?;
+                    let recording = recording.interpolated(&between)?;
+                    let rows = 0..run.times.len();
+                    run.values[index] = rows.map(|row| recording.mean_inputs(row)[0]).collect();
                 }
             }
         }
-        self
+        Ok(self)
     }
 }
 
-/// The mean error of an input that acts half a row late, relative to its size, if it changes smoothly.
-pub fn half_a_row<'v>(runs: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
-    let (mut rows, mut repeated) = (0_usize, 0_usize);
-    let (mut first, mut second) = (Vec::new(), Vec::new());
-    let (mut sum, mut squares) = (0.0, 0.0);
-    for values in runs {
-        rows += values.len();
-        for pair in values.windows(2) {
-            first.push((pair[1] - pair[0]).powi(2));
-            repeated += usize::from(pair[1].to_bits() == pair[0].to_bits());
+/// Errors of an input that changes smoothly, relative to its size.
+#[derive(Debug, Clone, Copy)]
+pub struct Smooth {
+    /// Where its rows are held: it acts half a row late.
+    pub held: f64,
+    /// Where they are joined by lines.
+    pub by_lines: f64,
+}
+
+impl Smooth {
+    /// Nothing where it does not change smoothly.
+    pub fn of<'v>(runs: impl Iterator<Item = &'v [f64]>) -> Option<Self> {
+        let (mut rows, mut repeated) = (0_usize, 0_usize);
+        let (mut first, mut second) = (Vec::new(), Vec::new());
+        let (mut sum, mut squares) = (0.0, 0.0);
+        for values in runs {
+            rows += values.len();
+            for pair in values.windows(2) {
+                first.push((pair[1] - pair[0]).powi(2));
+                repeated += usize::from(pair[1].to_bits() == pair[0].to_bits());
+            }
+            for three in values.windows(3) {
+                second.push((three[2] - 2.0 * three[1] + three[0]).powi(2));
+            }
+            sum += values.iter().sum::<f64>();
+            squares += values.iter().map(|value| value * value).sum::<f64>();
         }
-        for three in values.windows(3) {
-            second.push((three[2] - 2.0 * three[1] + three[0]).powi(2));
-        }
-        sum += values.iter().sum::<f64>();
-        squares += values.iter().map(|value| value * value).sum::<f64>();
+        let count = rows as f64;
+        let (first, second) = (without_jumps(first), without_jumps(second));
+        let is_smooth = rows >= FEWEST
+            && (repeated as f64) < REPEATED * count
+            && second < SMOOTH * first
+            && first > 0.0;
+        let spread = (squares / count - (sum / count).powi(2)).max(f64::MIN_POSITIVE);
+        is_smooth.then(|| Self {
+            held: 0.5 * (first / spread).sqrt(),
+            // The mean of c s (h − s)/2 over a row, where c is the curvature.
+            by_lines: (second / spread).sqrt() / 12.0,
+        })
     }
-    let count = rows as f64;
-    let (first, second) = (without_jumps(first), without_jumps(second));
-    let is_smooth = rows >= FEWEST
-        && (repeated as f64) < REPEATED * count
-        && second < SMOOTH * first
-        && first > 0.0;
-    let spread = (squares / count - (sum / count).powi(2)).max(f64::MIN_POSITIVE);
-    is_smooth.then(|| 0.5 * (first / spread).sqrt())
 }
 
 /// The mean of squared differences without the largest ones, which are jumps of a signal that is smooth elsewhere; zero
@@ -107,25 +151,27 @@ fn without_jumps(mut squares: Vec<f64>) -> f64 {
 }
 
 #[cfg(test)]
+#[allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 mod tests {
-    use super::half_a_row;
+    use super::Smooth;
 
     #[test]
     fn a_sampled_sine_is_smooth_and_commands_are_not() {
         let rows = || (0..400).map(f64::from);
         let sine: Vec<f64> = rows().map(|row| (0.1 * row).sin()).collect();
-        let late = half_a_row([sine.as_slice()].into_iter()).unwrap_or_default();
-        assert!((late - 0.05).abs() < 1e-3, "{late}");
+        let off = Smooth::of([sine.as_slice()].into_iter()).unwrap();
+        assert!((off.held - 0.05).abs() < 1e-3, "{off:?}");
+        assert!((off.by_lines - 0.01 / 12.0).abs() < 1e-5, "{off:?}");
         // Its jumps do not hide that it is smooth between them.
         let jumping: Vec<f64> = rows()
             .map(|row| (0.1 * row).sin() + 0.5 * (0.14 * row).sin().signum())
             .collect();
-        assert!(half_a_row([jumping.as_slice()].into_iter()).is_some());
+        assert!(Smooth::of([jumping.as_slice()].into_iter()).is_some());
         let steps: Vec<f64> = rows().map(|row| (row / 10.0).floor().sin()).collect();
         // Steps at random, a new one in each row.
         let noise: Vec<f64> = rows().map(|row| (row * row).sin()).collect();
         for command in [steps, noise, vec![1.0; 400]] {
-            assert_eq!(half_a_row([command.as_slice()].into_iter()), None);
+            assert!(Smooth::of([command.as_slice()].into_iter()).is_none());
         }
     }
 }

@@ -9,7 +9,7 @@
 //!
 //! [channels]                               # every column other than the times
 //! theta = { measures = "theta", unit = "deg", noise_std = 0.05 }
-//! tau   = { input = "tau", unit = "N m" }  # held to the next row; interpolation = "linear" joins rows by lines
+//! tau   = { input = "tau", unit = "N m" }  # held to the next row; interpolation = "linear" joins rows by lines, "cubic" by a spline
 //! room  = { unit = "K" }                   # recorded, and in no model
 //! omega = { measures = "omega", unit = "rpm", unit_checked = true }   # never doubted
 //! clock = { time = true, unit = "ms" }     # the column of the times, where its name does not tell it
@@ -57,9 +57,10 @@ const CHANNEL_KEYS: [&str; 5] = [
     "interpolation",
 ];
 /// How an input may run between rows.
-const INTERPOLATIONS: [(&str, Interpolation); 2] = [
+const INTERPOLATIONS: [(&str, Interpolation); 3] = [
     ("hold", Interpolation::Hold),
     ("linear", Interpolation::Linear),
+    ("cubic", Interpolation::Cubic),
 ];
 
 /// Reads a description; `instead` replaces the mechanism that it names.
@@ -411,8 +412,7 @@ fn interpolation(
     let found = known.find(|(own, _)| *own == word);
     if found.is_none() {
         let message = format!("`{}` is no interpolation of an input", shown(&word));
-        let help =
-            "write \"hold\" where a value holds until the next row, \"linear\" for straight lines";
+        let help = "write \"hold\" where a value holds until the next row, \"linear\" for straight lines, \"cubic\" for a spline";
         fields.tell(Code::UnknownName, message, at, help);
     }
     found.map(|(_, interpolation)| *interpolation)

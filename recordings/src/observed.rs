@@ -1,7 +1,7 @@
 //! A data set as recordings for estimation: columns by the indices of a model.
 
 use appell_estimate::{EstimateError, Recording};
-use appell_runtime::model::ModelInfo;
+use appell_runtime::model::{Interpolation, ModelInfo};
 
 use appell_spec::Mechanism;
 use appell_spec::mechanism;
@@ -91,11 +91,11 @@ impl DataSet {
         };
         let inputs = info.inputs.iter().take(info.declared_inputs);
         let inputs: Vec<Option<usize>> = inputs.map(|own| input(&own.name)).collect();
-        let is_joined = |&index: &usize| {
-            let column = inputs[index];
-            column.is_some_and(|column| self.channels[column].is_joined())
-        };
-        let joined: Vec<usize> = (0..inputs.len()).filter(is_joined).collect();
+        let between = inputs.iter().map(|column| {
+            let channel = column.map(|column| &self.channels[column]);
+            channel.map_or(Interpolation::Hold, Channel::between_rows)
+        });
+        let between: Vec<Interpolation> = between.collect();
         let runs = self.runs.iter().filter(|run| run.part == part);
         runs.map(|run| {
             let rows = 0..run.times.len();
@@ -105,7 +105,7 @@ impl DataSet {
             });
             let seen = rows.flat_map(|row| measured.iter().map(move |&c| run.values[c][row]));
             let recording = Recording::new(run.times.clone(), commanded.collect(), seen.collect())?;
-            Ok(recording.joined_by_lines(&joined))
+            recording.interpolated(&between)
         })
         .collect()
     }

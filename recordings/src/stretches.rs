@@ -2,6 +2,8 @@
 
 use std::ops::Range;
 
+use appell_estimate::EstimateError;
+
 use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
@@ -43,10 +45,13 @@ impl DataSet {
 
     /// Windows of so many seconds, about `most` of them, spread evenly over all runs, each with no more than
     /// about `rows` rows.
-    #[must_use]
-    pub fn windows(&self, length: f64, (most, rows): (usize, usize)) -> Self {
+    pub fn windows(
+        &self,
+        length: f64,
+        (most, rows): (usize, usize),
+    ) -> Result<Self, EstimateError> {
         // Long rows have the mean of an input, not its value at their beginning.
-        let held = self.clone().held_at_means();
+        let held = self.clone().held_at_means()?;
         let set = &held;
         let ends = |run: &Run| (run.times[0], run.times[run.times.len() - 1]);
         let total: f64 = set.runs.iter().map(ends).map(|(from, to)| to - from).sum();
@@ -66,7 +71,7 @@ impl DataSet {
         });
         let runs = runs.filter(|run| run.times.len() > 1);
         let runs = runs.collect();
-        Self { runs, ..held }
+        Ok(Self { runs, ..held })
     }
 
     /// A run with no more than about so many rows: what is measured in those that remain, and the mean of each

@@ -471,12 +471,12 @@ fn inputs_are_joined_by_lines_where_the_description_says_so() {
         let line = format!("tau = {{ input = \"tau\", unit = \"N m\"{key} }}");
         read(&line).unwrap().channels[1].is_joined()
     };
-    assert!(joined(", interpolation = \"linear\""));
+    assert!(joined(", interpolation = \"linear\"") && joined(", interpolation = \"cubic\""));
     assert!(!joined(", interpolation = \"hold\"") && !joined(""));
     for (line, told) in [
         (
-            "tau = { input = \"tau\", unit = \"N m\", interpolation = \"cubic\" }",
-            "`cubic` is no interpolation of an input",
+            "tau = { input = \"tau\", unit = \"N m\", interpolation = \"quintic\" }",
+            "`quintic` is no interpolation of an input",
         ),
         (
             "tau = { unit = \"N m\", interpolation = \"linear\" }",
@@ -490,25 +490,37 @@ fn inputs_are_joined_by_lines_where_the_description_says_so() {
 
 #[test]
 fn an_input_that_changes_smoothly_is_told_with_what_half_a_row_does() {
-    let mut text = String::from("t,theta,tau\n");
-    for row in 0..400 {
-        let t = 0.005 * f64::from(row);
-        writeln!(text, "{t},{},{}", (3.0 * t).sin(), 2.0 * (20.0 * t).sin()).unwrap();
-    }
+    let rows = |every: usize| {
+        let mut text = String::from("t,theta,tau\n");
+        for row in (0..400).step_by(every) {
+            let t = 0.005 * f64::from(row);
+            writeln!(text, "{t},{},{}", (3.0 * t).sin(), 2.0 * (20.0 * t).sin()).unwrap();
+        }
+        text
+    };
     let told = |set: &DataSet| {
         let mut findings = set.findings.iter();
         let found = findings.find(|finding| finding.kind == FindingKind::SmoothInput);
         found.map(|finding| finding.message.clone())
     };
-    let folder = one_run(text);
+    let folder = one_run(rows(1));
     let message = told(&folder.read().unwrap()).unwrap();
     // ω h / 2 of its size.
-    for part in ["2.500 ms", "4.9", "interpolation = \"linear\""] {
+    for part in ["2.500 ms", "4.9", "\"linear\" or \"cubic\""] {
         assert!(message.contains(part), "{message}");
     }
     let stated = SWING.replace("\"N m\"", "\"N m\", interpolation = \"hold\"");
     folder.write("recording.toml", pendulum(&stated, &["run.csv"], &[]));
     assert_eq!(told(&folder.read().unwrap()), None);
+    // Lines are (ω h)²/12 of the size off.
+    let stated = SWING.replace("\"N m\"", "\"N m\", interpolation = \"linear\"");
+    folder.write("recording.toml", pendulum(&stated, &["run.csv"], &[]));
+    assert_eq!(told(&folder.read().unwrap()), None);
+    folder.write("run.csv", rows(4));
+    let message = told(&folder.read().unwrap()).unwrap();
+    for part in ["1.3", "interpolation = \"cubic\""] {
+        assert!(message.contains(part), "{message}");
+    }
     folder.write("recording.toml", pendulum(SWING, &["run.csv"], &[]));
     folder.write("run.csv", swing(400, 1, 1e-3));
     assert_eq!(told(&folder.read().unwrap()), None);

@@ -1,10 +1,11 @@
-//! Inputs along straight lines from row to row: the likelihood, its gradient and its tangent.
+//! Inputs along straight lines and splines from row to row: the likelihood, its gradient and its tangent.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
 use appell_estimate::{Direction, Estimation, Measured, Recording, Setup, Unknown};
+use appell_runtime::model::Interpolation;
 
 /// Two forces on a carriage with a spring that hardens, and an accelerometer that feels them at once.
 const CARRIAGE: &str = r#"
@@ -38,13 +39,15 @@ felt = { value = "(F + B - k*x - h*x*x*x - c*v)/m", unit = "m/s^2" }
 /// Differences of order four of sums of some hundred terms.
 const TOLERANCE: f64 = 1e-6;
 
+const RUNNING_ON: [Interpolation; 2] = [Interpolation::Linear, Interpolation::Cubic];
+
 fn carriage() -> JitModel {
     let program = appell_codegen::compile("carriage.toml", CARRIAGE, &FunctionKind::ALL).unwrap();
     JitModel::new(&program).unwrap()
 }
 
 /// Rows `step` s apart; what is measured there is smooth, not what the model does.
-fn recording(rows: u32, step: f64, channels: usize) -> Recording {
+fn recording(rows: u32, step: f64, channels: usize, between: Interpolation) -> Recording {
     let times: Vec<f64> = (0..rows).map(|row| step * f64::from(row)).collect();
     let inputs = times.iter();
     let inputs = inputs.flat_map(|t| [(9.0 * t).sin(), 0.6 * (13.0 * t).cos()]);
@@ -55,7 +58,7 @@ fn recording(rows: u32, step: f64, channels: usize) -> Recording {
     });
     let (inputs, measured) = (inputs.collect(), measured.collect());
     let recording = Recording::new(times, inputs, measured).unwrap();
-    recording.joined_by_lines(&[0, 1])
+    recording.interpolated(&[between; 2]).unwrap()
 }
 
 fn values(estimation: &Estimation<'_>, sizes: &[(Unknown, f64)]) -> Vec<f64> {
@@ -80,6 +83,12 @@ fn values(estimation: &Estimation<'_>, sizes: &[(Unknown, f64)]) -> Vec<f64> {
 
 #[test]
 fn the_gradient_is_exact_in_delays_of_inputs_and_channels() {
+    for between in RUNNING_ON {
+        exact_in_delays(between);
+    }
+}
+
+fn exact_in_delays(between: Interpolation) {
     let model = carriage();
     let seen = [Measured::State(1), Measured::Output(0), Measured::Output(0)];
     let mut setup = Setup::new(&model, &seen);
@@ -87,7 +96,7 @@ fn the_gradient_is_exact_in_delays_of_inputs_and_channels() {
     setup.lagging = vec![1];
     setup.delayed = vec![0, 1];
     setup.longest_step = 0.006;
-    let recordings = [recording(60, 0.01, 3)];
+    let recordings = [recording(60, 0.01, 3, between)];
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     let layout = estimation.layout();
     let values = values(
@@ -129,12 +138,18 @@ fn the_gradient_is_exact_in_delays_of_inputs_and_channels() {
 
 #[test]
 fn the_tangent_knows_what_a_late_input_does() {
+    for between in RUNNING_ON {
+        known_when_late(between);
+    }
+}
+
+fn known_when_late(between: Interpolation) {
     let model = carriage();
     let mut setup = Setup::new(&model, &[Measured::State(1), Measured::Output(0)]);
     setup.longest_step = 0.002;
     // Without disturbances and uncertainty of the start the gains are zero, and the tangent is the derivative.
     setup.disturbances.clear();
-    let recordings = [recording(40, 0.02, 2)];
+    let recordings = [recording(40, 0.02, 2, between)];
     let residuals = |delay: f64| {
         let mut setup = setup.clone();
         setup.delayed = vec![0];
@@ -173,12 +188,18 @@ fn the_tangent_knows_what_a_late_input_does() {
 }
 
 #[test]
-fn rows_far_apart_do_what_a_fine_table_of_the_lines_does() {
+fn rows_far_apart_do_what_a_fine_table_of_the_curves_does() {
+    for between in RUNNING_ON {
+        as_a_fine_table(between);
+    }
+}
+
+fn as_a_fine_table(between: Interpolation) {
     let model = carriage();
     let mut setup = Setup::new(&model, &[Measured::State(1)]);
     // Both take the same steps between their rows.
     setup.longest_step = 2.5e-3;
-    let coarse = recording(40, 0.05, 1);
+    let coarse = recording(40, 0.05, 1, between);
     let fine = {
         let parts = 50_u32;
         let times: Vec<f64> = (0..=39 * parts)
@@ -187,9 +208,11 @@ fn rows_far_apart_do_what_a_fine_table_of_the_lines_does() {
         let value = |t: f64, input: usize| {
             let next = coarse.times().partition_point(|own| *own <= t).min(39);
             let row = next - 1;
-            coarse.inputs(row)[input] + coarse.slope(row, input) * (t - coarse.times()[row])
+            let [c0, c1, c2, c3] = coarse.polynomial(row, input);
+            let t = t - coarse.times()[row];
+            c0 + t * (c1 + t * (c2 + t * c3))
         };
-        // Means of the lines, held.
+        // Means of the curves, held.
         let half = 0.5 * 0.05 / f64::from(parts);
         let inputs = times.iter();
         let inputs = inputs.flat_map(|t| [value(t + half, 0), value(t + half, 1)]);

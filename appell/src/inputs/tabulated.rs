@@ -3,7 +3,7 @@
 use std::io::BufRead;
 use std::path::Path;
 
-use appell_recordings::between::half_a_row;
+use appell_recordings::between::Smooth;
 use appell_recordings::csv::Rows;
 use appell_recordings::limits::MAX_MISTAKES;
 use appell_recordings::{DataError, MANIFEST, Role};
@@ -74,7 +74,7 @@ pub fn read(
         .iter()
         .filter(|_| !is_stated)
         .filter_map(|column| {
-            let late = half_a_row([column.values.as_slice()].into_iter())?;
+            let late = Smooth::of([column.values.as_slice()].into_iter())?.held;
             Some((
                 setup.mechanism.inputs[InputId::new(column.input)]
                     .label
@@ -156,11 +156,7 @@ fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Colu
                 position: 0,
                 input,
                 scale: 1.0,
-                interpolation: if channel.is_joined() {
-                    Interpolation::Linear
-                } else {
-                    Interpolation::Hold
-                },
+                interpolation: channel.between_rows(),
                 values,
             });
         }

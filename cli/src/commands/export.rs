@@ -5,7 +5,6 @@ use std::path::PathBuf;
 use appell::fmu::{Fmu, InputsOfStep, Options};
 use appell::{Source, files};
 
-use super::simulate::Between;
 use crate::destinations::extension;
 use crate::failure::Error;
 use crate::{output, progress};
@@ -37,10 +36,17 @@ pub(crate) struct Export {
         hide_possible_values = true,
         value_name = "hold|linear"
     )]
-    interpolation: Between,
+    interpolation: WithinStep,
     /// The file [default: NAME.fmu, with the name of the mechanism]
     #[arg(long, short, value_name = "NAME.fmu")]
     out: Option<PathBuf>,
+}
+
+/// Inputs within a communication step.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum WithinStep {
+    Hold,
+    Linear,
 }
 
 impl Export {
@@ -60,8 +66,8 @@ impl Export {
         let fmu = source.fmu(&Options {
             sources_only: self.sources_only,
             inputs: match self.interpolation {
-                Between::Hold => InputsOfStep::Held,
-                Between::Linear => InputsOfStep::Lines,
+                WithinStep::Hold => InputsOfStep::Held,
+                WithinStep::Linear => InputsOfStep::Lines,
             },
         });
         spinner.finish_and_clear();

@@ -125,11 +125,13 @@ enum Integrator {
 
 /// Inputs between the rows of a table.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-pub(super) enum Between {
+enum Between {
     /// Held until the next row, as a drive does with a command
     Hold,
     /// Straight lines from row to row, for rows of a continuous signal
     Linear,
+    /// A natural cubic spline through the rows, for rows of a smooth signal
+    Cubic,
 }
 
 impl Between {
@@ -137,6 +139,7 @@ impl Between {
         match self {
             Self::Hold => Interpolation::Hold,
             Self::Linear => Interpolation::Linear,
+            Self::Cubic => Interpolation::Cubic,
         }
     }
 }

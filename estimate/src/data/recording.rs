@@ -2,20 +2,25 @@
 
 use std::ops::Range;
 
+use appell_runtime::Signal;
+use appell_runtime::model::{Interpolation, SignalTable};
+
 use crate::EstimateError;
 
 /// One uninterrupted recording, in SI.
 ///
 /// Measurements are taken at the times of their rows. An input is held from the time of its row to
-/// that of the next, or joined to it by a straight line. Times may be irregular.
+/// that of the next, or joined to it by a straight line or a natural cubic spline. Times may be irregular.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Recording {
     times: Vec<f64>,
     inputs: Vec<f64>,
     measurements: Vec<f64>,
     columns: [usize; 2],
-    /// Whether each input is joined by lines.
-    joined: Vec<bool>,
+    /// How each input runs from row to row.
+    interpolation: Vec<Interpolation>,
+    /// Second derivatives at the rows of each input that is a spline, nothing for others.
+    curvatures: Vec<Vec<f64>>,
 }
 
 impl Recording {
@@ -69,7 +74,8 @@ impl Recording {
             times,
             inputs,
             measurements,
-            joined: vec![false; columns[0]],
+            interpolation: vec![Interpolation::Hold; columns[0]],
+            curvatures: vec![Vec::new(); columns[0]],
             columns,
         })
     }
@@ -89,36 +95,57 @@ impl Recording {
         self.columns[1]
     }
 
-    /// The same recording with some inputs joined by straight lines from row to row.
-    #[must_use]
-    pub fn joined_by_lines(mut self, inputs: &[usize]) -> Self {
-        for (input, joined) in self.joined.iter_mut().enumerate() {
-            *joined = inputs.contains(&input);
+    /// The same recording with inputs that run on between rows: one interpolation for each, held where none is given.
+    pub fn interpolated(mut self, inputs: &[Interpolation]) -> Result<Self, EstimateError> {
+        for input in 0..self.columns[0] {
+            let interpolation = inputs.get(input).copied().unwrap_or(Interpolation::Hold);
+            self.interpolation[input] = interpolation;
+            self.curvatures[input] = if interpolation == Interpolation::Cubic {
+                let rows = 0..self.times.len();
+                let values: Vec<f64> = rows.map(|row| self.inputs(row)[input]).collect();
+                let signal = Signal::new(&SignalTable {
+                    name: format!("input {input}").into(),
+                    times: self.times.clone().into(),
+                    values: values.into(),
+                    interpolation,
+                })?;
+                signal.curvatures().to_vec()
+            } else {
+                Vec::new()
+            };
         }
-        self
+        Ok(self)
     }
 
-    /// Whether an input is joined by lines.
+    /// Whether an input runs on between rows.
     pub(crate) fn is_joined(&self, input: usize) -> bool {
-        self.joined[input]
+        self.interpolation[input] != Interpolation::Hold
     }
 
-    /// The slope of an input from the time of a row on: zero where it is held.
-    pub fn slope(&self, row: usize, input: usize) -> f64 {
-        if !self.joined[input] || row + 1 >= self.times.len() {
-            return 0.0;
+    /// An input from the time of a row to that of the next, as the coefficients of the powers of the time since that
+    /// row.
+    pub fn polynomial(&self, row: usize, input: usize) -> [f64; 4] {
+        let value = self.inputs(row)[input];
+        if !self.is_joined(input) || row + 1 >= self.times.len() {
+            return [value, 0.0, 0.0, 0.0];
         }
-        let change = self.inputs(row + 1)[input] - self.inputs(row)[input];
-        change / (self.times[row + 1] - self.times[row])
+        let step = self.times[row + 1] - self.times[row];
+        let chord = (self.inputs(row + 1)[input] - value) / step;
+        let curvatures = &self.curvatures[input];
+        let [left, right] = [row, row + 1].map(|row| curvatures.get(row).copied().unwrap_or(0.0));
+        let slope = chord - step * (2.0 * left + right) / 6.0;
+        [value, slope, 0.5 * left, (right - left) / (6.0 * step)]
     }
 
     /// Means of the inputs from the time of a row to that of the next.
     pub fn mean_inputs(&self, row: usize) -> Vec<f64> {
         let next = (row + 1).min(self.times.len() - 1);
-        let half = 0.5 * (self.times[next] - self.times[row]);
-        let inputs = self.inputs(row).iter().enumerate();
-        let mean = |(input, value): (usize, &f64)| value + half * self.slope(row, input);
-        inputs.map(mean).collect()
+        let step = self.times[next] - self.times[row];
+        let mean = |input: usize| {
+            let [c0, c1, c2, c3] = self.polynomial(row, input);
+            c0 + step * (c1 / 2.0 + step * (c2 / 3.0 + step * c3 / 4.0))
+        };
+        (0..self.columns[0]).map(mean).collect()
     }
 
     /// The inputs at the time of a row, and from then on where they are held.
@@ -140,7 +167,10 @@ impl Recording {
             inputs: self.inputs[rows.start * inputs..rows.end * inputs].to_vec(),
             measurements: self.measurements[rows.start * channels..rows.end * channels].to_vec(),
             columns: self.columns,
-            joined: self.joined.clone(),
+            interpolation: self.interpolation.clone(),
+            curvatures: (self.curvatures.iter())
+                .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
+                .collect(),
         }
     }
 
@@ -148,7 +178,8 @@ impl Recording {
     pub fn with_measurements(&self, measurements: Vec<f64>) -> Result<Self, EstimateError> {
         let same = Self::new(self.times.clone(), self.inputs.clone(), measurements)?;
         Ok(Self {
-            joined: self.joined.clone(),
+            interpolation: self.interpolation.clone(),
+            curvatures: self.curvatures.clone(),
             ..same
         })
     }

@@ -148,15 +148,14 @@ impl Backward<'_, '_> {
         for moved in advance.moved_by.into_iter().flatten() {
             gradient[moved.delay] += moved.length * by_h + moved.start * by.start;
         }
-        self.late_inputs(on.held, gradient);
+        self.late_inputs(gradient);
     }
 
-    /// A later input has the value of its line earlier.
-    fn late_inputs(&self, held: &[f64], gradient: &mut [f64]) {
+    /// What delays of the inputs do between rows.
+    fn late_inputs(&self, gradient: &mut [f64]) {
         let StateSpace { setup, layout, .. } = self.pass.system;
         for (index, &input) in setup.delayed.iter().enumerate() {
-            let by_value = self.inputs[input];
-            gradient[layout.input_delay(index)] -= command::slope(held, input) * by_value;
+            gradient[layout.input_delay(index)] += self.inputs[input];
         }
     }
 
@@ -310,12 +309,15 @@ impl Backward<'_, '_> {
             let weights = [self.mu.as_slice(), &self.slopes];
             let plant = pass.system.plant;
             plant.output_adjoint(place, &mut self.scratch, weights, &mut sums);
-            self.late_inputs(held, gradient);
             let channel = first.innovation.channel;
             if pass.system.setup.channels[channel].longest_delay.is_some() {
                 let delay = pass.system.layout.sensor_delay(channel);
-                gradient[delay] -= command::by_time(held, &self.inputs);
+                gradient[delay] -= command::by_time(held, &self.inputs, t);
             }
+            for (input, by) in self.inputs.iter_mut().enumerate() {
+                *by *= -command::slope(held, input, t);
+            }
+            self.late_inputs(gradient);
         }
     }
 

@@ -66,6 +66,9 @@ pub struct Tangent {
     /// A row for each sample; a column for each direction, then for each shape along the first
     /// disturbance or channel, and so on.
     pub slopes: DMatrix<f64>,
+    /// For each shape along a disturbance, in the order of their columns: the mean square of what it adds in a
+    /// row, in standard deviations of the filter before that row.
+    pub added_squares: Vec<f64>,
 }
 
 impl Estimation<'_> {
@@ -99,13 +102,21 @@ impl Estimation<'_> {
             for &action in &actions {
                 forward.act(action)?;
             }
-            Ok((forward.pass.samples, forward.rows))
+            Ok((forward.pass.samples, forward.rows, forward.added_squares))
         })?;
         let mut samples: Vec<(usize, Innovation)> = Vec::new();
         let mut rows: Vec<f64> = Vec::new();
-        for (run, (own, mut own_rows)) in runs.into_iter().enumerate() {
+        let mut added_squares = vec![0.0; candidates];
+        for (run, (own, mut own_rows, squares)) in runs.into_iter().enumerate() {
             samples.extend(own.iter().map(|sample| (run, sample.innovation)));
             rows.append(&mut own_rows);
+            add_scaled(1.0, &squares, &mut added_squares);
+        }
+        let steps: usize = (self.recordings().iter())
+            .map(|recording| recording.times().len() - 1)
+            .sum();
+        for square in &mut added_squares {
+            *square /= steps.max(1) as f64;
         }
         let mut order: Vec<usize> = (0..samples.len()).collect();
         order.sort_by_key(|&place| {
@@ -115,6 +126,7 @@ impl Estimation<'_> {
         Ok(Tangent {
             samples: order.iter().map(|&place| samples[place]).collect(),
             slopes: by_columns(&rows, columns, &order),
+            added_squares,
         })
     }
 }
@@ -158,6 +170,9 @@ struct Forward<'p, 'a> {
     switched: bool,
     /// Derivatives of the whitened innovations.
     rows: Vec<f64>,
+    /// The mean time between rows in s.
+    interval: f64,
+    added_squares: Vec<f64>,
 }
 
 impl<'p, 'a> Forward<'p, 'a> {
@@ -180,6 +195,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             .collect();
         let info = setup.model.info();
         let zeros = |len| vec![0.0; len];
+        let directions_len = directions.len();
         let mut z = zeros(n * columns);
         for (column, direction) in directions.iter().enumerate() {
             if let Direction::Value(Unknown::Initial { run, state }) = *direction
@@ -205,6 +221,12 @@ impl<'p, 'a> Forward<'p, 'a> {
             earlier: pass.held.clone(),
             switched: false,
             rows: Vec::new(),
+            interval: {
+                let times = estimation.recordings()[pass.run].times();
+                let whole = times.last().zip(times.first());
+                whole.map_or(0.0, |(last, first)| last - first) / (times.len() - 1).max(1) as f64
+            },
+            added_squares: zeros(columns - directions_len),
             pass,
         }
     }
@@ -297,16 +319,27 @@ impl<'p, 'a> Forward<'p, 'a> {
                 .step_by(shapes.count.max(1))
                 .enumerate()
             {
+                let mut square = 0.0_f64;
                 for i in 0..n {
-                    let along = half * on.columns[i * disturbances + j];
+                    let column = on.columns[i * disturbances + j];
                     let row = &mut self.added[i * columns + first..][..shapes.count];
-                    add_scaled(along, &self.tried, row);
+                    add_scaled(half * column, &self.tried, row);
+                    let root = &on.root[i * n..(i + 1) * n];
+                    let variance = dot(root, root);
+                    if variance > 0.0 {
+                        square = square.max(column * column / variance);
+                    }
+                }
+                let first = first - self.directions.len();
+                let added = &mut self.added_squares[first..][..shapes.count];
+                for (added, tried) in added.iter_mut().zip(&self.tried) {
+                    *added += advance.h * self.interval * tried * tried * square;
                 }
             }
         }
         for (column, direction) in self.directions.iter().enumerate() {
             if let Direction::LateInput(input) = *direction {
-                let slope = command::slope(on.held, input);
+                let slope = command::slope(on.held, input, place.t);
                 if slope != 0.0 {
                     let slopes: (&mut [f64], &mut [f64]) =
                         (&mut self.by_states, &mut self.by_inputs);
@@ -429,10 +462,10 @@ impl<'p, 'a> Forward<'p, 'a> {
                             .system
                             .plant
                             .rates(place, &mut self.scratch, &mut self.rates);
-                        dot(c, &self.rates) + command::by_time(&self.earlier, &by_inputs)
+                        dot(c, &self.rates) + command::by_time(&self.earlier, &by_inputs, t)
                     }
                     Direction::LateInput(input) if !by_inputs.is_empty() => {
-                        by_inputs[input] * command::slope(&self.pass.held, input)
+                        by_inputs[input] * command::slope(&self.pass.held, input, t)
                     }
                     _ => 0.0,
                 };

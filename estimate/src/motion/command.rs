@@ -1,46 +1,53 @@
-//! The declared inputs between rows: held, or along straight lines.
+//! The declared inputs between rows: held, or along lines or cubics.
 //!
-//! On tapes an input is three numbers: its value at a time, its slope, that time.
+//! On tapes an input is the time from which it counts, and the coefficients of the powers of the time since then.
 
 use crate::data::layout::Layout;
 use crate::data::recording::Recording;
 use crate::data::setup::Setup;
 
 /// Numbers of an input.
-pub(crate) const NUMBERS: usize = 3;
+pub(crate) const NUMBERS: usize = 5;
 
 /// The value of an input at a time.
 pub(crate) fn value(commands: &[f64], input: usize, t: f64) -> f64 {
-    let [value, slope, since] = numbers(commands, input);
-    value + slope * (t - since)
+    let [since, c0, c1, c2, c3] = numbers(commands, input);
+    let t = t - since;
+    c0 + t * (c1 + t * (c2 + t * c3))
 }
 
-/// Its slope.
-pub(crate) fn slope(commands: &[f64], input: usize) -> f64 {
-    numbers(commands, input)[1]
+/// Its slope at a time.
+pub(crate) fn slope(commands: &[f64], input: usize, t: f64) -> f64 {
+    let [since, _, c1, c2, c3] = numbers(commands, input);
+    let t = t - since;
+    c1 + t * (2.0 * c2 + t * 3.0 * c3)
 }
 
-/// The time from which its line counts.
+/// The time from which it counts.
 pub(crate) fn since(commands: &[f64], input: usize) -> f64 {
-    numbers(commands, input)[2]
+    numbers(commands, input)[0]
 }
 
 fn numbers(commands: &[f64], input: usize) -> [f64; NUMBERS] {
     let own = &commands[input * NUMBERS..(input + 1) * NUMBERS];
-    [own[0], own[1], own[2]]
+    [own[0], own[1], own[2], own[3], own[4]]
 }
 
 /// All inputs before the first row: constant.
 pub(crate) fn at_start(recording: &Recording) -> Vec<f64> {
     let start = recording.times()[0];
     let inputs = recording.inputs(0).iter();
-    inputs.flat_map(|&value| [value, 0.0, start]).collect()
+    inputs
+        .flat_map(|&value| [start, value, 0.0, 0.0, 0.0])
+        .collect()
 }
 
-/// The value of all inputs times the gradient with respect to it, for a change of time.
-pub(crate) fn by_time(commands: &[f64], by_inputs: &[f64]) -> f64 {
+/// The gradient with respect to time by that with respect to all inputs.
+pub(crate) fn by_time(commands: &[f64], by_inputs: &[f64], t: f64) -> f64 {
     let inputs = by_inputs.iter().enumerate();
-    inputs.map(|(input, by)| by * slope(commands, input)).sum()
+    inputs
+        .map(|(input, by)| by * slope(commands, input, t))
+        .sum()
 }
 
 /// A change of one delayed input, or of all others, at a row.
@@ -62,12 +69,13 @@ impl Switch {
         let t = recording.times()[self.row];
         for (input, own) in commands.chunks_exact_mut(NUMBERS).enumerate() {
             let delay = setup.delayed.iter().position(|&delayed| delayed == input);
-            let value = recording.inputs(self.row)[input];
             if self.input.map_or(delay.is_none(), |only| only == input) {
                 let late = delay.map_or(0.0, |index| values[layout.input_delay(index)]);
-                own.copy_from_slice(&[value, recording.slope(self.row, input), t + late]);
+                own[0] = t + late;
+                own[1..].copy_from_slice(&recording.polynomial(self.row, input));
             } else if self.first && self.input.is_none() {
-                own.copy_from_slice(&[value, 0.0, t]);
+                let value = recording.inputs(self.row)[input];
+                own.copy_from_slice(&[t, value, 0.0, 0.0, 0.0]);
             }
         }
     }

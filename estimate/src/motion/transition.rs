@@ -235,7 +235,7 @@ pub(crate) struct ByEnds {
 }
 
 /// The gradient of that scalar: added to `sums`, where `sums.z` is that of the state before the
-/// step.
+/// step and `sums.u` that of delays of the declared inputs.
 pub(crate) fn adjoint(
     plant: &Plant<'_>,
     span: Span<'_>,
@@ -289,9 +289,12 @@ pub(crate) fn adjoint(
         let place = span.place(i, z);
         plant.adjoint(place, scratch, weights, &mut of_stage);
         add(&back.z, sums.z);
-        add(&back.u, sums.u);
+        let later = sums.u.iter_mut().zip(&back.u).enumerate();
+        for (input, (later, by)) in later {
+            *later -= by * command::slope(place.held, input, place.t);
+        }
         if effects.by_ends {
-            let by_t = command::by_time(place.held, &back.u);
+            let by_t = command::by_time(place.held, &back.u, place.t);
             by.start += by_t;
             by.length += part(i) * by_t;
         }

@@ -50,14 +50,14 @@ pub(super) struct Evidence {
     pub(super) log_likelihood: f64,
     /// What the average over the parameters takes from it.
     pub(super) occam: f64,
-    /// Part of the gain that inputs which follow the motion may explain.
-    pub(super) told_by_inputs: f64,
+    /// What inputs that follow the motion may tell beside it.
+    pub(super) by_inputs: f64,
     /// Smallest size of a member in its standard deviations.
     pub(super) smallest: f64,
 }
 
 impl Evidence {
-    pub(super) fn of(bench: &Bench<'_>, members: &[usize], fit: &Fit) -> Self {
+    pub(super) fn of(bench: &Bench<'_>, members: &[usize], fit: &Fit, by_inputs: f64) -> Self {
         let is_level = |i: usize| {
             matches!(
                 fit.free[i].unknown,
@@ -124,14 +124,14 @@ impl Evidence {
         Self {
             log_likelihood: fit.log_likelihood,
             occam,
-            told_by_inputs: 0.0,
+            by_inputs,
             smallest,
         }
     }
 
     /// Logarithm of the evidence.
     pub(super) fn log(&self) -> f64 {
-        self.log_likelihood - self.told_by_inputs + self.occam
+        self.log_likelihood + self.by_inputs + self.occam
     }
 }
 

@@ -237,7 +237,7 @@ fn distance(
     let setup = bench.setup(&rival.members);
     let estimation = Estimation::new(&setup, &recordings)?;
     let values = taken_over(bench, rival, &estimation)?;
-    let directions = moving(rival);
+    let directions = moving(&rival.fit);
     let tangent = estimation.tangent(&values, &directions, None)?;
     let rest = DVector::from_iterator(
         tangent.samples.len(),

@@ -3,10 +3,17 @@
 //! A controller that sees the state by sensors which are not recorded puts what it sees into its
 //! command. Then the command correlates with the error of the filter, although it acts as the model
 //! says; a delay or a gain of the actuator would explain a part of that. What such an input could tell is
-//! a kick at each change that no recorded sample predicts, in any direction: no effect may claim it.
+//! a kick at each change that no recorded sample predicts, in any direction, and every hypothesis has such kicks.
+//! They are bounded: a command knows no more of the state than what the filter does not know.
 
-use appell_estimate::Recording;
+use appell_estimate::{Along, Estimation, Fit, Recording, Shapes};
+use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::gram::Gram;
+use super::screen::{known, moving};
 
 /// Earlier samples from which a command is predicted.
 const LAGS: usize = 4;
@@ -66,6 +73,96 @@ impl InputInnovations {
             *to = innovation.map_or(0.0, |innovation| innovation[input]);
         }
     }
+}
+
+/// Calls with the kicks as candidate additions, with none where no input follows the motion.
+pub(super) fn with_kicks<T>(bench: &Bench<'_>, call: impl FnOnce(Option<Shapes<'_>>) -> T) -> T {
+    let own = &bench.input_innovations;
+    let kicks = |run: usize, at: At<'_>, to: &mut [f64]| own.kicks(run, at.t, to);
+    call((own.count > 0).then_some(Shapes {
+        along: Along::Disturbances,
+        count: own.count * KICKS,
+        values: &kicks,
+    }))
+}
+
+/// How much the recordings speak for kicks beside a fit, as a logarithm of a Bayes factor; zero where they speak
+/// against them.
+pub(super) fn for_kicks(
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
+    fit: &Fit,
+) -> Result<f64, DiagnoseError> {
+    if bench.input_innovations.count == 0 {
+        return Ok(0.0);
+    }
+    let directions = moving(fit);
+    let free = directions.len();
+    let tangent = with_kicks(bench, |kicks| {
+        estimation.tangent(&fit.values, &directions, kicks)
+    })?;
+    let rest = DVector::from_iterator(
+        tangent.samples.len(),
+        tangent.samples.iter().map(|(_, sample)| sample.whitened()),
+    );
+    let mut squares = bench.weight * tangent.slopes.tr_mul(&tangent.slopes);
+    let mut scores = bench.weight * tangent.slopes.tr_mul(&rest);
+    let mut place = 0;
+    for (free, coordinate) in fit.free.iter().zip(&fit.coordinates) {
+        if !directions.contains(&appell_estimate::Direction::Value(free.unknown)) {
+            continue;
+        }
+        if let Some([off, slope]) = known(free, *coordinate) {
+            squares[(place, place)] += slope * slope;
+            scores[place] += slope * off;
+        }
+        place += 1;
+    }
+    let beside = Gram::beside(0..free, (&squares, &scores), 0.0);
+    Ok(bounded(&beside, &tangent.added_squares, estimation))
+}
+
+/// The evidence for kicks by their squares and scores; `deviations` are the squares of a unit of each in deviations
+/// of the filter.
+fn bounded(gram: &Gram, deviations: &[f64], estimation: &Estimation<'_>) -> f64 {
+    /// Each bound that is tried is so many times firmer than the one before.
+    const FIRMER: f64 = 2.0;
+    const TRIED: usize = 200;
+    // Parts of the variance of what the filter does not know along each disturbance.
+    let most = estimation.setup().disturbances.len() as f64;
+    let known: Vec<usize> = (0..deviations.len())
+        .filter(|&i| deviations[i] > 0.0 && !gram.is_imitated[i])
+        .collect();
+    let scale: Vec<f64> = known.iter().map(|&i| deviations[i].sqrt()).collect();
+    let squares = DMatrix::from_fn(known.len(), known.len(), |i, j| {
+        gram.squares[(known[i], known[j])] / (scale[i] * scale[j])
+    });
+    let scores = DVector::from_fn(known.len(), |i, _| -gram.scores[known[i]] / scale[i]);
+    if known.is_empty() {
+        return 0.0;
+    }
+    let eigen = squares.symmetric_eigen();
+    let along = eigen.eigenvectors.tr_mul(&scores);
+    let mut firmness = 1.0;
+    for _ in 0..TRIED {
+        let sizes: Vec<f64> = along
+            .iter()
+            .zip(eigen.eigenvalues.iter())
+            .map(|(score, square)| score / (square.max(0.0) + firmness))
+            .collect();
+        if sizes.iter().map(|size| size * size).sum::<f64>() <= most {
+            let parts = (sizes.iter().zip(along.iter())).zip(eigen.eigenvalues.iter());
+            let gain: f64 = parts
+                .map(|((size, score), square)| {
+                    let grown = 1.0 + square.max(0.0);
+                    size * score - 0.5 * grown * size * size - 0.5 * grown.ln()
+                })
+                .sum();
+            return gain.max(0.0);
+        }
+        firmness *= FIRMER;
+    }
+    0.0
 }
 
 /// The innovations of an input, for each run and row: what neither its past nor the measurements predict;

@@ -5,8 +5,6 @@ use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::evidence::NormalSizes;
-
 /// Part of a slope that nothing free can imitate, below which there is none.
 const LEFT: f64 = 1e-4;
 /// A little of a square keeps what nothing tells in place.
@@ -71,22 +69,6 @@ impl Gram {
             rest.is_imitated[i] = left.is_nan() || left <= LEFT * LEFT * whole[(i, i)];
         }
         rest
-    }
-
-    /// How much the recordings speak for anything along some columns, each as large beforehand as what it shows; zero
-    /// where they speak against it.
-    pub(super) fn evidence(&self, columns: &[usize]) -> f64 {
-        let size = |i: usize| {
-            self.squares[(columns[i], columns[i])]
-                .max(f64::MIN_POSITIVE)
-                .sqrt()
-        };
-        let count = columns.len();
-        let squares = DMatrix::from_fn(count, count, |i, j| {
-            self.squares[(columns[i], columns[j])] / (size(i) * size(j))
-        });
-        let scores = DVector::from_fn(count, |i, _| -self.scores[columns[i]] / size(i));
-        NormalSizes::of(&squares, &scores).map_or(0.0, |sizes| sizes.log_bayes_factor.max(0.0))
     }
 
     /// The best sizes of some columns; nothing where nuisances or the others can imitate one.

@@ -246,8 +246,8 @@ impl Seen<'_, '_> {
 
 /// The runs, cut into windows as long as a typical swing: long enough that forces show in the motion, short
 /// enough that errors do not decide by themselves where it goes.
-pub(super) fn windows(set: &DataSet) -> DataSet {
-    set.windows(length(set), (WINDOWS, ROWS))
+pub(super) fn windows(set: &DataSet) -> Result<DataSet, DiagnoseError> {
+    Ok(set.windows(length(set), (WINDOWS, ROWS))?)
 }
 
 /// Half of a typical period in s: that of a harmonic motion with the channels' ratio of deviation to rate, the

@@ -7,17 +7,15 @@
 use std::ops::Range;
 
 use appell_estimate::{
-    Along, Coordinate, Direction, Estimation, Shapes, Tangent, Unknown, in_parallel,
+    Coordinate, Direction, Estimation, Fit, Free, Tangent, Unknown, in_parallel,
 };
-use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::evidence::NormalSizes;
-use super::feedback::KICKS;
+use super::feedback::with_kicks;
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -27,8 +25,6 @@ pub(super) struct Screened {
     pub(super) candidate: usize,
     /// What it would gain in log-likelihood, beyond what an input that knows the motion could tell.
     pub(super) gain: f64,
-    /// What such an input could tell of that, no more than the recordings speak for one.
-    pub(super) told_by_inputs: f64,
     /// The best sizes, one for each direction of the candidate.
     pub(super) sizes: Vec<f64>,
     /// Their standard deviations.
@@ -50,7 +46,6 @@ impl Screened {
         Self {
             candidate,
             gain,
-            told_by_inputs: 0.0,
             deviations: vec![0.0; sizes.len()],
             sizes,
             starts,
@@ -65,12 +60,8 @@ impl Screened {
 
     /// The same, of whose gain inputs may tell a part.
     pub(super) fn told(self, by_inputs: f64) -> Self {
-        let told = by_inputs.min(self.gain);
-        Self {
-            gain: self.gain - told,
-            told_by_inputs: told,
-            ..self
-        }
+        let gain = (self.gain - by_inputs).max(0.0);
+        Self { gain, ..self }
     }
 }
 
@@ -173,20 +164,6 @@ impl<'t> Projected<'t> {
     }
 }
 
-impl Projected<'_> {
-    /// How much the recordings speak for anything along some columns, each as large beforehand as what it
-    /// shows; zero where they speak against it.
-    fn evidence(&self, columns: Range<usize>) -> f64 {
-        let mut slopes = self.slopes(&columns.collect::<Vec<_>>());
-        for mut slope in slopes.column_iter_mut() {
-            slope.unscale_mut(slope.norm().max(f64::MIN_POSITIVE));
-        }
-        let scores = -slopes.tr_mul(&self.rest);
-        let sizes = NormalSizes::of(&slopes.tr_mul(&slopes), &scores);
-        sizes.map_or(0.0, |sizes| sizes.log_bayes_factor.max(0.0))
-    }
-}
-
 /// An orthonormal basis of the columns, without those that follow from others.
 fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
     /// Part of a column that has to be new.
@@ -228,21 +205,16 @@ impl Screen {
     fn first_order((bench, fitted): (&Bench<'_>, &Fitted)) -> Result<(Self, f64), DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let free = moving(fitted);
+        let free = moving(&fitted.fit);
         let (directions, own) = others(bench, fitted, &free);
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
-        let input_innovations = &bench.input_innovations;
-        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| input_innovations.kicks(run, at.t, to);
-        let kicks = (input_innovations.count > 0).then_some(Shapes {
-            along: Along::Disturbances,
-            count: input_innovations.count * KICKS,
-            values: &kicks,
-        });
-        let tangent = estimation.tangent(&values, &directions, kicks)?;
+        let tangent = with_kicks(bench, |kicks| {
+            estimation.tangent(&values, &directions, kicks)
+        })?;
         let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
         let kicked = directions.len()..tangent.slopes.ncols();
-        let for_kicks = projected.evidence(kicked.clone());
+        let for_kicks = fitted.evidence.by_inputs;
         let beyond = Projected::new((&tangent, bench.weight), fitted, free.len(), kicked);
         let all = in_parallel(own, |(candidate, columns)| {
             let positive = positive(bench, candidate);
@@ -274,7 +246,7 @@ pub(super) fn quieten(
 pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>, DiagnoseError> {
     let setup = bench.whole_setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let free = moving(fitted);
+    let free = moving(&fitted.fit);
     let (directions, own) = others(bench, fitted, &free);
     let mut values = bench.carried(fitted, &estimation);
     shapes(bench, &mut values, &fitted.members);
@@ -330,11 +302,22 @@ pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
 }
 
 /// What is free under a hypothesis and moves the mean.
-pub(super) fn moving(fitted: &Fitted) -> Vec<Direction> {
-    let free = fitted.fit.free.iter();
+pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
+    let free = fit.free.iter();
     free.map(|free| Direction::Value(free.unknown))
         .filter(|direction| moves_the_mean(*direction))
         .collect()
+}
+
+/// How far a coordinate is off what is expected, and the slope of that by its value.
+pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
+    let [expected, deviation] = free.prior?;
+    let stretch = match free.coordinate {
+        Coordinate::Plain => 1.0,
+        Coordinate::Logarithm => free.to_value(coordinate),
+    };
+    let off = coordinate - free.to_coordinate(expected);
+    Some([off / deviation, (deviation * stretch).recip()])
 }
 
 pub(super) fn moves_the_mean(direction: Direction) -> bool {
@@ -422,7 +405,6 @@ fn screened(
         return Some(Screened {
             candidate,
             gain: 0.5 * right.dot(&step),
-            told_by_inputs: 0.0,
             sizes,
             deviations,
             starts: vec![Vec::new()],

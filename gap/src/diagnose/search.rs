@@ -253,7 +253,6 @@ impl<'b, 'a> Search<'b, 'a> {
             bench.fit(&set.members, &estimation, &start)
         });
         let mut fitted = best_fit(fits)?;
-        fitted.evidence.told_by_inputs = set.told_by_inputs;
         self.count_late(&mut fitted)?;
         Ok(fitted)
     }
@@ -363,8 +362,7 @@ impl<'b, 'a> Search<'b, 'a> {
             return Ok(None);
         };
         start[estimation.layout().place(free.unknown)?] = delay;
-        let mut fitted = bench.fit(&members, &estimation, &start)?;
-        fitted.evidence.told_by_inputs = whole.evidence.told_by_inputs;
+        let fitted = bench.fit(&members, &estimation, &start)?;
         Ok(Some(fitted))
     }
 
@@ -378,7 +376,6 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut start = bench.carried(whole, &estimation);
         self.take_away(idle, whole, &estimation, &mut start);
         let mut fitted = bench.fit(&members, &estimation, &start)?;
-        fitted.evidence.told_by_inputs = whole.evidence.told_by_inputs;
         self.count_late(&mut fitted)?;
         Ok(fitted)
     }

@@ -12,20 +12,17 @@
 use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
-use appell_estimate::{
-    Along, Coordinate, Direction, Estimation, Free, Shapes, Tangent, Unknown, in_parallel,
-};
-use appell_runtime::model::At;
+use appell_estimate::{Direction, Estimation, Tangent, Unknown, in_parallel};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::{Bench, WRONG};
 use super::evidence::{Fitted, LN_1000, occam, price};
-use super::feedback::KICKS;
+use super::feedback::with_kicks;
 use super::gram::{Gram, Solved};
 use super::prior::prior;
-use super::screen::{Screened, directions, moves_the_mean, positive, quieten, shapes};
+use super::screen::{Screened, directions, known, moves_the_mean, positive, quieten, shapes};
 use crate::effects::Acts;
 
 /// Disturbances as parts of those that were fitted.
@@ -43,8 +40,6 @@ pub(super) struct Set {
     pub(super) sizes: Vec<(usize, Vec<f64>, Vec<f64>)>,
     /// Logarithm of its probability as the fit about which it is valued has it.
     pub(super) log_posterior: f64,
-    /// Part of its gain that inputs which follow the motion may explain.
-    pub(super) told_by_inputs: f64,
     /// By what disturbances are multiplied where its fit begins.
     pub(super) levels: f64,
     /// What else its fit begins with, one list for each start.
@@ -82,11 +77,8 @@ struct Nuisance {
 /// Squares and scores of the columns with one scale of the disturbances.
 struct Level {
     scale: f64,
-    plain: Gram,
-    /// Beyond what inputs that follow the motion could tell; nothing where none does.
-    beyond: Option<Gram>,
-    /// How much the recordings speak for such inputs.
-    for_kicks: f64,
+    /// Beyond what is free in every set, and what inputs that follow the motion may tell.
+    gram: Gram,
 }
 
 /// Everything that values sets about a fit.
@@ -135,13 +127,6 @@ impl<'b, 'a> Sets<'b, 'a> {
         let directions: Vec<Direction> = (nuisances.iter().map(|one| one.direction))
             .chain(of_columns)
             .collect();
-        let input_innovations = &bench.input_innovations;
-        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| input_innovations.kicks(run, at.t, to);
-        let kicks = (input_innovations.count > 0).then_some(Shapes {
-            along: Along::Disturbances,
-            count: input_innovations.count * KICKS,
-            values: &kicks,
-        });
         let scales: &[f64] = if bench.is_over_windows() {
             &LEVELS[..1]
         } else {
@@ -150,7 +135,9 @@ impl<'b, 'a> Sets<'b, 'a> {
         let levels = in_parallel(scales.to_vec(), |scale| {
             let mut values = values.clone();
             quieten(&estimation, &mut values, scale)?;
-            let tangent = estimation.tangent(&values, &directions, kicks)?;
+            let tangent = with_kicks(bench, |kicks| {
+                estimation.tangent(&values, &directions, kicks)
+            })?;
             Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, (&nuisances, &columns)))
         });
         // A filter that trusts the model more may lose a run.
@@ -196,7 +183,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             if self
                 .levels
                 .iter()
-                .any(|level| !level.plain.is_imitated[place])
+                .any(|level| !level.gram.is_imitated[place])
             {
                 by_candidate
                     .entry(column.candidate)
@@ -303,7 +290,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             .levels
             .iter()
             .filter_map(|level| Some((level, self.value(level, &columns, effects)?)));
-        let (level, (value, told, solved)) = valued.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
+        let (level, (value, solved)) = valued.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
         let mut members: Vec<usize> = choices
             .iter()
             .flat_map(|own| own.candidates.clone())
@@ -327,33 +314,22 @@ impl<'b, 'a> Sets<'b, 'a> {
             members,
             sizes,
             log_posterior: value + self.offset,
-            told_by_inputs: told,
             levels: level.scale,
             starts: vec![Vec::new()],
         })
     }
 
-    /// Logarithm of the probability of some columns up to a constant, what inputs tell of it, and their best sizes;
+    /// Logarithm of the probability of some columns up to a constant, and their best sizes;
     /// nothing where a size is on the wrong side, or none at all.
-    fn value(
-        &self,
-        level: &Level,
-        columns: &[usize],
-        effects: usize,
-    ) -> Option<(f64, f64, Solved)> {
-        let solved = level.plain.solved(columns)?;
+    fn value(&self, level: &Level, columns: &[usize], effects: usize) -> Option<(f64, Solved)> {
+        let solved = level.gram.solved(columns)?;
         let is_wrong = |(place, &column): (usize, &usize)| {
             self.columns[column].is_positive && solved.sizes[place] <= 0.0
         };
         if columns.iter().enumerate().any(is_wrong) {
             return None;
         }
-        let beyond = level.beyond.as_ref().map(|beyond| {
-            let gain = beyond.solved(columns).map_or(0.0, |solved| solved.gain);
-            (solved.gain - gain).clamp(0.0, level.for_kicks)
-        });
-        let told = beyond.unwrap_or(0.0);
-        let mut value = level.plain.log_likelihood + solved.gain - told + solved.log_volume;
+        let mut value = level.gram.log_likelihood + solved.gain + solved.log_volume;
         for (place, &column) in columns.iter().enumerate() {
             let Column {
                 is_positive, known, ..
@@ -374,7 +350,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             .get(effects)
             .copied()
             .unwrap_or(f64::NEG_INFINITY);
-        Some((value, told, solved))
+        Some((value, solved))
     }
 
     /// The fit with one candidate more that brings a coordinate: such have no slopes.
@@ -384,11 +360,11 @@ impl<'b, 'a> Sets<'b, 'a> {
         log_posterior: f64,
     ) -> Result<Vec<Set>, DiagnoseError> {
         let bench = self.bench;
-        let for_kicks = self.levels.first().map_or(0.0, |level| level.for_kicks);
+        let for_kicks = fitted.evidence.by_inputs;
         let own = super::prior::effects(bench, &fitted.members);
         let singles = (0..self.choices.len()).filter_map(|place| {
             let level = self.levels.first()?;
-            Some(level.plain.solved(&self.choices[place].columns)?.gain)
+            Some(level.gram.solved(&self.choices[place].columns)?.gain)
         });
         let best = singles.fold(0.0, f64::max);
         let list = augmented::screened((bench, fitted), for_kicks, best)?;
@@ -400,7 +376,6 @@ impl<'b, 'a> Sets<'b, 'a> {
             Set {
                 members,
                 log_posterior: log_posterior + one.gain - occam(one.gain) + more,
-                told_by_inputs: fitted.evidence.told_by_inputs + one.told_by_inputs,
                 levels: one.levels,
                 sizes: vec![(one.candidate, one.sizes, one.deviations)],
                 starts: one.starts,
@@ -511,17 +486,6 @@ fn nuisances(
     all
 }
 
-/// How far a coordinate is off what is expected, and the slope of that by its value.
-fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
-    let [expected, deviation] = free.prior?;
-    let stretch = match free.coordinate {
-        Coordinate::Plain => 1.0,
-        Coordinate::Logarithm => free.to_value(coordinate),
-    };
-    let off = coordinate - free.to_coordinate(expected);
-    Some([off / deviation, (deviation * stretch).recip()])
-}
-
 impl Level {
     fn of(
         bench: &Bench<'_>,
@@ -555,34 +519,22 @@ impl Level {
             .map(|(_, sample)| (TAU * sample.white_variance).ln())
             .sum();
         let log_likelihood = -0.5 * (bench.weight * scales + square);
+        // What a command knows of the motion is no more than what the filter does not.
+        for (place, own) in (free + own..).zip(&tangent.added_squares) {
+            squares[(place, place)] += own;
+        }
         let of_kicks = free + own..free + own + kicks;
-        let plain = Gram::beside(0..free, (&squares, &scores), log_likelihood);
-        let (for_kicks, beyond) = if kicks == 0 {
-            (0.0, None)
-        } else {
-            let places: Vec<usize> = (own..own + kicks).collect();
-            let for_kicks = plain.evidence(&places);
-            let order: Vec<usize> = (0..free).chain(of_kicks).chain(free..free + own).collect();
-            let turned = DMatrix::from_fn(order.len(), order.len(), |i, j| {
-                squares[(order[i], order[j])]
-            });
-            let of_turned = DVector::from_fn(order.len(), |i, _| scores[order[i]]);
-            let beyond = Gram::beside(0..free + kicks, (&turned, &of_turned), log_likelihood);
-            (for_kicks, Some(beyond))
-        };
-        let mut level = Self {
-            scale,
-            plain,
-            beyond,
-            for_kicks,
-        };
-        for gram in std::iter::once(&mut level.plain).chain(&mut level.beyond) {
-            for (place, column) in columns.iter().enumerate() {
-                if let Some(deviation) = column.known {
-                    gram.squares[(place, place)] += deviation.powi(-2);
-                }
+        let order: Vec<usize> = (0..free).chain(of_kicks).chain(free..free + own).collect();
+        let squares = DMatrix::from_fn(order.len(), order.len(), |i, j| {
+            squares[(order[i], order[j])]
+        });
+        let scores = DVector::from_fn(order.len(), |i, _| scores[order[i]]);
+        let mut gram = Gram::beside(0..free + kicks, (&squares, &scores), log_likelihood);
+        for (place, column) in columns.iter().enumerate() {
+            if let Some(deviation) = column.known {
+                gram.squares[(place, place)] += deviation.powi(-2);
             }
         }
-        level
+        Self { scale, gram }
     }
 }

@@ -187,7 +187,7 @@ pub(super) fn term_scores(
     fitted: &Fitted,
     shapes: Shapes<'_>,
 ) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
-    let (free, setup) = (moving(fitted), estimation.setup());
+    let (free, setup) = (moving(&fitted.fit), estimation.setup());
     let (along, count) = (shapes.along, shapes.count);
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
     let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);

@@ -52,6 +52,7 @@ mod imperfection;
 mod imperfections;
 mod law;
 mod localise;
+mod nuisance;
 mod options;
 mod prediction;
 mod prior;

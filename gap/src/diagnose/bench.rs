@@ -10,7 +10,7 @@ use appell_runtime::model::Model;
 use super::DiagnoseError;
 use super::evidence::Evidence;
 use super::evidence::Fitted;
-use super::feedback::{self, InputInnovations};
+use super::feedback::{InputInnovations, for_kicks};
 use super::imperfection::{Imperfection, perfect};
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
@@ -497,7 +497,7 @@ impl<'a> Bench<'a> {
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
         let fit = self.weighed(estimation, start, &free, search)?;
-        let by_inputs = feedback::for_kicks(self, estimation, &fit)?;
+        let by_inputs = for_kicks(&self.input_innovations, self.weight, (estimation, &fit))?;
         let evidence = Evidence::of(self, members, &fit, by_inputs);
         Ok(Fitted {
             members: members.to_vec(),

@@ -12,9 +12,9 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::compare::Comparison;
 use super::evidence::Fitted;
+use super::nuisance::moving;
 use super::prediction::taken_over;
 use super::report::{Experiment, Limit};
-use super::screen::moving;
 use crate::experiment::Excitation;
 use appell_recordings::{DataSet, Role};
 

@@ -6,21 +6,19 @@
 //! a kick at each change that no recorded sample predicts, in any direction, and every hypothesis has such kicks.
 //! They are bounded: a command knows no more of the state than what the filter does not know.
 
-use appell_estimate::{Along, Estimation, Fit, Recording, Shapes};
+use appell_estimate::{Along, Direction, EstimateError, Estimation, Fit, Recording, Shapes};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
-use super::DiagnoseError;
-use super::bench::Bench;
 use super::gram::Gram;
-use super::screen::{known, moving};
+use super::nuisance::{known, moves_the_mean};
 
 /// Earlier samples from which a command is predicted.
 const LAGS: usize = 4;
 /// Earlier samples of the measurements, beside those of the same row.
 const SEEN: usize = 2;
 /// Kicks that follow an innovation of the input.
-pub(super) const KICKS: usize = 2;
+const KICKS: usize = 2;
 /// Innovations smaller than this part of the input are ignored.
 const PREDICTED: f64 = 1e-3;
 /// An input follows the motion where the measurements predict more of it than chance would in one of
@@ -63,9 +61,19 @@ impl InputInnovations {
         input_innovations
     }
 
+    /// Calls with the kicks as candidate additions, with none where no input follows the motion.
+    pub(super) fn with_kicks<T>(&self, call: impl FnOnce(Option<Shapes<'_>>) -> T) -> T {
+        let kicks = |run: usize, at: At<'_>, to: &mut [f64]| self.kicks(run, at.t, to);
+        call((self.count > 0).then_some(Shapes {
+            along: Along::Disturbances,
+            count: self.count * KICKS,
+            values: &kicks,
+        }))
+    }
+
     /// Writes the kicks at a time of a run: for each input that follows the motion, by its last
     /// innovations.
-    pub(super) fn kicks(&self, run: usize, t: f64, to: &mut [f64]) {
+    fn kicks(&self, run: usize, t: f64, to: &mut [f64]) {
         let row = self.times[run].partition_point(|&own| own <= t);
         for (place, to) in to.iter_mut().enumerate() {
             let (input, back) = (place / KICKS, place % KICKS + 1);
@@ -75,50 +83,34 @@ impl InputInnovations {
     }
 }
 
-/// Calls with the kicks as candidate additions, with none where no input follows the motion.
-pub(super) fn with_kicks<T>(bench: &Bench<'_>, call: impl FnOnce(Option<Shapes<'_>>) -> T) -> T {
-    let own = &bench.input_innovations;
-    let kicks = |run: usize, at: At<'_>, to: &mut [f64]| own.kicks(run, at.t, to);
-    call((own.count > 0).then_some(Shapes {
-        along: Along::Disturbances,
-        count: own.count * KICKS,
-        values: &kicks,
-    }))
-}
-
-/// How much the recordings speak for kicks beside a fit, as a logarithm of a Bayes factor; zero where they speak
-/// against them.
+/// How much recordings whose rows have a `weight` speak for kicks beside a fit, as a logarithm of a Bayes factor; zero
+/// where they speak against them.
 pub(super) fn for_kicks(
-    bench: &Bench<'_>,
-    estimation: &Estimation<'_>,
-    fit: &Fit,
-) -> Result<f64, DiagnoseError> {
-    if bench.input_innovations.count == 0 {
+    own: &InputInnovations,
+    weight: f64,
+    (estimation, fit): (&Estimation<'_>, &Fit),
+) -> Result<f64, EstimateError> {
+    if own.count == 0 {
         return Ok(0.0);
     }
-    let directions = moving(fit);
-    let free = directions.len();
-    let tangent = with_kicks(bench, |kicks| {
-        estimation.tangent(&fit.values, &directions, kicks)
-    })?;
-    let rest = DVector::from_iterator(
-        tangent.samples.len(),
-        tangent.samples.iter().map(|(_, sample)| sample.whitened()),
-    );
-    let mut squares = bench.weight * tangent.slopes.tr_mul(&tangent.slopes);
-    let mut scores = bench.weight * tangent.slopes.tr_mul(&rest);
-    let mut place = 0;
-    for (free, coordinate) in fit.free.iter().zip(&fit.coordinates) {
-        if !directions.contains(&appell_estimate::Direction::Value(free.unknown)) {
-            continue;
-        }
-        if let Some([off, slope]) = known(free, *coordinate) {
+    let free: Vec<(Direction, Option<[f64; 2]>)> = (fit.free.iter().zip(&fit.coordinates))
+        .map(|(free, coordinate)| (Direction::Value(free.unknown), known(free, *coordinate)))
+        .filter(|(direction, _)| moves_the_mean(*direction))
+        .collect();
+    let directions: Vec<Direction> = free.iter().map(|(direction, _)| *direction).collect();
+    let tangent = own.with_kicks(|kicks| estimation.tangent(&fit.values, &directions, kicks))?;
+    let samples = tangent.samples.iter();
+    let samples = samples.map(|(_, sample)| sample.whitened());
+    let rest = DVector::from_iterator(tangent.samples.len(), samples);
+    let mut squares = weight * tangent.slopes.tr_mul(&tangent.slopes);
+    let mut scores = weight * tangent.slopes.tr_mul(&rest);
+    for (place, (_, known)) in free.iter().enumerate() {
+        if let Some([off, slope]) = known {
             squares[(place, place)] += slope * slope;
             scores[place] += slope * off;
         }
-        place += 1;
     }
-    let beside = Gram::beside(0..free, (&squares, &scores), 0.0);
+    let beside = Gram::beside(0..free.len(), (&squares, &scores), 0.0);
     Ok(bounded(&beside, &tangent.added_squares, estimation))
 }
 

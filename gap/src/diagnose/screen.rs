@@ -6,16 +6,14 @@
 
 use std::ops::Range;
 
-use appell_estimate::{
-    Coordinate, Direction, Estimation, Fit, Free, Tangent, Unknown, in_parallel,
-};
+use appell_estimate::{Coordinate, Direction, Estimation, Tangent, Unknown, in_parallel};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::feedback::with_kicks;
+use super::nuisance::moving;
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -209,9 +207,9 @@ impl Screen {
         let (directions, own) = others(bench, fitted, &free);
         let mut values = bench.carried(fitted, &estimation);
         shapes(bench, &mut values, &fitted.members);
-        let tangent = with_kicks(bench, |kicks| {
-            estimation.tangent(&values, &directions, kicks)
-        })?;
+        let tangent = bench
+            .input_innovations
+            .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
         let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
         let kicked = directions.len()..tangent.slopes.ncols();
         let for_kicks = fitted.evidence.by_inputs;
@@ -299,32 +297,6 @@ pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
             };
         }
     }
-}
-
-/// What is free under a hypothesis and moves the mean.
-pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
-    let free = fit.free.iter();
-    free.map(|free| Direction::Value(free.unknown))
-        .filter(|direction| moves_the_mean(*direction))
-        .collect()
-}
-
-/// How far a coordinate is off what is expected, and the slope of that by its value.
-pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
-    let [expected, deviation] = free.prior?;
-    let stretch = match free.coordinate {
-        Coordinate::Plain => 1.0,
-        Coordinate::Logarithm => free.to_value(coordinate),
-    };
-    let off = coordinate - free.to_coordinate(expected);
-    Some([off / deviation, (deviation * stretch).recip()])
-}
-
-pub(super) fn moves_the_mean(direction: Direction) -> bool {
-    !matches!(
-        direction,
-        Direction::Value(Unknown::Disturbance(_) | Unknown::Noise(_) | Unknown::Spread { .. })
-    )
 }
 
 /// Directions in which a candidate starts from zero.

@@ -19,10 +19,10 @@ use super::DiagnoseError;
 use super::augmented;
 use super::bench::{Bench, WRONG};
 use super::evidence::{Fitted, LN_1000, occam, price};
-use super::feedback::with_kicks;
 use super::gram::{Gram, Solved};
+use super::nuisance::{known, moves_the_mean};
 use super::prior::prior;
-use super::screen::{Screened, directions, known, moves_the_mean, positive, quieten, shapes};
+use super::screen::{Screened, directions, positive, quieten, shapes};
 use crate::effects::Acts;
 
 /// Disturbances as parts of those that were fitted.
@@ -135,9 +135,9 @@ impl<'b, 'a> Sets<'b, 'a> {
         let levels = in_parallel(scales.to_vec(), |scale| {
             let mut values = values.clone();
             quieten(&estimation, &mut values, scale)?;
-            let tangent = with_kicks(bench, |kicks| {
-                estimation.tangent(&values, &directions, kicks)
-            })?;
+            let tangent = bench
+                .input_innovations
+                .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
             Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, (&nuisances, &columns)))
         });
         // A filter that trusts the model more may lose a run.

@@ -22,7 +22,8 @@ use super::bench::Bench;
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::evidence::log_sum;
-use super::screen::{Projected, moving};
+use super::nuisance::moving;
+use super::screen::Projected;
 use crate::effects::Memory;
 
 pub(super) use dependence::Dependence;

@@ -65,7 +65,7 @@ arm = { parent = "ground", about_axis = "-y", by = "theta" }
 [points]
 B = { from = "O", in = "arm", at = [0, 0, "-l"] }
 [bodies]
-arm = { frame = "arm", centre = "O", mass = "0.5 [kg]", inertia = { yy = "I" } }
+arm = { frame = "arm", centre = "O", mass = "0.5 [kg]", inertia = { in = "arm", diagonal = [0, "I", 0] } }
 load = { centre = "B", mass = "m" }
 [pseudo_velocities]
 omega = { value = "dot(theta)", unit = "rad/s" }

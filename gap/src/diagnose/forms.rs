@@ -80,7 +80,7 @@ fn scored(
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
         let x = dependence.variable((bench, setup.model), run, at);
-        let factor = dependence.factor(at);
+        let factor = dependence.factor((bench, setup.model), at);
         for (value, term) in values.iter_mut().zip(&terms) {
             *value = if x.is_nan() {
                 0.0

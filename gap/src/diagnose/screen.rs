@@ -4,6 +4,7 @@
 //! With r the whitened innovations and S their slopes, the best step is −(SᵀS)⁻¹ Sᵀ r. Rows for what
 //! is known of the parameters beforehand stand below those of the samples.
 
+use std::f64::consts::TAU;
 use std::ops::Range;
 
 use appell_estimate::{Coordinate, Direction, Estimation, Tangent, Unknown, in_parallel};
@@ -144,6 +145,15 @@ impl<'t> Projected<'t> {
             prior_rows: known.len(),
             rest,
         }
+    }
+
+    /// Log-likelihood at the best values of what is free.
+    pub(super) fn log_likelihood(&self) -> f64 {
+        let samples = self.tangent.samples.iter();
+        let scales: f64 = samples
+            .map(|(_, sample)| (TAU * sample.white_variance).ln())
+            .sum();
+        -0.5 * (self.root * self.root * scales + self.rest.norm_squared())
     }
 
     /// Slopes of some columns that nothing free can imitate.

@@ -23,7 +23,7 @@ use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::evidence::log_sum;
 use super::nuisance::moving;
-use super::screen::Projected;
+use super::screen::{Projected, quieten};
 use crate::effects::Memory;
 
 pub(super) use dependence::Dependence;
@@ -32,6 +32,18 @@ pub(super) use series::{LawGain, Series, TermScores};
 
 /// Part of its gain that a law has to repeat on runs that it was not found in.
 const REPEATED: f64 = 0.5;
+/// Disturbances as parts of those that were fitted, which follow what the model lacks.
+const LEVELS: [f64; 2] = [1.0, 0.6];
+
+fn quiet(
+    estimation: &Estimation<'_>,
+    fitted: &Fitted,
+    level: f64,
+) -> Result<Fitted, DiagnoseError> {
+    let mut quiet = fitted.clone();
+    quieten(estimation, &mut quiet.fit.values, level)?;
+    Ok(quiet)
+}
 
 /// What a law that nobody has named would gain beside a hypothesis.
 #[derive(Debug, Clone, PartialEq)]
@@ -80,19 +92,32 @@ pub(super) fn leftover(
     let [mut smooth, mut single] = [const { Family::new() }; 2];
     for dependence in Dependence::all(bench) {
         for along in [Along::Disturbances, Along::Channels] {
-            if along == Along::Channels && !dependence.is_plain() {
+            let is_possible = match along {
+                Along::Disturbances => dependence.is_of_forces(),
+                Along::Channels => dependence.is_of_channels(),
+            };
+            if !is_possible {
                 continue;
             }
-            let scores = wave_scores((bench, &estimation), fitted, dependence, along)?;
-            for (place, wave_scores) in scores {
-                let unnamed = |wave, law| {
-                    let on = (On::Variable(wave), dependence.name(bench));
-                    unnamed(on, (along, place), law)
+            let mut base = None;
+            for &level in &LEVELS {
+                let quiet = quiet(&estimation, fitted, level)?;
+                let Ok(scores) = wave_scores((bench, &estimation), &quiet, dependence, along)
+                else {
+                    continue;
                 };
-                smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
-                for wave in 0..dependence.waves(along) {
-                    let law = wave_scores.single(wave);
-                    single.add(law.map(|law| unnamed(Some(wave), law)));
+                for (place, wave_scores) in scores {
+                    let base = *base.get_or_insert(wave_scores.log_likelihood);
+                    let offset = wave_scores.log_likelihood - base;
+                    let unnamed = |wave, law: LawGain| {
+                        let on = (On::Variable(wave), dependence.name(bench));
+                        unnamed(on, (along, place), law.beside(offset))
+                    };
+                    smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
+                    for wave in 0..dependence.waves(along) {
+                        let law = wave_scores.single(wave);
+                        single.add(law.map(|law| unnamed(Some(wave), law)));
+                    }
                 }
             }
         }

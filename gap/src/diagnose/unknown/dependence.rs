@@ -1,7 +1,8 @@
 //! What a law that nobody has named may depend on.
 //!
-//! Its waves run along a variable. They may be multiplied with the time, for a friction that changes, or with
-//! an input: a gain that walks in time, a friction that grows with the load.
+//! Its waves run along a variable. They may be multiplied with the time, for a friction that changes, with an
+//! input: a gain that walks in time or with the position, a friction that grows with the load; and with a rate or its
+//! sign, for a friction that changes along the way, or a clock that drifts.
 
 use std::f64::consts::{PI, TAU};
 
@@ -22,12 +23,16 @@ const SLOW: usize = 4;
 const MULTIPLIED: usize = 8;
 /// Range of a rate in typical rates.
 const REACH: f64 = 2.5;
+/// Rates below this part of their range have no sign.
+const SMALL: f64 = 0.02;
 
 /// Along what the waves run.
 #[derive(Clone, Copy)]
 enum Source<'b> {
     /// A state, then an input.
     Own(usize),
+    /// The change of an input since the row before.
+    Change(usize),
     /// The time.
     Time,
     /// A channel that the model does not know.
@@ -35,7 +40,7 @@ enum Source<'b> {
 }
 
 /// What the waves are multiplied with.
-#[derive(Clone, Copy, PartialEq, Eq)]
+#[derive(Clone, Copy, PartialEq)]
 enum Factor {
     /// Nothing.
     One,
@@ -45,6 +50,10 @@ enum Factor {
     Input(usize),
     /// The size of an input.
     Load(usize),
+    /// A rate.
+    Rate(usize),
+    /// The sign of a rate, smooth about a small one.
+    Sign(usize, f64),
 }
 
 /// What a law depends on.
@@ -101,8 +110,28 @@ impl<'b> Dependence<'b> {
                 let factors = moving.iter().map(|&input| Factor::Load(input));
                 let factors = std::iter::once(Factor::Time).chain(factors);
                 all.extend(factors.map(|factor| Self { factor, ..one }));
+            } else if index < states {
+                let rate = (index - info.speeds < info.speeds).then(|| index - info.speeds);
+                let rate = rate.and_then(|rate| Some((rate, bench.range(rate)?)));
+                let factors = rate.into_iter().flat_map(|(rate, (low, high))| {
+                    let small = SMALL * (high - low);
+                    [Factor::Rate(rate), Factor::Sign(rate, small)]
+                });
+                let factors = factors.chain(moving.iter().map(|&input| Factor::Input(input)));
+                all.extend(factors.map(|factor| Self { factor, ..one }));
             }
         }
+        all.extend(moving.iter().filter_map(|&input| {
+            let size = change(&bench.recordings, input)?;
+            let range = (-REACH * size, REACH * size);
+            Some(Self {
+                source: Source::Change(input),
+                factor: Factor::One,
+                first: PI / (range.1 - range.0),
+                is_position: false,
+                range,
+            })
+        }));
         let range = times(bench);
         let walking = |factor| Self {
             source: Source::Time,
@@ -112,6 +141,7 @@ impl<'b> Dependence<'b> {
             range,
         };
         all.extend(moving.iter().map(|&input| walking(Factor::Input(input))));
+        all.extend((0..info.speeds).map(|rate| walking(Factor::Rate(rate))));
         // In one run a level that walks is a disturbance; in runs that are alike the time tells the motion.
         if bench.recordings.len() > 1 && !are_alike(&bench.recordings) {
             all.push(walking(Factor::One));
@@ -149,18 +179,34 @@ impl<'b> Dependence<'b> {
         match self.source {
             Source::Own(index) if index < states => at.x[bench.place(index, model)],
             Source::Own(index) => at.u[index - states],
+            Source::Change(input) => {
+                let recording = &bench.recordings[run];
+                let row = recording.times().partition_point(|&own| own <= at.t);
+                let value = |row: usize| recording.inputs(row)[input];
+                row.checked_sub(2)
+                    .map_or(0.0, |before| at.u[input] - value(before))
+            }
             Source::Time => at.t,
             Source::Unmodelled(channel) => channel.at(run, at.t),
         }
     }
 
     /// What the waves are multiplied with at a place.
-    pub(in super::super) fn factor(self, at: At<'_>) -> f64 {
+    pub(in super::super) fn factor(
+        self,
+        (bench, model): (&Bench<'_>, &dyn Model),
+        at: At<'_>,
+    ) -> f64 {
         match self.factor {
             Factor::One => 1.0,
             Factor::Time => at.t,
             Factor::Input(input) => at.u[input],
             Factor::Load(input) => at.u[input].abs(),
+            Factor::Rate(rate) => at.x[bench.place(rate, model)],
+            Factor::Sign(rate, small) => {
+                let rate = at.x[bench.place(rate, model)];
+                rate / rate.hypot(small)
+            }
         }
     }
 
@@ -176,7 +222,7 @@ impl<'b> Dependence<'b> {
         if x.is_nan() {
             return to.fill(0.0);
         }
-        let factor = self.factor(at);
+        let factor = self.factor((bench, model), at);
         for (wave, pair) in to.chunks_exact_mut(2).enumerate() {
             let (sin, cos) = (self.rate(wave) * x).sin_cos();
             pair.copy_from_slice(&[factor * sin, factor * cos]);
@@ -192,21 +238,33 @@ impl<'b> Dependence<'b> {
     pub(super) fn waves(self, along: Along) -> usize {
         match (self.source, self.factor, along) {
             (Source::Time, ..) => SLOW,
-            (_, Factor::Load(_) | Factor::Time, _) => MULTIPLIED,
+            (_, Factor::Load(_) | Factor::Time | Factor::Rate(_) | Factor::Sign(..), _) => {
+                MULTIPLIED
+            }
             (_, _, Along::Disturbances) if self.is_position => FINE,
             _ => WAVES,
         }
     }
 
-    /// Whether it is of a variable alone, as errors of channels are.
-    pub(super) fn is_plain(self) -> bool {
-        self.factor == Factor::One && !matches!(self.source, Source::Time)
+    /// Whether errors of channels may have it: of a variable alone, or of a clock.
+    pub(super) fn is_of_channels(self) -> bool {
+        match (self.source, self.factor) {
+            (Source::Time, Factor::Rate(_)) => true,
+            (Source::Time | Source::Change(_), _) => false,
+            (_, factor) => factor == Factor::One,
+        }
+    }
+
+    /// Whether forces may have it.
+    pub(super) fn is_of_forces(self) -> bool {
+        !matches!((self.source, self.factor), (Source::Time, Factor::Rate(_)))
     }
 
     /// Name of the variable, and what the waves are multiplied with.
     pub(in super::super) fn letters(self, bench: &Bench<'_>) -> (String, Option<String>) {
         let name = match self.source {
             Source::Own(index) => quantity(bench, index).0,
+            Source::Change(input) => format!("the change of {}", input_name(bench, input)),
             Source::Time => "t".to_owned(),
             Source::Unmodelled(channel) => channel.name.clone(),
         };
@@ -218,6 +276,7 @@ impl<'b> Dependence<'b> {
     pub(in super::super) fn name(self, bench: &Bench<'_>) -> String {
         let source = match self.source {
             Source::Own(index) => quantity(bench, index).0,
+            Source::Change(input) => format!("the change of {}", input_name(bench, input)),
             Source::Time => "time".to_owned(),
             Source::Unmodelled(channel) => channel.name.clone(),
         };
@@ -227,6 +286,10 @@ impl<'b> Dependence<'b> {
             Factor::Time => format!("{source} and time"),
             Factor::Input(input) => format!("{} and {source}", quantity(bench, states + input).0),
             Factor::Load(input) => format!("{source} and |{}|", quantity(bench, states + input).0),
+            Factor::Rate(rate) => format!("{source} and {}", quantity(bench, rate).0),
+            Factor::Sign(rate, _) => {
+                format!("{source} and the sign of {}", quantity(bench, rate).0)
+            }
         }
     }
 
@@ -235,6 +298,11 @@ impl<'b> Dependence<'b> {
         match self.source {
             Source::Own(index) => {
                 let (_, unit, scale) = quantity(bench, index);
+                (unit, scale)
+            }
+            Source::Change(input) => {
+                let states = bench.effects.info().state_len();
+                let (_, unit, scale) = quantity(bench, states + input);
                 (unit, scale)
             }
             Source::Time => ("s".to_owned(), 1.0),
@@ -251,7 +319,7 @@ impl<'b> Dependence<'b> {
                 pure(&name, &si(&unit))
             }
             Source::Time => pure("t", "s"),
-            Source::Unmodelled(_) => return None,
+            Source::Change(_) | Source::Unmodelled(_) => return None,
         };
         let input = |index: usize| {
             let (name, unit, _) = quantity(bench, states + index);
@@ -265,6 +333,18 @@ impl<'b> Dependence<'b> {
                 let (name, unit) = input(index);
                 Some((format!("abs({name})"), unit))
             }
+            Factor::Rate(rate) => {
+                let (name, unit, _) = quantity(bench, rate);
+                Some((name, si(&unit)))
+            }
+            Factor::Sign(rate, small) => {
+                let (name, unit, _) = quantity(bench, rate);
+                let rate = pure(&name, &si(&unit));
+                Some((
+                    format!("{rate}/sqrt(({rate})^2 + {:e})", small * small),
+                    "1".to_owned(),
+                ))
+            }
         };
         let (factor, factor_unit) = factor.unzip();
         Some(Written {
@@ -273,6 +353,23 @@ impl<'b> Dependence<'b> {
             factor_unit,
         })
     }
+}
+
+fn input_name(bench: &Bench<'_>, input: usize) -> String {
+    quantity(bench, bench.effects.info().state_len() + input).0
+}
+
+/// The root mean square of the change of an input from row to row; nothing where it does not change.
+fn change(recordings: &[Recording], input: usize) -> Option<f64> {
+    let changes = recordings.iter().flat_map(|run| {
+        let rows = 1..run.times().len();
+        rows.map(move |row| run.inputs(row)[input] - run.inputs(row - 1)[input])
+    });
+    let (count, squares) = changes.fold((0.0_f64, 0.0), |(count, squares), one| {
+        (count + 1.0, squares + one * one)
+    });
+    let size = (squares / count.max(1.0)).sqrt();
+    (size > 0.0).then_some(size)
 }
 
 /// A quantity as a pure number.

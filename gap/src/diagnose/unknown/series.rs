@@ -32,11 +32,24 @@ pub(in super::super) struct LawGain {
     pub(in super::super) log_bayes_factor: f64,
 }
 
+impl LawGain {
+    /// The same beside what gains so much by itself.
+    pub(super) fn beside(self, offset: f64) -> Self {
+        Self {
+            gain: self.gain + offset,
+            cross_validated: self.cross_validated + offset,
+            log_bayes_factor: self.log_bayes_factor + offset,
+        }
+    }
+}
+
 /// What the terms of a law tell, run by run: the squares of their slopes and their scores.
 pub(in super::super) struct TermScores {
     runs: Vec<(DMatrix<f64>, DVector<f64>)>,
     squares: DMatrix<f64>,
     scores: DVector<f64>,
+    /// Log-likelihood without any of them.
+    pub(super) log_likelihood: f64,
 }
 
 impl TermScores {
@@ -67,6 +80,7 @@ impl TermScores {
             runs,
             squares,
             scores,
+            log_likelihood: projected.log_likelihood(),
         }
     }
 
@@ -171,6 +185,7 @@ impl TermScores {
                 .collect(),
             squares,
             scores,
+            log_likelihood: self.log_likelihood,
         }
     }
 
@@ -195,6 +210,7 @@ impl TermScores {
                 .collect(),
             squares,
             scores,
+            log_likelihood: self.log_likelihood,
         }
     }
 

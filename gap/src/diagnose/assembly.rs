@@ -8,7 +8,7 @@ use super::changes::Changes;
 use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::law::FittedLaw;
-use super::prior::{effects, prior};
+use super::prior::{names, of_count, prior};
 use super::report::{
     Detectable, Found, GapVerdict, Hint, Hypothesis, LAW, Left, Report, UNKNOWN, Value, Where,
 };
@@ -175,17 +175,6 @@ fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, 
     Ok(which)
 }
 
-/// Names of effects; components of a vector are one.
-pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
-    let mut names: Vec<String> = Vec::new();
-    for name in members.iter().map(|&m| model.candidate(m).name()) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
-}
-
 /// The effects of a hypothesis in words.
 pub(super) fn found(model: &EffectModel, members: &[usize]) -> Vec<Found> {
     let members = members.iter().map(|&member| model.candidate(member));
@@ -212,11 +201,11 @@ fn join(
     let left = comparison.left.as_ref();
     let left = left.map_or(0.0, |left| left.log_bayes_factor.max(0.0)) * comparison.independent;
     let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
-    let beside = best.evidence.log() + prior(bench.effects, effects(bench, &best.members));
+    let beside = best.evidence.log() + prior(bench.effects, &best.members);
     let base = comparison.nominal().evidence.log();
     for rival in rivals {
         let odds =
-            tempered(comparison.independent * (rival.log + prior(bench.effects, 1) - beside));
+            tempered(comparison.independent * (rival.log + of_count(bench.effects, 1) - beside));
         which.push(Hypothesis {
             effects: vec![rival.name.clone()],
             same_as: None,

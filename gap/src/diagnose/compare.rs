@@ -1,5 +1,7 @@
 //! How probable each hypothesis is.
 
+use std::collections::BTreeMap;
+
 use appell_estimate::Fit;
 
 use super::DiagnoseError;
@@ -9,7 +11,7 @@ use super::calibration::{
     unlisted_beside_nothing,
 };
 use super::evidence::Fitted;
-use super::prior::{NO_GAP, effects, prior};
+use super::prior::{NO_GAP, names, prior};
 use super::search::{Look, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
@@ -120,7 +122,7 @@ impl Comparison {
     ) -> bool {
         let best = self.best();
         let gain = self.independent * (log_evidence - best.evidence.log());
-        let beforehand = prior(bench.effects, effects(bench, &best.members)) - (1.0 - NO_GAP).ln();
+        let beforehand = prior(bench.effects, &best.members) - (1.0 - NO_GAP).ln();
         let odds = unlisted_alone(gain - beforehand) * self.fits[0].1;
         if odds.ln() < TIED {
             return false;
@@ -209,7 +211,17 @@ impl Comparison {
             .zip(weights)
             .map(|(fitted, weight)| (fitted, weight / sum))
             .collect();
-        fits.sort_by(|a, b| b.1.total_cmp(&a.1));
+        // Variants of one effect are one hypothesis.
+        let mut of_names: BTreeMap<Vec<String>, f64> = BTreeMap::new();
+        for (fitted, weight) in &fits {
+            *of_names
+                .entry(names(bench.effects, &fitted.members))
+                .or_default() += weight;
+        }
+        let together = |fitted: &Fitted| of_names[&names(bench.effects, &fitted.members)];
+        fits.sort_by(|(a, own_a), (b, own_b)| {
+            (together(b).total_cmp(&together(a))).then(own_b.total_cmp(own_a))
+        });
         let nominal = fits
             .iter()
             .position(|(fitted, _)| fitted.members.is_empty());

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeSet;
 
-use super::bench::Bench;
 use crate::effects::{Candidate, EffectModel};
 
 /// Probability beforehand that there is no gap.
@@ -10,14 +9,26 @@ pub(super) const NO_GAP: f64 = 0.5;
 /// Probability beforehand that an effect does not come alone.
 const NOT_ALONE: f64 = 0.2;
 
-/// Number of effects: components of a vector are one.
-pub(super) fn effects(bench: &Bench<'_>, members: &[usize]) -> usize {
-    let members = members.iter().map(|&member| bench.candidate(member).name());
-    members.collect::<BTreeSet<String>>().len()
+/// Names of effects; components of a vector are one.
+pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
+    let mut names: Vec<String> = Vec::new();
+    for name in members.iter().map(|&m| model.candidate(m).name()) {
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    names
 }
 
-/// Logarithm of the probability beforehand of a hypothesis with so many effects.
-pub(super) fn prior(model: &EffectModel, effects: usize) -> f64 {
+/// Logarithm of the probability beforehand of a hypothesis.
+pub(super) fn prior(model: &EffectModel, members: &[usize]) -> f64 {
+    let names = names(model, members);
+    let of_names = names.iter().map(|name| of_components(model, name));
+    of_count(model, names.len()) + of_names.sum::<f64>()
+}
+
+/// The same of any hypothesis with so many effects.
+pub(super) fn of_count(model: &EffectModel, effects: usize) -> f64 {
     let candidates = model.candidates.iter();
     let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
     let each = (names.len().max(1) as f64).ln();
@@ -25,4 +36,12 @@ pub(super) fn prior(model: &EffectModel, effects: usize) -> f64 {
         0 => NO_GAP.ln(),
         count => (1.0 - NO_GAP).ln() + (count - 1) as f64 * NOT_ALONE.ln() - count as f64 * each,
     }
+}
+
+/// A vector may have any of its components: its probability is shared by them.
+pub(super) fn of_components(model: &EffectModel, name: &str) -> f64 {
+    let components = model.candidates.iter();
+    let components = components.filter(|own| own.is_component && own.name() == name);
+    let choices = (1_u64 << components.count().min(32)) - 1;
+    -(choices.max(1) as f64).ln()
 }

@@ -11,7 +11,7 @@ use super::DiagnoseError;
 use super::bench::{Bench, WRONG};
 use super::calibration::TIED;
 use super::evidence::Fitted;
-use super::prior::{effects, prior};
+use super::prior::{names, prior};
 use super::screen::quieten;
 use super::sets::{Set, Sets, is_fixed};
 use crate::effects::{Acts, Part};
@@ -141,7 +141,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let leading = self.best().map_or(&[][..], |best| &self.fits[best].members);
         let is_new = |set: &&Set| {
             let is_fitted = self.fits.iter().any(|own| own.members == set.members);
-            let is_of_size = size.is_none_or(|size| effects(self.bench, &set.members) == size);
+            let is_of_size =
+                size.is_none_or(|size| names(self.bench.effects, &set.members).len() == size);
             // What needs more sizes than the best set and betters nothing is no rival of it.
             let is_idle = set.log_posterior < fitted
                 && !leading.is_empty()
@@ -389,7 +390,7 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Logarithm of the probability, up to a constant.
     pub(super) fn log_posterior(&self, fitted: &Fitted) -> f64 {
-        fitted.evidence.log() + prior(self.bench.effects, effects(self.bench, &fitted.members))
+        fitted.evidence.log() + prior(self.bench.effects, &fitted.members)
     }
 }
 

@@ -9,7 +9,7 @@
 //! About a fit that has members, slopes are those there, and the innovations are extended to sizes of zero, so that
 //! every set keeps its value, also those without the members.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
 use appell_estimate::{Direction, Estimation, Tangent, Unknown, in_parallel};
@@ -21,7 +21,7 @@ use super::bench::{Bench, WRONG};
 use super::evidence::{Fitted, LN_1000, occam, price};
 use super::gram::{Gram, Solved};
 use super::nuisance::{known, moves_the_mean};
-use super::prior::prior;
+use super::prior::{of_components, of_count, prior};
 use super::screen::{Screened, directions, positive, quieten, shapes};
 use crate::effects::Acts;
 
@@ -49,6 +49,8 @@ pub(super) struct Set {
 /// A candidate, or some components of one vector, as one effect.
 struct Choice {
     name: String,
+    /// Logarithm of its part of the probability that the effect has beforehand.
+    log_prior: f64,
     candidates: Vec<usize>,
     columns: Vec<usize>,
 }
@@ -91,7 +93,7 @@ pub(super) struct Sets<'b, 'a> {
     /// Those that every set has: nothing is known of what would be without them.
     fixed: Vec<usize>,
     choices: Vec<Choice>,
-    /// Logarithms of the probabilities beforehand, by the number of effects.
+    /// Logarithms of the probabilities beforehand, by the number of choices.
     prior: Vec<f64>,
     /// What a value lacks to be the logarithm of a probability as fits have it.
     offset: f64,
@@ -152,12 +154,18 @@ impl<'b, 'a> Sets<'b, 'a> {
         if let (true, Some(failure)) = (found.is_empty(), failure) {
             return Err(failure);
         }
+        let of_fixed = fixed.iter().map(|&own| bench.candidate(own).name());
+        let of_fixed: BTreeSet<String> = of_fixed.collect();
+        let of_fixed: f64 = of_fixed
+            .iter()
+            .map(|name| of_components(bench.effects, name))
+            .sum();
         let mut sets = Self {
             bench,
             levels: found,
             choices: Vec::new(),
-            prior: (0..=TOGETHER + fixed.len())
-                .map(|effects| prior(bench.effects, effects))
+            prior: (0..=TOGETHER)
+                .map(|effects| of_count(bench.effects, effects + fixed.len()) + of_fixed)
                 .collect(),
             columns,
             members: fitted.members.clone(),
@@ -167,11 +175,11 @@ impl<'b, 'a> Sets<'b, 'a> {
         sets.choices = sets.choices();
         let own = |column: &usize| fitted.members.contains(&sets.columns[*column].candidate);
         let own: Vec<usize> = (0..sets.columns.len()).filter(own).collect();
-        let effects = super::prior::effects(bench, &fitted.members);
+        let own_prior = prior(bench.effects, &fitted.members);
         let value = sets
             .levels
             .first()
-            .and_then(|level| sets.value(level, &own, effects));
+            .and_then(|level| sets.value(level, &own, own_prior));
         sets.offset = log_posterior - value.map_or(log_posterior, |(value, ..)| value);
         Ok(sets)
     }
@@ -204,6 +212,7 @@ impl<'b, 'a> Sets<'b, 'a> {
                 let (name, candidates) = (own.name(), vec![candidate]);
                 choices.push(Choice {
                     name,
+                    log_prior: 0.0,
                     candidates,
                     columns,
                 });
@@ -215,6 +224,7 @@ impl<'b, 'a> Sets<'b, 'a> {
                 let own = own.map(|place| &components[place]);
                 choices.push(Choice {
                     name: name.clone(),
+                    log_prior: of_components(self.bench.effects, &name),
                     candidates: own.clone().map(|(candidate, _)| *candidate).collect(),
                     columns: own.flat_map(|(_, columns)| columns.clone()).collect(),
                 });
@@ -285,11 +295,12 @@ impl<'b, 'a> Sets<'b, 'a> {
         if has_parameter && self.members.iter().any(lacks) {
             return None;
         }
-        let effects = choices.len() + self.fixed.len();
+        let log_prior =
+            self.prior[choices.len()] + choices.iter().map(|choice| choice.log_prior).sum::<f64>();
         let valued = self
             .levels
             .iter()
-            .filter_map(|level| Some((level, self.value(level, &columns, effects)?)));
+            .filter_map(|level| Some((level, self.value(level, &columns, log_prior)?)));
         let (level, (value, solved)) = valued.max_by(|a, b| a.1.0.total_cmp(&b.1.0))?;
         let mut members: Vec<usize> = choices
             .iter()
@@ -321,7 +332,7 @@ impl<'b, 'a> Sets<'b, 'a> {
 
     /// Logarithm of the probability of some columns up to a constant, and their best sizes;
     /// nothing where a size is on the wrong side, or none at all.
-    fn value(&self, level: &Level, columns: &[usize], effects: usize) -> Option<(f64, Solved)> {
+    fn value(&self, level: &Level, columns: &[usize], log_prior: f64) -> Option<(f64, Solved)> {
         let solved = level.gram.solved(columns)?;
         let is_wrong = |(place, &column): (usize, &usize)| {
             self.columns[column].is_positive && solved.sizes[place] <= 0.0
@@ -345,12 +356,7 @@ impl<'b, 'a> Sets<'b, 'a> {
                 (size * sides * LN_1000).ln() + price
             };
         }
-        value += self
-            .prior
-            .get(effects)
-            .copied()
-            .unwrap_or(f64::NEG_INFINITY);
-        Some((value, solved))
+        Some((value + log_prior, solved))
     }
 
     /// The fit with one candidate more that brings a coordinate: such have no slopes.
@@ -361,7 +367,6 @@ impl<'b, 'a> Sets<'b, 'a> {
     ) -> Result<Vec<Set>, DiagnoseError> {
         let bench = self.bench;
         let for_kicks = fitted.evidence.by_inputs;
-        let own = super::prior::effects(bench, &fitted.members);
         let singles = (0..self.choices.len()).filter_map(|place| {
             let level = self.levels.first()?;
             Some(level.gram.solved(&self.choices[place].columns)?.gain)
@@ -372,7 +377,8 @@ impl<'b, 'a> Sets<'b, 'a> {
             let mut members = fitted.members.clone();
             members.push(one.candidate);
             members.sort_unstable();
-            let more = prior(bench.effects, own + 1) - prior(bench.effects, own);
+            let before = prior(bench.effects, &fitted.members);
+            let more = prior(bench.effects, &members) - before;
             Set {
                 members,
                 log_posterior: log_posterior + one.gain - occam(one.gain) + more,

@@ -186,7 +186,7 @@ impl<'s> Search<'s> {
 
     /// Logarithm of the probability, up to a constant.
     fn log_posterior(&self, fitted: &Hypothesis) -> f64 {
-        fitted.log + prior(self.effects, self.names(&fitted.members).len())
+        fitted.log + prior(self.effects, &fitted.members)
     }
 
     /// The sizes of a candidate.

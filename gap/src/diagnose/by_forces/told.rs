@@ -4,12 +4,13 @@ use appell_estimate::chi_squared_probability;
 use appell_recordings::DataSet;
 use nalgebra::DVector;
 
-use super::super::assembly::{DETECTABLE, found, names, shortened, tied, verdict};
+use super::super::assembly::{DETECTABLE, found, shortened, tied, verdict};
 use super::super::budget::{self, Ends};
 use super::super::calibration::IMMATERIAL;
 use super::super::changes::{Changes, Equations};
 use super::super::localise::force_unit;
 use super::super::prediction::{Errors, Paired};
+use super::super::prior::names;
 use super::super::report::{
     Detectable, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, UNKNOWN, Value, Where,
 };

@@ -32,18 +32,11 @@ pub(super) use series::{LawGain, Series, TermScores};
 
 /// Part of its gain that a law has to repeat on runs that it was not found in.
 const REPEATED: f64 = 0.5;
-/// Disturbances as parts of those that were fitted, which follow what the model lacks.
-const LEVELS: [f64; 2] = [1.0, 0.6];
-
-fn quiet(
-    estimation: &Estimation<'_>,
-    fitted: &Fitted,
-    level: f64,
-) -> Result<Fitted, DiagnoseError> {
-    let mut quiet = fitted.clone();
-    quieten(estimation, &mut quiet.fit.values, level)?;
-    Ok(quiet)
-}
+/// Disturbances follow what the model lacks. The laws that gained most are looked for again beside disturbances that
+/// are quieter by this part each time, as long as the best one gains by it, no more often than this.
+const LEVELS: usize = 7;
+const QUIETER: f64 = 0.55;
+const MOST: usize = 8;
 
 /// What a law that nobody has named would gain beside a hypothesis.
 #[derive(Debug, Clone, PartialEq)]
@@ -89,41 +82,95 @@ pub(super) fn leftover(
 ) -> Result<Option<Leftover>, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let [mut smooth, mut single] = [const { Family::new() }; 2];
-    for dependence in Dependence::all(bench) {
-        for along in [Along::Disturbances, Along::Channels] {
-            let is_possible = match along {
-                Along::Disturbances => dependence.is_of_forces(),
-                Along::Channels => dependence.is_of_channels(),
+    let mut families = [const { Family::new() }; 2];
+    let (mut kinds, mut base) = (kinds(bench), None);
+    let gains = of_variables(
+        (bench, &estimation),
+        fitted,
+        &kinds,
+        &mut base,
+        &mut families,
+    )?;
+    let mut order: Vec<usize> = (0..kinds.len()).collect();
+    order.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
+    order.truncate(MOST);
+    kinds = order.iter().map(|&place| kinds[place]).collect();
+    let memory = with_memory((bench, &estimation), fitted)?;
+    // The law that is told is one beside the disturbances of the fit.
+    let [smooth, single] = families.clone();
+    let told = joined([smooth, single, memory.clone()]);
+    let mut best = order
+        .first()
+        .map_or(f64::NEG_INFINITY, |&place| gains[place]);
+    let mut quiet = fitted.clone();
+    for _ in 0..LEVELS {
+        quieten(&estimation, &mut quiet.fit.values, QUIETER)?;
+        // A filter that trusts the model more may lose a run.
+        let Ok(gains) = of_variables(
+            (bench, &estimation),
+            &quiet,
+            &kinds,
+            &mut base,
+            &mut families,
+        ) else {
+            break;
+        };
+        let gain = gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        if gain <= best {
+            break;
+        }
+        best = gain;
+    }
+    let [smooth, single] = families;
+    let all = joined([smooth, single, memory]);
+    Ok(all.map(|all| Leftover {
+        first: told.map_or_else(|| all.first.clone(), |told| told.first),
+        ..all
+    }))
+}
+
+/// What laws of variables may depend on, and what they may add to.
+fn kinds<'b>(bench: &'b Bench<'_>) -> Vec<(Dependence<'b>, Along)> {
+    let all = Dependence::all(bench).into_iter();
+    all.flat_map(|one| {
+        let forces = one.is_of_forces().then_some((one, Along::Disturbances));
+        let channels = one.is_of_channels().then_some((one, Along::Channels));
+        forces.into_iter().chain(channels)
+    })
+    .collect()
+}
+
+/// Adds the laws of variables beside the disturbances of a fit. They gain over what the recordings are worth with the
+/// disturbances that were fitted, which is `base` from the first law on. Returns the greatest gain of each kind.
+fn of_variables(
+    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    fitted: &Fitted,
+    kinds: &[(Dependence<'_>, Along)],
+    base: &mut Option<f64>,
+    [smooth, single]: &mut [Family; 2],
+) -> Result<Vec<f64>, DiagnoseError> {
+    let mut gains = Vec::with_capacity(kinds.len());
+    for &(dependence, along) in kinds {
+        let mut best = f64::NEG_INFINITY;
+        let scores = wave_scores((bench, estimation), fitted, dependence, along)?;
+        for (place, wave_scores) in scores {
+            let base = *base.get_or_insert(wave_scores.log_likelihood);
+            let offset = wave_scores.log_likelihood - base;
+            let mut unnamed = |wave, law: LawGain| {
+                let law = law.beside(offset);
+                best = best.max(law.gain);
+                let on = (On::Variable(wave), dependence.name(bench));
+                unnamed(on, (along, place), law)
             };
-            if !is_possible {
-                continue;
-            }
-            let mut base = None;
-            for &level in &LEVELS {
-                let quiet = quiet(&estimation, fitted, level)?;
-                let Ok(scores) = wave_scores((bench, &estimation), &quiet, dependence, along)
-                else {
-                    continue;
-                };
-                for (place, wave_scores) in scores {
-                    let base = *base.get_or_insert(wave_scores.log_likelihood);
-                    let offset = wave_scores.log_likelihood - base;
-                    let unnamed = |wave, law: LawGain| {
-                        let on = (On::Variable(wave), dependence.name(bench));
-                        unnamed(on, (along, place), law.beside(offset))
-                    };
-                    smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
-                    for wave in 0..dependence.waves(along) {
-                        let law = wave_scores.single(wave);
-                        single.add(law.map(|law| unnamed(Some(wave), law)));
-                    }
-                }
+            smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
+            for wave in 0..dependence.waves(along) {
+                let law = wave_scores.single(wave);
+                single.add(law.map(|law| unnamed(Some(wave), law)));
             }
         }
+        gains.push(best);
     }
-    let memory = with_memory((bench, &estimation), fitted)?;
-    Ok(joined([smooth, single, memory]))
+    Ok(gains)
 }
 
 /// The same of forces that depend on what was before: they have few numbers, as effects do, where a law of a
@@ -239,6 +286,7 @@ pub(super) fn term_scores(
 }
 
 /// Laws of one kind.
+#[derive(Clone)]
 struct Family {
     tried: usize,
     found: Vec<Unnamed>,

@@ -199,7 +199,7 @@ fn join(
     let (best, probability) = &comparison.fits[0];
     // Beside certainty nothing is left of 1 − p: what is left of the library speaks for itself.
     let left = comparison.left.as_ref();
-    let left = left.map_or(0.0, |left| left.log_bayes_factor.max(0.0)) * comparison.independent;
+    let left = left.map_or(0.0, |left| left.beside_fitted.max(0.0)) * comparison.independent;
     let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
     let beside = best.evidence.log() + prior(bench.effects, &best.members);
     let base = comparison.nominal().evidence.log();

@@ -72,6 +72,8 @@ pub(super) struct Leftover {
     pub(super) first: Unnamed,
     /// Logarithm of the Bayes factor for any of them, all alike beforehand.
     pub(super) log_bayes_factor: f64,
+    /// The same beside the disturbances of the fit alone: disturbances may also be quieter beside other hypotheses.
+    pub(super) beside_fitted: f64,
 }
 
 /// What a hypothesis leaves that a law without a name explains; nothing where no law generalises
@@ -123,9 +125,14 @@ pub(super) fn leftover(
     }
     let [smooth, single] = families;
     let all = joined([smooth, single, memory]);
-    Ok(all.map(|all| Leftover {
-        first: told.map_or_else(|| all.first.clone(), |told| told.first),
-        ..all
+    Ok(all.map(|all| {
+        let beside_fitted = told.as_ref().map_or(0.0, |told| told.log_bayes_factor);
+        let first = told.map(|told| told.first);
+        Leftover {
+            first: first.unwrap_or_else(|| all.first.clone()),
+            beside_fitted,
+            ..all
+        }
     }))
 }
 
@@ -320,6 +327,7 @@ fn joined<const KINDS: usize>(families: [Family; KINDS]) -> Option<Leftover> {
     Some(Leftover {
         first: first.1,
         log_bayes_factor: log,
+        beside_fitted: log,
     })
 }
 

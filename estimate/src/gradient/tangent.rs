@@ -195,7 +195,10 @@ impl<'p, 'a> Forward<'p, 'a> {
             .collect();
         let info = setup.model.info();
         let zeros = |len| vec![0.0; len];
-        let directions_len = directions.len();
+        let candidates = columns - directions.len();
+        let times = estimation.recordings()[pass.run].times();
+        let whole = times.last().zip(times.first());
+        let whole = whole.map_or(0.0, |(last, first)| last - first);
         let mut z = zeros(n * columns);
         for (column, direction) in directions.iter().enumerate() {
             if let Direction::Value(Unknown::Initial { run, state }) = *direction
@@ -221,12 +224,8 @@ impl<'p, 'a> Forward<'p, 'a> {
             earlier: pass.held.clone(),
             switched: false,
             rows: Vec::new(),
-            interval: {
-                let times = estimation.recordings()[pass.run].times();
-                let whole = times.last().zip(times.first());
-                whole.map_or(0.0, |(last, first)| last - first) / (times.len() - 1).max(1) as f64
-            },
-            added_squares: zeros(columns - directions_len),
+            interval: whole / (times.len() - 1).max(1) as f64,
+            added_squares: zeros(candidates),
             pass,
         }
     }

@@ -10,7 +10,8 @@ pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
         .collect()
 }
 
-/// How far a coordinate is off what is expected, and the slope of that by its value.
+/// How far a coordinate is off what is expected, and the slope of that by its value: slopes are by values, what is
+/// known beforehand is of coordinates.
 pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
     let [expected, deviation] = free.prior?;
     let stretch = match free.coordinate {

@@ -7,14 +7,14 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use appell_estimate::{Coordinate, Direction, Estimation, Tangent, Unknown, in_parallel};
+use appell_estimate::{Direction, Estimation, Tangent, Unknown, in_parallel};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::nuisance::moving;
+use super::nuisance::{known, moving};
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -110,15 +110,8 @@ impl<'t> Projected<'t> {
         let (samples, root) = (tangent.samples.len(), weight.sqrt());
         let known: Vec<(usize, f64, f64)> = (0..free)
             .filter_map(|i| {
-                let one = &fitted.fit.free[i];
-                let [expected, deviation] = one.prior?;
-                let off = fitted.fit.coordinates[i] - one.to_coordinate(expected);
-                // Slopes are those by values, what is known beforehand is of coordinates.
-                let stretch = match one.coordinate {
-                    Coordinate::Plain => 1.0,
-                    Coordinate::Logarithm => one.to_value(fitted.fit.coordinates[i]),
-                };
-                Some((i, off / deviation, (deviation * stretch).recip()))
+                let [off, slope] = known(&fitted.fit.free[i], fitted.fit.coordinates[i])?;
+                Some((i, off, slope))
             })
             .collect();
         let rows = samples + known.len();
@@ -201,16 +194,16 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 impl Screen {
     /// About a fit, of all candidates that it does not have.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let (mut screen, for_kicks) = Self::first_order((bench, fitted))?;
+        let mut screen = Self::first_order((bench, fitted))?;
         let best = screen.list.first().map_or(0.0, |best| best.gain);
-        let augmented = augmented::screened((bench, fitted), for_kicks, best)?;
+        let augmented = augmented::screened((bench, fitted), fitted.evidence.by_inputs, best)?;
         screen.list.extend(augmented);
         screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(screen)
     }
 
-    /// All but those that bring a coordinate; how much speaks for inputs that know the motion.
-    fn first_order((bench, fitted): (&Bench<'_>, &Fitted)) -> Result<(Self, f64), DiagnoseError> {
+    /// All but those that bring a coordinate.
+    fn first_order((bench, fitted): (&Bench<'_>, &Fitted)) -> Result<Self, DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(&fitted.fit);
@@ -234,7 +227,7 @@ impl Screen {
         });
         let mut list: Vec<Screened> = all.into_iter().flatten().collect();
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
-        Ok((Self { list }, for_kicks))
+        Ok(Self { list })
     }
 }
 

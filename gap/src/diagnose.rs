@@ -46,6 +46,7 @@ mod force_law;
 mod forces;
 mod forms;
 mod gram;
+mod hardware;
 mod held_out;
 mod horizon;
 mod imperfection;
@@ -136,7 +137,8 @@ fn diagnosed(
             told => return told,
         }
     }
-    let model = EffectModel::new(&set.spec, all)?;
+    let mut model = EffectModel::new(&set.spec, all)?;
+    model.is_of_changes = before.is_some();
     by_filter((set, before), (&whole, &fitted), &model, options, stage)
 }
 
@@ -299,8 +301,10 @@ fn judged_beside<'m>(
     let screen = Screen::of(&bench, &nominal)?;
     stage("fitting the effects that remain");
     let windows = horizon::windows(whole)?;
-    let over = Bench::over(&windows, (&bench, &nominal))?;
+    let levels = bench.levels(&nominal)?;
+    let over = Bench::over(&windows, (&bench, &levels))?;
     let known = before.and_then(|before| known(&bench, before).ok());
     let hypotheses = (nominal, known.into_iter().collect());
-    horizon::judged((bench, hypotheses, screen), over, stage)
+    let judged = horizon::judged((bench, hypotheses, screen), over, stage)?;
+    horizon::lengthened(judged, (&levels, whole), stage)
 }

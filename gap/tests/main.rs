@@ -6,6 +6,7 @@ mod common;
 
 mod base;
 mod by_forces;
+mod decay;
 mod engine;
 mod fuzz;
 mod shared;

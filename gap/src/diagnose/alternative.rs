@@ -92,7 +92,8 @@ impl<'a> Rival<'a> {
         let mut fitted = bench.nominal()?;
         if main.is_over_windows() {
             let windows = main.set.rebound(&alternative.spec)?;
-            bench = Bench::over(&windows, (&bench, &fitted))?.with_weight_of(main);
+            let levels = bench.levels(&fitted)?;
+            bench = Bench::over(&windows, (&bench, &levels))?.with_weight_of(main);
             fitted = bench.nominal()?;
         }
         let extra: Vec<bool> = own.iter().map(|column| !shared.contains(column)).collect();

@@ -11,6 +11,7 @@ use super::DiagnoseError;
 use super::evidence::Evidence;
 use super::evidence::Fitted;
 use super::feedback::{InputInnovations, for_kicks};
+use super::hardware::Hardware;
 use super::imperfection::{Imperfection, perfect};
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
@@ -81,6 +82,8 @@ pub(super) struct Bench<'a> {
     pub(super) predicting: Vec<(Unknown, f64)>,
     /// How much all rows tell together; infinite where every row tells something of its own.
     pub(super) told: f64,
+    /// How probable sizes are beforehand.
+    pub(super) hardware: Hardware,
     /// What is fitted beside every hypothesis.
     pub(super) imperfections: Vec<Imperfection>,
 }
@@ -132,6 +135,7 @@ impl<'a> Bench<'a> {
             input_innovations: InputInnovations::of(&recordings),
             unmodelled: UnmodelledChannel::of(&set),
             whole: set.runs.clone(),
+            hardware: Hardware::of(effects, &problem.wanted),
             set,
             effects,
             recordings,
@@ -269,20 +273,24 @@ impl<'a> Bench<'a> {
         self.effects.own(candidate)
     }
 
+    /// Whether a member is the error of a parameter.
+    pub(super) fn is_wrong(&self, members: &[usize], unknown: Unknown) -> bool {
+        let info = self.effects.info();
+        members.iter().any(|&member| {
+            let candidate = self.candidate(member);
+            let index = info.parameter_index(&candidate.site);
+            matches!(candidate.acts, Acts::Parameter(_))
+                && index.map(Unknown::Parameter) == Some(unknown)
+        })
+    }
+
     /// What is looked for under a hypothesis: parameters of the mechanism, then what the members
     /// bring, then levels.
     pub(super) fn free(&self, members: &[usize], setup: &Setup<'_>) -> Vec<Free> {
-        let info = self.effects.info();
-        let wrong: Vec<usize> = members
-            .iter()
-            .map(|&member| self.candidate(member))
-            .filter(|candidate| matches!(candidate.acts, Acts::Parameter(_)))
-            .filter_map(|candidate| info.parameter_index(&candidate.site))
-            .collect();
         let mut free: Vec<Free> = Vec::new();
         for one in &self.problem.wanted {
-            match (one.unknown, one.prior) {
-                (Unknown::Parameter(index), Some([value, _])) if wrong.contains(&index) => {
+            match one.prior {
+                Some([value, _]) if self.is_wrong(members, one.unknown) => {
                     free.push(one.around(value, WRONG * value.abs().max(f64::MIN_POSITIVE)));
                 }
                 _ => free.push(*one),

@@ -19,6 +19,9 @@ use super::whiteness::independent;
 /// Odds that nothing in the library explains a gap that is there and that no effect closes.
 const MUCH: f64 = 20.0;
 
+/// A step that promises more is one of slopes that overflow.
+const MOST_PROMISED: f64 = 1e4;
+
 /// Hypotheses with their probabilities.
 #[derive(Debug, Clone)]
 pub(super) struct Comparison {
@@ -160,6 +163,16 @@ impl Comparison {
         holds.then(|| Self::found(bench, search)).transpose()
     }
 
+    /// From the nominal model, hypotheses that are known, and what betters the best of them.
+    pub(super) fn among(
+        bench: &Bench<'_>,
+        known: (Fitted, Vec<Fitted>),
+    ) -> Result<Self, DiagnoseError> {
+        let mut search = Search::new(bench, known);
+        search.better()?;
+        Self::found(bench, search)
+    }
+
     /// The same with further hypotheses that were fitted elsewhere.
     pub(super) fn with(self, bench: &Bench<'_>, known: Vec<Fitted>) -> Result<Self, DiagnoseError> {
         let nominal = self.nominal().clone();
@@ -239,9 +252,16 @@ impl Comparison {
 
 /// Where a search ended.
 fn ended(fit: &Fit) -> String {
+    let steps = fit.steps;
+    if fit.gain > MOST_PROMISED {
+        return format!(
+            "its search ended after {steps} steps where slopes lead nowhere, as at stiff friction: it may explain more \
+             than is told"
+        );
+    }
     format!(
-        "its search ended after {} steps where the next one promises {:.1} in log-likelihood and does not keep \
+        "its search ended after {steps} steps where the next one promises {:.1} in log-likelihood and does not keep \
          it: it may explain more than is told",
-        fit.steps, fit.gain
+        fit.gain
     )
 }

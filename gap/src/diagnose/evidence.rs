@@ -9,7 +9,7 @@
 
 use std::f64::consts::TAU;
 
-use appell_estimate::{Fit, Layout, Unknown};
+use appell_estimate::{Fit, Free, Layout, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
@@ -19,11 +19,6 @@ use super::bench::Bench;
 pub(super) const LN_1000: f64 = 6.9;
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
-
-/// What the size of a pure number costs beside others of its kind, such as the relative error of a gain or of a scale:
-/// Student's t with three degrees of freedom, so that what is several times what is there takes much to be believed.
-const PURE: f64 = 0.5;
-const DEGREES: f64 = 3.0;
 
 /// A set of candidates, fitted.
 #[derive(Debug, Clone)]
@@ -74,10 +69,20 @@ impl Evidence {
         let mut occam = log_volume;
         let mut smallest = f64::INFINITY;
         let own = bench.problem.wanted.len();
+        let of_error = |free: &Free, coordinate: f64| {
+            let [expected, _] = free
+                .prior
+                .filter(|_| bench.is_wrong(members, free.unknown))?;
+            let error = free.to_value(coordinate) - expected;
+            bench.hardware.of_error(free.unknown, error)
+        };
         let whole = fit.covariance();
         for (place, &i) in open.iter().enumerate() {
             let free = &fit.free[i];
-            occam += if let Some([expected, deviation]) = free.prior {
+            occam += if let Some((density, times)) = of_error(free, fit.coordinates[i]) {
+                smallest = smallest.min(times);
+                density
+            } else if let Some([expected, deviation]) = free.prior {
                 let off = (fit.coordinates[i] - free.to_coordinate(expected)) / deviation;
                 -0.5 * off * off - deviation.ln() - 0.5 * TAU.ln()
             } else {
@@ -92,7 +97,6 @@ impl Evidence {
                     Unknown::Lag(_) => size * deviations[place],
                     _ => deviations[place],
                 };
-                let d = (size / in_value).max(SMALLEST);
                 // A level may do what a member does: what is told of the member is what the level leaves. A
                 // step that was promised to the end might undo it, but for windows, where roughness ends searches
                 // within the tolerance.
@@ -105,10 +109,11 @@ impl Evidence {
                     deviations[place] / whole[(i, i)].sqrt().hypot(promised)
                 });
                 smallest = smallest.min(size / in_value * left);
+                // The density of the coordinate: that of a lag is of its logarithm.
+                let stretch = (in_value / deviations[place]).ln();
                 let two_sided = free.range[0] < neutral;
-                let sides = if two_sided { 2.0_f64 } else { 1.0 };
-                // The density of the coordinate: 1/(size · sides · range) for plain ones.
-                -(d * deviations[place] * sides * LN_1000).ln() - price(bench, free.unknown, size)
+                let hardware = &bench.hardware;
+                hardware.of_size(free.unknown, (size, in_value), two_sided) + stretch
             };
         }
         // A member whose size stands at zero is not there.
@@ -132,20 +137,6 @@ impl Evidence {
     /// Logarithm of the evidence.
     pub(super) fn log(&self) -> f64 {
         self.log_likelihood + self.by_inputs + self.occam
-    }
-}
-
-/// What a size costs beyond what its own deviation says of it.
-pub(super) fn price(bench: &Bench<'_>, unknown: Unknown, size: f64) -> f64 {
-    let is_pure = match unknown {
-        Unknown::Scale(_) => true,
-        Unknown::Parameter(index) => bench.effects.info().parameters[index].unit == "1",
-        _ => false,
-    };
-    if is_pure {
-        0.5 * (DEGREES + 1.0) * (1.0 + (size / PURE).powi(2) / DEGREES).ln()
-    } else {
-        0.0
     }
 }
 

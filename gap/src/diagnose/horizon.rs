@@ -11,14 +11,15 @@ use std::f64::consts::PI;
 
 use super::DiagnoseError;
 use super::bench::Bench;
-use super::calibration::TIED;
+use super::calibration::{IMMATERIAL, TIED};
 use super::compare::Comparison;
 use super::evidence::Fitted;
-use super::scales::rates;
+use super::scales::{deviation, rates};
 use super::screen::Screen;
 use super::search::Look;
 use super::unknown::leftover;
 use crate::effects::Acts;
+use appell_estimate::Unknown;
 use appell_recordings::DataSet;
 
 /// Number of windows, spread over all runs.
@@ -37,6 +38,13 @@ const REFUTED_ALONE: f64 = 5.0 * TIED;
 /// more than this part of it.
 const IDLE: f64 = 0.2;
 const REFUTED_IDLE: f64 = 3.0 * TIED;
+
+/// How much longer windows become, with their number and most rows.
+const LONGER: [(f64, usize, usize); 2] = [(4.0, 16, 80), (16.0, 8, 160)];
+/// Part of the longest run that a longer window may be.
+const LONGEST: f64 = 0.7;
+/// Hypotheses that longer windows compare.
+const COMPARED: usize = 8;
 
 /// The hypotheses, with the bench that ranks them.
 pub(super) struct Judged<'a> {
@@ -117,6 +125,51 @@ pub(super) fn judged<'a>(
         screen,
         comparison,
     })
+}
+
+/// What longer windows say where nothing in the library explains what is seen one step ahead: whether an effect leaves
+/// hardly anything of the gap there. What acts slowly, as friction that a swing hardly shows, ruins predictions over
+/// many swings.
+pub(super) fn lengthened<'a>(
+    judged: Judged<'a>,
+    (levels, whole): (&[(Unknown, f64)], &DataSet),
+    stage: &mut impl FnMut(&'static str),
+) -> Result<Judged<'a>, DiagnoseError> {
+    let mut before = length(whole);
+    for (times, count, rows) in LONGER {
+        let best = judged.comparison.best();
+        let longer = (length(whole) * times).min(LONGEST * longest(whole));
+        let is_open = judged.comparison.leads_unknown() && !best.members.is_empty();
+        if !is_open || longer < 2.0 * before {
+            break;
+        }
+        before = longer;
+        stage("fitting simulations over longer windows");
+        let windows = whole.windows(longer, (count, rows))?;
+        let over = Bench::over(&windows, (&judged.bench, levels))?;
+        let Ok((_, again)) = over.fitted_again(&judged.bench, best) else {
+            break;
+        };
+        if !over.predicts(&again)? {
+            break;
+        }
+        let fits = judged.comparison.fits.iter().take(COMPARED);
+        let known = fits.filter(|(own, _)| !own.members.is_empty());
+        let known = known.filter_map(|(own, _)| over.fitted_again(&judged.bench, own).ok());
+        let known = known.map(|(_, again)| again).collect();
+        let mut comparison = Comparison::among(&over, (over.nominal()?, known))?;
+        let [found, nominal] = [comparison.best(), comparison.nominal()];
+        let gain = found.fit.log_likelihood - nominal.fit.log_likelihood;
+        if over.left(gain) < IMMATERIAL {
+            comparison.weigh_unknown(&over)?;
+            return Ok(Judged {
+                screen: Screen::of(&over, comparison.nominal())?,
+                bench: over,
+                comparison,
+            });
+        }
+    }
+    Ok(judged)
 }
 
 /// One-step predictions where they explain everything: a mechanism that falls over is lost in windows of any length.
@@ -258,30 +311,19 @@ fn length(set: &DataSet) -> f64 {
         let [rate, _] = rates(set, column)?;
         Some(PI * deviation(set, column) / rate)
     };
-    let halves: Vec<f64> = measured.filter_map(half).collect();
-    let middle = halves.into_iter().reduce(f64::min);
-    let durations = set
-        .runs
-        .iter()
-        .map(|run| run.times[run.times.len() - 1] - run.times[0]);
-    let longest = durations.fold(0.0, f64::max);
+    let middle = measured.filter_map(half).reduce(f64::min);
+    let longest = longest(set);
     let steps = set.runs.iter().map(|run| run.sampling.step);
     let step = steps.fold(f64::INFINITY, f64::min);
     let length = middle.unwrap_or(longest).min(longest / PARTS);
     length.max(FEWEST_ROWS as f64 * step)
 }
 
-/// Standard deviation of a channel in its runs.
-fn deviation(set: &DataSet, column: usize) -> f64 {
-    let (mut squares, mut count) = (0.0, 0.0_f64);
-    for run in &set.runs {
-        let seen = run.values[column].iter().filter(|value| value.is_finite());
-        let (sum, rows) = seen.clone().fold((0.0, 0.0_f64), |(sum, rows), value| {
-            (sum + value, rows + 1.0)
-        });
-        let mean = sum / rows.max(1.0);
-        squares += seen.map(|value| (value - mean).powi(2)).sum::<f64>();
-        count += rows;
-    }
-    (squares / count.max(1.0)).sqrt()
+/// Duration of the longest run in s.
+fn longest(set: &DataSet) -> f64 {
+    let durations = set
+        .runs
+        .iter()
+        .map(|run| run.times[run.times.len() - 1] - run.times[0]);
+    durations.fold(0.0, f64::max)
 }

@@ -42,6 +42,14 @@ impl GapVerdict {
             && which.iter().any(|one| !one.parameters.is_empty());
         let stays = far.budget.iter().find(|part| part.is_rest());
         let most_stays = stays.is_some_and(|part| part.closed > MOST);
+        // What closes nothing is no explanation, however clearly it shows.
+        let closes = far
+            .budget
+            .iter()
+            .any(|part| part.is_effect() && part.is_material);
+        if self == Self::Explained && names_effects && !far.budget.is_empty() && !closes {
+            return Self::Ambiguous;
+        }
         if names_effects && (far.is_worse || is_by_simulation && most_stays) {
             Self::Unexplained
         } else {
@@ -510,4 +518,57 @@ pub struct ForceLaw {
     pub medians: Vec<[f64; 2]>,
     /// The law of the best hypothesis; empty where none acts in the equations.
     pub law: Vec<[f64; 2]>,
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn far(closed: f64, is_material: bool) -> HowFar {
+        let share = |name: &str, closed: f64, is_material| Share {
+            name: name.to_owned(),
+            closed,
+            interval: [closed - 0.01, closed + 0.01],
+            is_material,
+        };
+        HowFar {
+            horizon_s: 1.0,
+            nominal: 10.0,
+            refitted: 9.0,
+            with_effect: 1.0,
+            noise_floor: 0.5,
+            closed,
+            closed_ci95: [closed - 0.01, closed + 0.01],
+            closed_vs_refitted: closed,
+            budget: vec![
+                share(REFIT, 0.99 - closed, true),
+                share("coulomb_friction@x", closed, is_material),
+                share(REST, 0.01, false),
+            ],
+            before: None,
+            bettered_ci95: [[0.9, 1.0]; 2],
+            is_worse: false,
+            runs: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn what_closes_nothing_explains_nothing() {
+        let which = [Hypothesis {
+            effects: vec!["coulomb_friction@x".to_owned()],
+            probability: 0.95,
+            same_as: None,
+            log_bayes_factor: Some(40.0),
+            parameters: vec![Value {
+                name: "coulomb_friction@x.force".to_owned(),
+                value: 0.2,
+                std: 0.01,
+                unit: "N".to_owned(),
+            }],
+            changes: None,
+        }];
+        let after = |far: &HowFar| GapVerdict::Explained.after(&which, Some(far), false);
+        assert_eq!(after(&far(0.9, true)), GapVerdict::Explained);
+        assert_eq!(after(&far(0.001, false)), GapVerdict::Ambiguous);
+    }
 }

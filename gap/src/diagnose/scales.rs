@@ -81,3 +81,18 @@ fn slopes(run: &Run, column: usize) -> Vec<Slope> {
     let windows = samples.windows(WINDOW).step_by(stride);
     windows.filter_map(slope).collect()
 }
+
+/// Standard deviation of a channel in its runs.
+pub(super) fn deviation(set: &DataSet, column: usize) -> f64 {
+    let (mut squares, mut count) = (0.0, 0.0_f64);
+    for run in &set.runs {
+        let seen = run.values[column].iter().filter(|value| value.is_finite());
+        let (sum, rows) = seen.clone().fold((0.0, 0.0_f64), |(sum, rows), value| {
+            (sum + value, rows + 1.0)
+        });
+        let mean = sum / rows.max(1.0);
+        squares += seen.map(|value| (value - mean).powi(2)).sum::<f64>();
+        count += rows;
+    }
+    (squares / count.max(1.0)).sqrt()
+}

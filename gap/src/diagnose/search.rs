@@ -19,6 +19,8 @@ use crate::effects::{Acts, Part};
 /// Sets that are fitted before slopes are taken about the best of them, and rivals of what stays the best.
 const LEADING: usize = 2;
 const RIVALS: usize = 6;
+/// Single effects about which sets are valued besides.
+const SINGLES: usize = 6;
 /// Fits about which sets are valued.
 const ROUNDS: usize = 4;
 /// By how much a set may promise less than the best one and yet be as probable, beyond this part of what that gains:
@@ -76,6 +78,7 @@ impl<'b, 'a> Search<'b, 'a> {
         mut look: impl FnMut(&Fitted) -> Look,
     ) -> Result<bool, DiagnoseError> {
         let mut first: Vec<Set> = Vec::new();
+        let mut referred: BTreeSet<Vec<usize>> = BTreeSet::new();
         for round in 0..ROUNDS {
             // The nominal model first, whatever is known from elsewhere.
             let next = if round == 0 {
@@ -119,7 +122,7 @@ impl<'b, 'a> Search<'b, 'a> {
             {
                 return Ok(false);
             }
-            if is_best(self) {
+            if is_best(self) && !self.led_on_by_singles(&mut referred)? {
                 break;
             }
             if round == 0 {
@@ -128,6 +131,64 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         self.drop_idle();
         Ok(true)
+    }
+
+    /// Adds what promises most about the best hypothesis, as long as that betters it, and the rivals of what stays.
+    pub(super) fn better(&mut self) -> Result<(), DiagnoseError> {
+        for _ in 0..ROUNDS {
+            let best = self.best().unwrap_or(0);
+            let log_posterior = self.log_posterior(&self.fits[best]);
+            let sets = Sets::about(self.bench, &self.fits[best], log_posterior)?;
+            for most in [LEADING, RIVALS] {
+                for set in self.worth_a_fit(&sets, most, None) {
+                    self.take(best, set);
+                }
+                if self.best() != Some(best) {
+                    break;
+                }
+            }
+            if self.best() == Some(best) {
+                break;
+            }
+        }
+        Ok(())
+    }
+
+    /// Slopes about one wrong effect hide what others do together: sets about the best single effects as well. Whether
+    /// they lead to a better hypothesis.
+    fn led_on_by_singles(
+        &mut self,
+        referred: &mut BTreeSet<Vec<usize>>,
+    ) -> Result<bool, DiagnoseError> {
+        let Some(best) = self.best().filter(|_| self.bench.is_over_windows()) else {
+            return Ok(false);
+        };
+        let members = self.fits[best].members.clone();
+        let is_single = |fitted: &&Fitted| {
+            fitted.is_there()
+                && names(self.bench.effects, &fitted.members).len() == 1
+                && fitted.members != members
+        };
+        let mut singles: Vec<Fitted> = self.fits.iter().filter(is_single).cloned().collect();
+        singles.sort_by(|a, b| self.log_posterior(b).total_cmp(&self.log_posterior(a)));
+        let mut told: BTreeSet<Vec<String>> = BTreeSet::new();
+        singles.retain(|single| told.insert(names(self.bench.effects, &single.members)));
+        singles.truncate(SINGLES);
+        for single in singles {
+            if !referred.insert(single.members.clone()) {
+                continue;
+            }
+            let log_posterior = self.log_posterior(&single);
+            let sets = Sets::about(self.bench, &single, log_posterior)?;
+            let from = self
+                .fits
+                .iter()
+                .position(|own| own.members == single.members);
+            for set in self.worth_a_fit(&sets, LEADING, None) {
+                self.take(from.unwrap_or(0), set);
+            }
+        }
+        Ok(self.best() != Some(best))
     }
 
     /// The sets that promise most and are not fitted yet, all or those of so many effects.

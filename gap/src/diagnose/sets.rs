@@ -18,7 +18,7 @@ use nalgebra::{DMatrix, DVector};
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::{Bench, WRONG};
-use super::evidence::{Fitted, LN_1000, occam, price};
+use super::evidence::{Fitted, occam};
 use super::gram::{Gram, Solved};
 use super::nuisance::{known, moves_the_mean};
 use super::prior::{of_components, of_count, prior};
@@ -29,6 +29,8 @@ use crate::effects::Acts;
 const LEVELS: [f64; 3] = [1.0, 0.1, 0.01];
 /// Most effects of a set whose members are all tried together.
 const TOGETHER: usize = 3;
+/// Slopes promise no smaller spread than this part: they end before.
+const LEAST_SPREAD: f64 = 0.1;
 /// Choices of which all threes are tried: those that gain most alone or in a pair.
 const MOST_CHOICES: usize = 60;
 
@@ -81,6 +83,22 @@ struct Level {
     scale: f64,
     /// Beyond what is free in every set, and what inputs that follow the motion may tell.
     gram: Gram,
+    /// How much all values tell, and what their spreads add to the log-likelihood, where noise is what is left.
+    free_noise: Option<[f64; 2]>,
+}
+
+impl Level {
+    /// Log-likelihood with a gain, and the spread of what is left as a part of that before. Over windows noise is what
+    /// a hypothesis leaves, found anew for each: half the squares are worth as much wherever one begins.
+    fn with_gain(&self, gain: f64) -> (f64, f64) {
+        let before = self.gram.log_likelihood;
+        let Some([told, of_spreads]) = self.free_noise else {
+            return (before + gain, 1.0);
+        };
+        let square = 2.0 * (of_spreads - before - gain);
+        let spread = (square / told).max(LEAST_SPREAD * LEAST_SPREAD);
+        (of_spreads - 0.5 * told * (spread.ln() + 1.0), spread.sqrt())
+    }
 }
 
 /// Everything that values sets about a fit.
@@ -333,27 +351,32 @@ impl<'b, 'a> Sets<'b, 'a> {
     /// Logarithm of the probability of some columns up to a constant, and their best sizes;
     /// nothing where a size is on the wrong side, or none at all.
     fn value(&self, level: &Level, columns: &[usize], log_prior: f64) -> Option<(f64, Solved)> {
-        let solved = level.gram.solved(columns)?;
+        let mut solved = level.gram.solved(columns)?;
         let is_wrong = |(place, &column): (usize, &usize)| {
             self.columns[column].is_positive && solved.sizes[place] <= 0.0
         };
         if columns.iter().enumerate().any(is_wrong) {
             return None;
         }
-        let mut value = level.gram.log_likelihood + solved.gain + solved.log_volume;
+        let (log_likelihood, spread) = level.with_gain(solved.gain);
+        for deviation in &mut solved.deviations {
+            *deviation *= spread;
+        }
+        let mut value = log_likelihood + solved.log_volume + columns.len() as f64 * spread.ln();
         for (place, &column) in columns.iter().enumerate() {
             let Column {
                 is_positive, known, ..
             } = self.columns[column];
-            value -= if let Some(deviation) = known {
-                deviation.ln() + 0.5 * TAU.ln()
-            } else {
-                let sides = if is_positive { 1.0 } else { 2.0 };
-                let size = solved.sizes[place].abs().max(solved.deviations[place]);
-                let price = self.columns[column].unknown.map_or(0.0, |unknown| {
-                    price(self.bench, unknown, solved.sizes[place])
-                });
-                (size * sides * LN_1000).ln() + price
+            let (size, deviation) = (solved.sizes[place], solved.deviations[place]);
+            let hardware = &self.bench.hardware;
+            // What has no value to be a slope by has no scale of hardware.
+            let unknown = self.columns[column]
+                .unknown
+                .unwrap_or(Unknown::Disturbance(0));
+            let of_error = hardware.of_error(unknown, size).filter(|_| known.is_some());
+            value += match (of_error, known) {
+                (Some((density, _)), Some(wrong)) => density + 0.5 * (size / wrong).powi(2),
+                _ => hardware.of_size(unknown, (size, deviation), !is_positive),
             };
         }
         Some((value + log_prior, solved))
@@ -541,6 +564,14 @@ impl Level {
                 gram.squares[(place, place)] += deviation.powi(-2);
             }
         }
-        Self { scale, gram }
+        let told = bench.weight * tangent.samples.len() as f64;
+        let free_noise = bench
+            .is_over_windows()
+            .then_some([told, -0.5 * bench.weight * scales]);
+        Self {
+            scale,
+            gram,
+            free_noise,
+        }
     }
 }

@@ -6,22 +6,36 @@ use appell_estimate::{Estimation, Free, Unknown};
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
+use super::scales::deviation;
 use crate::identify::Problem;
-use appell_recordings::DataSet;
+use appell_recordings::{DataSet, Run};
 
 /// Noise from which a search over windows begins, by these factors larger than that of the sensors: the likeliest.
 const LARGER: [f64; 3] = [30.0, 6.0, 1.0];
 /// The same for the largest one: errors of a model over a window may be any.
 const MOST_LARGER: f64 = 1e4;
+/// A model predicts as long as its errors are smaller than this part of the motion.
+const PREDICTS: f64 = 0.3;
+/// How much a window tells of each pseudo-velocity at most: what disturbs it is one history, however many rows it has.
+const EACH: f64 = 4.0;
 /// Part of the mean squared error over windows that is one unit of log-likelihood: smaller differences do not count.
 pub(super) const TOLERANCE: f64 = 0.05;
 
 impl Bench<'_> {
-    /// For windows. `steps` is the bench on which `fitted` found the levels of the rig: with them the filter finds
-    /// the state from which the model predicts.
+    /// The levels of the rig as a hypothesis has them.
+    pub(super) fn levels(&self, fitted: &Fitted) -> Result<Vec<(Unknown, f64)>, DiagnoseError> {
+        let levels = self.problem.levels.iter().map(|free| {
+            let value = fitted.fit.values[fitted.layout.place(free.unknown)?];
+            Ok((free.unknown, value))
+        });
+        levels.collect()
+    }
+
+    /// For windows of the recordings of another bench. With the levels of the rig the filter finds the state from
+    /// which the model predicts.
     pub(super) fn over(
         windows: &DataSet,
-        (steps, fitted): (&Self, &Fitted),
+        (from, levels): (&Self, &[(Unknown, f64)]),
     ) -> Result<Self, DiagnoseError> {
         let quiet = |estimation: &Estimation<'_>, problem: &mut Problem| {
             let layout = estimation.layout();
@@ -39,9 +53,11 @@ impl Bench<'_> {
                 .retain(|free| matches!(free.unknown, Unknown::Noise(_)));
             Ok(())
         };
-        let mut bench = Self::of(windows, steps.effects, &steps.imperfections, quiet)?;
-        bench.whole.clone_from(&steps.whole);
-        bench.told = 2.0 / TOLERANCE * bench.effects.info().speeds as f64;
+        let mut bench = Self::of(windows, from.effects, &from.imperfections, quiet)?;
+        bench.whole.clone_from(&from.whole);
+        let independent = independent(windows, &bench.whole);
+        let each = (2.0 / TOLERANCE).min(EACH * independent);
+        bench.told = each * bench.effects.info().speeds as f64;
         let values = bench.recordings.iter().map(|run| {
             let rows = 0..run.times().len();
             rows.map(|row| {
@@ -53,10 +69,7 @@ impl Bench<'_> {
             .sum::<usize>()
         });
         bench.weight = (bench.told / values.sum::<usize>().max(1) as f64).min(1.0);
-        for free in &steps.problem.levels {
-            let value = fitted.fit.values[fitted.layout.place(free.unknown)?];
-            bench.predicting.push((free.unknown, value));
-        }
+        bench.predicting = levels.to_vec();
         Ok(bench)
     }
 
@@ -79,6 +92,22 @@ impl Bench<'_> {
             .filter(|(unknown, _)| matches!(unknown, Unknown::Noise(_)));
         self.is_over_windows()
             .then(|| noise.map(|(_, value)| *value).collect())
+    }
+
+    /// Whether a hypothesis predicts: errors over windows are far smaller than the motion.
+    pub(super) fn predicts(&self, fitted: &Fitted) -> Result<bool, DiagnoseError> {
+        let measured = self.set.measured(self.effects.info());
+        for (place, (channel, _)) in measured.iter().enumerate() {
+            let mut columns = self.set.channels.iter();
+            let Some(column) = columns.position(|own| own.column == channel.column) else {
+                continue;
+            };
+            let error = fitted.fit.values[fitted.layout.place(Unknown::Noise(place))?];
+            if error > PREDICTS * deviation(&self.set, column) {
+                return Ok(false);
+            }
+        }
+        Ok(true)
     }
 
     /// Part of the energy of errors that is left after a gain in log-likelihood: levels of noise that are free grow
@@ -158,4 +187,12 @@ impl Bench<'_> {
         let gain = again.fit.log_likelihood - taken.fit.log_likelihood;
         Ok((gain, again))
     }
+}
+
+/// Number of windows that have no rows in common.
+fn independent(windows: &DataSet, whole: &[Run]) -> f64 {
+    let duration = |run: &Run| run.times[run.times.len() - 1] - run.times[0];
+    let longest = windows.runs.iter().map(duration).fold(0.0, f64::max);
+    let total: f64 = whole.iter().map(duration).sum();
+    (total / longest).clamp(1.0, windows.runs.len() as f64)
 }

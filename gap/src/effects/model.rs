@@ -67,6 +67,8 @@ pub struct EffectModel {
     augmented: Vec<OnceLock<Option<Augmented>>>,
     /// The spec that candidates are added to.
     plain: Spec,
+    /// Whether values are those of recordings before, so that an error is a change.
+    pub(crate) is_of_changes: bool,
 }
 
 /// The equations of some candidates, and those that were asked for after them.
@@ -206,6 +208,7 @@ impl EffectModel {
             rolling: None,
             hypotheses: OnceLock::new(),
             plain: spec.clone(),
+            is_of_changes: false,
         })
     }
 

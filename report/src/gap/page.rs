@@ -415,7 +415,7 @@ fn next(set: &DataSet, report: &Report) -> Markup {
             @for plot in plots::experiment(experiment, &set.mechanism) {
                 (figure(plot, "The input of the next experiment."))
             }
-        } @else if report.verdict == GapVerdict::Ambiguous {
+        } @else if report.verdict == GapVerdict::Ambiguous && !report.tied.is_empty() {
             p {
                 "None of the inputs tried separates the tied hypotheses within the limits of the motion. Widen \
                  the limits, or record under feedback."

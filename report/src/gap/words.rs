@@ -354,8 +354,9 @@ fn changed(report: &Report, change: &Change, about: &[&str]) -> String {
         GapVerdict::NoGap => "nothing changed".to_owned(),
         GapVerdict::Explained => format!("what changed: {names}"),
         GapVerdict::Ambiguous => {
-            let others = [twins(report), rivals(report)].concat().join(", ");
-            format!("something changed: {names}, or {others}")
+            let others = [twins(report), rivals(report)].concat();
+            let all = [vec![names], others].concat();
+            format!("something changed: {}", all.join(", or "))
         }
         GapVerdict::Unexplained => {
             let left = report.left.as_ref().map(|left| format!(": {}", left.about));

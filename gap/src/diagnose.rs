@@ -2,7 +2,8 @@
 //! gap.
 //!
 //! ```text
-//! data set --split--> runs to fit | runs held out, which the last step alone can read
+//! data set --between_rows--> inputs that run on between rows, where it does not say
+//!          --split--> runs to fit | runs held out, which the last step alone can read
 //!          --effects--> candidates: every effect at every place, derived at once with sizes of zero
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --sets--> what every set of candidates promises, to first order
@@ -32,6 +33,7 @@ mod alternative;
 mod assembly;
 mod augmented;
 mod bench;
+mod between_rows;
 mod budget;
 mod by_forces;
 mod calibration;
@@ -76,6 +78,7 @@ use appell_recordings::{DataSet, Part};
 
 pub use crate::held_out::AHEAD;
 pub use against::against;
+pub use between_rows::Joined;
 pub use changes::{Changes, Refitted, SignalEffect};
 pub use error::{ChangeError, DiagnoseError};
 pub use options::Options;
@@ -96,7 +99,7 @@ use screen::Screen;
 
 /// Version of the engine. Every change that moves a number of some report raises it, so that scores and
 /// calibration tell which engine they are of.
-pub const ENGINE: u32 = 9;
+pub const ENGINE: u32 = 10;
 
 /// Rows that are fitted, and values in them: with so many, sizes are known far better than laws are right.
 const MOST_ROWS: usize = 4000;
@@ -107,9 +110,9 @@ pub fn diagnose(
     set: &DataSet,
     effects: &[Effect],
     options: &Options,
-    stage: impl FnMut(&'static str),
+    mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    diagnosed((set, None), effects, options, stage)
+    diagnosed((set, None), effects, options, &mut stage)
 }
 
 /// The same; predictions of recordings before, which nothing is fitted to, are told beside those of held-out runs.
@@ -117,8 +120,16 @@ fn diagnosed(
     (set, before): (&DataSet, Option<&DataSet>),
     effects: &[Effect],
     options: &Options,
-    mut stage: impl FnMut(&'static str),
+    mut stage: &mut dyn FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
+    stage("joining the rows of inputs");
+    if let Some((set, joined)) = between_rows::joined(set, options) {
+        let report = diagnosed((&set, before), effects, options, stage)?;
+        return Ok(Report {
+            joined: Some(joined),
+            ..report
+        });
+    }
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
     let fitted = whole.stretches(most_rows(set));
@@ -128,10 +139,10 @@ fn diagnosed(
     let scales = scales::of(&fitted);
     let mut all = candidates(&set.mechanism, &set.spec, effects, &scales)?;
     all.retain(|one| !options.present.contains(&one.name()));
-    if before.is_none() && by_forces::applies(set, options) {
+    if by_forces::applies(set, options) {
         let forces = all.iter().filter(|one| by_forces::acts(one)).cloned();
         let model = EffectModel::of_forces(&set.spec, forces.collect())?;
-        match by_forces::diagnose(set, &model, options, &mut stage) {
+        match by_forces::diagnose((set, before), &model, options, &mut stage) {
             // Runs may be too short for splines.
             Err(DiagnoseError::Forces(_)) => {}
             told => return told,

@@ -46,7 +46,7 @@ pub use repeatability::Repeatability;
 use basin::Search;
 use held_out::Test;
 pub(crate) use options::longest_step;
-pub(crate) use problem::{Problem, begin};
+pub(crate) use problem::{Problem, begin, possible};
 
 /// Fits the parameters of a model to the training runs by maximum likelihood, and measures
 /// prediction errors on the others. `stage` is called with the name of each stage.

@@ -1,9 +1,9 @@
-//! Units of channels that the motion contradicts: another unit, and only it, reconciles the channel with
-//! the equations, with the rates, or with the declared range.
+//! Units and signs of channels that the motion contradicts: another unit or the other sign, and only it, reconciles the
+//! channel with the equations, with the rates, or with the declared range.
 
 mod balance;
 
-use appell_recordings::{Channel, DataSet, Role};
+use appell_recordings::{Channel, DataSet, Measured, Role};
 use appell_runtime::model::Model;
 use appell_spec::units::{self, Unit};
 
@@ -44,7 +44,7 @@ const DECIDES: f64 = 0.7;
 pub struct Doubt {
     /// Its column.
     pub column: String,
-    /// What contradicts its unit, and what to write.
+    /// What contradicts its unit or sign, and what to write.
     pub message: String,
 }
 
@@ -63,11 +63,22 @@ struct Rival {
     score: f64,
 }
 
-/// The channels whose units the training runs contradict.
+/// The channels whose units or signs the training runs contradict.
 pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
     let balance = Balance::new(set, model);
     let plain = vec![1.0; set.channels.len()];
     let stated = balance.missed(&plain);
+    let units = unit_doubts(set, &balance, &stated);
+    if units.is_empty() {
+        sign_doubts(set, &balance, &stated)
+    } else {
+        units
+    }
+}
+
+/// Channels that fit the equations in another unit.
+fn unit_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
+    let plain = vec![1.0; set.channels.len()];
     if !stated.iter().flatten().any(|part| *part > BROKEN) {
         return Vec::new();
     }
@@ -80,7 +91,7 @@ pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
     };
     let rival = |readings: Vec<Reading>| {
         let missed = with(&readings, 1.0);
-        let mended = mended(&stated, &missed)?;
+        let mended = mended(stated, &missed)?;
         let varying: Vec<usize> = (mended.iter().copied())
             .filter(|index| *index < balance.varying())
             .collect();
@@ -112,6 +123,74 @@ pub fn doubts(set: &DataSet, model: &dyn Model) -> Vec<Doubt> {
         .iter()
         .map(|reading| doubt(set, reading, tied))
         .collect()
+}
+
+/// Channels that fit the equations with the other sign: an axis that is mounted the other way round. What a motion does
+/// not tell, as it has a mirror image, is not asked about.
+fn sign_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
+    let all: Vec<usize> = (0..stated.len()).collect();
+    let reversed = |channels: Vec<usize>| {
+        let mut factors = vec![1.0; set.channels.len()];
+        for &channel in &channels {
+            factors[channel] = -1.0;
+        }
+        let missed = balance.missed(&factors);
+        (score(&missed, &all), channels)
+    };
+    let most = score(stated, &all) - DECIDES;
+    let mut rivals = in_parallel(axes(set), reversed);
+    rivals.retain(|(score, _)| *score < most);
+    rivals.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let Some((best, channels)) = rivals.first() else {
+        return Vec::new();
+    };
+    let others = rivals[1..].iter();
+    let others = others.take_while(|(score, _)| *score < best + DECIDES);
+    let others: Vec<String> = others
+        .map(|(_, channels)| format!(", or that of {}", named(set, channels)))
+        .collect();
+    let column = &set.channels[channels[0]].column;
+    let message = format!(
+        "the motion fits the equations with the sign of {} reversed{}: write reversed = true in its line of [channels], or \
+         vouch for the sign with reversed = false",
+        named(set, channels),
+        others.concat()
+    );
+    vec![Doubt {
+        column: column.clone(),
+        message,
+    }]
+}
+
+fn named(set: &DataSet, channels: &[usize]) -> String {
+    let names = channels.iter();
+    let names = names.map(|&channel| format!("`{}`", set.channels[channel].column));
+    names.collect::<Vec<_>>().join(" and ")
+}
+
+/// Channels that are reversed together: each alone, and a coordinate with its rate.
+fn axes(set: &DataSet) -> Vec<Vec<usize>> {
+    let is_known = |&channel: &usize| {
+        let own = &set.channels[channel];
+        own.reversed.is_none() && own.role.label(&set.mechanism).is_some()
+    };
+    let channels: Vec<usize> = (0..set.channels.len()).filter(is_known).collect();
+    let mut all: Vec<Vec<usize>> = channels.iter().map(|&channel| vec![channel]).collect();
+    for coordinate in set.mechanism.coordinates.ids() {
+        let speed = set.mechanism.speed_of(coordinate);
+        let is_own = |&&channel: &&usize| match set.channels[channel].role {
+            Role::Measures(Measured::Coordinate(own)) => own == coordinate.index(),
+            Role::Measures(Measured::PseudoVelocity(own)) => {
+                speed.is_some_and(|speed| speed.index() == own)
+            }
+            _ => false,
+        };
+        let own: Vec<usize> = channels.iter().filter(is_own).copied().collect();
+        if own.len() > 1 {
+            all.push(own);
+        }
+    }
+    all
 }
 
 /// What another reading mends, if it mends something and breaks nothing.

@@ -9,7 +9,7 @@ use appell_codegen::derived;
 use appell_codegen::jit::JitModel;
 use appell_codegen::mechanics::assemble;
 use appell_codegen::program::FunctionKind;
-use appell_gap::diagnose::{GapVerdict, Options, Report, diagnose};
+use appell_gap::diagnose::{GapVerdict, Options, Report, against, diagnose};
 use appell_runtime::model::{At, Model};
 use appell_test_kit::Random;
 
@@ -93,10 +93,9 @@ fn joint(t: f64, joint: usize, phase: f64) -> [f64; 3] {
     motion
 }
 
-/// The inputs of an arm whose spec has these items more.
-fn run(rig: &str, phase: f64) -> String {
-    let text = format!("{ARM}{rig}");
-    let derived = derived("rig.toml", &text).unwrap();
+/// The inputs of an arm with this spec.
+fn run(spec: &str, phase: f64) -> String {
+    let derived = derived("rig.toml", spec).unwrap();
     let kinds = [
         &FunctionKind::OF_MOTIONS[..],
         &[FunctionKind::InverseDynamics],
@@ -118,14 +117,22 @@ fn run(rig: &str, phase: f64) -> String {
         let mut x = joints.map(|[_, rate, _]| rate).to_vec();
         x.extend(joints.map(|[position, ..]| position));
         let accelerations = joints.map(|[.., acceleration]| acceleration);
-        let mut tau = vec![0.0; 3];
-        let at = At {
-            t,
-            x: &x,
-            u: &[0.0; 3],
-            p: &p,
+        let demand = |u: [f64; 3]| {
+            let mut demand = vec![0.0; 3];
+            let at = At {
+                t,
+                x: &x,
+                u: &u,
+                p: &p,
+            };
+            model.inverse_dynamics(at, &accelerations, &mut demand);
+            demand
         };
-        model.inverse_dynamics(at, &accelerations, &mut tau);
+        let without = demand([0.0; 3]);
+        // Each input drives its own joint.
+        let with = demand([1.0; 3]);
+        let tau = without.iter().zip(&with);
+        let tau = tau.map(|(without, with)| without / (without - with));
         write!(table, "{t:.2}").unwrap();
         for [position, ..] in joints {
             write!(table, ",{:.7}", position + 5e-5 * dice.normal()).unwrap();
@@ -138,14 +145,21 @@ fn run(rig: &str, phase: f64) -> String {
     table
 }
 
-fn report(rig: &str) -> Report {
+/// Recordings of a rig, beside the spec of the arm as it should be.
+fn recorded(rig: &str, phases: [f64; 3]) -> Folder {
     let folder = Folder::new();
     folder
         .write("arm.toml", ARM)
         .write("recording.toml", RECORDED);
-    for (name, phase) in [("a.csv", 0.3), ("b.csv", 1.9), ("c.csv", 4.1)] {
+    for (name, phase) in ["a.csv", "b.csv", "c.csv"].into_iter().zip(phases) {
         folder.write(name, run(rig, phase));
     }
+    folder
+}
+
+/// Of an arm whose spec has these items more.
+fn report(items: &str) -> Report {
+    let folder = recorded(&format!("{ARM}{items}"), [0.3, 1.9, 4.1]);
     let effects = appell_gap::effects::shipped().unwrap();
     let set = folder.read().unwrap();
     diagnose(&set, &effects, &Options::default(), |_| ()).unwrap()
@@ -170,15 +184,7 @@ fn an_arm_as_its_spec_has_no_gap() {
 
 #[test]
 fn friction_of_every_drive_is_one_cause_with_a_size_for_each() {
-    let friction = |joint: usize, dry: f64, viscous: f64| {
-        format!(
-            "friction_{joint} = {{ kind = \"generalized\", coordinate = \"q{joint}\", force = \
-             \"-{dry} [N*m]*smooth_sign(dot(q{joint}), 0.01 [rad/s]) - {viscous} [N*m*s/rad]*dot(q{joint})\" }}\n"
-        )
-    };
-    let rig = [(1, 3.0, 1.5), (2, 4.0, 2.0), (3, 1.0, 0.5)]
-        .map(|(q, dry, viscous)| friction(q, dry, viscous));
-    let report = report(&rig.concat());
+    let report = report(&friction(1.0));
     assert_eq!(report.verdict, GapVerdict::Explained);
     let mut found = material(&report);
     found.sort_unstable();
@@ -223,13 +229,8 @@ fn friction_of_one_joint_is_not_that_of_all() {
 fn a_drive_that_is_too_weak_has_a_gain_and_no_friction() {
     let rig = ARM.replace("force = \"tau2\"", "force = \"0.9*tau2\"");
     assert_ne!(rig, ARM);
-    let folder = Folder::new();
-    folder
-        .write("arm.toml", &rig)
-        .write("recording.toml", RECORDED);
-    for (name, phase) in [("a.csv", 0.3), ("b.csv", 1.9), ("c.csv", 4.1)] {
-        folder.write(name, run("", phase));
-    }
+    let folder = recorded(ARM, [0.3, 1.9, 4.1]);
+    folder.write("arm.toml", &rig);
     let effects = appell_gap::effects::shipped().unwrap();
     let set = folder.read().unwrap();
     let report = diagnose(&set, &effects, &Options::default(), |_| ()).unwrap();
@@ -254,4 +255,100 @@ fn what_the_library_lacks_gets_no_name_of_it() {
         "{:?}",
         report.which
     );
+}
+
+/// Friction of all joints, by parts of what is typical.
+fn friction(size: f64) -> String {
+    let of = |joint: usize, dry: f64, viscous: f64| {
+        let (dry, viscous) = (size * dry, size * viscous);
+        format!(
+            "friction_{joint} = {{ kind = \"generalized\", coordinate = \"q{joint}\", force = \
+             \"-{dry} [N*m]*smooth_sign(dot(q{joint}), 0.01 [rad/s]) - {viscous} [N*m*s/rad]*dot(q{joint})\" }}\n"
+        )
+    };
+    [of(1, 3.0, 1.5), of(2, 4.0, 2.0), of(3, 1.0, 0.5)].concat()
+}
+
+/// A change of the arm.
+struct Case {
+    name: &'static str,
+    /// Its spec after the change.
+    now: fn(&str) -> String,
+    /// Words of which effects that name it have one; none where nothing changed.
+    right: &'static [&'static str],
+}
+
+const LOAD: &str = r#"
+[points.tip]
+from = "elbow"
+in = "fore"
+at = ["0.4 [m]", 0, 0]
+
+[bodies.load]
+centre = "tip"
+mass = "0.5 [kg]"
+"#;
+
+const CASES: [Case; 6] = [
+    Case {
+        name: "nothing",
+        now: str::to_owned,
+        right: &[],
+    },
+    Case {
+        name: "a load at the end",
+        now: |spec| format!("{spec}{LOAD}"),
+        right: &["fore", "m_2"],
+    },
+    Case {
+        name: "a drive that got weaker",
+        now: |spec| spec.replace("force = \"tau2\"", "force = \"0.8*tau2\""),
+        right: &["tau2"],
+    },
+    Case {
+        name: "a heavier link",
+        now: |spec| spec.replace("m_1 = { value = 4", "m_1 = { value = 5.5"),
+        right: &["m_1"],
+    },
+    Case {
+        name: "a spring",
+        now: |spec| {
+            let force = "\"-2 [N*m/rad]*q3\"";
+            format!(
+                "{spec}spring = {{ kind = \"generalized\", coordinate = \"q3\", force = {force} }}\n"
+            )
+        },
+        right: &["spring@q3"],
+    },
+    Case {
+        name: "dry friction of a joint",
+        now: |spec| spec.replace("-4 [N*m]", "-8 [N*m]"),
+        right: &["coulomb_friction_drives_q2_force", "coulomb_friction@q2"],
+    },
+];
+
+impl Case {
+    /// Whether friction of all drives before and now, and this change now, are told as such.
+    fn is_told(&self, first: f64) -> bool {
+        let before = format!("{ARM}{}", friction(1.0));
+        let phases = |first: f64| [first, first + 1.6, first + 3.8];
+        let effects = appell_gap::effects::shipped().unwrap();
+        let (was, is) = (phases(first), phases(first + 0.7));
+        let folders = [recorded(&before, was), recorded(&(self.now)(&before), is)];
+        let [before, now] = folders.map(|folder| folder.read().unwrap());
+        let report = against(&before, &now, &effects, &Options::default(), |_| ()).unwrap();
+        let change = report.change.as_ref().unwrap();
+        let found = &report.which[0].effects;
+        let is_named = |one: &String| self.right.iter().any(|word| one.contains(word));
+        change.is_changed != self.right.is_empty()
+            && (self.right.is_empty() || found.iter().any(is_named))
+    }
+}
+
+#[test]
+fn changes_of_an_arm_are_told_by_its_forces_and_another_motion_is_none() {
+    // The table of docs/gap-diagnosis.md has all cases, and more motions.
+    for case in &CASES[..3] {
+        assert!(case.is_told(0.3), "{}", case.name);
+    }
 }

@@ -9,7 +9,7 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
-engine 9
+engine 10
 unknown NaN
 spring@theta 78.1
 viscous_friction@theta+spring@theta 80.1

@@ -5,8 +5,10 @@
 mod common;
 
 mod base;
+mod between_rows;
 mod by_forces;
 mod decay;
 mod engine;
 mod fuzz;
 mod shared;
+mod signs;

@@ -19,6 +19,8 @@ pub struct Channel {
     pub unit_at: Option<(String, usize, usize)>,
     /// Whether the description vouches for the unit.
     pub unit_checked: bool,
+    /// Whether its positive sense is opposite to that of the spec, where it is stated.
+    pub reversed: Option<bool>,
     /// How an input runs between rows, where it is stated: held or along lines.
     pub interpolation: Option<Interpolation>,
     /// Noise level as stated, in SI.
@@ -100,6 +102,16 @@ impl Role {
 }
 
 impl Channel {
+    /// What a number of its column stands for, in SI.
+    pub fn scale(&self) -> f64 {
+        let sign = if self.reversed == Some(true) {
+            -1.0
+        } else {
+            1.0
+        };
+        sign * self.unit.scale
+    }
+
     pub(crate) fn new(column: &str, role: Role, unit: Unit, stated_noise: Option<f64>) -> Self {
         Self {
             column: column.to_owned(),
@@ -107,6 +119,7 @@ impl Channel {
             unit,
             unit_at: None,
             unit_checked: false,
+            reversed: None,
             interpolation: None,
             stated_noise,
             noise: None,

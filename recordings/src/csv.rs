@@ -176,7 +176,7 @@ impl<R: BufRead> CsvFile<R> {
             let t = self.number(places.time.index, places.time.scale());
             read.clear();
             for (place, channel) in places.channels.iter().zip(channels) {
-                read.push(self.number(*place, channel.unit.scale));
+                read.push(self.number(*place, channel.scale()));
             }
             let lines = &self.rows.lines;
             if !clock.accept(t, lines.number, &lines.text) {

@@ -17,7 +17,7 @@ pub enum FindingKind {
     CutOff,
     /// Rows so far apart that times are probably not in seconds.
     SlowClock,
-    /// A unit that the motion contradicts.
+    /// A unit or a sign that the motion contradicts.
     Unit,
     /// A step much longer than the others.
     Gap,

@@ -12,6 +12,7 @@
 //! tau   = { input = "tau", unit = "N m" }  # held to the next row; interpolation = "linear" joins rows by lines, "cubic" by a spline
 //! room  = { unit = "K" }                   # recorded, and in no model
 //! omega = { measures = "omega", unit = "rpm", unit_checked = true }   # never doubted
+//! alpha = { measures = "alpha", unit = "rad", reversed = true }       # positive the other way round
 //! clock = { time = true, unit = "ms" }     # the column of the times, where its name does not tell it
 //!
 //! [runs]
@@ -49,11 +50,12 @@ pub(crate) struct Manifest {
 
 const KEYS: &[&str] = &["mechanism", "description", "parameters", "channels", "runs"];
 /// Keys of a channel that the times do not have.
-const CHANNEL_KEYS: [&str; 5] = [
+const CHANNEL_KEYS: [&str; 6] = [
     "measures",
     "input",
     "noise_std",
     "unit_checked",
+    "reversed",
     "interpolation",
 ];
 /// How an input may run between rows.
@@ -352,6 +354,7 @@ fn channel(
             "input",
             "unit",
             "unit_checked",
+            "reversed",
             "noise_std",
             "interpolation",
             "time",
@@ -386,11 +389,13 @@ fn channel(
     };
     let interpolation = interpolation(fields, table, role);
     let unit_checked = fields.flag(table, "unit_checked");
+    let reversed = fields.flag(table, "reversed");
     let place = table.get("unit").map_or(at, Spanned::span);
     let stated_noise = stated.map(|std| std * unit.scale);
     Some(Channel {
         unit_at: Some(fields.place(place)),
         unit_checked,
+        reversed: table.get("reversed").map(|_| reversed),
         interpolation,
         ..Channel::new(column, role, unit, stated_noise)
     })

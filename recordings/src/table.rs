@@ -139,7 +139,7 @@ impl Columns {
                 OwnClock::Stamps(_) => self.clock.unit(*place, &channel.column),
                 OwnClock::Column | OwnClock::None => None,
             };
-            let scale = stamp.unwrap_or(1.0) * channel.unit.scale;
+            let scale = stamp.unwrap_or(1.0) * channel.scale();
             let in_si = |&row: &usize| finite(values[row] * scale);
             rows.iter().map(in_si).collect()
         };

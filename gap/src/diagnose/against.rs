@@ -3,27 +3,30 @@
 //! ```text
 //! recordings before --diagnose--> what the model lacked already --apply--> a spec that has it
 //!                   --identify--> its parameters, each with its interval and its spread from run to run
+//!                   (robots: by forces of recorded motions, as they are diagnosed)
 //! recordings now    --diagnose, with these as tolerances--> what is different
 //! ```
 //!
 //! No two recordings are of quite the same rig. So a difference is a change where what explains it betters
 //! predictions of runs that were held out, by more than runs of one rig differ anyway.
 
+use appell_estimate::chi_squared_quantile;
 use appell_recordings::{Channel, DataSet, Parameter, Part, Spec};
 use nalgebra::{DMatrix, DVector};
 
 use crate::effects::{Effect, EffectModel};
-use crate::identify::{self, Answer, identify};
+use crate::identify::{self, Answer, Estimate, identify};
 
 use super::changes::Changes;
 use super::{
-    Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, diagnose, diagnosed,
+    Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, between_rows,
+    by_forces, diagnose, diagnosed,
 };
 
 /// Part of the prediction error that a change accounts for at least.
 const CHANGED: f64 = 0.1;
-/// Standard deviations by which parameters may differ from what the recordings before tell, root of the mean square.
-const OPEN: f64 = 3.0;
+/// Probability of re-fitted parameters as far from what the recordings before tell, where nothing changed.
+const LEVEL: f64 = 1e-3;
 /// Standard deviation of the size of an effect that was found before, as a part of it.
 const FOUND: f64 = 1.0;
 /// Note above what is added to the spec.
@@ -37,6 +40,7 @@ pub fn against(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
+    let ([before, now], joined) = between_rows::alike([before, now], options);
     let whole = before.all(Part::Fit);
     let was = diagnose(&whole, effects, &Options::default(), &mut stage)?;
     let taken = was.which.iter().find(|one| one.changes.is_some());
@@ -48,19 +52,19 @@ pub fn against(
         text: changes.improved(&before.spec.text, NOTE)?,
     };
     stage("fitting the recordings before");
-    let model = EffectModel::new(&spec, Vec::new())?;
     let mut known = whole.rebound(&spec)?;
     start(&mut known, changes);
     undo(&mut known, taken, changes);
-    let rough = identify::Options {
-        rough: true,
-        ..identify::Options::tolerant()
+    let told = if was.is_by_forces {
+        by_forces::told(&known)?
+    } else {
+        Told::of(&known)?
     };
-    let answer = identify(&known, model.with(&[]), &rough, |_| {})?;
     let mut set = now.rebound(&spec)?;
     undo(&mut set, taken, changes);
     let mut parameters = Vec::new();
-    for (place, parameter) in known.mechanism.parameters.iter().enumerate() {
+    let mechanism = set.mechanism.clone();
+    for (place, parameter) in mechanism.parameters.iter().enumerate() {
         let name = &parameter.label.name;
         let stated = |set: &DataSet| {
             let mut own = set.mechanism.parameters.iter();
@@ -68,36 +72,31 @@ pub fn against(
             place.map(|place| set.parameters[place].value)
         };
         // What is known to be different now stays so.
-        let moved = match (stated(before), stated(now)) {
+        let moved = match (stated(&before), stated(&now)) {
             (Some(before), Some(now)) => now - before,
             _ => 0.0,
         };
-        let mut estimates = answer.parameters.iter();
-        let Some(estimate) = estimates.find(|one| one.quantity.name == name.as_str()) else {
+        let Some(own) = told.parameters.iter().position(|one| one.name == *name) else {
             set.parameters[place].value = known.parameters[place].value + moved;
             continue;
         };
-        let spread = spread(&answer, name);
+        known.parameters[place].value = told.parameters[own].value;
         set.parameters[place] = Parameter {
-            value: estimate.value + moved,
-            std: Some(estimate.wider_std().hypot(spread)),
+            value: told.parameters[own].value + moved,
+            std: Some(told.covariance[(own, own)].sqrt()),
         };
-        parameters.push(Before {
-            name: name.clone(),
-            value: estimate.value,
-            std: estimate.wider_std(),
-            spread,
-        });
+        parameters.push(told.parameters[own].clone());
     }
     let options = Options {
         present: taken.effects.clone(),
         ..options.clone()
     };
-    let mut report = diagnosed((&set, Some(&known)), effects, &options, stage)?;
-    let is_changed = report.verdict != GapVerdict::NoGap && matters(&report, &set, &answer);
+    let mut report = diagnosed((&set, Some(&known)), effects, &options, &mut stage)?;
+    let is_changed = report.verdict != GapVerdict::NoGap && matters(&report, &set, &told);
     if !is_changed {
         report.verdict = GapVerdict::NoGap;
     }
+    report.joined = joined;
     report.change = Some(Change {
         is_changed,
         before: (was.verdict, taken.effects.clone()),
@@ -106,61 +105,124 @@ pub fn against(
     Ok(report)
 }
 
+/// What recordings tell of parameters.
+pub(super) struct Told {
+    pub(super) parameters: Vec<Before>,
+    /// Of their errors, and of what they differ by from run to run.
+    pub(super) covariance: DMatrix<f64>,
+}
+
+impl Told {
+    /// By a filter.
+    fn of(set: &DataSet) -> Result<Self, DiagnoseError> {
+        let model = EffectModel::new(&set.spec, Vec::new())?;
+        let rough = identify::Options {
+            rough: true,
+            ..identify::Options::tolerant()
+        };
+        let Answer {
+            parameters,
+            correlation,
+            repeatability,
+            ..
+        } = identify(set, model.with(&[]), &rough, |_| {})?;
+        let widening = widening(&parameters);
+        let before = parameters.iter().map(|one| {
+            let name = one.quantity.name.to_string();
+            let std = widened(one, widening);
+            // Values of single runs lie within the tolerance too.
+            let most = one
+                .tolerance
+                .map_or(f64::INFINITY, |all| all.powi(2) - std.powi(2));
+            let mut spreads = repeatability.iter();
+            let spread = spreads.find(|own| own.name == name);
+            let spread = spread.map_or(0.0, |own| own.spread);
+            Before {
+                name,
+                value: one.value,
+                std,
+                spread: spread.min(most.max(0.0).sqrt()),
+            }
+        });
+        Ok(Self::new(before.collect(), &correlation))
+    }
+
+    pub(super) fn new(parameters: Vec<Before>, correlation: &DMatrix<f64>) -> Self {
+        let covariance = DMatrix::from_fn(parameters.len(), parameters.len(), |i, j| {
+            let spread = if i == j { parameters[i].spread } else { 0.0 };
+            correlation[(i, j)] * parameters[i].std * parameters[j].std + spread.powi(2)
+        });
+        Self {
+            parameters,
+            covariance,
+        }
+    }
+}
+
+/// Factor on variances where what is left follows itself: that of the sandwich, the median of the parameters that are
+/// told, as each is hardly known for itself (F. Pauli, W. Racugno, L. Ventura, *Bayesian composite marginal
+/// likelihoods*, Statistica Sinica 21, 2011).
+fn widening(parameters: &[Estimate]) -> f64 {
+    /// Part of the tolerance that is left of what is told.
+    const TOLD: f64 = 0.7;
+    let told = parameters.iter();
+    let told = told.filter(|one| one.left.is_none_or(|left| left < TOLD));
+    let ratios = told.map(|one| (one.robust_std / one.std).powi(2));
+    let mut ratios: Vec<f64> = ratios.filter(|ratio| ratio.is_finite()).collect();
+    ratios.sort_by(f64::total_cmp);
+    ratios
+        .get(ratios.len() / 2)
+        .map_or(1.0, |ratio| ratio.max(1.0))
+}
+
+/// Deviation of a parameter where recordings tell less by a factor on variances, and its tolerance as much as before.
+fn widened(parameter: &Estimate, factor: f64) -> f64 {
+    let known = parameter.tolerance.map_or(0.0, |std| std.powi(-2));
+    let told = (parameter.std.powi(-2) - known).max(0.0);
+    (known + told / factor).sqrt().recip()
+}
+
 /// Whether what explains a difference betters predictions, beyond chance and by enough. Parameters within what the
 /// recordings before leave open do not count, nor do errors that these recordings have too.
-fn matters(report: &Report, set: &DataSet, answer: &Answer) -> bool {
+fn matters(report: &Report, set: &DataSet, told: &Told) -> bool {
     let far = report.how_far.as_ref();
     far.is_none_or(|far| {
         let bases = [far.nominal, far.refitted];
-        let base = usize::from(is_open(report, set, answer) && far.refitted < far.nominal);
+        let base = usize::from(is_open(report, set, told) && far.refitted < far.nominal);
         let left = far.with_effect.max(far.before.unwrap_or(0.0));
         let bettered = 1.0 - (left / bases[base]).powi(2);
         far.bettered_ci95[base][0] > 0.0 && bettered > CHANGED
     })
 }
 
-/// Whether the re-fitted parameters are some that the recordings before leave open, all together.
-fn is_open(report: &Report, set: &DataSet, answer: &Answer) -> bool {
+/// Whether the re-fitted parameters are some that the recordings before leave open, all together: χ² of their moves.
+/// These are no larger than the errors of what was told, as they are held back by them.
+fn is_open(report: &Report, set: &DataSet, told: &Told) -> bool {
     let mut which = report.which.iter();
     let refitted = which.find(|one| one.effects.is_empty());
     let Some(changes) = refitted.and_then(|one| one.changes.as_ref()) else {
         return false;
     };
-    let estimates = &answer.parameters;
-    let count = estimates.len();
-    let moved = estimates.iter().map(|estimate| {
-        let name: &str = &estimate.quantity.name;
+    let count = told.parameters.len();
+    let moved = told.parameters.iter().map(|told| {
         let mut own = set.mechanism.parameters.iter();
-        let scale = own.find(|one| one.label.name == name);
+        let scale = own.find(|one| one.label.name == told.name);
         let scale = scale.map_or(1.0, |one| one.label.unit.scale);
         let mut refitted = changes.parameters.iter();
-        let one = refitted.find(|one| one.name == name);
+        let one = refitted.find(|one| one.name == told.name);
         one.map_or(0.0, |one| (one.value - one.stated) * scale)
     });
     let moved = DVector::from_iterator(count, moved);
-    let covariance = DMatrix::from_fn(count, count, |i, j| {
-        let [one, other] = [i, j].map(|place| estimates[place].wider_std());
-        let spread = if i == j {
-            spread(answer, &estimates[i].quantity.name)
-        } else {
-            0.0
-        };
-        answer.correlation[(i, j)] * one * other + spread.powi(2)
-    });
-    let solved = covariance.cholesky().map(|roots| roots.solve(&moved));
-    solved.is_some_and(|solved| moved.dot(&solved) <= OPEN.powi(2) * count as f64)
-}
-
-/// How far a parameter differs from run to run, in SI.
-fn spread(answer: &Answer, name: &str) -> f64 {
-    let mut spreads = answer.repeatability.iter();
-    let own = spreads.find(|one| one.name == name);
-    own.map_or(0.0, |own| own.spread)
+    let solved = told.covariance.clone().cholesky();
+    let solved = solved.map(|roots| roots.solve(&moved));
+    let most = chi_squared_quantile(1.0 - LEVEL, count as f64);
+    count == 0 || solved.is_some_and(|solved| moved.dot(&solved) <= most)
 }
 
 /// Values and tolerances of a spec to which effects were added: those of the rig, and the sizes that were found.
 fn start(set: &mut DataSet, changes: &Changes) {
-    for (place, parameter) in set.mechanism.parameters.iter().enumerate() {
+    let mechanism = set.mechanism.clone();
+    for (place, parameter) in mechanism.parameters.iter().enumerate() {
         let (name, scale) = (&parameter.label.name, parameter.label.unit.scale);
         let own = &mut set.parameters[place];
         if let Some(one) = changes.parameters.iter().find(|one| one.name == *name) {
@@ -168,10 +230,9 @@ fn start(set: &mut DataSet, changes: &Changes) {
         }
         if let Some(one) = changes.brought.iter().find(|one| one.name == *name) {
             let value = one.value * scale;
-            *own = Parameter {
-                value,
-                std: Some(FOUND * value.abs()),
-            };
+            // What was not fitted stays.
+            let std = one.std.map(|_| FOUND * value.abs());
+            *own = Parameter { value, std };
         }
     }
 }

@@ -21,13 +21,16 @@ mod search;
 mod told;
 
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
+use appell_spec::mechanism::ParameterId;
 
-use super::report::Report;
+use super::against::Told;
+use super::report::{Before, Report};
 use super::{DiagnoseError, Options};
 use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
 use motions::Motions;
 use search::Search;
+use told::HeldOut;
 
 /// Whether motions tell all forces.
 pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
@@ -51,9 +54,33 @@ pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
         && options.alternatives.is_empty()
 }
 
-/// The diagnosis; the runs that were held out are read at its end.
+/// What recorded motions tell of the parameters that have a tolerance.
+pub(super) fn told(set: &DataSet) -> Result<Told, DiagnoseError> {
+    let model = EffectModel::of_forces(&set.spec, Vec::new())?;
+    let fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
+    let motions = Motions::of(&fit, &model)?;
+    let refitted = Search::new(&model, &fit, &motions).refitted();
+    let (places, moves) = refitted.ok_or(BaseError::NotFinite)?;
+    let inverse = moves.information.try_inverse();
+    let covariance = inverse.ok_or(BaseError::NotFinite)?;
+    let deviations = covariance.diagonal().map(f64::sqrt);
+    let correlation = covariance.component_div(&(&deviations * deviations.transpose()));
+    let values = places.iter().zip(&moves.values).zip(&deviations);
+    let parameters = values.map(|((&place, moved), &std)| Before {
+        name: fit.mechanism.parameters[ParameterId::new(place)]
+            .label
+            .name
+            .clone(),
+        value: fit.parameters[place].value + moved,
+        std,
+        spread: 0.0,
+    });
+    Ok(Told::new(parameters.collect(), &correlation))
+}
+
+/// The diagnosis; the runs that were held out are read at its end, beside recordings before.
 pub(super) fn diagnose(
-    set: &DataSet,
+    (set, before): (&DataSet, Option<&DataSet>),
     model: &EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
@@ -65,13 +92,15 @@ pub(super) fn diagnose(
     let found = Search::new(model, &fit, &training).found();
     let found = found.ok_or(BaseError::NotFinite)?;
     stage("predicting the forces of the runs that were held out");
-    let test = set.only(OfSet::Test).bound_to(&model.mechanism);
-    let test = if test.runs.is_empty() {
-        None
-    } else {
-        Some(Motions::of(&test, model)?)
+    let motions = |set: &DataSet| Motions::of(&set.bound_to(&model.mechanism), model);
+    let test = Some(set.only(OfSet::Test)).filter(|test| !test.runs.is_empty());
+    let test = test.map(|test| motions(&test)).transpose()?;
+    let before = before.map(motions).transpose()?;
+    let held_out = HeldOut {
+        test: test.as_ref(),
+        before: before.as_ref(),
     };
-    told::report((model, &fit), &found, (&training, test.as_ref()), options)
+    told::report((model, &fit), &found, (&training, held_out), options)
 }
 
 /// Whether a candidate adds forces that are linear in its sizes, or is a parameter.

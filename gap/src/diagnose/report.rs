@@ -1,5 +1,6 @@
 //! The gap report: what was found, in the words of the contract.
 
+use super::between_rows::Joined;
 use super::calibration::TIED;
 use super::changes::Changes;
 
@@ -407,6 +408,8 @@ pub struct Report {
     pub detectable: Vec<Detectable>,
     /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub failed: Vec<(Vec<String>, String)>,
+    /// Inputs that run on between rows, though the recordings do not say so.
+    pub joined: Option<Joined>,
     /// Imperfections of channels that change no prediction and are fitted beside every hypothesis, as the best one has
     /// them.
     pub imperfections: Vec<Value>,

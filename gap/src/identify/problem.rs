@@ -7,7 +7,7 @@ use super::additions::Addition;
 use super::drift::{self, Drift};
 use super::start::{Start, forces, start};
 use super::{IdentifyError, Options};
-use appell_recordings::{Channel, DataSet};
+use appell_recordings::{Channel, DataSet, Parameter};
 
 /// Factor by which a stated noise level may be wrong.
 const NOISE_FACTOR: f64 = std::f64::consts::LN_2;
@@ -93,6 +93,21 @@ pub(super) fn parameter(name: &str, info: &ModelInfo) -> Result<usize, IdentifyE
         })
 }
 
+/// Values that a parameter may have within a declared range: no mass and no inertia turns negative, whatever is fitted.
+pub(crate) fn possible([low, high]: [f64; 2], parameter: Parameter) -> [f64; 2] {
+    /// Tolerances from zero at which a value keeps its sign.
+    const FAR: f64 = 2.0;
+    /// Part of the value that is left at least.
+    const LEAST: f64 = 0.01;
+    let (value, least) = (parameter.value, LEAST * parameter.value);
+    let is_far = |std: f64| value.abs() > FAR * std;
+    match parameter.std {
+        Some(std) if is_far(std) && value > 0.0 => [low.max(least), high],
+        Some(std) if is_far(std) => [low, high.min(least)],
+        _ => [low, high],
+    }
+}
+
 /// The free parameters, each within its range and with its prior.
 fn free_parameters(
     set: &DataSet,
@@ -118,7 +133,7 @@ fn free_parameters(
     }
     let free = |&index: &usize| {
         let parameter = set.parameters[index];
-        let [low, high] = info.parameters[index].range;
+        let [low, high] = possible(info.parameters[index].range, parameter);
         let free = Free::of(Unknown::Parameter(index)).within(low, high);
         match parameter.std {
             Some(std) if std > 0.0 => free.around(parameter.value, std),

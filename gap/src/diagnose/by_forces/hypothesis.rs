@@ -30,8 +30,8 @@ pub(super) struct Open {
     pub(super) column: usize,
     /// Standard deviation about its value beforehand; nothing for sizes.
     pub(super) std: Option<f64>,
-    /// Whether it cannot be negative.
-    pub(super) is_positive: bool,
+    /// What its difference may be.
+    pub(super) range: [f64; 2],
 }
 
 /// A candidate with its sizes.
@@ -63,6 +63,12 @@ pub(super) struct Hypothesis {
     pub(super) log_likelihood: f64,
     /// Logarithm of the evidence.
     pub(super) log: f64,
+}
+
+/// The most likely moves of some parameters, and the inverse of their covariance.
+pub(super) struct Moves {
+    pub(super) values: DVector<f64>,
+    pub(super) information: DMatrix<f64>,
 }
 
 /// The most likely values.
@@ -169,14 +175,17 @@ impl Squares {
         squares
     }
 
-    /// The best values of what is open; nothing where they cannot be told from each other or where a member is not
-    /// there. `others` are parameters of the mechanism.
+    /// The best values of what is open, without those that would leave their range; nothing where they cannot be told
+    /// from each other or where a member is not there. `others` are parameters of the mechanism.
     pub(super) fn fitted(&self, members: &[Member], others: &[Open]) -> Option<Hypothesis> {
         let mut open: Vec<Open> = others.to_vec();
         open.extend(members.iter().flat_map(|member| &member.open));
         loop {
             let solved = self.solved(&open)?;
-            let is_against = |&i: &usize| open[i].is_positive && solved.values[i] <= 0.0;
+            let is_against = |&i: &usize| {
+                let [low, high] = open[i].range;
+                !(low < solved.values[i] && solved.values[i] < high)
+            };
             let against = (0..open.len()).find(is_against);
             if let Some(against) = against {
                 let gone = open.remove(against).column;
@@ -187,6 +196,19 @@ impl Squares {
             }
             return self.told(members, &open, solved);
         }
+    }
+
+    /// The best values of what is open.
+    pub(super) fn moves(&self, open: &[Open]) -> Option<Moves> {
+        let Solved {
+            values,
+            information,
+            ..
+        } = self.solved(open)?;
+        Some(Moves {
+            values,
+            information,
+        })
     }
 
     fn told(&self, members: &[Member], open: &[Open], solved: Solved) -> Option<Hypothesis> {
@@ -208,7 +230,7 @@ impl Squares {
                 -0.5 * (value / std).powi(2) - std.ln() - 0.5 * TAU.ln()
             } else {
                 let d = (value.abs() / deviation).max(1.0);
-                let sides = if one.is_positive { 1.0 } else { 2.0_f64 };
+                let sides = if one.range[0] < 0.0 { 2.0_f64 } else { 1.0 };
                 -(d * deviation * sides * LN_1000).ln()
             };
         }

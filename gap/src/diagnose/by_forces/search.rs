@@ -10,9 +10,10 @@ use nalgebra::DVector;
 use super::super::bench::WRONG;
 use super::super::calibration::{Rest, inexact, tempered, unlisted, unlisted_beside_nothing};
 use super::super::prior::prior;
-use super::hypothesis::{Hypothesis, Member, Open, Squares};
+use super::hypothesis::{Hypothesis, Member, Moves, Open, Squares};
 use super::motions::Motions;
 use crate::effects::{Acts, Candidate, EffectModel, Part};
+use crate::identify::possible;
 
 /// Hypotheses that others join.
 const KEPT: usize = 6;
@@ -200,7 +201,7 @@ impl<'s> Search<'s> {
             Some(Open {
                 column: self.column(parameter)?,
                 std: None,
-                is_positive: info.parameters[parameter].range[0] >= 0.0,
+                range: info.parameters[parameter].range,
             })
         });
         open.collect()
@@ -211,6 +212,17 @@ impl<'s> Search<'s> {
         parameters.position(|own| *own == parameter)
     }
 
+    /// A parameter within its tolerance.
+    fn tolerance(&self, parameter: usize) -> Option<Open> {
+        let own = self.set.parameters.get(parameter)?;
+        let range = self.effects.info().parameters[parameter].range;
+        Some(Open {
+            column: self.column(parameter)?,
+            std: Some(own.std.filter(|std| *std > 0.0)?),
+            range: possible(range, *own).map(|end| end - own.value),
+        })
+    }
+
     fn fitted(&self, squares: &Squares, members: &[usize]) -> Option<Hypothesis> {
         let wrong = |parameter: usize| {
             members.iter().any(|&member| {
@@ -218,16 +230,13 @@ impl<'s> Search<'s> {
             })
         };
         let tolerance = |parameter: usize| {
-            let own = self.set.parameters.get(parameter)?;
-            let std = own.std.filter(|std| *std > 0.0)?;
+            let own = self.tolerance(parameter)?;
+            let value = self.set.parameters[parameter].value;
+            let std = own.std.filter(|_| wrong(parameter));
+            let wider = std.map(|std| (WRONG * value.abs()).max(std));
             Some(Open {
-                column: self.column(parameter)?,
-                std: Some(if wrong(parameter) {
-                    (WRONG * own.value.abs()).max(std)
-                } else {
-                    std
-                }),
-                is_positive: false,
+                std: wider.or(own.std),
+                ..own
             })
         };
         let all = 0..self.set.parameters.len();
@@ -248,6 +257,18 @@ impl<'s> Search<'s> {
             }
         });
         squares.fitted(&own.collect::<Vec<_>>(), &others)
+    }
+
+    /// Places of the re-fitted parameters, their moves and the information about these.
+    pub(super) fn refitted(&self) -> Option<(Vec<usize>, Moves)> {
+        let nominal = self.fitted(&self.squares, &[])?;
+        let squares = self.squares.correlated(self.motions, &nominal);
+        let nominal = self.fitted(&squares, &[])?;
+        let (free, open): (Vec<usize>, Vec<Open>) = (0..self.set.parameters.len())
+            .filter_map(|parameter| Some((parameter, self.tolerance(parameter)?)))
+            .filter(|(_, open)| nominal.deviations[open.column].is_some())
+            .unzip();
+        Some((free, squares.moves(&open)?))
     }
 
     /// Some members, and nothing else than what they need.

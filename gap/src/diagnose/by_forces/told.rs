@@ -24,19 +24,36 @@ use crate::effects::{Acts, EffectModel, Part};
 /// Length of a block in s: errors in one depend on each other.
 const BLOCK_S: f64 = 2.0;
 
+/// Motions that nothing was fitted to.
+pub(super) struct HeldOut<'m> {
+    pub(super) test: Option<&'m Motions>,
+    /// Of recordings before.
+    pub(super) before: Option<&'m Motions>,
+}
+
 /// The whole report; the motions are those of the runs to fit, and of those that were held out.
 pub(super) fn report(
     (model, set): (&EffectModel, &DataSet),
     found: &Findings,
-    (training, test): (&Motions, Option<&Motions>),
+    (training, held_out): (&Motions, HeldOut<'_>),
     options: &Options,
 ) -> Result<Report, DiagnoseError> {
+    let test = held_out.test;
     let which = which((model, set), found, training)?;
     let tied = tied(&which);
     let (nominal, best) = (found.nominal(), found.best());
     let place = place(model, found, training);
-    let far = test.map(|test| how_far((model, set), found, (training, test), options));
-    let far = far.transpose()?;
+    let far = match test {
+        Some(test) => Some(HowFar {
+            // Its forces have the noise that they have now.
+            before: held_out.before.map(|before| {
+                let stated = nominal.changes.map(|_| 0.0);
+                errors(before, &stated, &found.noise).mean().sqrt()
+            }),
+            ..how_far((model, set), found, (training, test), options)?
+        }),
+        None => None,
+    };
     let first = verdict(&which[0], &tied);
     let stayed = nominal.variances.iter().zip(&best.variances);
     let names = model.info().speed_quantities().iter();
@@ -60,6 +77,7 @@ pub(super) fn report(
         how_far: far,
         detectable: detectable(model, found, training),
         failed: Vec::new(),
+        joined: None,
         imperfections: Vec::new(),
         left: None,
         independent: found.independent,

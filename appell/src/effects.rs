@@ -182,6 +182,8 @@ fn magnitudes(mechanism: &Mechanism) -> Scales {
         rates: vec![1.0; coordinates],
         narrow: vec![NARROW; coordinates],
         largest: vec![1.0; mechanism.inputs.iter().count()],
+        reached: vec![Some([-1.0, 1.0]); coordinates],
+        loads: vec![1.0; mechanism.loads.iter().count()],
         channels: channels.map(|one| one.label.name.clone()).collect(),
         uncertain: (0..mechanism.parameters.iter().count()).collect(),
     }

@@ -10,16 +10,29 @@ use rand_xoshiro::rand_core::{Rng as _, SeedableRng as _};
 
 use crate::{Error, Model, files};
 
-/// Time between two rows in s, and rows of a run.
+/// Time between two rows in s.
 const STEP: f64 = 0.01;
-const ROWS: u32 = 800;
-/// Standard deviation of the encoder's noise in m.
+/// Standard deviation of the noise of encoders, in m or rad.
 const NOISE: f64 = 1e-3;
-/// Spec and description as their owner has them.
-const SPEC: &str = include_str!("../rig/my_rig.toml");
-const DESCRIPTION: &str = include_str!("../rig/recording.toml");
-/// What nobody told the owner: dry friction, and a rail with a grain.
-const HIDDEN: &str = r#"
+
+/// A rig as its owner has it, and what nobody told the owner.
+struct Rig {
+    /// Name and text of the spec.
+    spec: (&'static str, &'static str),
+    description: &'static str,
+    hidden: &'static str,
+    measured: &'static [&'static str],
+    inputs: &'static [&'static str],
+    /// What the inputs are at a time, by the two rates of a run.
+    commands: fn(f64, [f64; 2]) -> Vec<f64>,
+    rows: u32,
+}
+
+/// A cart on a rail; it has dry friction, and the rail a grain.
+const CART: Rig = Rig {
+    spec: ("my_rig.toml", include_str!("../rig/my_rig.toml")),
+    description: include_str!("../rig/recording.toml"),
+    hidden: r#"
 [loads.rubbing]
 kind     = "generalized"
 velocity = "v"
@@ -29,26 +42,53 @@ force    = "-0.4 [N]*tanh(v/(0.02 [m/s]))"
 kind     = "generalized"
 velocity = "v"
 force    = "-0.3 [N]*sin(20 [1/m]*x)"
-"#;
+"#,
+    measured: &["x"],
+    inputs: &["F"],
+    commands: |t, [slow, fast]| vec![2.0 * (slow * t).sin() + 1.5 * (fast * t).cos()],
+    rows: 800,
+};
+
+/// An arm of two links; it holds a tool, and its elbow has a stop.
+const ARM: Rig = Rig {
+    spec: ("arm.toml", include_str!("../arm/arm.toml")),
+    description: include_str!("../arm/recording.toml"),
+    hidden: r#"
+[points.tool]
+from = "fore"
+in   = "fore"
+at   = ["0.02 [m]", 0, "-0.31 [m]"]
+
+[bodies.tool]
+centre = "tool"
+mass   = "0.5 [kg]"
+
+[loads.end]
+kind     = "generalized"
+velocity = "w_2"
+force    = "-max(q_2 - 0.6, 0)*(150 [N*m] + 40 [N*m*s]*w_2)"
+"#,
+    measured: &["q_1", "q_2"],
+    inputs: &["tau_1", "tau_2"],
+    commands: |t, [slow, fast]| {
+        let shoulder = 1.8 * (slow * t).sin() + 0.8 * (fast * t).cos();
+        vec![
+            shoulder,
+            0.5 * (0.7 * slow * t).sin() + 0.3 * (0.8 * fast * t).cos(),
+        ]
+    },
+    rows: 600,
+};
 
 /// Writes a folder with the spec of a rig, three recordings and their description; returns the names of the files.
 /// The rig has dry friction and a rail with a grain; its spec has neither. It is the same rig every time.
 pub fn rig(folder: &Path) -> Result<Vec<&'static str>, Error> {
-    let rig = Model::from_spec(&format!("{SPEC}{HIDDEN}"))?;
-    let mut written = vec![
-        ("my_rig.toml", SPEC.to_owned()),
-        ("recording.toml", DESCRIPTION.to_owned()),
-    ];
-    let runs = [
-        ("run1.csv", [3.0, 7.1]),
-        ("run2.csv", [2.3, 8.3]),
-        ("run3.csv", [2.7, 6.2]),
-    ];
-    for (seed, (name, rates)) in (1..).zip(runs) {
-        written.push((name, recording(&rig, rates, seed)?));
-    }
-    write(folder, &written)?;
-    Ok(written.into_iter().map(|(name, _)| name).collect())
+    CART.written(folder)
+}
+
+/// The same of an arm that holds a tool and has a stop at its elbow; its spec has neither.
+pub fn arm(folder: &Path) -> Result<Vec<&'static str>, Error> {
+    ARM.written(folder)
 }
 
 /// An arm with four joints, as URDF and as MJCF.
@@ -79,28 +119,61 @@ pub fn write<S: AsRef<str>>(folder: &Path, texts: &[(S, String)]) -> Result<(), 
     Ok(())
 }
 
-/// A run under two sines of force, each value held for a row.
-fn recording(rig: &Model, [slow, fast]: [f64; 2], seed: u64) -> Result<String, Error> {
-    let times: Vec<f64> = (0..ROWS).map(|row| f64::from(row) * STEP).collect();
-    let force = |t: &f64| 2.0 * (slow * t).sin() + 1.5 * (fast * t).cos();
-    let forces: Vec<f64> = times.iter().map(force).collect();
-    let inputs = TabulatedInputs::held(&times, std::slice::from_ref(&forces))?;
-    let simulation = Simulation {
-        span: [0.0, times[times.len() - 1]],
-        inputs: &inputs,
-        sampling: Sampling::Every(STEP),
-        ..Simulation::new(rig.equations())
-    };
-    let motion = simulation.run()?;
-    let mut random = SplitMix64::seed_from_u64(seed);
-    let mut text = "t,x,F\n".to_owned();
-    let rows = times.iter().zip(&forces);
-    for ((t, force), x) in rows.zip(motion.column("x").unwrap_or_default()) {
-        let x = x + NOISE * normal(&mut random);
-        // Writing to a string cannot fail.
-        let _ = writeln!(text, "{t:.2},{x:.5},{force:.5}");
+impl Rig {
+    fn written(&self, folder: &Path) -> Result<Vec<&'static str>, Error> {
+        let (name, spec) = self.spec;
+        let rig = Model::from_spec(&format!("{spec}{}", self.hidden))?;
+        let mut written = vec![
+            (name, spec.to_owned()),
+            ("recording.toml", self.description.to_owned()),
+        ];
+        let runs = [
+            ("run1.csv", [3.0, 7.1]),
+            ("run2.csv", [2.3, 8.3]),
+            ("run3.csv", [2.7, 6.2]),
+        ];
+        for (seed, (name, rates)) in (1..).zip(runs) {
+            written.push((name, self.recording(&rig, rates, seed)?));
+        }
+        write(folder, &written)?;
+        Ok(written.into_iter().map(|(name, _)| name).collect())
     }
-    Ok(text)
+
+    /// A run under commands that are held for a row each.
+    fn recording(&self, rig: &Model, rates: [f64; 2], seed: u64) -> Result<String, Error> {
+        let times: Vec<f64> = (0..self.rows).map(|row| f64::from(row) * STEP).collect();
+        let commands: Vec<Vec<f64>> = (times.iter()).map(|t| (self.commands)(*t, rates)).collect();
+        let of = |input| commands.iter().map(|row| row[input]).collect();
+        let columns: Vec<Vec<f64>> = (0..self.inputs.len()).map(of).collect();
+        let inputs = TabulatedInputs::held(&times, &columns)?;
+        let simulation = Simulation {
+            span: [0.0, times[times.len() - 1]],
+            inputs: &inputs,
+            sampling: Sampling::Every(STEP),
+            ..Simulation::new(rig.equations())
+        };
+        let motion = simulation.run()?;
+        let measured = self.measured.iter();
+        let measured: Vec<Vec<f64>> = measured
+            .map(|name| motion.column(name).unwrap_or_default())
+            .collect();
+        let mut random = SplitMix64::seed_from_u64(seed);
+        let header = [&["t"], self.measured, self.inputs].concat().join(",");
+        let mut text = header + "\n";
+        for (row, (t, commands)) in times.iter().zip(&commands).enumerate() {
+            // Writing to a string cannot fail.
+            let _ = write!(text, "{t:.2}");
+            for column in &measured {
+                let value = column.get(row).copied().unwrap_or(f64::NAN);
+                let _ = write!(text, ",{:.5}", value + NOISE * normal(&mut random));
+            }
+            for command in commands {
+                let _ = write!(text, ",{command:.5}");
+            }
+            text.push('\n');
+        }
+        Ok(text)
+    }
 }
 
 /// A normal number, nearly: the sum of twelve uniform ones.

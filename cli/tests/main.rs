@@ -30,6 +30,7 @@ mod help;
 mod identify;
 mod imperfection;
 mod import;
+mod kinds;
 mod language_server;
 mod languages;
 mod late;

@@ -2,29 +2,26 @@
 //! every command of that section, as written.
 
 use crate::documents::blocks;
-use crate::support::{Folder, repository};
+use crate::support::{Folder, number, repository};
 
-const SECTION: &str = "## From your recordings to your improved spec\n";
+const OWN_RIG: &str = "## From your recordings to your improved spec\n";
+/// A size is off by more than so many deviations once in 16 000 times.
+const NEAR: f64 = 4.0;
+const ARM: &str = "## A rig with a payload and a stop\n";
 
-/// The section of the document.
-fn section() -> String {
+/// A section of the document.
+fn section(title: &str) -> String {
     let text = std::fs::read_to_string(repository("docs/gap-diagnosis.md")).expect("the document");
-    let (_, rest) = text.split_once(SECTION).expect("the section");
+    let (_, rest) = text.split_once(title).expect("the section");
     let (section, _) = rest.split_once("\n## ").expect("another section");
     section.to_owned()
 }
 
 #[test]
 fn every_command_of_the_walk_through_does_what_the_text_says_in_an_empty_folder() {
-    let section = section();
+    let section = section(OWN_RIG);
     let folder = Folder::new();
-    let commands = blocks(&section, "sh");
-    let mut told = Vec::new();
-    for line in commands.iter().flat_map(|block| block.lines()) {
-        let words: Vec<&str> = line.split_whitespace().collect();
-        assert_eq!(words[0], "appell", "{line}");
-        told.push(folder.done(&words[1..]).stdout);
-    }
+    let told = told(&section, &folder);
     let header = |text: &str| text.lines().next().map(str::to_owned);
     assert_eq!(
         header(&folder.read("run1.csv")),
@@ -46,6 +43,47 @@ fn every_command_of_the_walk_through_does_what_the_text_says_in_an_empty_folder(
             "{file} is missing"
         );
     }
+}
+
+/// What the commands of a section say, one after the other.
+fn told(section: &str, folder: &Folder) -> Vec<String> {
+    let commands = blocks(section, "sh");
+    let lines = commands.iter().flat_map(|block| block.lines());
+    let run = |line: &str| {
+        let words: Vec<&str> = line.split_whitespace().collect();
+        assert_eq!(words[0], "appell", "{line}");
+        folder.done(&words[1..]).stdout
+    };
+    lines.map(run).collect()
+}
+
+#[test]
+fn a_payload_and_a_stop_are_found_and_written_as_the_text_says() {
+    let section = section(ARM);
+    let folder = Folder::new();
+    let told = told(&section, &folder);
+    assert_eq!(told.len(), 4, "commands of the section");
+    for says in ["payload on fore", "stop at the end of q_2"] {
+        assert!(told[1].contains(says), "{}", told[1]);
+    }
+    let report = folder.json("arm.json");
+    let values = report["which"][0]["parameters"].as_array().expect("values");
+    let truth = [
+        ("payload@fore.mass", 0.5),
+        ("payload@fore.x", 0.02),
+        ("payload@fore.z", -0.17),
+        ("stop@q_2.place", 0.6),
+    ];
+    for (name, expected) in truth {
+        let own = values.iter().find(|own| own["name"] == name).expect(name);
+        let (value, std) = (number(own, "value"), number(own, "std"));
+        assert!((value - expected).abs() < NEAR * std, "{own}");
+    }
+    let better = folder.read("better_arm.toml");
+    for has in ["payload_fore_mass", "stop_q_2_1_place"] {
+        assert!(better.contains(has), "{better}");
+    }
+    assert!(told[3].contains("no gap beyond measurement"), "{}", told[3]);
 }
 
 #[test]

@@ -5,7 +5,9 @@
 //! |---|---|
 //! | `library.rs` | the effects that are shipped |
 //! | `effect.rs` | the file of an effect |
-//! | `site.rs` | the sites in a mechanism, and their placeholders |
+//! | `site_kind.rs`, `site.rs` | kinds of sites with their placeholders; the sites in a mechanism |
+//! | `extent.rs` | how far a body reaches |
+//! | `load.rs` | loads that follow the motion as a controller does |
 //! | `candidate.rs` | an effect at a place: names, items to add, values to look for |
 //! | `memory.rs` | laws with a state of their own |
 //! | `hidden_mass.rs` | a mass that swings behind a coordinate |
@@ -18,13 +20,16 @@
 mod candidate;
 mod drive;
 mod effect;
+mod extent;
 mod hidden_mass;
 mod hysteresis;
 mod library;
+mod load;
 mod memory;
 mod model;
 mod place;
 mod site;
+mod site_kind;
 mod stem;
 
 pub(crate) use candidate::Part;
@@ -34,11 +39,13 @@ pub use effect::{Effect, EffectError, Family};
 pub(crate) use hidden_mass::HiddenMass;
 pub(crate) use hysteresis::Hysteresis;
 pub use library::shipped;
+pub(crate) use load::controlled;
 pub(crate) use memory::Memory;
 pub(crate) use model::ACTING;
 pub use model::{EffectModel, ModelError, candidates, with_candidates, written};
+pub use site::Scales;
 pub(crate) use site::driven;
-pub use site::{Scales, SiteKind};
+pub use site_kind::SiteKind;
 
 #[cfg(test)]
 mod tests {
@@ -125,6 +132,7 @@ v = { value = "dot(s)", unit = "m/s" }
 w = { kind = "gravity", down = "-z", acceleration = "9.81 [m/s^2]" }
 mot = { kind = "torque", on = "arm", in = "ground", vector = [0, "-2*tau", 0] }
 push = { kind = "generalized", coordinate = "s", force = "u" }
+servo = { kind = "torque", on = "arm", in = "ground", vector = [0, "-2*tau - c*dot(th)", 0] }
 fr = { kind = "damper", coordinate = "th", damping = "c" }
 "#;
 
@@ -141,6 +149,8 @@ fr = { kind = "damper", coordinate = "th", damping = "c" }
             rates: vec![1.0; 2],
             narrow: vec![0.005; 2],
             largest: vec![1.0; 2],
+            reached: vec![Some([-1.0, 1.0]); 2],
+            loads: vec![1.0; 5],
             channels: vec!["th".to_owned(), "s".to_owned()],
             uncertain: vec![0, 1, 2],
         };

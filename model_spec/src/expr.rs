@@ -1,6 +1,7 @@
 //! Resolved expressions: trees whose names have been replaced by what they refer to.
 
 mod named;
+mod value;
 
 use std::ops::Range;
 

@@ -1,6 +1,6 @@
 //! `appell sample`
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::failure::Error;
 use crate::output::{self, shell};
@@ -10,6 +10,7 @@ use crate::output::{self, shell};
 #[command(after_long_help = "\
 Examples:
   appell sample rig rig
+  appell sample arm arm
   appell sample capture capture
   appell sample robot robot
   appell sample study study")]
@@ -23,6 +24,11 @@ pub(crate) struct Sample {
 enum What {
     /// A simulated rig with its spec, three recordings and their description: something moves it that its spec lacks
     Rig {
+        /// The folder, which is made if it is not there; nothing is overwritten
+        folder: PathBuf,
+    },
+    /// An arm of two links that holds a tool and has a stop, of which its spec knows nothing, with three recordings
+    Arm {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,
     },
@@ -49,13 +55,8 @@ const STUDY: (&str, &str) = ("rider.toml", include_str!("../../ensembles/rider.t
 impl Sample {
     pub(super) fn run(&self) -> Result<(), Error> {
         let told = match &self.what {
-            What::Rig { folder } => {
-                let files = appell::sample::rig(folder)?.join(", ");
-                let at = shell(&folder.to_string_lossy());
-                format!(
-                    "wrote {files} to {at}; next:\n  appell recording {at}\n  appell diagnose --data {at} --html gap.html\n"
-                )
-            }
+            What::Rig { folder } => recorded(folder, &appell::sample::rig(folder)?),
+            What::Arm { folder } => recorded(folder, &appell::sample::arm(folder)?),
             What::Robot { folder } => {
                 let files = appell::sample::robot(folder)?;
                 let at = shell(&folder.to_string_lossy());
@@ -90,4 +91,12 @@ impl Sample {
         };
         output::print(&told)
     }
+}
+
+/// What is said of a rig.
+fn recorded(folder: &Path, files: &[&str]) -> String {
+    let (files, at) = (files.join(", "), shell(&folder.to_string_lossy()));
+    format!(
+        "wrote {files} to {at}; next:\n  appell recording {at}\n  appell diagnose --data {at} --html gap.html\n"
+    )
 }

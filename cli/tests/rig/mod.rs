@@ -1,6 +1,7 @@
 //! A simulated rig: a carriage of 1 kg with a friction that its model does not have.
 
 mod gear;
+pub(crate) mod planted;
 
 use std::fmt::Write as _;
 

@@ -250,7 +250,7 @@ impl<'g, 'b> Grid<'g, 'b> {
         let own = bench.own(bench.candidate(self.candidate)).into_iter();
         let value = |(place, role): (usize, Part)| match role {
             Part::Size | Part::Term(_) => size,
-            Part::Shape => factor * info.parameters[place].value,
+            Part::Shape(_) => factor * info.parameters[place].value,
             Part::Switch => 1.0,
         };
         own.map(|one| (one.0, value(one))).collect()

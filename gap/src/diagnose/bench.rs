@@ -318,10 +318,11 @@ impl<'a> Bench<'a> {
                 let [low, high] = quantity.range;
                 let free = Free::of(Unknown::Parameter(index)).within(low, high);
                 match role {
-                    Role::Shape => Free {
+                    Role::Shape(None) => Free {
                         coordinate: Coordinate::Logarithm,
                         ..free.around(quantity.value, SHAPE)
                     },
+                    Role::Shape(Some(std)) => free.around(quantity.value, std),
                     Role::Term([expected, deviation]) => free.around(expected, deviation),
                     Role::Size | Role::Switch => free,
                 }
@@ -445,7 +446,7 @@ impl<'a> Bench<'a> {
         for &member in &fitted.members {
             let candidate = self.candidate(member);
             for (index, part) in self.own(candidate) {
-                if part != Role::Shape {
+                if !part.is_shape() {
                     plain[index] = 0.0;
                 }
             }

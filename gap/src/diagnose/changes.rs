@@ -193,7 +193,7 @@ impl Equations<'_> {
                 let parameter = &info.parameters[index];
                 let value = match part {
                     Part::Switch => 1.0,
-                    Part::Size | Part::Shape | Part::Term(_) => {
+                    Part::Size | Part::Shape(_) | Part::Term(_) => {
                         let parameter = &self.effects.mechanism.parameters[ParameterId::new(index)];
                         rounded(self.values[index], self.deviations[index], parameter)
                     }

@@ -159,6 +159,8 @@ omega = { value = "dot(phi)", unit = "rad/s" }
             rates: vec![1.0],
             narrow: vec![0.005],
             largest: Vec::new(),
+            reached: vec![None; mechanism.coordinates.len()],
+            loads: vec![0.0; mechanism.loads.len()],
             channels: vec!["phi".to_owned()],
             uncertain: vec![0],
         };

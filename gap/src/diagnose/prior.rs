@@ -24,7 +24,15 @@ pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
 pub(super) fn prior(model: &EffectModel, members: &[usize]) -> f64 {
     let names = names(model, members);
     let of_names = names.iter().map(|name| of_components(model, name));
-    of_count(model, names.len()) + of_names.sum::<f64>()
+    let counts = names.iter().map(|name| counts(model, name));
+    of_count(model, counts.sum()) + of_names.sum::<f64>()
+}
+
+/// As how many effects one counts.
+pub(super) fn counts(model: &EffectModel, name: &str) -> usize {
+    let mut candidates = model.candidates.iter();
+    let own = candidates.find(|own| own.name() == name);
+    own.map_or(1, |own| own.counts)
 }
 
 /// The same of any hypothesis with so many effects.

@@ -1,8 +1,12 @@
 //! Typical sizes in recordings, which set the widths of rounded corners and the levels that are tried.
 
-use crate::effects::Scales;
-use crate::slope::{Slope, WINDOW};
+mod extremes;
+
 use appell_recordings::{DataSet, Measured, Role, Run};
+
+use crate::effects::{Scales, controlled};
+use crate::slope::{Slope, WINDOW};
+use extremes::{largest_of, reached};
 
 /// Places along a run at which rates are looked at.
 const PLACES: usize = 200;
@@ -29,6 +33,12 @@ pub(super) fn of(set: &DataSet) -> Scales {
         let values = set.runs.iter().flat_map(|run| &run.values[column]);
         Some(values.fold(0.0_f64, |most, value| most.max(value.abs())))
     };
+    let reached = |coordinate: usize| {
+        let measured = Role::Measures(Measured::Coordinate(coordinate));
+        column(measured).and_then(|column| reached(set, column))
+    };
+    let loads = mechanism.loads.iter();
+    let loads = loads.map(|load| controlled(load).map_or(0.0, |(_, law)| largest_of(set, law)));
     let tolerant = |index: &usize| set.parameters[*index].std.is_some_and(|std| std > 0.0);
     Scales {
         rates,
@@ -36,6 +46,8 @@ pub(super) fn of(set: &DataSet) -> Scales {
         largest: (0..mechanism.inputs.len())
             .map(|input| largest(input).unwrap_or(0.0))
             .collect(),
+        reached: (0..mechanism.coordinates.len()).map(reached).collect(),
+        loads: loads.collect(),
         channels: set
             .channels
             .iter()

@@ -295,7 +295,7 @@ pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
         }
         for (place, part) in bench.own(candidate) {
             values[place] = match part {
-                Part::Shape => info.parameters[place].value,
+                Part::Shape(_) => info.parameters[place].value,
                 Part::Size | Part::Term(_) | Part::Switch => 0.0,
             };
         }
@@ -310,7 +310,7 @@ pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> 
         Acts::Items => bench
             .own(candidate)
             .into_iter()
-            .filter(|(_, part)| *part != Part::Shape)
+            .filter(|(_, part)| !part.is_shape())
             .map(|(index, _)| Direction::Value(Unknown::Parameter(index)))
             .collect(),
         Acts::Parameter(_) => bench
@@ -333,7 +333,7 @@ pub(super) fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
         Acts::Items => bench
             .own(candidate)
             .into_iter()
-            .filter(|(_, part)| *part != Part::Shape)
+            .filter(|(_, part)| !part.is_shape())
             .map(|(index, _)| info.parameters[index].range[0] >= 0.0)
             .collect(),
         Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_) => vec![true],

@@ -297,7 +297,7 @@ impl<'b, 'a> Search<'b, 'a> {
             if from.members.contains(candidate) {
                 // Its shape is known by now.
                 for (index, part) in bench.own(bench.candidate(*candidate)) {
-                    if part == Part::Shape {
+                    if part.is_shape() {
                         start[index] = carried[index];
                     }
                 }
@@ -507,7 +507,7 @@ fn place(
                 let quantity = &bench.effects.info().parameters[index];
                 match part {
                     Part::Switch => set(unknown, 1.0)?,
-                    Part::Shape => {
+                    Part::Shape(_) => {
                         set(unknown, quantity.value)?;
                         continue;
                     }

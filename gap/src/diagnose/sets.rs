@@ -21,7 +21,7 @@ use super::bench::{Bench, WRONG};
 use super::evidence::{Fitted, occam};
 use super::gram::{Gram, Solved};
 use super::nuisance::{known, moves_the_mean};
-use super::prior::{of_components, of_count, prior};
+use super::prior::{counts, of_components, of_count, prior};
 use super::screen::{Screened, directions, positive, quieten, shapes};
 use crate::effects::Acts;
 
@@ -33,6 +33,8 @@ const TOGETHER: usize = 3;
 const LEAST_SPREAD: f64 = 0.1;
 /// Choices of which all threes are tried: those that gain most alone or in a pair.
 const MOST_CHOICES: usize = 60;
+/// Components of a vector that are tried together with others.
+const MOST_COMPONENTS: usize = 6;
 
 /// A set of candidates with what it promises.
 #[derive(Debug, Clone)]
@@ -51,6 +53,8 @@ pub(super) struct Set {
 /// A candidate, or some components of one vector, as one effect.
 struct Choice {
     name: String,
+    /// As how many effects it counts.
+    counts: usize,
     /// Logarithm of its part of the probability that the effect has beforehand.
     log_prior: f64,
     candidates: Vec<usize>,
@@ -182,7 +186,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             bench,
             levels: found,
             choices: Vec::new(),
-            prior: (0..=TOGETHER)
+            prior: (0..=TOGETHER * most_counts(bench))
                 .map(|effects| of_count(bench.effects, effects + fixed.len()) + of_fixed)
                 .collect(),
             columns,
@@ -227,21 +231,24 @@ impl<'b, 'a> Sets<'b, 'a> {
                     .or_default()
                     .push((candidate, columns));
             } else {
-                let (name, candidates) = (own.name(), vec![candidate]);
+                let name = own.name();
                 choices.push(Choice {
+                    counts: own.counts,
+                    log_prior: of_components(self.bench.effects, &name),
                     name,
-                    log_prior: 0.0,
-                    candidates,
+                    candidates: vec![candidate],
                     columns,
                 });
             }
         }
         for (name, components) in vectors {
-            for some in 1..1_usize << components.len().min(TOGETHER) {
+            let some = 1..1_u32 << components.len().min(MOST_COMPONENTS);
+            for some in some.filter(|some| some.count_ones() as usize <= TOGETHER) {
                 let own = (0..components.len()).filter(|place| some >> place & 1 == 1);
                 let own = own.map(|place| &components[place]);
                 choices.push(Choice {
                     name: name.clone(),
+                    counts: counts(self.bench.effects, &name),
                     log_prior: of_components(self.bench.effects, &name),
                     candidates: own.clone().map(|(candidate, _)| *candidate).collect(),
                     columns: own.flat_map(|(_, columns)| columns.clone()).collect(),
@@ -313,8 +320,9 @@ impl<'b, 'a> Sets<'b, 'a> {
         if has_parameter && self.members.iter().any(lacks) {
             return None;
         }
+        let counts = choices.iter().map(|choice| choice.counts).sum::<usize>();
         let log_prior =
-            self.prior[choices.len()] + choices.iter().map(|choice| choice.log_prior).sum::<f64>();
+            self.prior[counts] + choices.iter().map(|choice| choice.log_prior).sum::<f64>();
         let valued = self
             .levels
             .iter()
@@ -412,6 +420,11 @@ impl<'b, 'a> Sets<'b, 'a> {
         };
         Ok(list.into_iter().map(set).collect())
     }
+}
+
+fn most_counts(bench: &Bench<'_>) -> usize {
+    let counts = bench.effects.candidates.iter().map(|own| own.counts);
+    counts.max().unwrap_or(1)
 }
 
 /// Whether nothing can be said of a fit without a member by its slopes alone.

@@ -4,6 +4,7 @@ use appell_spec::Mechanism;
 use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 
 use super::effect::{Effect, EffectError, Family, Filter};
+use super::load::Stated;
 use super::place::Source;
 use super::site::{Site, Sites};
 
@@ -60,12 +61,19 @@ impl Acts {
 pub(crate) enum Part {
     /// Size of the effect; zero without it.
     Size,
-    /// Its shape, relevant if the size is not zero.
-    Shape,
+    /// Its shape, relevant if the size is not zero: of one sign, or of any with this standard deviation beforehand.
+    Shape(Option<f64>),
     /// Switch: one with the effect, zero without.
     Switch,
     /// A number in one of many terms; normal beforehand with this mean and standard deviation.
     Term([f64; 2]),
+}
+
+impl Part {
+    /// Whether it says nothing without a size.
+    pub(crate) const fn is_shape(self) -> bool {
+        matches!(self, Self::Shape(_))
+    }
 }
 
 /// An effect at a place.
@@ -101,6 +109,10 @@ pub struct Candidate {
     pub(crate) hides: Option<[f64; 2]>,
     /// Additions to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
+    /// What is added to the expression of a load.
+    pub(super) limits: Option<(Stated, String)>,
+    /// As how many effects it counts beforehand.
+    pub(crate) counts: usize,
     /// What channels show in place of a coordinate or pseudo-velocity: its name and an output.
     pub(crate) shows: Vec<(String, String)>,
     /// Its file, for effects of users.
@@ -160,6 +172,8 @@ impl Candidate {
             brings: None,
             hides: None,
             added: Vec::new(),
+            limits: None,
+            counts: 1,
             shows: Vec::new(),
             source: None,
         }
@@ -317,6 +331,9 @@ impl Candidate {
             Some(input) => texts(&input),
             None => Vec::new(),
         };
+        let load = document.remove("load");
+        let limits = load.iter().flat_map(texts).map(|(_, text)| text).next();
+        let limits = site.stated.clone().zip(limits);
         let shows = shown(&mut document, id);
         document.remove("effect");
         let switch = effect
@@ -333,19 +350,20 @@ impl Candidate {
                 let item = item
                     .as_table_like_mut()
                     .ok_or_else(|| source.wrong(&name, None, "a parameter is a table"))?;
-                for key in ["value", "at_least", "at_most"] {
+                for key in ["value", "at_least", "at_most", "std"] {
                     compute(item, key).map_err(|text| {
                         let message = format!("`{text}` is no product of numbers");
                         source.wrong(&name, Some(key), &message)
                     })?;
                 }
                 let is_zero = item.get("value").and_then(number).is_some_and(|v| v == 0.0);
+                let std = item.remove("std").as_ref().and_then(number);
                 let part = if switch.as_ref() == Some(&name) {
                     Part::Switch
-                } else if is_zero {
+                } else if is_zero && std.is_none() {
                     Part::Size
                 } else {
-                    Part::Shape
+                    Part::Shape(std)
                 };
                 parameters.push((name, part));
             }
@@ -378,6 +396,8 @@ impl Candidate {
             brings,
             hides: None,
             added,
+            limits,
+            counts: effect.counts,
             shows,
             source: effect.file.is_some().then_some(source),
         })

@@ -9,6 +9,7 @@
 //! variants = [{ axis = "x" }]        # each a hypothesis of its own, with words of its own
 //! vector   = true                    # the variants are components, which may come together
 //! together = true                    # where many coordinates are driven: at all of them, as one hypothesis more
+//! counts   = 2                       # as how many effects it counts beforehand
 //! switch   = "{effect}_on"           # a parameter that is 1 where the effect is there
 //! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late, slow
 //!
@@ -20,6 +21,8 @@
 //!
 //! [input]                            # what is added to an input wherever it acts
 //!
+//! [load]                             # what is added to the expression of a load
+//!
 //! [channel]                          # what channels show in place of a coordinate or pseudo-velocity; an empty
 //! "{site}" = "{site} + {effect}"     # text changes nothing
 //! ```
@@ -28,7 +31,7 @@ use appell_spec::expr::Span;
 use appell_spec::{Code, Report, closest, did_you_mean, shown};
 use toml::de::{DeTable, DeValue};
 
-use super::site::SiteKind;
+use super::site_kind::SiteKind;
 use appell_recordings::fields::{Fields, Value};
 
 /// Families of effects.
@@ -122,6 +125,8 @@ pub struct Effect {
     pub(super) is_vector: bool,
     /// Whether drives have it together.
     pub(super) is_together: bool,
+    /// As how many effects it counts beforehand.
+    pub(super) counts: usize,
     pub(super) switch: Option<String>,
     pub(super) filter: Option<Filter>,
     /// The whole file.
@@ -143,8 +148,8 @@ impl From<Report> for EffectError {
 
 /// Keys of the section `[effect]`.
 pub(super) const KEYS: &[&str] = &[
-    "name", "family", "site", "about", "words", "variants", "vector", "together", "switch",
-    "filter",
+    "name", "family", "site", "about", "words", "variants", "vector", "together", "counts",
+    "switch", "filter",
 ];
 /// What the first words of an effect stand for.
 const EVERYWHERE: &[&str] = &["effect", "site"];
@@ -234,6 +239,7 @@ impl Effect {
         let variants = variants(&mut fields, header);
         let is_vector = flag(&mut fields, header, "vector");
         let is_together = flag(&mut fields, header, "together");
+        let counts = count(&mut fields, header, "counts");
         if let Some(site) = site {
             let mut known = [EVERYWHERE, &site.words().concat()].concat();
             known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
@@ -252,6 +258,7 @@ impl Effect {
             variants,
             is_vector,
             is_together,
+            counts,
             switch: switch.map(|(switch, _)| switch),
             filter,
             text: text.to_owned(),
@@ -277,6 +284,21 @@ fn flag(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> bool {
         fields.wrong_type(value, "`true` or `false`");
     }
     flag.unwrap_or(false)
+}
+
+/// A number of effects; one where it is absent.
+fn count(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> usize {
+    const MOST: usize = 3;
+    let Some(value) = header.get(key) else {
+        return 1;
+    };
+    let digits = value.get_ref().as_integer().map(|whole| whole.as_str());
+    let count = digits.and_then(|digits| digits.parse().ok());
+    let count = count.filter(|count| (1..=MOST).contains(count));
+    if count.is_none() {
+        fields.wrong_type(value, "1, 2 or 3");
+    }
+    count.unwrap_or(1)
 }
 
 /// One of some words, which may be absent; another one is reported.

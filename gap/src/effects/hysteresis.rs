@@ -8,7 +8,8 @@
 use appell_spec::Mechanism;
 
 use super::candidate::{Candidate, filled};
-use super::site::{Scales, SiteKind, Sites, number};
+use super::site::{Scales, Sites, number};
+use super::site_kind::SiteKind;
 use super::stem::{Known, Stem};
 
 /// Where it is, and its numbers, in SI.

@@ -9,11 +9,15 @@ macro_rules! files {
 }
 
 /// Files in the order in which people read the library.
-const FILES: [(&str, &str); 27] = files![
+const FILES: [(&str, &str); 33] = files![
     "viscous_friction",
     "coulomb_friction",
+    "directional_friction",
     "stribeck_friction",
     "spring",
+    "stop",
+    "coupling_elastic",
+    "coupling_feedback",
     "rolling_resistance",
     "spin_friction",
     "quadratic_drag",
@@ -21,6 +25,7 @@ const FILES: [(&str, &str); 27] = files![
     "ground_slope",
     "parameter_error",
     "mass_offset",
+    "payload",
     "added_inertia_sliding",
     "added_inertia_turning",
     "actuator_gain",
@@ -29,6 +34,7 @@ const FILES: [(&str, &str); 27] = files![
     "actuator_delay",
     "actuator_saturation",
     "actuator_dead_zone",
+    "saturation",
     "longitudinal_slip",
     "lateral_slip",
     "backlash_sliding",

@@ -21,6 +21,7 @@ use appell_spec::edit::EditError;
 use appell_spec::{Mechanism, Report};
 
 use super::effect::{Effect, EffectError};
+use super::load::Stated;
 use super::site::{Scales, Sites, number};
 use super::{Candidate, Drive, Part};
 use appell_recordings::Spec;
@@ -98,7 +99,7 @@ pub fn candidates(
     effects: &[Effect],
     scales: &Scales,
 ) -> Result<Vec<Candidate>, ModelError> {
-    let sites = Sites::new(mechanism, scales);
+    let sites = Sites::of_spec(mechanism, scales, &spec.text);
     let mut all = Vec::new();
     for effect in effects {
         let own = Candidate::all(effect, mechanism, &sites)?;
@@ -293,7 +294,7 @@ impl EffectModel {
         let others = others.filter(|(index, _)| !members.contains(index));
         let sizes = others.flat_map(|(_, candidate)| {
             let own = candidate.parameters.iter();
-            own.filter(|(_, part)| *part != Part::Shape)
+            own.filter(|(_, part)| !part.is_shape())
         });
         let zeros: Vec<usize> = sizes
             .filter_map(|(name, _)| info.parameter_index(name))
@@ -373,6 +374,17 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
     for candidate in candidates.iter().filter(|one| one.brings.is_some()) {
         spec.add(&candidate.items)?;
     }
+    // Expressions that effects name, once each: inputs act in them too.
+    let mut stated = Composition::new("")?;
+    for (load, own) in limited(candidates) {
+        let added: Vec<&str> = own.iter().map(|(_, _, added)| *added).collect();
+        for (place, (effect, as_in_spec, _)) in own.iter().enumerate() {
+            stated.add(&as_in_spec.definition(effect))?;
+            if place == 0 {
+                spec.add(&as_in_spec.with(load, &added))?;
+            }
+        }
+    }
     let mut inputs: Vec<&String> = Vec::new();
     for candidate in candidates {
         inputs.extend(candidate.added.iter().map(|(input, _)| input));
@@ -386,7 +398,9 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
             .map(|(_, text)| text.as_str());
         let parts: Vec<&str> = std::iter::once(input.as_str()).chain(added).collect();
         spec.substitute(&ACTING, input, &parts.join(" + "));
+        stated.substitute(&["definitions"], input, &parts.join(" + "));
     }
+    spec.add(&stated.text())?;
     // What other candidates add does not.
     let mut centres: BTreeMap<&str, &str> = BTreeMap::new();
     for candidate in candidates.iter().filter(|one| one.brings.is_none()) {
@@ -401,4 +415,19 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
         }
     }
     Ok(spec.text())
+}
+
+/// A candidate's name in a spec, the load as it stands there, and what is added to it.
+type Limit<'c> = (&'c str, &'c Stated, &'c str);
+
+/// The loads to whose expressions candidates add.
+fn limited(candidates: &[Candidate]) -> BTreeMap<&str, Vec<Limit<'_>>> {
+    let mut loads: BTreeMap<&str, Vec<Limit<'_>>> = BTreeMap::new();
+    for candidate in candidates {
+        if let Some((stated, added)) = &candidate.limits {
+            let load = loads.entry(&candidate.site).or_default();
+            load.push((&candidate.stem, stated, added));
+        }
+    }
+    loads
 }

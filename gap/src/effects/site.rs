@@ -9,140 +9,9 @@ use appell_spec::mechanism::{
 use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
 
-/// Kinds of sites.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum SiteKind {
-    /// A coordinate whose rate moves something by itself.
-    Coordinate,
-    /// Such a coordinate that is a length.
-    Slider,
-    /// Such a coordinate that is an angle.
-    Hinge,
-    /// A slider that a pseudo-velocity of its own moves, and an input.
-    DrivenSlider,
-    /// Such a hinge.
-    DrivenHinge,
-    /// A body.
-    Body,
-    /// A body with a frame.
-    RigidBody,
-    /// A body that rolls.
-    Wheel,
-    /// A rolling contact that does not creep yet.
-    Contact,
-    /// The weight.
-    Gravity,
-    /// A parameter.
-    Parameter,
-    /// An input.
-    Input,
-    /// A measured channel.
-    Channel,
-}
-
-/// Word, kind, and what it is.
-const WORDS: [(&str, SiteKind, &str); 13] = [
-    (
-        "coordinate",
-        SiteKind::Coordinate,
-        "length or angle that is not prescribed",
-    ),
-    ("slider", SiteKind::Slider, "length that is not prescribed"),
-    ("hinge", SiteKind::Hinge, "angle that is not prescribed"),
-    (
-        "driven_slider",
-        SiteKind::DrivenSlider,
-        "length that inputs drive, its rate a pseudo-velocity",
-    ),
-    (
-        "driven_hinge",
-        SiteKind::DrivenHinge,
-        "angle that inputs drive, its rate a pseudo-velocity",
-    ),
-    ("body", SiteKind::Body, "body"),
-    ("rigid_body", SiteKind::RigidBody, "body with a frame"),
-    ("wheel", SiteKind::Wheel, "body that rolls"),
-    ("contact", SiteKind::Contact, "rolling contact"),
-    ("gravity", SiteKind::Gravity, "weight"),
-    (
-        "parameter",
-        SiteKind::Parameter,
-        "parameter with a tolerance",
-    ),
-    ("input", SiteKind::Input, "input that was used"),
-    ("channel", SiteKind::Channel, "measured column"),
-];
-
-impl SiteKind {
-    pub(super) fn of(word: &str) -> Option<Self> {
-        let found = WORDS.iter().find(|(own, ..)| *own == word);
-        found.map(|(_, kind, _)| *kind)
-    }
-
-    #[cfg(test)]
-    pub(super) fn all() -> impl Iterator<Item = Self> {
-        WORDS.into_iter().map(|(_, kind, _)| kind)
-    }
-
-    pub(super) fn kinds() -> String {
-        WORDS.map(|(word, ..)| word).join(", ")
-    }
-
-    /// Its word.
-    pub fn word(self) -> &'static str {
-        self.row().map_or("", |(word, ..)| word)
-    }
-
-    /// What each is, in words.
-    pub fn about(self) -> &'static str {
-        self.row().map_or("", |(.., about)| about)
-    }
-
-    fn row(self) -> Option<&'static (&'static str, Self, &'static str)> {
-        WORDS.iter().find(|(_, kind, _)| *kind == self)
-    }
-
-    /// Lists of words that stand for something at such a place, beside `effect` and `site`.
-    pub(super) fn words(self) -> &'static [&'static [&'static str]] {
-        match self {
-            Self::Coordinate | Self::Slider | Self::Hinge => &[OF_COORDINATE, ACROSS],
-            Self::DrivenSlider | Self::DrivenHinge => {
-                &[OF_COORDINATE, ACROSS, OF_DRIVEN, LATER_DRIVEN]
-            }
-            Self::Body | Self::RigidBody => &[OF_BODY, LATER_BODY],
-            Self::Wheel => &[OF_BODY, OF_WHEEL, LATER_BODY],
-            Self::Gravity => &[&["gravity"], ACROSS],
-            Self::Input => &[&["unit", "largest", "narrow"]],
-            Self::Contact | Self::Parameter | Self::Channel => &[],
-        }
-    }
-}
-
-const OF_COORDINATE: &[&str] = &["unit", "force", "typical_rate", "narrow_rate"];
-const ACROSS: &[&str] = &["across_1", "across_2", "across_x", "across_y", "across_z"];
-const OF_DRIVEN: &[&str] = &["pseudo_velocity"];
-const OF_BODY: &[&str] = &[
-    "centre",
-    "frame",
-    "speed",
-    "velocity_x",
-    "velocity_y",
-    "velocity_z",
-];
-const OF_WHEEL: &[&str] = &[
-    "contact",
-    "roll",
-    "narrow_rate",
-    "axle_rate",
-    "spin",
-    "normal_x",
-    "normal_y",
-    "normal_z",
-];
-/// Words whose meaning is known once the mechanism has equations.
-const LATER_DRIVEN: &[&str] = &["drive", "inertia"];
-/// A word whose meaning is known once all effects of the body are.
-const LATER_BODY: &[&str] = &["last_centre"];
+use super::extent::Extent;
+use super::load::Stated;
+use super::site_kind::{LATER_BODY, LATER_DRIVEN, SiteKind};
 
 /// Typical magnitudes from recordings, in SI.
 #[derive(Debug, Clone, PartialEq)]
@@ -153,6 +22,10 @@ pub struct Scales {
     pub narrow: Vec<f64>,
     /// Largest value of each input.
     pub largest: Vec<f64>,
+    /// Smallest and largest value of each coordinate that was measured, where it came back from one.
+    pub reached: Vec<Option<[f64; 2]>>,
+    /// Largest magnitude of each load that follows the motion as a controller does; zero of others.
+    pub loads: Vec<f64>,
     /// Columns of the measured channels.
     pub channels: Vec<String>,
     /// Parameters with a tolerance, which may be wrong by more.
@@ -165,8 +38,14 @@ const NARROW: f64 = 0.005;
 /// As many drives are likely to be of one make.
 const MANY_DRIVES: usize = 3;
 
+/// More coordinates have pairs of neighbours only.
+const MANY_PAIRS: usize = 3;
+
+/// Part of its range by which a stop is sought within the end of a motion.
+const WITHIN: f64 = 0.05;
+
 /// A site.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Site {
     /// Name in the spec; `gravity` for the weight, the column for a channel.
     pub(super) name: String,
@@ -176,17 +55,33 @@ pub(super) struct Site {
     pub(super) words: Vec<(&'static str, String)>,
     /// Axes along which the drawing already places the centre of mass.
     pub(super) placed_along: Vec<&'static str>,
+    /// What the spec says of a load.
+    pub(super) stated: Option<Stated>,
 }
 
 /// Sites in a mechanism.
 pub(super) struct Sites<'m> {
     mechanism: &'m Mechanism,
     scales: &'m Scales,
+    /// The text of its spec, where that is known.
+    text: &'m str,
 }
 
 impl<'m> Sites<'m> {
     pub(super) const fn new(mechanism: &'m Mechanism, scales: &'m Scales) -> Self {
-        Self { mechanism, scales }
+        Self::of_spec(mechanism, scales, "")
+    }
+
+    pub(super) const fn of_spec(
+        mechanism: &'m Mechanism,
+        scales: &'m Scales,
+        text: &'m str,
+    ) -> Self {
+        Self {
+            mechanism,
+            scales,
+            text,
+        }
     }
 
     /// All sites of a kind.
@@ -236,8 +131,11 @@ impl<'m> Sites<'m> {
                 .bodies
                 .ids()
                 .filter(|&body| self.mechanism.bodies[body].frame.is_some())
-                .map(|body| self.body(body))
+                .map(|body| self.rigid_body(body))
                 .collect(),
+            SiteKind::Reached => moving.filter_map(|q| self.reached(q)).collect(),
+            SiteKind::Pair => self.pairs(),
+            SiteKind::Load => self.loads(),
             SiteKind::Wheel => self.wheels(),
             SiteKind::Contact => self.contacts(),
             SiteKind::Gravity => self.gravity().into_iter().collect(),
@@ -260,7 +158,7 @@ impl<'m> Sites<'m> {
                     name: column.clone(),
                     index,
                     words: Vec::new(),
-                    placed_along: Vec::new(),
+                    ..Site::default()
                 };
                 columns.map(site).collect()
             }
@@ -278,6 +176,87 @@ impl<'m> Sites<'m> {
             speeds.any(|speed| mentions(&speed.definition, Quantity::Rate(q)))
         };
         self.mechanism.coordinates.ids().filter(stands).collect()
+    }
+
+    /// A coordinate, with the places within which it moved.
+    fn reached(&self, index: CoordinateId) -> Option<Site> {
+        let [least, most] = self.scales.reached[index.index()]?;
+        let range = most - least;
+        let mut site = self.coordinate(index);
+        site.words.extend([
+            ("upper", number(most - WITHIN * range)),
+            ("lower", number(least + WITHIN * range)),
+            ("range", number(range)),
+        ]);
+        Some(site)
+    }
+
+    /// Pairs of coordinates.
+    fn pairs(&self) -> Vec<Site> {
+        let mut moving = self.moving();
+        moving.retain(|&q| self.kind(q).is_some());
+        let far = if moving.len() > MANY_PAIRS {
+            1
+        } else {
+            MANY_PAIRS
+        };
+        let pairs = (0..moving.len()).flat_map(|first| {
+            let seconds = first + 1..moving.len().min(first + 1 + far);
+            seconds.map(move |second| [first, second])
+        });
+        pairs
+            .filter_map(|pair| self.pair(pair.map(|place| moving[place])))
+            .collect()
+    }
+
+    fn pair(&self, [first, second]: [CoordinateId; 2]) -> Option<Site> {
+        let ([first_unit, first_force], [second_unit, second_force]) =
+            (self.kind(first)?, self.kind(second)?);
+        let [first_rate, second_rate] = [first, second].map(|q| self.scales.rates[q.index()]);
+        let ratio = if first_unit == second_unit {
+            1.0
+        } else {
+            first_rate / second_rate
+        };
+        let label = |q: CoordinateId| self.mechanism.coordinates[q].label.name.clone();
+        let texts = [first_unit, second_unit, first_force, second_force].map(str::to_owned);
+        let [first_unit, second_unit, first_force, second_force] = texts;
+        Some(Site {
+            name: format!("{},{}", label(first), label(second)),
+            index: first.index(),
+            words: vec![
+                ("first", label(first)),
+                ("second", label(second)),
+                ("first_unit", first_unit),
+                ("second_unit", second_unit),
+                ("first_force", first_force),
+                ("second_force", second_force),
+                ("ratio", number(ratio)),
+            ],
+            ..Site::default()
+        })
+    }
+
+    /// Loads whose law the spec states.
+    fn loads(&self) -> Vec<Site> {
+        let loads = self.mechanism.loads.iter().enumerate();
+        let site = |(index, load): (usize, &Load)| {
+            let largest = self.scales.loads[index];
+            let stated = Stated::of(self.mechanism, load, self.text)?;
+            (largest > 0.0).then(|| Site {
+                name: load.name.clone(),
+                index,
+                words: vec![
+                    ("expression", Stated::name("{effect}")),
+                    ("unit", stated.unit.to_owned()),
+                    ("largest", number(largest)),
+                    ("narrow", number(NARROW * largest)),
+                ],
+                stated: Some(stated),
+                ..Site::default()
+            })
+        };
+        loads.filter_map(site).collect()
     }
 
     /// Coordinates whose rates are pseudo-velocities and stand in no other one, if there are inputs; the
@@ -315,14 +294,19 @@ impl<'m> Sites<'m> {
         driven.iter().map(name).collect()
     }
 
+    /// The units of a length or an angle and of the force along it.
+    fn kind(&self, index: CoordinateId) -> Option<[&'static str; 2]> {
+        let dimension = self.dimension(index);
+        if dimension == Dimension::LENGTH {
+            Some(["m", "N"])
+        } else {
+            dimension.is_none().then_some(["rad", "N*m"])
+        }
+    }
+
     fn coordinate(&self, index: CoordinateId) -> Site {
         let label = &self.mechanism.coordinates[index].label;
-        let is_length = self.dimension(index) == Dimension::LENGTH;
-        let (unit, force) = if is_length {
-            ("m", "N")
-        } else {
-            ("rad", "N*m")
-        };
+        let [unit, force] = self.kind(index).unwrap_or(["rad", "N*m"]);
         let rate = self.scales.rates[index.index()];
         let mut words = vec![
             ("unit", unit.to_owned()),
@@ -335,7 +319,7 @@ impl<'m> Sites<'m> {
             name: label.name.clone(),
             index: index.index(),
             words,
-            placed_along: Vec::new(),
+            ..Site::default()
         }
     }
 
@@ -358,7 +342,22 @@ impl<'m> Sites<'m> {
                 ("velocity_z", velocity("z")),
             ],
             placed_along: self.placed_along(index),
+            ..Site::default()
         }
+    }
+
+    /// A body, with how far it reaches.
+    fn rigid_body(&self, index: BodyId) -> Site {
+        let extent = Extent::of(self.mechanism, index);
+        let mut site = self.body(index);
+        let [x, y, z] = extent.away.map(number);
+        site.words.extend([
+            ("away_x", x),
+            ("away_y", y),
+            ("away_z", z),
+            ("reach", number(extent.reach)),
+        ]);
+        site
     }
 
     /// Axes of the frame of a body along which its centre is placed: an error there is one of a
@@ -404,7 +403,7 @@ impl<'m> Sites<'m> {
             name: constraint.name.clone(),
             index,
             words: Vec::new(),
-            placed_along: Vec::new(),
+            ..Site::default()
         };
         contacts.map(site).collect()
     }
@@ -456,7 +455,7 @@ impl<'m> Sites<'m> {
             name: "gravity".to_owned(),
             index: 0,
             words,
-            placed_along: Vec::new(),
+            ..Site::default()
         })
     }
 
@@ -480,7 +479,7 @@ impl<'m> Sites<'m> {
             name: self.mechanism.parameters[index].label.name.clone(),
             index: index.index(),
             words: Vec::new(),
-            placed_along: Vec::new(),
+            ..Site::default()
         }
     }
 
@@ -501,7 +500,7 @@ impl<'m> Sites<'m> {
                 ("largest", number(largest)),
                 ("narrow", number(NARROW * largest)),
             ],
-            placed_along: Vec::new(),
+            ..Site::default()
         }
     }
 

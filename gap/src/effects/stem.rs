@@ -49,6 +49,8 @@ impl<'n> Stem<'n> {
             brings: None,
             hides: Some(begins),
             added: Vec::new(),
+            limits: None,
+            counts: 1,
             shows: Vec::new(),
             source: None,
             stem: self.stem.clone(),

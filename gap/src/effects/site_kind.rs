@@ -1,0 +1,172 @@
+//! Kinds of places at which effects act, and the words that stand for something there.
+
+/// Kinds of sites.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SiteKind {
+    /// A coordinate whose rate moves something by itself.
+    Coordinate,
+    /// Such a coordinate that is a length.
+    Slider,
+    /// Such a coordinate that is an angle.
+    Hinge,
+    /// A slider that a pseudo-velocity of its own moves, and an input.
+    DrivenSlider,
+    /// Such a hinge.
+    DrivenHinge,
+    /// A body.
+    Body,
+    /// A body with a frame.
+    RigidBody,
+    /// A body that rolls.
+    Wheel,
+    /// A rolling contact that does not creep yet.
+    Contact,
+    /// The weight.
+    Gravity,
+    /// A parameter.
+    Parameter,
+    /// An input.
+    Input,
+    /// A measured channel.
+    Channel,
+    /// A measured coordinate that came back from where it got.
+    Reached,
+    /// Two coordinates.
+    Pair,
+    /// A load that follows the motion as a controller does.
+    Load,
+}
+
+/// Word, kind, and what it is.
+const WORDS: [(&str, SiteKind, &str); 16] = [
+    (
+        "coordinate",
+        SiteKind::Coordinate,
+        "length or angle that is not prescribed",
+    ),
+    ("slider", SiteKind::Slider, "length that is not prescribed"),
+    ("hinge", SiteKind::Hinge, "angle that is not prescribed"),
+    (
+        "driven_slider",
+        SiteKind::DrivenSlider,
+        "length that inputs drive, its rate a pseudo-velocity",
+    ),
+    (
+        "driven_hinge",
+        SiteKind::DrivenHinge,
+        "angle that inputs drive, its rate a pseudo-velocity",
+    ),
+    ("body", SiteKind::Body, "body"),
+    ("rigid_body", SiteKind::RigidBody, "body with a frame"),
+    ("wheel", SiteKind::Wheel, "body that rolls"),
+    ("contact", SiteKind::Contact, "rolling contact"),
+    ("gravity", SiteKind::Gravity, "weight"),
+    (
+        "parameter",
+        SiteKind::Parameter,
+        "parameter with a tolerance",
+    ),
+    ("input", SiteKind::Input, "input that was used"),
+    ("channel", SiteKind::Channel, "measured column"),
+    (
+        "reached",
+        SiteKind::Reached,
+        "measured coordinate that came back from where it got",
+    ),
+    (
+        "pair",
+        SiteKind::Pair,
+        "pair of coordinates, neighbours where there are many",
+    ),
+    (
+        "load",
+        SiteKind::Load,
+        "load that follows the motion as a controller does",
+    ),
+];
+
+impl SiteKind {
+    pub(super) fn of(word: &str) -> Option<Self> {
+        let found = WORDS.iter().find(|(own, ..)| *own == word);
+        found.map(|(_, kind, _)| *kind)
+    }
+
+    #[cfg(test)]
+    pub(super) fn all() -> impl Iterator<Item = Self> {
+        WORDS.into_iter().map(|(_, kind, _)| kind)
+    }
+
+    pub(super) fn kinds() -> String {
+        WORDS.map(|(word, ..)| word).join(", ")
+    }
+
+    /// Its word.
+    pub fn word(self) -> &'static str {
+        self.row().map_or("", |(word, ..)| word)
+    }
+
+    /// What each is, in words.
+    pub fn about(self) -> &'static str {
+        self.row().map_or("", |(.., about)| about)
+    }
+
+    fn row(self) -> Option<&'static (&'static str, Self, &'static str)> {
+        WORDS.iter().find(|(_, kind, _)| *kind == self)
+    }
+
+    /// Lists of words that stand for something at such a place, beside `effect` and `site`.
+    pub(super) fn words(self) -> &'static [&'static [&'static str]] {
+        match self {
+            Self::Coordinate | Self::Slider | Self::Hinge => &[OF_COORDINATE, ACROSS],
+            Self::DrivenSlider | Self::DrivenHinge => {
+                &[OF_COORDINATE, ACROSS, OF_DRIVEN, LATER_DRIVEN]
+            }
+            Self::Reached => &[OF_COORDINATE, ACROSS, OF_REACHED],
+            Self::Pair => &[OF_PAIR],
+            Self::Body => &[OF_BODY, LATER_BODY],
+            Self::RigidBody => &[OF_BODY, OF_RIGID, LATER_BODY],
+            Self::Wheel => &[OF_BODY, OF_WHEEL, LATER_BODY],
+            Self::Gravity => &[&["gravity"], ACROSS],
+            Self::Input => &[&["unit", "largest", "narrow"]],
+            Self::Load => &[&["expression", "unit", "largest", "narrow"]],
+            Self::Contact | Self::Parameter | Self::Channel => &[],
+        }
+    }
+}
+
+const OF_COORDINATE: &[&str] = &["unit", "force", "typical_rate", "narrow_rate"];
+const ACROSS: &[&str] = &["across_1", "across_2", "across_x", "across_y", "across_z"];
+const OF_DRIVEN: &[&str] = &["pseudo_velocity"];
+const OF_BODY: &[&str] = &[
+    "centre",
+    "frame",
+    "speed",
+    "velocity_x",
+    "velocity_y",
+    "velocity_z",
+];
+const OF_REACHED: &[&str] = &["upper", "lower", "range"];
+const OF_RIGID: &[&str] = &["away_x", "away_y", "away_z", "reach"];
+const OF_PAIR: &[&str] = &[
+    "first",
+    "second",
+    "first_unit",
+    "second_unit",
+    "first_force",
+    "second_force",
+    "ratio",
+];
+const OF_WHEEL: &[&str] = &[
+    "contact",
+    "roll",
+    "narrow_rate",
+    "axle_rate",
+    "spin",
+    "normal_x",
+    "normal_y",
+    "normal_z",
+];
+/// Words whose meaning is known once the mechanism has equations.
+pub(super) const LATER_DRIVEN: &[&str] = &["drive", "inertia"];
+/// A word whose meaning is known once all effects of the body are.
+pub(super) const LATER_BODY: &[&str] = &["last_centre"];

@@ -2,9 +2,7 @@
 
 use std::path::Path;
 
-use appell_gap::diagnose::{
-    Ahead, Change, Changes, ENGINE, Joined, Law, Refitted, Report, SignalEffect,
-};
+use appell_gap::diagnose::{Ahead, Change, Changes, ENGINE, Law, Refitted, Report, SignalEffect};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -105,18 +103,12 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         })),
         "law": report.law.as_ref().map(law),
         "change": report.change.as_ref().map(change),
-        "joined": report.joined.as_ref().map(joined),
         "imperfections": report.imperfections.iter().map(value).collect::<Vec<_>>(),
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
         "data": findings,
     })
-}
-
-/// Inputs that run on between rows.
-fn joined(joined: &Joined) -> Value {
-    json!({ "columns": joined.columns, "interpolation": joined.word(), "gain": joined.gain })
 }
 
 /// A value that was found.

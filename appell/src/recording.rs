@@ -100,7 +100,12 @@ fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
     };
     let equations = Equations::at_hand(&source)?;
     for doubt in units::doubts(&set, equations.model()) {
-        set.doubt_unit(&doubt.column, doubt.message);
+        let kind = if doubt.is_sign {
+            FindingKind::Sign
+        } else {
+            FindingKind::Unit
+        };
+        set.doubt(kind, &doubt.column, doubt.message);
     }
     Ok(set)
 }

@@ -8,7 +8,7 @@ use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
     Headline, before_sentence, divided, doubts, hinted, imperfections, is_determined, joined,
-    joined_inputs, law_sentence, left_of_forces, left_out, percent, said, share, short, values,
+    law_sentence, left_of_forces, left_out, percent, said, share, short, values,
 };
 use appell_report::text::number;
 
@@ -100,9 +100,6 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     for group in &report.tied {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
-    }
-    if let Some(named) = joined_inputs(report) {
-        let _ = writeln!(text, "  inputs    {named}");
     }
     if let Some(named) = imperfections(report) {
         let _ = writeln!(text, "  sensors   {named}");

@@ -90,6 +90,8 @@ fn a_library_without_the_cause_does_not_name_another_one() {
         "coulomb_friction",
         "--without",
         "stribeck_friction",
+        "--without",
+        "directional_friction",
     ];
     let asked = ["diagnose", "--data", ".", "--json", "report.json"];
     let told = folder.done(&[&asked[..], &without[..]].concat()).stdout;

@@ -2,7 +2,6 @@
 //! gap.
 //!
 //! ```text
-//! data set --between_rows--> inputs that run on between rows, where it does not say
 //!          --split--> runs to fit | runs held out, which the last step alone can read
 //!          --effects--> candidates: every effect at every place, derived at once with sizes of zero
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
@@ -33,7 +32,6 @@ mod alternative;
 mod assembly;
 mod augmented;
 mod bench;
-mod between_rows;
 mod budget;
 mod by_forces;
 mod calibration;
@@ -78,7 +76,6 @@ use appell_recordings::{DataSet, Part};
 
 pub use crate::held_out::AHEAD;
 pub use against::against;
-pub use between_rows::Joined;
 pub use changes::{Changes, Refitted, SignalEffect};
 pub use error::{ChangeError, DiagnoseError};
 pub use options::Options;
@@ -122,14 +119,6 @@ fn diagnosed(
     options: &Options,
     mut stage: &mut dyn FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    stage("joining the rows of inputs");
-    if let Some((set, joined)) = between_rows::joined(set, options) {
-        let report = diagnosed((&set, before), effects, options, stage)?;
-        return Ok(Report {
-            joined: Some(joined),
-            ..report
-        });
-    }
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
     let fitted = whole.stretches(most_rows(set));

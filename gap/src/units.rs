@@ -49,6 +49,8 @@ pub struct Doubt {
     pub column: String,
     /// What contradicts its unit or sign, and what to write.
     pub message: String,
+    /// Whether it is its sign: an effect that the model lacks may speak against a right one.
+    pub is_sign: bool,
 }
 
 /// Another unit of a channel.
@@ -162,6 +164,7 @@ fn sign_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> 
     vec![Doubt {
         column: column.clone(),
         message,
+        is_sign: true,
     }]
 }
 
@@ -306,5 +309,6 @@ fn doubt(set: &DataSet, reading: &Reading, tied: Option<&Rival>) -> Doubt {
     Doubt {
         column: channel.column.clone(),
         message,
+        is_sign: false,
     }
 }

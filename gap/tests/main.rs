@@ -5,7 +5,6 @@
 mod common;
 
 mod base;
-mod between_rows;
 mod by_forces;
 mod decay;
 mod engine;

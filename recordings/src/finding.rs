@@ -17,8 +17,10 @@ pub enum FindingKind {
     CutOff,
     /// Rows so far apart that times are probably not in seconds.
     SlowClock,
-    /// A unit or a sign that the motion contradicts.
+    /// A unit that the motion contradicts.
     Unit,
+    /// A sign that the motion seems to contradict.
+    Sign,
     /// A step much longer than the others.
     Gap,
     /// A run with gaps; cut there.
@@ -62,6 +64,7 @@ impl FindingKind {
             Self::CutOff => "cut-off",
             Self::SlowClock => "slow-clock",
             Self::Unit => "unit",
+            Self::Sign => "sign",
             Self::Gap => "gap",
             Self::Cut => "cut",
             Self::Dropouts => "dropouts",
@@ -88,6 +91,7 @@ impl FindingKind {
             | Self::FewRows
             | Self::SlowClock
             | Self::Unit
+            | Self::Sign
             | Self::Constant
             | Self::HeldInput
             | Self::NoiseDisagrees

@@ -80,9 +80,9 @@ impl Run {
 }
 
 impl DataSet {
-    /// Adds a warning that the motion contradicts the unit of a channel.
-    pub fn doubt_unit(&mut self, column: &str, message: String) {
-        let finding = Finding::new(FindingKind::Unit, message);
+    /// Adds a doubt about a channel.
+    pub fn doubt(&mut self, kind: FindingKind, column: &str, message: String) {
+        let finding = Finding::new(kind, message);
         self.findings.push(finding.of_channel(column));
         self.findings.sort_by_key(Finding::order);
     }

@@ -76,7 +76,6 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
         }),
         detectable: Vec::new(),
         failed: Vec::new(),
-        joined: None,
         imperfections: Vec::new(),
         disturbances: Vec::new(),
         left: None,

@@ -19,8 +19,8 @@ use crate::identify::{self, Answer, Estimate, identify};
 
 use super::changes::Changes;
 use super::{
-    Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, between_rows,
-    by_forces, diagnose, diagnosed,
+    Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, by_forces, diagnose,
+    diagnosed,
 };
 
 /// Part of the prediction error that a change accounts for at least.
@@ -40,7 +40,6 @@ pub fn against(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    let ([before, now], joined) = between_rows::alike([before, now], options);
     let whole = before.all(Part::Fit);
     let was = diagnose(&whole, effects, &Options::default(), &mut stage)?;
     let taken = was.which.iter().find(|one| one.changes.is_some());
@@ -96,7 +95,6 @@ pub fn against(
     if !is_changed {
         report.verdict = GapVerdict::NoGap;
     }
-    report.joined = joined;
     report.change = Some(Change {
         is_changed,
         before: (was.verdict, taken.effects.clone()),

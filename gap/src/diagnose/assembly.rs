@@ -98,7 +98,6 @@ pub(super) fn assemble(
             .iter()
             .map(|(members, reason)| (names(bench.effects, members), reason.clone()))
             .collect(),
-        joined: None,
         imperfections: imperfections(bench, best),
         disturbances: disturbances(bench, comparison.nominal(), best),
         left: left(bench, comparison),

@@ -16,8 +16,7 @@ use super::law::law;
 use super::numbers::{is_determined, percent};
 use super::plots;
 use super::words::{
-    alternatives, hinted, imperfections, joined, joined_inputs, left_out, next_best, percent_of,
-    said, statement,
+    alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, said, statement,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
@@ -296,9 +295,6 @@ fn which(report: &Report) -> Markup {
                 (separated(group, |effects| code(&joined(effects)), &html! { " and " }))
                 " apart."
             }
-        }
-        @if let Some(named) = joined_inputs(report) {
-            p { b { "Inputs." } " " (capital(&named)) "." }
         }
         @if let Some(named) = imperfections(report) {
             p { b { "Sensors." } " " (capital(&named)) "." }

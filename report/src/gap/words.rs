@@ -445,17 +445,6 @@ pub fn left_out(report: &Report) -> Option<String> {
     })
 }
 
-/// Inputs that run on between rows, though the recordings do not say so.
-pub fn joined_inputs(report: &Report) -> Option<String> {
-    let joined = report.joined.as_ref()?;
-    let (columns, word) = (joined.columns.join(", "), joined.word());
-    Some(format!(
-        "{columns}: joined from row to row, log-likelihood {:.0} above that of held values; write interpolation = \
-         \"{word}\" in recording.toml, or \"hold\" where values were held",
-        joined.gain
-    ))
-}
-
 /// What channels lack that changes no prediction, if anything.
 pub fn imperfections(report: &Report) -> Option<String> {
     let named = report.imperfections.iter().map(|value| {

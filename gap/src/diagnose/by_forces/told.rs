@@ -77,7 +77,6 @@ pub(super) fn report(
         how_far: far,
         detectable: detectable(model, found, training),
         failed: Vec::new(),
-        joined: None,
         imperfections: Vec::new(),
         left: None,
         independent: found.independent,

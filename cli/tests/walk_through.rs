@@ -83,7 +83,11 @@ fn a_payload_and_a_stop_are_found_and_written_as_the_text_says() {
     for has in ["payload_fore_mass", "stop_q_2_1_place"] {
         assert!(better.contains(has), "{better}");
     }
-    assert!(told[3].contains("no gap beyond measurement"), "{}", told[3]);
+    let nominal = |report: &serde_json::Value| number(report, "how_far/nominal");
+    let again = folder.json("again.json");
+    let floor = number(&again, "how_far/noise_floor");
+    assert!(nominal(&again) < 0.1 * nominal(&report), "{}", told[3]);
+    assert!(nominal(&again) < 1.5 * floor, "{}", told[3]);
 }
 
 #[test]

@@ -40,11 +40,6 @@ impl GapVerdict {
         let Some(far) = far else { return self };
         let names_effects = matches!(self, Self::Explained | Self::Ambiguous)
             && which.iter().any(|one| !one.parameters.is_empty());
-        // A law that lowers no error of prediction is no gap.
-        let is_unknown = which.first().is_some_and(Hypothesis::is_unknown);
-        if self == Self::Unexplained && is_unknown && far.refitted <= far.noise_floor {
-            return Self::NoGap;
-        }
         let stays = far.budget.iter().find(|part| part.is_rest());
         let most_stays = stays.is_some_and(|part| part.closed > MOST);
         // What closes nothing is no explanation, however clearly it shows.
@@ -575,26 +570,5 @@ mod tests {
         let after = |far: &HowFar| GapVerdict::Explained.after(&which, Some(far), false);
         assert_eq!(after(&far(0.9, true)), GapVerdict::Explained);
         assert_eq!(after(&far(0.001, false)), GapVerdict::Ambiguous);
-    }
-
-    #[test]
-    fn a_law_without_a_name_is_no_gap_where_predictions_are_as_good_as_the_noise() {
-        let which = [Hypothesis {
-            effects: vec![UNKNOWN.to_owned()],
-            probability: 0.97,
-            same_as: None,
-            log_bayes_factor: None,
-            parameters: Vec::new(),
-            changes: None,
-        }];
-        let after = |refitted: f64| {
-            let far = HowFar {
-                refitted,
-                ..far(0.0, false)
-            };
-            GapVerdict::Unexplained.after(&which, Some(&far), false)
-        };
-        assert_eq!(after(0.4), GapVerdict::NoGap);
-        assert_eq!(after(9.0), GapVerdict::Unexplained);
     }
 }

@@ -71,7 +71,7 @@ pub fn against(
             place.map(|place| set.parameters[place].value)
         };
         // What is known to be different now stays so.
-        let moved = match (stated(&before), stated(&now)) {
+        let moved = match (stated(before), stated(now)) {
             (Some(before), Some(now)) => now - before,
             _ => 0.0,
         };

@@ -111,7 +111,7 @@ pub(super) fn acts(candidate: &Candidate) -> bool {
         Acts::Items => {
             candidate.brings.is_none()
                 && sizes.clone().any(|part| part == Part::Size)
-                && others.all(|part| part.is_shape())
+                && others.all(Part::is_shape)
         }
         Acts::Parameter(_) => true,
         _ => false,

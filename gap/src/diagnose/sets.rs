@@ -321,6 +321,10 @@ impl<'b, 'a> Sets<'b, 'a> {
             return None;
         }
         let counts = choices.iter().map(|choice| choice.counts).sum::<usize>();
+        // What counts as several stands for these: as many of them would be told as such.
+        if choices.len() > 1 && counts > TOGETHER {
+            return None;
+        }
         let log_prior =
             self.prior[counts] + choices.iter().map(|choice| choice.log_prior).sum::<f64>();
         let valued = self

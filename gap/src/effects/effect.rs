@@ -292,7 +292,10 @@ fn count(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> usize {
     let Some(value) = header.get(key) else {
         return 1;
     };
-    let digits = value.get_ref().as_integer().map(|whole| whole.as_str());
+    let digits = value
+        .get_ref()
+        .as_integer()
+        .map(toml::de::DeInteger::as_str);
     let count = digits.and_then(|digits| digits.parse().ok());
     let count = count.filter(|count| (1..=MOST).contains(count));
     if count.is_none() {

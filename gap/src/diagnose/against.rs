@@ -18,6 +18,7 @@ use crate::effects::{Effect, EffectModel};
 use crate::identify::{self, Answer, Estimate, identify};
 
 use super::changes::Changes;
+use super::report::Told;
 use super::{
     Before, Change, DiagnoseError, GapVerdict, Hypothesis, Options, Report, by_forces, diagnose,
     diagnosed,
@@ -101,13 +102,6 @@ pub fn against(
         parameters,
     });
     Ok(report)
-}
-
-/// What recordings tell of parameters.
-pub(super) struct Told {
-    pub(super) parameters: Vec<Before>,
-    /// Of their errors, and of what they differ by from run to run.
-    pub(super) covariance: DMatrix<f64>,
 }
 
 impl Told {

@@ -23,8 +23,7 @@ mod told;
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
 use appell_spec::mechanism::ParameterId;
 
-use super::against::Told;
-use super::report::{Before, Report};
+use super::report::{Before, Report, Told};
 use super::{DiagnoseError, Options};
 use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};

@@ -13,10 +13,8 @@ use appell_estimate::{Fit, Free, Layout, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
+use super::hardware::LN_1000;
 
-/// ln 1000, the range of the logarithm of d′: effects as large as whole motions come to some thousand.
-/// Calibrated with these two digits.
-pub(super) const LN_1000: f64 = 6.9;
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
 

@@ -9,9 +9,11 @@ use appell_estimate::{Coordinate, Free, Unknown};
 use appell_runtime::model::{At, Model};
 use nalgebra::DMatrix;
 
-use super::evidence::LN_1000;
 use crate::effects::EffectModel;
 
+/// ln 1000, the range of the logarithm of d′: effects as large as whole motions come to some thousand.
+/// Calibrated with these two digits.
+pub(super) const LN_1000: f64 = 6.9;
 const DEGREES: f64 = 3.0;
 /// Density of Student's t at zero.
 const MOST: f64 = 0.367_552_596_947_861_3;

@@ -1,5 +1,7 @@
 //! The gap report: what was found, in the words of the contract.
 
+use nalgebra::DMatrix;
+
 use super::calibration::TIED;
 use super::changes::Changes;
 
@@ -518,6 +520,13 @@ pub struct ForceLaw {
     pub medians: Vec<[f64; 2]>,
     /// The law of the best hypothesis; empty where none acts in the equations.
     pub law: Vec<[f64; 2]>,
+}
+
+/// What recordings tell of parameters.
+pub(super) struct Told {
+    pub(super) parameters: Vec<Before>,
+    /// Of their errors, and of what they differ by from run to run.
+    pub(super) covariance: DMatrix<f64>,
 }
 
 #[cfg(test)]

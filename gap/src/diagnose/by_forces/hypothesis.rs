@@ -10,7 +10,8 @@ use std::f64::consts::TAU;
 
 use nalgebra::{DMatrix, DVector};
 
-use super::super::evidence::{LN_1000, volume};
+use super::super::evidence::volume;
+use super::super::hardware::LN_1000;
 use super::super::window_bench::TOLERANCE;
 use super::motions::Motions;
 

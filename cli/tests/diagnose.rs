@@ -251,7 +251,7 @@ fn a_mistake_in_an_own_effect_is_told_in_its_words_and_at_its_place() {
     let dimension = ["must have the unit `N`", "cubic.toml:8:69"];
     told(&CUBIC.replace("})^3\" }\n", "})^2\" }\n"), &dimension);
     let nothing = [
-        "`{sit}` stands for nothing here",
+        "unknown placeholder `{sit}`",
         "cubic.toml:8:",
         "did you mean `{site}`?",
     ];

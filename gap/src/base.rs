@@ -1,11 +1,11 @@
-//! Base parameters: the combinations of inertial parameters and of load parameters on which the forces of a
-//! motion depend at all (M. Gautier, *Numerical calculation of the base inertial parameters of robots*, 1991), and
-//! their values from recorded motions with recorded inputs.
+//! Base parameters: the identifiable combinations of inertial parameters and of load parameters (M. Gautier,
+//! *Numerical calculation of the base inertial parameters of robots*, 1991), and their estimates from recorded
+//! motions with recorded inputs.
 //!
 //! Inverse dynamics is linear in these parameters, M ω̇ + b − Π = Y π + r, and vanishes for the true ones. Columns of
-//! Y that depend on others at all motions belong to the same combination. Recorded motions give equations
+//! Y that are linearly dependent at all motions belong to the same combination. Recorded motions give equations
 //! `Y_b β = −r`: splines filter coordinates and inputs alike, their noise is in `Y_b` as well as in r (`adjustment.rs`), and
-//! blocks of the recordings count as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
+//! blocks of the recordings are taken as independent of each other (K.-Y. Liang, S. L. Zeger, 1986).
 
 mod adjustment;
 mod error;
@@ -24,11 +24,11 @@ pub use error::BaseError;
 pub(crate) use moments::recorded;
 pub use regression::{Estimate, Fit, Speed};
 
-/// A column counts as dependent if less than this part of it is left.
+/// A column is dependent if its orthogonal remainder is smaller than this part of it.
 const DEPENDENT: f64 = 1e-8;
-/// A share in a combination below this part of the largest is rounding.
+/// A coefficient of a combination below this part of the largest is rounding.
 const ROUNDING: f64 = 1e-9;
-/// Random motions per parameter.
+/// Number of random motions per parameter.
 const MOTIONS: usize = 4;
 
 /// A combination of parameters.
@@ -42,7 +42,7 @@ pub struct Combination {
     pub nominal: f64,
 }
 
-/// What forces of motions depend on.
+/// The parameters of the inverse dynamics and their identifiable combinations.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
     /// All parameters on which they depend linearly.
@@ -51,7 +51,7 @@ pub struct Structure {
     pub values: Vec<f64>,
     /// The base parameters.
     pub base: Vec<Combination>,
-    /// Inertial parameters that no motion notices.
+    /// Inertial parameters that no motion depends on.
     pub without_effect: Vec<String>,
 }
 
@@ -65,7 +65,7 @@ impl Structure {
         }
     }
 
-    /// What a combination adds to the parameter that it is named after, such as `+ 0.25 m_2`.
+    /// The terms of a combination after its leading parameter, such as `+ 0.25 m_2`.
     pub fn others(&self, combination: &Combination) -> String {
         let others = combination.others.iter().map(|&(other, factor)| {
             let sign = if factor < 0.0 { '−' } else { '+' };

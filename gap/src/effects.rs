@@ -1,21 +1,21 @@
-//! Effects that a model may lack, each a few lines of the spec language for every place where it
-//! makes sense.
+//! Effects that a model may lack, each a few lines of the spec language, instantiated at every site where
+//! it makes sense.
 //!
 //! | file | idea |
 //! |---|---|
 //! | `library.rs` | the effects that are shipped |
 //! | `effect.rs` | the file of an effect |
 //! | `site_kind.rs`, `site.rs` | kinds of sites with their placeholders; the sites in a mechanism |
-//! | `extent.rs` | how far a body reaches |
-//! | `load.rs` | loads that follow the motion as a controller does |
-//! | `candidate.rs` | an effect at a place: names, items to add, values to look for |
+//! | `extent.rs` | the size of a body |
+//! | `load.rs` | loads that depend on the motion like a feedback controller |
+//! | `candidate.rs` | an effect at a site: names, items to add, parameters to estimate |
 //! | `memory.rs` | laws with a state of their own |
-//! | `hidden_mass.rs` | a mass that swings behind a coordinate |
-//! | `hysteresis.rs` | a force that follows the way since the last turn |
-//! | `stem.rs` | names and numbers of such a law |
+//! | `hidden_mass.rs` | a mass coupled to a coordinate by a spring and a damper |
+//! | `hysteresis.rs` | a force that depends on the travel since the last reversal |
+//! | `stem.rs` | names and parameters of such a law |
 //! | `drive.rs` | forces of inputs along a pseudo-velocity, and the inertia there |
 //! | `place.rs` | errors in the file of an effect, at their positions |
-//! | `model.rs` | a mechanism with many candidates, derived at once; at its nominal values the mechanism itself |
+//! | `model.rs` | a mechanism with many candidates, derived at once; equal to the mechanism at nominal values |
 
 mod candidate;
 mod drive;
@@ -51,7 +51,7 @@ pub use site_kind::SiteKind;
 mod tests {
     use super::*;
 
-    /// The manual about effects of users.
+    /// The manual of user-defined effects.
     fn manual() -> String {
         let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../docs/effects.md");
         std::fs::read_to_string(path).unwrap_or_default()
@@ -71,19 +71,19 @@ mod tests {
         let manual = manual();
         for kind in SiteKind::all() {
             let site = kind.word();
-            let told = row(&manual, site).unwrap_or_default().to_owned();
+            let cell = row(&manual, site).unwrap_or_default().to_owned();
             let base = ["coordinate", "body"]
                 .into_iter()
-                .filter(|base| told.contains(&format!("those of `{base}`")))
+                .filter(|base| cell.contains(&format!("those of `{base}`")))
                 .map(|base| row(&manual, base).unwrap_or_default());
-            let told = told.clone() + &base.collect::<String>();
+            let cell = cell.clone() + &base.collect::<String>();
             for word in kind.words().concat() {
                 let word = format!("{{{word}}}");
-                assert!(told.contains(&word), "{site}: {word} is not in its row");
+                assert!(cell.contains(&word), "{site}: {word} is not in its row");
                 assert!(row(&manual, &word).is_some(), "{word} has no meaning");
             }
             let known = kind.words().concat();
-            for word in told.split('`').filter_map(|part| part.strip_prefix('{')) {
+            for word in cell.split('`').filter_map(|part| part.strip_prefix('{')) {
                 let word = word.trim_end_matches('}');
                 assert!(known.contains(&word), "{site} does not know {word}");
             }
@@ -102,7 +102,7 @@ mod tests {
         }
     }
 
-    /// A cart and a pole on a driven arm, with all that has a site.
+    /// A cart and a pole on a driven arm, with a site of every kind.
     const SPEC: &str = r#"[mechanism]
 name = "arm"
 title = "An arm and a cart"

@@ -31,7 +31,7 @@ impl fmt::Display for Excitation {
 impl Excitation {
     /// Suitable shapes for `duration` s with samples every `step` s.
     pub fn library(duration: f64, step: f64) -> Vec<Self> {
-        // A sine of fewer than ten samples is no sine any more.
+        // A period of fewer than ten samples is no longer a sine.
         let highest = 0.1 / step;
         let slowest = 2.0 / duration;
         let bands = [0.3, 1.0, 3.0, 10.0].map(|band: f64| band.min(highest).max(slowest));

@@ -1,4 +1,4 @@
-//! Where and how far runs that no fit has seen are predicted.
+//! Origins and horizons of predictions on held-out runs.
 
 use appell_estimate::Recording;
 
@@ -6,7 +6,7 @@ use appell_estimate::Recording;
 pub const HORIZONS: [f64; 4] = [0.0, 0.1, 1.0, f64::INFINITY];
 /// The horizon of traces in s.
 pub const AHEAD: f64 = 1.0;
-/// Time in s and rows that the filter has to find the state before it predicts, but no more than a tenth
+/// Time in s, and number of rows, for the filter to converge before the first prediction, but no more than a tenth
 /// of the run.
 const WARM_UP: f64 = 0.5;
 const ROWS: usize = 20;

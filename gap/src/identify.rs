@@ -1,19 +1,19 @@
 //! Identification of parameters from recordings, with their identifiability.
 //!
 //! ```text
-//! data set --start--> values to begin with: levels of noise, states at the first rows
+//! data set --start--> initial values: noise standard deviations, states at the first rows
 //!          --steps--> whether the filter may step from row to row
-//!          --problem--> what is looked for: parameters within their tolerances, levels
-//!          --basin, fit (estimate)--> the most likely values, beside the most likely nominal ones
-//!          --basin, shooting--> other parameters to begin with, where these do not do what was recorded
-//!          --answer--> intervals, correlation, combinations that are known
+//!          --problem--> the unknowns: parameters within their tolerances, noise standard deviations
+//!          --basin, fit (estimate)--> maximum a posteriori, for the nominal and for the free parameters
+//!          --basin, shooting--> other starting points, where the fitted model does not reproduce the recordings
+//!          --answer--> intervals, correlation, determined combinations
 //!          --repeatability--> values of the single runs, and their spread
-//!          --held_out--> errors of predictions on the runs that no fit has seen
+//!          --held_out--> prediction errors on the held-out runs
 //! ```
 //!
-//! The likelihood is that of the innovations of an extended Kalman filter with disturbing forces on
-//! every pseudo-velocity, whose levels are estimated too (`appell_estimate`). A wrong model
-//! therefore shows as large disturbances, not as wrong parameters with narrow intervals; and the
+//! The likelihood is that of the innovations of an extended Kalman filter with process noise on
+//! every pseudo-velocity, whose intensity is estimated too (`appell_estimate`). A wrong model
+//! therefore shows as large process noise, not as wrong parameters with narrow intervals; and the
 //! robust intervals do not assume white residuals.
 
 mod additions;
@@ -81,7 +81,7 @@ pub fn identify(
     };
     setup.has_corners = steps::are_too_long(&setup, &recordings, &problem.start)?;
     let mut fits = |setup: &Setup<'_>| -> Result<(Fit, Fit), IdentifyError> {
-        stage("fitting the levels of noise to the nominal model");
+        stage("fitting the noise of the nominal model");
         let search = Search {
             estimation: &Estimation::new(setup, &recordings)?,
             problem: &problem,
@@ -97,7 +97,7 @@ pub fn identify(
         (nominal, fit) = fits(&setup)?;
     }
     let estimation = Estimation::new(&setup, &recordings)?;
-    stage("weighing what the recordings tell");
+    stage("computing intervals and identifiable combinations");
     let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
     let runs: Vec<&Run> = set
         .runs
@@ -127,7 +127,7 @@ pub fn identify(
         answer.repeatability = repeatability::repeatability(&setup, &each, free, &widening, whole)?;
     }
     answer.courses = drift::courses(&drifts, &estimation, &fit.values, &runs)?;
-    stage("predicting the runs that were held out");
+    stage("predicting the held-out runs");
     let recordings = set.recordings(Part::Test, model.info())?;
     if recordings.is_empty() {
         return Ok(answer);

@@ -66,7 +66,7 @@ pub struct Estimate {
     pub robust_std: f64,
     /// 95 % interval; infinite at an unbounded end.
     pub interval95: [f64; 2],
-    /// Values and the increase of the inconsistency there, with the others fitted; parameters only.
+    /// Profile: values, and the increase of the inconsistency with all others fitted; parameters only.
     pub profile: Vec<[f64; 2]>,
 }
 

@@ -1,8 +1,9 @@
 //! Identification from recordings, and diagnosis of model gaps.
 //!
-//! [`base`] tells which parameters recordings can determine at all. [`identify`] estimates parameters from recordings, [`inverse`] from motions with unknown inputs.
-//! [`effects`] is the library of effects that a model may lack, and [`diagnose`] finds those that it
-//! does. [`experiment`] has inputs that excite a mechanism. [`units`] are checked before.
+//! [`base`] finds the parameters that recordings can determine. [`identify`] estimates parameters from recordings,
+//! [`inverse`] from motions with unknown inputs. [`effects`] is the library of effects that a model may lack, and
+//! [`diagnose`] selects those that the recordings support. [`experiment`] has inputs that excite a mechanism. [`units`]
+//! checks units and signs of channels first.
 
 pub mod base;
 pub mod diagnose;

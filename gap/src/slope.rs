@@ -8,7 +8,7 @@ pub(crate) const WINDOW: usize = 15;
 /// The slope of a parabola through samples.
 pub(crate) struct Slope {
     pub(crate) value: f64,
-    /// Its standard deviation where that of the samples is 1.
+    /// Its standard deviation for samples of standard deviation 1.
     pub(crate) deviation: f64,
 }
 

@@ -1,5 +1,5 @@
-//! Units and signs of channels that the motion contradicts: another unit or the other sign, and only it, reconciles the
-//! channel with the equations, with the rates, or with the declared range.
+//! Units and signs of channels that contradict the recorded motion: exactly one other unit, or the opposite sign,
+//! reconciles the channel with the equations, with the rates, or with the declared range.
 
 mod balance;
 
@@ -15,31 +15,31 @@ const UNITS: [&str; 26] = [
     "rad", "deg", "rev", "rad/s", "deg/s", "rpm", "rev/s", "rad/s^2", "deg/s^2", "m", "mm", "m/s",
     "mm/s", "m/s^2", "mm/s^2", "N", "mN", "kN", "N*m", "mN*m", "V", "mV", "A", "mA", "kg", "g",
 ];
-/// Units that are chosen together.
+/// Units of one system, which are likely to be wrong together.
 const SYSTEMS: [&[&str]; 4] = [
     &["rad", "rad/s", "rad/s^2"],
     &["deg", "deg/s", "deg/s^2"],
     &["m", "m/s", "m/s^2"],
     &["mm", "mm/s", "mm/s^2"],
 ];
-/// Standard gravity in m/s², in which accelerometers count.
+/// Standard gravity in m/s², the unit of many accelerometers.
 const GRAVITY: f64 = 9.806_65;
-/// Factor below which another unit may be a matter of parameters.
+/// Factor below which a wrong unit cannot be distinguished from wrong parameters.
 const LEAST: f64 = 5.0;
 /// Factor below which a real effect may imitate a unit.
 const MODEST: f64 = 50.0;
-/// Part above which an equation says nothing of what is measured.
+/// Relative residual above which an equation does not explain the measurement.
 const BROKEN: f64 = 0.7;
-/// Part below which it says nearly all.
+/// Relative residual below which it explains nearly all of it.
 const WHOLE: f64 = 0.35;
-/// Part below which it says something of what is measured, noise included.
+/// Relative residual below which it explains a part of it, noise included.
 const PARTLY: f64 = 0.8;
-/// Factors by which the right unit misses less, if an equation says nearly all and if only a part.
+/// Factors by which the right unit reduces the residual, if the equation then explains nearly all and if only a part.
 const BETTER: [f64; 2] = [4.0, 20.0];
-/// Advantage over another reading, as a logarithm, that decides.
+/// Advantage over another reading, as the logarithm of a residual, that decides between them.
 const DECIDES: f64 = 0.7;
-/// The same of the other sign over the stated one. Of 863 reversals in 196 data sets with right signs, real rigs among
-/// them, none misses less than what is stated; but some do where the model lacks much, such as a belt between two joints.
+/// The same of the opposite sign over the stated one. Of 863 reversals in 196 data sets with right signs, real rigs
+/// among them, none has a smaller residual; but some do where the model lacks much, such as a belt between two joints.
 const REVERSED: f64 = 0.4;
 
 /// A doubt about a channel.
@@ -47,9 +47,9 @@ const REVERSED: f64 = 0.4;
 pub struct Doubt {
     /// Its column.
     pub column: String,
-    /// What contradicts its unit or sign, and what to write.
+    /// The contradiction, and the unit or sign to write.
     pub message: String,
-    /// Whether it is its sign: an effect that the model lacks may speak against a right one.
+    /// Whether it concerns the sign: an unmodelled effect may contradict a right one.
     pub is_sign: bool,
 }
 
@@ -58,11 +58,11 @@ pub struct Doubt {
 struct Reading {
     channel: usize,
     unit: String,
-    /// By which numbers in SI become larger.
+    /// Factor by which the values in SI become larger.
     factor: f64,
 }
 
-/// Another reading of the recordings, and what it misses.
+/// Another reading of the recordings, with the sum of its log residuals.
 struct Rival {
     readings: Vec<Reading>,
     score: f64,
@@ -105,7 +105,7 @@ fn unit_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> 
             .map(|own| own.factor.max(1.0 / own.factor))
             .fold(f64::INFINITY, f64::min);
         let near = if least < MODEST { 1.08 } else { 1.3 };
-        // The size that fits is the one of the unit.
+        // The residual has its minimum at the factor of the unit.
         let at = score(&missed, &varying);
         let is_best = varying.is_empty()
             || [near, 1.0 / near]
@@ -130,8 +130,8 @@ fn unit_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> 
         .collect()
 }
 
-/// Channels that fit the equations with the other sign: an axis that is mounted the other way round. What a motion does
-/// not tell, as it has a mirror image, is not doubted.
+/// Channels that fit the equations with the opposite sign, such as an axis mounted in reverse. Signs that the motion
+/// does not determine, because of a mirror symmetry, are not doubted.
 fn sign_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
     let all: Vec<usize> = (0..stated.len()).collect();
     let reversed = |channels: Vec<usize>| {
@@ -199,7 +199,7 @@ fn axes(set: &DataSet) -> Vec<Vec<usize>> {
     all
 }
 
-/// What another reading mends, if it mends something and breaks nothing.
+/// The residuals that another reading reduces decisively, if there is one and no residual increases.
 fn mended(stated: &[Option<f64>], read: &[Option<f64>]) -> Option<Vec<usize>> {
     let mut mended = Vec::new();
     for (index, (before, after)) in stated.iter().zip(read).enumerate() {
@@ -217,13 +217,13 @@ fn mended(stated: &[Option<f64>], read: &[Option<f64>]) -> Option<Vec<usize>> {
     (!mended.is_empty()).then_some(mended)
 }
 
-/// Sum of the logarithms of what is missed.
+/// Sum of the logarithms of relative residuals.
 fn score(missed: &[Option<f64>], of: &[usize]) -> f64 {
     let parts = of.iter().filter_map(|index| missed[*index]);
     parts.map(|part| part.clamp(0.01, 100.0).ln()).sum()
 }
 
-/// Channels in other units: one alone, and all that are measured in one system.
+/// Channels in other units: each alone, and all channels of one system of units.
 fn readings(set: &DataSet) -> Vec<Vec<Reading>> {
     let channels = || set.channels.iter().enumerate();
     let mut all: Vec<Vec<Reading>> = channels()

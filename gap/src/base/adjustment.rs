@@ -1,7 +1,7 @@
 //! Parameters by adjustment of recorded motions to the equations: errors in variables.
 //!
-//! The equations of a motion x = (q, q̇, q̈, u) are `e(x, β) = Y_b(x) β + r(x) = 0`. What is recorded, x₀, has errors of the
-//! covariance C, which the splines tell. The sum of their squares, weighted by C, is smallest under the equations
+//! The equations of a motion x = (q, q̇, q̈, u) are `e(x, β) = Y_b(x) β + r(x) = 0`. The recorded motion x₀ has errors of
+//! covariance C, which the splines give. Their sum of squares, weighted by C⁻¹, is minimised under the equations
 //! (Gauss–Helmert model): about a motion x and values β with J = ∂e/∂x
 //!
 //! ```text
@@ -9,8 +9,8 @@
 //! λ = V⁻¹ (w + Y δβ),   x ← x₀ − C Jᵀ λ
 //! ```
 //!
-//! Least squares of Y(x₀) β = −r(x₀) shrink what noisy accelerations multiply, as noise in Y counts as motion; here Y
-//! is that of the adjusted motion. τ² stands for forces without a model, where e is larger than the noise allows.
+//! Least squares of Y(x₀) β = −r(x₀) are biased towards zero where noisy accelerations are regressors (attenuation);
+//! here Y is that of the adjusted motion. τ² is the variance of unmodelled forces, where e exceeds the noise.
 
 use std::ops::Range;
 
@@ -22,14 +22,14 @@ use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 use super::error::BaseError;
 use super::moments::{Recorded, Stretch};
 
-/// Most rows of equations whose correlation is a full matrix.
+/// Largest number of equations whose covariance is a full matrix.
 const MOST_ROWS: usize = 192;
-/// Most adjustments of the motion, and of τ between two of them.
+/// Largest number of adjustments of the motion, and of τ between two of them.
 const ADJUSTMENTS: usize = 20;
 const LEVELS: usize = 3;
 /// The search ends within this part of a standard deviation.
 const SETTLED: f64 = 1e-2;
-/// Significance, in standard deviations, of forces without a model.
+/// Significance, in standard deviations, of unmodelled forces.
 const CHANCE: f64 = 3.0;
 /// First τ², relative to the mean square of e.
 const FIRST_LEVEL: f64 = 1e-2;
@@ -419,8 +419,8 @@ fn multipliers(whitened: &[Whitened], change: &DVector<f64>) -> Vec<DVector<f64>
 }
 
 impl Adjusted {
-    /// Intervals are the wider ones of those by the noise and those by the scores of blocks, which hold whatever is
-    /// correlated within a block.
+    /// The wider of two intervals: by the noise, and by the scores of blocks, which are valid whatever the correlation
+    /// within a block.
     fn new(
         pieces: &[Piece<'_>],
         (linear, multipliers): (&[Linear], &[DVector<f64>]),
@@ -452,7 +452,7 @@ impl Adjusted {
                 row += rows;
             }
         }
-        // As many scores as blocks stand for their variance.
+        // The variance of the scores has as many samples as there are blocks.
         let freedom = f64::max(blocks - 1.0, 1.0);
         let robust = &solved.inverse * (spread * (blocks / freedom)) * &solved.inverse;
         let wider = student_half_width_95(freedom) / HALF_WIDTH_95;

@@ -1,4 +1,4 @@
-//! What goes wrong.
+//! Errors of the estimation of base parameters.
 
 use appell_estimate::inverse::InverseError;
 
@@ -10,7 +10,7 @@ pub enum BaseError {
     NoParameter,
     /// An input was not recorded.
     #[error(
-        "the input `{input}` is not recorded; forces of a motion are needed to estimate what it takes"
+        "the input `{input}` is not recorded; base parameters are estimated from recorded forces"
     )]
     NoInput {
         /// Its name.

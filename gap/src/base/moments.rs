@@ -21,7 +21,7 @@ const ACCELERATION: f64 = 10.0;
 /// Largest input, in SI.
 const INPUT: f64 = 5.0;
 
-/// Random motions within the ranges of the coordinates; whole turns where there are none.
+/// Random motions within the ranges of the coordinates; within a full turn where there is none.
 pub(super) fn random(model: &dyn Model, count: usize, p: &[f64]) -> Vec<Moment> {
     let info = model.info();
     let mut random = SplitMix64::seed_from_u64(1);
@@ -203,7 +203,7 @@ fn about_rows(values: &[f64]) -> Vec<f64> {
         .collect()
 }
 
-/// A motion without the columns that are no coordinates.
+/// A motion with its coordinates alone.
 fn coordinates_of(motion: &Motion, count: usize) -> Motion {
     Motion {
         t: motion.t,

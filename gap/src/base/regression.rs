@@ -1,4 +1,4 @@
-//! Base parameters by recordings: their values, and how well the equations hold.
+//! Base parameters from recordings: estimates, and residuals of the equations.
 
 use appell_estimate::HALF_WIDTH_95;
 use appell_estimate::inverse::Motion;
@@ -12,7 +12,7 @@ use super::moments::{Recorded, Stretch};
 
 use super::{Equations, Structure};
 
-/// A base parameter by the recordings.
+/// The estimate of a base parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Estimate {
     /// Value in SI.
@@ -24,26 +24,26 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// Whether the recordings tell the value from zero.
+    /// Whether the value differs significantly from zero.
     pub fn is_told(&self) -> bool {
         self.interval95[0] > 0.0 || self.interval95[1] < 0.0
     }
 }
 
-/// How well the equation of a pseudo-velocity holds: root mean squares of forces, in SI.
+/// Residuals of the equation of a pseudo-velocity: root mean squares of forces, in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Speed {
     /// Name of the pseudo-velocity.
     pub name: String,
-    /// What the motions of the part take by the recorded inputs.
+    /// The generalised force of the recorded inputs.
     pub inputs: f64,
-    /// What is left with the parameters of the spec.
+    /// The residual with the parameters of the spec.
     pub nominal: f64,
-    /// What is left with the estimates.
+    /// The residual with the estimates.
     pub left: f64,
 }
 
-/// Base parameters by recordings.
+/// Base parameters from recordings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Fit {
     /// In the order of the structure.
@@ -63,9 +63,9 @@ struct Rows {
     part: Part,
     base: DMatrix<f64>,
     right: DVector<f64>,
-    /// What is left with the parameters of the spec.
+    /// The residual with the parameters of the spec.
     nominal: DVector<f64>,
-    /// What the inputs do.
+    /// The generalised force of the inputs.
     inputs: DVector<f64>,
 }
 

@@ -1,14 +1,14 @@
-//! What changed: recordings judged against those of the same rig before.
+//! Detection of changes: recordings compared with earlier ones of the same rig.
 //!
 //! ```text
-//! recordings before --diagnose--> what the model lacked already --apply--> a spec that has it
-//!                   --identify--> its parameters, each with its interval and its spread from run to run
-//!                   (robots: by forces of recorded motions, as they are diagnosed)
-//! recordings now    --diagnose, with these as tolerances--> what is different
+//! earlier recordings --diagnose--> effects that were missing already --apply--> a spec with these
+//!                    --identify--> its parameters, each with its interval and its spread from run to run
+//!                    (robots: by forces of recorded motions, as in their diagnosis)
+//! new recordings     --diagnose, with these as tolerances--> differences
 //! ```
 //!
-//! No two recordings are of quite the same rig. So a difference is a change where what explains it betters
-//! predictions of runs that were held out, by more than runs of one rig differ anyway.
+//! Two sets of recordings never show exactly the same rig. A difference is therefore a change only if its explanation
+//! improves the prediction of held-out runs, by more than the usual variation between runs of one rig.
 
 use appell_estimate::chi_squared_quantile;
 use appell_recordings::{Channel, DataSet, Parameter, Part, Spec};
@@ -24,16 +24,16 @@ use super::{
     diagnosed,
 };
 
-/// Part of the prediction error that a change accounts for at least.
+/// Smallest relative reduction of the mean square prediction error by a change.
 const CHANGED: f64 = 0.1;
-/// Probability of re-fitted parameters as far from what the recordings before tell, where nothing changed.
+/// Significance level of a difference of re-fitted parameters from their earlier estimates.
 const LEVEL: f64 = 1e-3;
-/// Standard deviation of the size of an effect that was found before, as a part of it.
+/// Relative standard deviation of the size of an effect that was found in the earlier recordings.
 const FOUND: f64 = 1.0;
-/// Note above what is added to the spec.
-const NOTE: &str = "found in the recordings before";
+/// Comment above the items that are added to the spec.
+const NOTE: &str = "found in the earlier recordings";
 
-/// Diagnoses recordings against those before. `stage` is called with the name of each stage.
+/// Diagnoses recordings against earlier ones. `stage` is called with the name of each stage.
 pub fn against(
     before: &DataSet,
     now: &DataSet,
@@ -51,7 +51,7 @@ pub fn against(
         file: before.spec.file.clone(),
         text: changes.improved(&before.spec.text, NOTE)?,
     };
-    stage("fitting the recordings before");
+    stage("fitting the earlier recordings");
     let mut known = whole.rebound(&spec)?;
     start(&mut known, changes);
     undo(&mut known, taken, changes);
@@ -71,7 +71,7 @@ pub fn against(
             let place = own.position(|one| one.label.name == *name);
             place.map(|place| set.parameters[place].value)
         };
-        // What is known to be different now stays so.
+        // A difference that the data sets themselves state is kept.
         let moved = match (stated(before), stated(now)) {
             (Some(before), Some(now)) => now - before,
             _ => 0.0,
@@ -151,11 +151,11 @@ impl Told {
     }
 }
 
-/// Factor on variances where what is left follows itself: that of the sandwich, the median of the parameters that are
-/// told, as each is hardly known for itself (F. Pauli, W. Racugno, L. Ventura, *Bayesian composite marginal
-/// likelihoods*, Statistica Sinica 21, 2011).
+/// Factor on variances for correlated residuals: the median ratio of sandwich to model-based variance over the
+/// parameters that the recordings determine, as the ratio of a single one is uncertain (F. Pauli, W. Racugno,
+/// L. Ventura, *Bayesian composite marginal likelihoods*, Statistica Sinica 21, 2011).
 fn widening(parameters: &[Estimate]) -> f64 {
-    /// Part of the tolerance that is left of what is told.
+    /// Largest posterior deviation of a determined parameter relative to its tolerance.
     const TOLD: f64 = 0.7;
     let told = parameters.iter();
     let told = told.filter(|one| one.left.is_none_or(|left| left < TOLD));
@@ -167,15 +167,16 @@ fn widening(parameters: &[Estimate]) -> f64 {
         .map_or(1.0, |ratio| ratio.max(1.0))
 }
 
-/// Deviation of a parameter where recordings tell less by a factor on variances, and its tolerance as much as before.
+/// Posterior deviation of a parameter with the information of the recordings divided by a factor, that of its tolerance
+/// unchanged.
 fn widened(parameter: &Estimate, factor: f64) -> f64 {
     let known = parameter.tolerance.map_or(0.0, |std| std.powi(-2));
     let told = (parameter.std.powi(-2) - known).max(0.0);
     (known + told / factor).sqrt().recip()
 }
 
-/// Whether what explains a difference betters predictions, beyond chance and by enough. Parameters within what the
-/// recordings before leave open do not count, nor do errors that these recordings have too.
+/// Whether the explanation of a difference improves predictions significantly and by enough. Parameters within the
+/// uncertainty of their earlier estimates do not count, nor do errors that occur on the earlier recordings too.
 fn matters(report: &Report, set: &DataSet, told: &Told) -> bool {
     let far = report.how_far.as_ref();
     far.is_none_or(|far| {
@@ -187,8 +188,8 @@ fn matters(report: &Report, set: &DataSet, told: &Told) -> bool {
     })
 }
 
-/// Whether the re-fitted parameters are some that the recordings before leave open, all together: χ² of their moves.
-/// These are no larger than the errors of what was told, as they are held back by them.
+/// Whether the re-fitted parameters are jointly within the uncertainty of their earlier estimates, by a χ² test of
+/// their differences. The earlier estimates are their priors, so that the test is conservative.
 fn is_open(report: &Report, set: &DataSet, told: &Told) -> bool {
     let mut which = report.which.iter();
     let refitted = which.find(|one| one.effects.is_empty());
@@ -211,7 +212,7 @@ fn is_open(report: &Report, set: &DataSet, told: &Told) -> bool {
     count == 0 || solved.is_some_and(|solved| moved.dot(&solved) <= most)
 }
 
-/// Values and tolerances of a spec to which effects were added: those of the rig, and the sizes that were found.
+/// Values and tolerances for a spec with added effects: parameters of the rig, and sizes of the effects.
 fn start(set: &mut DataSet, changes: &Changes) {
     let mechanism = set.mechanism.clone();
     for (place, parameter) in mechanism.parameters.iter().enumerate() {
@@ -222,14 +223,14 @@ fn start(set: &mut DataSet, changes: &Changes) {
         }
         if let Some(one) = changes.brought.iter().find(|one| one.name == *name) {
             let value = one.value * scale;
-            // What was not fitted stays.
+            // A parameter that was not fitted is kept as known.
             let std = one.std.map(|_| FOUND * value.abs());
             *own = Parameter { value, std };
         }
     }
 }
 
-/// Takes what acted on channels and inputs before out of the recordings.
+/// Removes the effects on channels and inputs that were found in the earlier recordings.
 fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
     for effect in &changes.signal_effects {
         let mut values = taken.parameters.iter();
@@ -262,7 +263,7 @@ fn undo(set: &mut DataSet, taken: &Hypothesis, changes: &Changes) {
     }
 }
 
-/// The values at times that are later by a shift: held, or along straight lines.
+/// The values at times shifted by `by`: held, or interpolated linearly.
 fn shifted(times: &[f64], values: &[f64], by: f64, is_held: bool) -> Vec<f64> {
     let at = |&time: &f64| {
         let next = times.partition_point(|&own| own <= time + by);
@@ -276,7 +277,7 @@ fn shifted(times: &[f64], values: &[f64], by: f64, is_held: bool) -> Vec<f64> {
     times.iter().map(at).collect()
 }
 
-/// Values after a lag of first order: those of lines at the rows, means of held ones until the next row.
+/// Values after a first-order lag: at the rows for piecewise linear values, means until the next row for held ones.
 fn lagging(times: &[f64], values: &[f64], time_constant: f64, is_joined: bool) -> Vec<f64> {
     let mut state = values.first().copied().unwrap_or(0.0);
     let mut after = Vec::with_capacity(values.len());
@@ -286,7 +287,7 @@ fn lagging(times: &[f64], values: &[f64], time_constant: f64, is_joined: bool) -
         if is_joined {
             after.push(state);
             let next = values.get(row + 1).copied().unwrap_or(values[row]);
-            // How far the answer to a line stays behind.
+            // Lag of the response to a ramp.
             let behind = if step > 0.0 {
                 (next - values[row]) / step * time_constant
             } else {
@@ -319,7 +320,7 @@ mod tests {
         let after = lagging(&times, &step, 0.1, false);
         let expected = 1.0 - (-(times[30] + 0.005 - 0.1) / 0.1_f64).exp();
         assert!((after[30] - expected).abs() < 2e-3, "{}", after[30]);
-        // A line is followed by the time constant.
+        // A ramp is delayed by the time constant.
         let after = lagging(&times, &times, 0.1, true);
         let expected = times[99] - 0.1 * (1.0 - (-times[99] / 0.1_f64).exp());
         assert!((after[99] - expected).abs() < 1e-12, "{}", after[99]);

@@ -1,9 +1,9 @@
-//! Another spec of the same thing as a hypothesis of its own: a missing degree of freedom, say.
+//! Another spec of the same rig as a hypothesis, such as a model with a further degree of freedom.
 //!
-//! It is fitted to the same recordings as the nominal model is, and its evidence stands beside that of
-//! the effects. Channels that it knows and the other one does not are no gain: the evidence is that of
-//! the samples of both, each given all samples before it. A filter that saw those channels alone would
-//! lose a mechanism that falls over.
+//! It is fitted to the same recordings as the nominal model, and its evidence is compared with that of
+//! the effects. Channels that only the alternative measures give it no advantage: the evidence is that of
+//! the samples of common channels, each conditional on all earlier samples. A filter with the common channels alone
+//! would diverge for an unstable mechanism.
 
 use appell_estimate::{Estimation, Innovation};
 
@@ -16,7 +16,7 @@ use super::report::Value;
 use crate::effects::EffectModel;
 use appell_recordings::{DataSet, Spec};
 
-/// A spec with the runs to fit.
+/// A spec with the training runs.
 pub(super) struct Alternative {
     spec: Spec,
     set: DataSet,
@@ -34,11 +34,11 @@ pub(super) struct Rival<'a> {
     pub(super) log: f64,
 }
 
-/// Effects, and why their hypothesis has no fit.
+/// Effects of a hypothesis that could not be fitted, with the reason.
 type Lost = (Vec<String>, String);
 
 impl Alternative {
-    /// All of them, for the runs to fit.
+    /// All alternatives, with the training runs.
     pub(super) fn all(specs: &[Spec], fitted: &DataSet) -> Result<Vec<Self>, DiagnoseError> {
         specs.iter().map(|spec| Self::new(fitted, spec)).collect()
     }
@@ -76,7 +76,7 @@ impl<'a> Rival<'a> {
         Ok((rivals, lost))
     }
 
-    /// Fits an alternative; `main` is the model beside which it stands.
+    /// Fits an alternative to the model of `main`.
     fn of(alternative: &'a Alternative, main: &Bench<'_>) -> Result<Self, DiagnoseError> {
         let name = alternative.set.mechanism.name.clone();
         let shared = columns(main);
@@ -107,12 +107,12 @@ impl<'a> Rival<'a> {
         })
     }
 
-    /// Runs that were held out, bound to it.
+    /// Held-out runs, bound to it.
     pub(super) fn rebound(&self, test: &DataSet) -> Result<DataSet, DiagnoseError> {
         Ok(test.rebound(self.spec)?)
     }
 
-    /// Noise of its channels as the main model has it; infinite for those that are its own.
+    /// Noise of its channels as in the main model; infinite for channels that only it has.
     pub(super) fn noise(&self, main: &Bench<'_>, noise: &[f64]) -> Vec<f64> {
         let shared = columns(main);
         let of = |column: &String| {
@@ -135,7 +135,7 @@ impl<'a> Rival<'a> {
     }
 }
 
-/// Those of the main model, where the alternative has the channel.
+/// The imperfections of the main model, for the channels of the alternative.
 fn imperfections(main: &Bench<'_>, channels: &[String]) -> Vec<Imperfection> {
     let own = columns(main);
     let place = |channel: usize| channels.iter().position(|column| *column == own[channel]);

@@ -1,9 +1,9 @@
-//! Candidates that bring a coordinate of their own, such as play: what they would gain.
+//! Screening of candidates with an additional coordinate, such as backlash.
 //!
-//! They do nothing to first order, and their models cost more than others. So they are tried on a grid of
-//! sizes, and only where innovations are biased after reversals of the drive: there the teeth change
-//! sides. Sizes are compared at the beginnings of the recordings; the best ones are tried on all rows, if they
-//! gain about enough there to be fitted.
+//! They have no effect to first order, and their models are expensive. They are therefore tried on a grid of
+//! sizes, and only if innovations are biased after reversals of the drive, when the contact changes
+//! sides. Sizes are compared on the first rows of the recordings; the best ones are evaluated on all rows, if their gain
+//! there is nearly enough for a fit.
 
 use std::collections::BTreeMap;
 use std::collections::btree_map::Entry;
@@ -16,43 +16,44 @@ use super::evidence::Fitted;
 use super::screen::{LEAST_GAIN, QUIET, Screened, directions, least, quieten};
 use crate::effects::{Drive, Part};
 
-/// Sizes that are tried, as parts of the range of the coordinate: most gears have less play, and less
-/// than the smallest is hardly seen.
+/// Sizes that are tried, relative to the range of the coordinate: most gears have less backlash than the largest, and
+/// less than the smallest is hardly detectable.
 const PARTS: [f64; 7] = [5e-4, 1e-3, 2e-3, 4e-3, 8e-3, 1.6e-2, 3.2e-2];
-/// Factors of the shape from which fits begin.
+/// Factors of the shape at which fits start.
 const FACTORS: [f64; 3] = [0.6, 1.2, 2.4];
-/// Those at which sizes are tried where a channel shows the coordinate, the first one at all sizes, and starts that
-/// are kept.
+/// Factors of the shape that are tried if a channel measures the additional coordinate, the first one with all sizes;
+/// and the number of starting points that are retained.
 const SHAPES: [f64; 4] = [1.8, 0.6, 3.6, 7.2];
 const STARTS: usize = 2;
-/// Ends of the times in s after a reversal of the drive that are looked at: some of them are those in
-/// which the gap is crossed.
+/// Ends, in s after a reversal of the drive, of the intervals whose mean innovation is tested: in some of
+/// them the gap is crossed.
 const AFTER: [f64; 4] = [0.05, 0.1, 0.2, 0.4];
-/// Standard deviations by which the mean innovation in one of these times stands out.
+/// Significance of the mean innovation of such an interval, in standard deviations.
 const BIASED: f64 = 4.0;
-/// What such a coordinate gains at most, relative to what it would by taking the means out of these times. Where
-/// another candidate gains more, it is tried beside that one.
+/// Largest gain of such a candidate relative to that of removing the mean innovations of these intervals. If another
+/// candidate gains more, this one is tried together with that.
 const MOST: f64 = 2.0;
-/// Rows at the beginnings of the recordings on which sizes are compared, and the fewest of one of them.
+/// Number of rows at the beginnings of the recordings on which sizes are compared, and the smallest one per recording.
 const SAMPLE: usize = 500;
 const FEWEST_ROWS: usize = 100;
-/// Of these the best ones are tried on all rows, if they promise this part of what makes a candidate worth a fit.
+/// Number of sizes that are evaluated on all rows, if the expected gain is this part of the least one for a fit.
 const BEST: usize = 2;
 const PROMISING: f64 = 0.5;
 
-/// Those that gain at some size. An input that follows the motion biases the innovations after its reversals
-/// whatever the cause: it claims first what it can tell, `told_by_inputs` at most. All others gain `best` at most.
+/// The candidates with a positive gain at some size. A feedback input biases the innovations after its reversals in
+/// any case: the gain that it explains, at most `told_by_inputs`, is subtracted. `best` is the largest gain of the
+/// other candidates.
 pub(super) fn screened(
     (bench, fitted): (&Bench<'_>, &Fitted),
     told_by_inputs: f64,
     best: f64,
 ) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
-    // A filter that feedback holds up, and that is lost, says nothing of reversals.
+    // With feedback inputs, innovations of an unconverged fit carry no information about reversals.
     if bench.input_innovations.count > 0 && !fitted.fit.is_optimum() {
         return Ok(Vec::new());
     }
-    // One such coordinate at a time, and none where contacts creep.
+    // One additional coordinate at a time, and none together with creeping contacts.
     if fitted
         .members
         .iter()
@@ -65,7 +66,7 @@ pub(super) fn screened(
     let mut innovations: Option<Vec<Vec<Innovation>>> = None;
     let mut brought = Vec::new();
     for (index, candidate) in effects.candidates.iter().enumerate() {
-        // What an encoder behind the gap shows is over within some rows: windows see little of it.
+        // Through an encoder on the motor backlash is visible for some rows only: too short for windows.
         let is_seen =
             candidate.shows.is_empty() || bench.is_shown(candidate) && !bench.is_over_windows();
         let Some(beside) = candidate.brings.filter(|_| is_seen) else {
@@ -104,8 +105,8 @@ pub(super) fn screened(
     Ok(list?.into_iter().flatten().collect())
 }
 
-/// Whether innovations lean to one side after the drive has changed sign, so far that nothing else gains more than
-/// a gap.
+/// Whether innovations are biased after reversals of the drive, by so much that no other candidate can gain more than
+/// backlash.
 fn is_biased(bench: &Bench<'_>, runs: &[Vec<Innovation>], drive: &Drive, best: f64) -> bool {
     let mut sums = vec![(0.0_f64, 0.0_f64); AFTER.len() * bench.measured.len()];
     for (recording, innovations) in bench.recordings.iter().zip(runs) {
@@ -136,17 +137,17 @@ fn is_biased(bench: &Bench<'_>, runs: &[Vec<Innovation>], drive: &Drive, best: f
     sums.iter().any(stands_out) && MOST * gain >= best.max(LEAST_GAIN)
 }
 
-/// The beginnings of the recordings.
+/// The first rows of the recordings.
 struct Sample {
     recordings: Vec<Recording>,
-    /// What the hypothesis says of them.
+    /// Log likelihood of the hypothesis on these rows.
     log_likelihood: f64,
-    /// All rows per row of them.
+    /// Ratio of the number of all rows to that of these.
     scale: f64,
 }
 
 impl Sample {
-    /// Nothing where there are few rows, or a hypothesis loses them.
+    /// `None` if there are few rows, or the filter of the hypothesis diverges.
     fn of(bench: &Bench<'_>, fitted: &Fitted) -> Option<Self> {
         let rows = |recordings: &[Recording]| -> usize {
             recordings.iter().map(|run| run.times().len()).sum()
@@ -170,7 +171,7 @@ impl Sample {
     }
 }
 
-/// A size and a shape, as values, with what they gain.
+/// A size and a shape with the parameter values and the gain.
 struct Tried {
     gain: f64,
     size: f64,
@@ -178,7 +179,7 @@ struct Tried {
     own: Vec<(usize, f64)>,
 }
 
-/// The size that gains most.
+/// The size with the largest gain.
 fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>, DiagnoseError> {
     let (bench, candidate) = (grid.bench, grid.candidate);
     let info = bench.effects.info();
@@ -190,7 +191,7 @@ fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>, DiagnoseError> {
     let sizes = PARTS.map(|part| part * (high - low));
     let shows = !bench.candidate(candidate).shows.is_empty();
     let (levels, mut tried) = if shows {
-        // A channel that shows the coordinate tells the size whatever the shape, then the shape.
+        // A channel that measures the additional coordinate determines the size whatever the shape, then the shape.
         let [first, others @ ..] = SHAPES;
         let mut tried = grid.tried(&sizes.map(|size| (size, first)), QUIET)?;
         if let Some(size) = tried.first().map(|best| best.size) {
@@ -208,7 +209,7 @@ fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>, DiagnoseError> {
         let best = tried.iter().take(STARTS);
         best.map(|one| one.own.clone()).collect()
     } else {
-        // Recordings tell the product of size and shape best: it is kept.
+        // The product of size and shape is the best determined quantity: it is kept constant.
         let product = |factor: f64| grid.values(best.size / factor, factor);
         FACTORS.map(product).to_vec()
     };
@@ -217,7 +218,7 @@ fn best_size(grid: &Grid<'_, '_>) -> Result<Option<Screened>, DiagnoseError> {
     Ok(Some(screened.beside(levels)))
 }
 
-/// Where sizes and shapes of a candidate are tried.
+/// A grid search over sizes and shapes of a candidate.
 struct Grid<'g, 'b> {
     bench: &'g Bench<'b>,
     fitted: &'g Fitted,
@@ -256,8 +257,8 @@ impl<'g, 'b> Grid<'g, 'b> {
         own.map(|one| (one.0, value(one))).collect()
     }
 
-    /// Some sizes with factors of the shape, the best first, with disturbances multiplied by `levels`. Those that
-    /// promise too little have the gain that the sample lets expect.
+    /// Evaluates sizes and factors of the shape, the best first, with process noise multiplied by `levels`. If none is
+    /// promising, the gains are those extrapolated from the sample.
     fn tried(&self, all: &[(f64, f64)], levels: f64) -> Result<Vec<Tried>, DiagnoseError> {
         let whole = (
             self.bench.recordings.as_slice(),
@@ -285,8 +286,8 @@ impl<'g, 'b> Grid<'g, 'b> {
         self.gains(&best, levels, whole)
     }
 
-    /// What they gain on some recordings, of which the hypothesis has this likelihood. One at which the filter is lost
-    /// is none.
+    /// Their gains on some recordings, relative to this log likelihood of the hypothesis, without those at which the
+    /// filter diverges.
     fn gains(
         &self,
         all: &[(f64, f64)],

@@ -1,11 +1,10 @@
-//! How the gap divides: what parameters within their tolerances account for, each effect of the best
-//! hypothesis, and what nothing explains.
+//! The shares of the gap: of parameters within their tolerances, of each effect of the best
+//! hypothesis, and the unexplained remainder.
 //!
-//! The share of an effect is the mean, over all orders in which the effects can be added, of what it takes
-//! from the mean squared error of prediction (L. S. Shapley, *A value for n-person games*, 1953): shares
-//! add up, and none depends on an order. Every model on the way is fitted to the runs to fit and judged
-//! on those held out. One that predicts worse than with fewer effects stands for the better one: whoever has only
-//! these effects would leave out what misleads.
+//! The share of an effect is its reduction of the mean square prediction error, averaged over all orders in which the
+//! effects can be added (L. S. Shapley, *A value for n-person games*, 1953): shares add up, and none depends on an
+//! order. Every intermediate model is fitted to the training runs and evaluated on the held-out runs. A set of effects
+//! that predicts worse than one of its subsets counts as that subset.
 
 use appell_estimate::Estimation;
 
@@ -17,24 +16,24 @@ use super::prediction::{Errors, Paired};
 use super::report::{LAW, REFIT, REST, Share};
 use crate::effects::{Acts, EffectModel};
 
-/// The errors between which the gap divides.
+/// Prediction errors of the models between which the gap is divided.
 pub(super) struct Ends<'e> {
     /// Of the stated model.
     pub(super) stated: &'e Errors,
-    /// Of what effects are added to.
+    /// Of the model to which effects are added.
     pub(super) base: &'e Errors,
     /// With all effects.
     pub(super) effects: &'e Errors,
-    /// With a measured law beside them.
+    /// With all effects and a measured law.
     pub(super) law: Option<&'e Errors>,
-    /// Where everything is right.
+    /// Expected error of the true model.
     pub(super) floor: f64,
-    /// Share of what the re-fitted model leaves beyond which a part is material.
+    /// Smallest material share of the gap of the re-fitted model.
     pub(super) tolerance: f64,
 }
 
-/// The parts of the `effects` of a hypothesis, each with its members, and of the law that was measured beside it.
-/// `errors` are those with some members alone.
+/// The shares of the `effects` of a hypothesis, each with its members, and of the law measured in addition.
+/// `errors` gives the prediction errors with some members only.
 pub(super) fn of(
     effects: &[(String, Vec<usize>)],
     ends: &Ends<'_>,
@@ -53,13 +52,13 @@ pub(super) fn of(
         models.push(ends.effects);
     }
     models.extend(ends.law);
-    // A set of effects stands at its number, after the stated model.
+    // A set of effects is encoded as a bit mask; its model has that index after the stated one.
     let paired = Paired::of(&models);
     let gap = |means: &[f64]| means[0] - floor * floor;
     let mut parts = Vec::new();
     let means = paired.means();
     let left = (means[1] - floor * floor) / gap(&means);
-    // Where re-fitted parameters predict to within the noise, nothing is left that could have a cause.
+    // Without a gap of the re-fitted model there is nothing to explain.
     let is_left = means[1] > (1.0 + ends.tolerance) * floor * floor;
     let mut add = |name: String, share: &dyn Fn(&[f64]) -> f64| {
         let closed = share(&means);
@@ -89,7 +88,7 @@ pub(super) fn of(
     Ok(parts)
 }
 
-/// The parts where another model leads: means of the stated model, the re-fitted one and the other.
+/// The shares if an alternative model leads: means of the stated model, the re-fitted one and the alternative.
 pub(super) fn of_alternative(
     name: &str,
     paired: &Paired,
@@ -111,8 +110,8 @@ pub(super) fn of_alternative(
     ]
 }
 
-/// Every coalition with the least of what parts of it leave. The whole stands as it is, so that shares add up
-/// to what it takes.
+/// For every coalition the smallest error over its subsets. That of the whole is unchanged, so that shares add up
+/// to its reduction.
 fn at_their_best(means: &[f64]) -> Vec<f64> {
     let mut best = means.to_vec();
     for set in 1..means.len() - 1 {
@@ -123,7 +122,7 @@ fn at_their_best(means: &[f64]) -> Vec<f64> {
     best
 }
 
-/// What the player at a place takes from `means`, which hold all coalitions by their number.
+/// The Shapley value of a player for the reduction of `means`, which are indexed by the bit mask of the coalition.
 fn shapley(means: &[f64], place: usize, players: usize) -> f64 {
     let factorial = |n: u32| (1..=n).map(f64::from).product::<f64>();
     let own = 1 << place;
@@ -138,7 +137,7 @@ fn shapley(means: &[f64], place: usize, players: usize) -> f64 {
         / factorial(u32::try_from(players).unwrap_or(u32::MAX))
 }
 
-/// The effects of some members: components of a vector are one.
+/// The effects of some members: components of a vector are one effect.
 pub(super) fn effects(model: &EffectModel, members: &[usize]) -> Vec<(String, Vec<usize>)> {
     let mut effects: Vec<(String, Vec<usize>)> = Vec::new();
     for &member in members {
@@ -151,7 +150,7 @@ pub(super) fn effects(model: &EffectModel, members: &[usize]) -> Vec<(String, Ve
     effects
 }
 
-/// The members of the effects that a number stands for.
+/// The members of the effects in a bit mask.
 fn subset(effects: &[(String, Vec<usize>)], set: usize) -> Vec<usize> {
     let effects = effects.iter().enumerate();
     let chosen = effects.filter(|(place, _)| set & (1 << place) != 0);
@@ -162,8 +161,8 @@ fn subset(effects: &[(String, Vec<usize>)], set: usize) -> Vec<usize> {
     members
 }
 
-/// The fit with some members of the best hypothesis. It begins at the best one that is known without one of
-/// them, and with the sizes that they have in the whole.
+/// The fit with some members of the best hypothesis. It starts from the best known fit of a subset,
+/// and with the sizes of the members in the whole hypothesis.
 pub(super) fn with(
     (bench, comparison): (&Bench<'_>, &Comparison),
     best: &Fitted,
@@ -215,11 +214,11 @@ mod tests {
 
     #[test]
     fn shares_add_up_and_twins_share_alike() {
-        // Either of two twins takes 6 of 10; both take 7.
+        // Either of two twins reduces 10 by 6; both by 7.
         let means = [10.0, 4.0, 4.0, 3.0];
         let [first, second] = [0, 1].map(|place| shapley(&means, place, 2));
         assert!((first - 3.5).abs() < 1e-12 && (first - second).abs() < 1e-12);
-        // One of three does nothing.
+        // One of three has no effect.
         let means = [9.0, 5.0, 9.0, 5.0, 3.0, 1.0, 3.0, 1.0];
         let shares = [0, 1, 2].map(|place| shapley(&means, place, 3));
         assert!(shares[1].abs() < 1e-12, "{shares:?}");
@@ -228,12 +227,12 @@ mod tests {
 
     #[test]
     fn what_misleads_alone_takes_nothing() {
-        // The second alone makes it worse, beside the first it takes one more.
+        // The second alone increases the error, together with the first it reduces it by one more.
         let best = at_their_best(&[10.0, 2.0, 30.0, 1.0]);
         assert_eq!(best, [10.0, 2.0, 10.0, 1.0]);
         let [first, second] = [0, 1].map(|place| shapley(&best, place, 2));
         assert!((first - 8.5).abs() < 1e-12 && (second - 0.5).abs() < 1e-12);
-        // Nobody is there, or one.
+        // No player, or one.
         assert_eq!(at_their_best(&[3.0]), [3.0]);
         assert_eq!(at_their_best(&[3.0, 4.0]), [3.0, 4.0]);
     }

@@ -1,24 +1,24 @@
 //! Diagnosis by the forces of recorded motions, for robots: every pseudo-velocity is the rate of a driven
 //! coordinate, all coordinates are measured and all inputs recorded.
 //!
-//! M ω̇ + b − Π vanishes on a recorded motion where the model is right. It is linear in the sizes of effects, so that
-//! every hypothesis is a weighted least-squares problem, and no simulation has to follow a motion that friction and
-//! stiff gears decide (M. Gautier, W. Khalil, *Identification of the dynamic parameters of robots*, 1990). What acts
-//! on channels, or between an input and its force, is not looked for.
+//! M ω̇ + b − Π vanishes on a recorded motion if the model is right. It is linear in the sizes of effects, so that
+//! every hypothesis is a weighted least-squares problem, and no simulation has to reproduce a motion that is dominated
+//! by friction and stiff gears (M. Gautier, W. Khalil, *Identification of the dynamic parameters of robots*, 1990).
+//! Effects on channels, or between an input and its force, are not considered.
 //!
 //! | file | idea |
 //! |---|---|
-//! | `motions.rs` | residual forces of recorded motions, and what each size would add |
+//! | `motions.rs` | residual forces of recorded motions, and their derivatives by the sizes |
 //! | `hypothesis.rs` | some candidates fitted, with their evidence |
 //! | `search.rs` | the most probable hypotheses |
 //! | `told.rs` | the report |
-//! | `pictures.rs` | forces over time and over what they depend on |
+//! | `pictures.rs` | forces over time and over their variables |
 
 mod hypothesis;
 mod motions;
 mod pictures;
-mod search;
 mod told;
+mod search;
 
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
 use appell_spec::mechanism::ParameterId;
@@ -28,12 +28,12 @@ use super::{DiagnoseError, Options};
 use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
 use motions::Motions;
-use search::Search;
 use told::HeldOut;
+use search::Search;
 
-/// Whether motions tell all forces.
+/// Whether the recordings determine the residual force of every equation.
 pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
-    /// Fewer joints are simulated.
+    /// Smallest number of joints; mechanisms with fewer are diagnosed by simulation.
     const FEWEST: usize = 3;
     let mechanism = &set.mechanism;
     let has = |role: Role| set.channels.iter().any(|channel| channel.role == role);
@@ -53,7 +53,7 @@ pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
         && options.alternatives.is_empty()
 }
 
-/// What recorded motions tell of the parameters that have a tolerance.
+/// Estimates of the parameters with a tolerance, from recorded motions.
 pub(super) fn told(set: &DataSet) -> Result<Told, DiagnoseError> {
     let model = EffectModel::of_forces(&set.spec, Vec::new())?;
     let fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
@@ -77,7 +77,7 @@ pub(super) fn told(set: &DataSet) -> Result<Told, DiagnoseError> {
     Ok(Told::new(parameters.collect(), &correlation))
 }
 
-/// The diagnosis; the runs that were held out are read at its end, beside recordings before.
+/// The diagnosis; held-out runs and earlier recordings are read at its end only.
 pub(super) fn diagnose(
     (set, before): (&DataSet, Option<&DataSet>),
     model: &EffectModel,
@@ -90,7 +90,7 @@ pub(super) fn diagnose(
     stage("fitting the effects to the forces");
     let found = Search::new(model, &fit, &training).found();
     let found = found.ok_or(BaseError::NotFinite)?;
-    stage("predicting the forces of the runs that were held out");
+    stage("predicting the forces of the held-out runs");
     let motions = |set: &DataSet| Motions::of(&set.bound_to(&model.mechanism), model);
     let test = Some(set.only(OfSet::Test)).filter(|test| !test.runs.is_empty());
     let test = test.map(|test| motions(&test)).transpose()?;
@@ -102,7 +102,7 @@ pub(super) fn diagnose(
     told::report((model, &fit), &found, (&training, held_out), options)
 }
 
-/// Whether a candidate adds forces that are linear in its sizes, or is a parameter.
+/// Whether a candidate is a parameter or adds forces that are linear in its sizes.
 pub(super) fn acts(candidate: &Candidate) -> bool {
     let sizes = candidate.parameters.iter().map(|(_, part)| *part);
     let mut others = sizes.clone().filter(|part| *part != Part::Size);

@@ -1,53 +1,53 @@
-//! From evidence to probabilities that hold.
+//! From evidence to calibrated probabilities.
 //!
 //! Evidence is overconfident: laws are never exact, disturbances never white, and a library never
-//! complete. Four numbers say by how much; they were found by maximum likelihood on cases whose cause
-//! is known (`tests/blind/calibrate.py`, which also holds the data), half of them diagnosed with a
-//! library that lacks their cause. A tenth of all gaps are taken to come from nothing in the library.
+//! complete. Four constants correct for this; they are maximum-likelihood estimates from cases whose cause
+//! is known (`tests/blind/calibrate.py`, with the data), half of them diagnosed with a
+//! library that lacks their cause. A tenth of all gaps are assumed to have a cause outside the library.
 
 use std::f64::consts::TAU;
 
-/// Probability beforehand that a gap comes from nothing in the library.
+/// Prior probability that the cause of a gap is outside the library.
 const UNLISTED: f64 = 0.1;
 /// Differences of the logarithm of the evidence are divided by this.
 const TEMPERATURE: f64 = 1.0;
-/// Probability that an effect which the library lacks looks just like one that it has.
+/// Probability that an effect outside the library is indistinguishable from a listed one.
 const MIMICKED: f64 = 0.4;
 /// Odds that the law of an effect is not exact.
 const INEXACT: f64 = 0.5;
-/// Size of what such a law leaves beside what it explains: standard deviation.
+/// Standard deviation of the residual of such a law, as an amplitude relative to the gap.
 const LEFT: f64 = 0.1;
 /// Two hypotheses whose log evidence differs by less are tied: odds of twenty.
 pub(super) const TIED: f64 = 3.0;
-/// Searches find evidence to within this.
+/// Accuracy of the log evidence of a search.
 pub(super) const SEARCHED: f64 = 0.3;
-/// Part of what re-fitted parameters leave of the gap below which nothing names its cause.
+/// Share of the gap of the re-fitted model below which an effect is immaterial.
 pub(super) const IMMATERIAL: f64 = 0.02;
-/// Larger logarithms are certainty.
+/// Limit of log Bayes factors, to avoid overflow.
 const MOST: f64 = 300.0;
 
-/// What the best hypothesis leaves.
+/// The remainder of the best hypothesis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Rest {
-    /// Logarithm of the Bayes factor for a further law; minus infinity where there is none.
+    /// Log Bayes factor of a further law; minus infinity without one.
     pub(super) log_bayes_factor: f64,
-    /// Part of the gap that it is.
+    /// Its share of the gap.
     pub(super) share: f64,
 }
 
-/// Logarithm of the weight of a hypothesis, for differences in the logarithm of the evidence.
+/// Logarithm of the weight of a hypothesis, from a difference of log evidence.
 pub(super) fn tempered(log: f64) -> f64 {
     log / TEMPERATURE
 }
 
-/// Odds that a law which is not exact leaves this part of a gap, beside one that may leave any: the size,
-/// not the energy, of what it leaves is half of a normal distribution.
+/// Odds of a remainder with this share of the gap under an inexact law, against a uniform share: the
+/// amplitude of the remainder, the root of its share, is half-normal.
 pub(super) fn inexact(share: f64) -> f64 {
     let size = share.clamp(0.0, 1.0).sqrt() / LEFT;
     INEXACT * 2.0 / (TAU.sqrt() * LEFT) * (-0.5 * size * size).exp()
 }
 
-/// Odds that nothing in the library causes a gap that an effect explains but for a rest.
+/// Odds of a cause outside the library for a gap that an effect explains up to a remainder.
 pub(super) fn unlisted_beside_an_effect(rest: Rest) -> f64 {
     let bayes_factor = rest.log_bayes_factor.min(MOST).exp();
     let unlisted = MIMICKED + (1.0 - MIMICKED) * bayes_factor;
@@ -55,18 +55,18 @@ pub(super) fn unlisted_beside_an_effect(rest: Rest) -> f64 {
     UNLISTED / (1.0 - UNLISTED) * unlisted / listed
 }
 
-/// Odds that nothing in the library causes a gap of which the best hypothesis leaves this part.
+/// Odds of a cause outside the library for a gap of which the best hypothesis leaves this part.
 pub(super) fn unlisted(left: f64) -> f64 {
     let left = left.clamp(0.0, 1.0);
     UNLISTED * left / (1.0 - left).max(f64::MIN_POSITIVE)
 }
 
-/// Odds that a law which is no effect causes a gap, beside effects, by the logarithm of their Bayes factor.
+/// Odds of a law outside the library against effects, from the log Bayes factor between them.
 pub(super) fn unlisted_alone(log_bayes_factor: f64) -> f64 {
     UNLISTED / (1.0 - UNLISTED) * log_bayes_factor.min(MOST).exp()
 }
 
-/// Odds that there is a gap from nothing in the library where no effect is found.
+/// Odds of a gap with a cause outside the library if no effect is found.
 pub(super) fn unlisted_beside_nothing(rest: Rest) -> f64 {
     UNLISTED * rest.log_bayes_factor.min(MOST).exp()
 }
@@ -92,11 +92,7 @@ mod tests {
     fn what_leaves_much_is_not_the_cause() {
         let odds = |share| unlisted_beside_an_effect(rest(200.0, share));
         assert!(odds(0.5) > 1e3, "{}", odds(0.5));
-        assert!(
-            odds(0.001) < 0.2,
-            "a law that is hardly wrong: {}",
-            odds(0.001)
-        );
+        assert!(odds(0.001) < 0.2, "a nearly exact law: {}", odds(0.001));
         assert!(odds(0.1) < odds(0.2) && odds(0.2) < odds(0.4));
     }
 

@@ -1,4 +1,4 @@
-//! What a hypothesis changes in the spec, so that the spec can be improved without the recordings.
+//! The changes of the spec under a hypothesis, so that the spec can be improved without the recordings.
 
 use std::collections::BTreeMap;
 
@@ -17,19 +17,19 @@ use crate::effects::{ACTING, Acts, Candidate, EffectModel, ModelError, Part, wit
 /// Changes of a spec.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Changes {
-    /// Items to add, written as a spec is, with the values that were found.
+    /// Items to add, in the spec language, with the fitted values.
     pub items: String,
-    /// What is added to an input wherever it acts: its name and an expression.
+    /// Terms added to an input wherever it acts: its name and an expression.
     pub inputs: Vec<(String, String)>,
-    /// Parameters that the items bring, but for switches.
+    /// Parameters of the items, without switches.
     pub brought: Vec<Refitted>,
     /// Parameters of this rig.
     pub parameters: Vec<Refitted>,
-    /// Effects that no spec can hold, because they act on inputs or channels.
+    /// Effects on inputs or channels, which a spec cannot express.
     pub signal_effects: Vec<SignalEffect>,
 }
 
-/// A parameter of the spec as it is on this rig, in its unit.
+/// The value of a parameter on this rig, in its unit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Refitted {
     /// Name.
@@ -38,7 +38,7 @@ pub struct Refitted {
     pub stated: f64,
     /// Most likely value.
     pub value: f64,
-    /// Standard deviation; nothing where the parameter was not free.
+    /// Standard deviation; `None` if the parameter was not free.
     pub std: Option<f64>,
     /// Unit.
     pub unit: String,
@@ -49,17 +49,17 @@ pub struct Refitted {
 pub struct SignalEffect {
     /// Name.
     pub effect: String,
-    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late`, `slow` of a channel, or
-    /// what it `shows`.
+    /// How it acts: `lag`, `delay` of an input; `bias`, `scale`, `late`, `slow` of a channel, or `shows` for a
+    /// channel that measures another quantity.
     pub acts: String,
     /// The input or channel.
     pub on: String,
-    /// The output that a channel shows, among the items.
+    /// The output that a channel measures, among the items.
     pub output: Option<String>,
 }
 
 impl Changes {
-    /// The spec with the changes, its comments and layout untouched; `note` stands above what is new.
+    /// The spec with the changes, its comments and layout unchanged; `note` is a comment above the new items.
     pub fn improved(&self, spec: &str, note: &str) -> Result<String, ChangeError> {
         let mut values: Vec<(&str, f64)> = Vec::new();
         for one in &self.parameters {
@@ -89,7 +89,7 @@ impl Changes {
         Ok(composition.text())
     }
 
-    /// Of a fitted hypothesis.
+    /// The changes under a fitted hypothesis.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let members = || fitted.members.iter().map(|&member| bench.candidate(member));
         let signal_effects = members().chain(bench.imperfect_candidates());
@@ -125,7 +125,7 @@ impl Changes {
         })
     }
 
-    /// What a hypothesis changes in the equations.
+    /// The changes of the equations under a hypothesis.
     pub(super) fn of_equations(of: &Equations<'_>) -> Result<Self, DiagnoseError> {
         let members = of.members.iter();
         Ok(Self {
@@ -144,7 +144,7 @@ impl Changes {
 pub(super) struct Equations<'e> {
     pub(super) effects: &'e EffectModel,
     pub(super) members: Vec<&'e Candidate>,
-    /// The parameters as the data set states them.
+    /// The parameters stated by the data set.
     pub(super) rig: &'e [appell_recordings::Parameter],
     /// Values of all parameters in SI.
     pub(super) values: &'e [f64],
@@ -152,7 +152,7 @@ pub(super) struct Equations<'e> {
     pub(super) deviations: Vec<Option<f64>>,
 }
 
-/// What channels show in place of what the spec has them show.
+/// Channels that measure another quantity than the spec states.
 fn shown(bench: &Bench<'_>, candidate: &Candidate) -> Vec<SignalEffect> {
     let measured = bench.set.measured(bench.effects.info());
     let mut shown = Vec::new();
@@ -182,7 +182,7 @@ fn parameter_names(text: &str) -> Result<Vec<String>, EditError> {
 }
 
 impl Equations<'_> {
-    /// The items of the members; their sizes and shapes stand at the values that were found.
+    /// The items of the members, with the fitted sizes and shapes.
     fn items(&self) -> Result<String, DiagnoseError> {
         let members: Vec<Candidate> = self.members.iter().copied().cloned().collect();
         let text = with_candidates("", &members).map_err(ModelError::from)?;
@@ -222,7 +222,7 @@ impl Equations<'_> {
             .collect()
     }
 
-    /// Parameters of the mechanism that were free, or that this rig has otherwise than the spec.
+    /// Parameters of the mechanism that were free, or whose values on this rig differ from the spec.
     fn parameters(&self) -> Vec<Refitted> {
         let candidates = self.effects.candidates.iter();
         let brought: Vec<&String> = candidates
@@ -253,8 +253,7 @@ impl Equations<'_> {
     }
 }
 
-/// Standard deviation of a parameter in SI, beforehand where it stands at a limit; nothing where it was not
-/// free.
+/// Standard deviation of a parameter in SI, the prior one at a limit; `None` if it was not free.
 fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     let mut free = fitted.fit.free.iter();
     let place = free.position(|free| free.unknown == Unknown::Parameter(index))?;
@@ -269,9 +268,9 @@ fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     })
 }
 
-/// A value in SI with the digits that its standard deviation leaves in its unit, and two more; within the limits.
+/// A value in SI, rounded to the significant digits in its unit and two more; within the limits.
 fn rounded(value: f64, deviation: Option<f64>, parameter: &Parameter) -> f64 {
-    /// Digits where nothing tells how well the value is known.
+    /// Number of digits without a standard deviation.
     const DIGITS: usize = 6;
     let unit = &parameter.label.unit;
     let number = unit.from_si(value);

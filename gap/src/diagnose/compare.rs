@@ -1,4 +1,4 @@
-//! How probable each hypothesis is.
+//! Posterior probabilities of the hypotheses.
 
 use std::collections::BTreeMap;
 
@@ -16,10 +16,10 @@ use super::search::{Look, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
 
-/// Odds that nothing in the library explains a gap that is there and that no effect closes.
+/// Odds of a cause outside the library for a significant gap that no effect closes.
 const MUCH: f64 = 20.0;
 
-/// A step that promises more is one of slopes that overflow.
+/// A larger expected gain of a step is due to diverging sensitivities.
 const MOST_PROMISED: f64 = 1e4;
 
 /// Hypotheses with their probabilities.
@@ -29,15 +29,15 @@ pub(super) struct Comparison {
     pub(super) fits: Vec<(Fitted, f64)>,
     /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub(super) failed: Vec<(Vec<usize>, String)>,
-    /// Part of the samples that tell something of their own: see `whiteness`.
+    /// Effective sample size relative to the number of samples: see `whiteness`.
     pub(super) independent: f64,
-    /// Probability that nothing in the library explains the gap.
+    /// Probability that no effect of the library explains the gap.
     pub(super) unknown: f64,
-    /// What the best hypothesis leaves.
+    /// The laws of the remainder of the best hypothesis.
     pub(super) left: Option<Leftover>,
-    /// Part of the errors over windows that the best hypothesis leaves of those of the nominal model.
+    /// Mean square error of the best hypothesis over windows, relative to that of the nominal model.
     pub(super) stays: f64,
-    /// Place of the nominal model among the fits.
+    /// Index of the nominal model among the fits.
     pub(super) nominal: usize,
 }
 
@@ -52,14 +52,14 @@ impl Comparison {
         &self.fits[0].0
     }
 
-    /// What the most probable hypothesis gains over the nominal model, whose parameters may strain
-    /// to imitate it.
+    /// Gain of the most probable hypothesis over the nominal model: in likelihood or in evidence, whichever is larger,
+    /// as the nominal parameters may imitate the effect at the expense of their prior.
     pub(super) fn explained(&self) -> f64 {
         let [best, nominal] = [self.best(), self.nominal()].map(|own| own.evidence);
         (best.log_likelihood - nominal.log_likelihood).max(best.log() - nominal.log())
     }
 
-    /// What the best hypothesis leaves, and the part of the gap that a law explains of it.
+    /// The remainder of the best hypothesis: its evidence, and the share of a law in the gap.
     fn rest(&self, bench: &Bench<'_>) -> Rest {
         let left = self.left.as_ref();
         let gain = left.map_or(0.0, |left| left.first.gain);
@@ -76,12 +76,12 @@ impl Comparison {
         }
     }
 
-    /// Whether nothing is as probable as that nothing in the library explains the gap.
+    /// Whether `unknown` is the most probable hypothesis.
     pub(super) fn leads_unknown(&self) -> bool {
         self.unknown > (1.0 - self.unknown) * self.fits[0].1
     }
 
-    /// Part of the gap that a law would take of what the best hypothesis leaves.
+    /// Share in the gap of a law for the remainder of the best hypothesis.
     pub(super) fn rest_share(&self, bench: &Bench<'_>) -> f64 {
         if self.best().members.is_empty() {
             return 1.0;
@@ -89,7 +89,7 @@ impl Comparison {
         self.rest(bench).share
     }
 
-    /// Gives its probability to the hypothesis that nothing in the library explains the gap.
+    /// Sets the probability that no effect of the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
         self.left = leftover(bench, self.best())?;
         let members = self.best().members.len();
@@ -101,12 +101,12 @@ impl Comparison {
                 unlisted_beside_an_effect(self.rest(bench)) + unlisted(self.stays)
             }
             (false, 0) => unlisted_beside_nothing(self.rest(bench)),
-            // What hardly shows in a simulation names no cause.
+            // A remainder that is immaterial in simulations does not count.
             (false, _) => {
                 unlisted_beside_an_effect(self.rest(bench)) * (self.stays / IMMATERIAL).min(1.0)
             }
         };
-        // What is as large as the best hypothesis leaves as much.
+        // The odds are those against all hypotheses with as many members as the best one.
         let alike = self
             .fits
             .iter()
@@ -116,7 +116,7 @@ impl Comparison {
         Ok(())
     }
 
-    /// A law alone may be more probable than several effects that imitate it: whether it is, beyond doubt.
+    /// Whether a law alone is decisively more probable than several effects that may imitate it; if so, it is taken.
     pub(super) fn weigh_alone(
         &mut self,
         bench: &Bench<'_>,
@@ -135,13 +135,14 @@ impl Comparison {
         true
     }
 
-    /// What hardly shows in a simulation names no cause: `again` is the best hypothesis over windows.
+    /// Reduces the probability of `unknown` if its law is immaterial in simulations: `again` is the best hypothesis
+    /// over windows.
     pub(super) fn bear_out_unknown(
         &mut self,
         over: &Bench<'_>,
         again: &Fitted,
     ) -> Result<(), DiagnoseError> {
-        // A law that windows do not find may be too fine for them.
+        // A law that is not found over windows may be below their resolution.
         let Some(seen) = leftover(over, again)? else {
             return Ok(());
         };
@@ -151,8 +152,8 @@ impl Comparison {
         Ok(())
     }
 
-    /// From the nominal model and what else is known. `look` is asked about the best hypothesis before others are
-    /// tried; nothing where that is refuted.
+    /// Searches from the nominal model and other known hypotheses. `look` validates the best hypothesis before others
+    /// are tried; `None` if it is rejected.
     pub(super) fn of(
         bench: &Bench<'_>,
         known: (Fitted, Vec<Fitted>),
@@ -163,7 +164,7 @@ impl Comparison {
         holds.then(|| Self::found(bench, search)).transpose()
     }
 
-    /// From the nominal model, hypotheses that are known, and what betters the best of them.
+    /// Compares the nominal model and known hypotheses, and extends the best of them while that improves it.
     pub(super) fn among(
         bench: &Bench<'_>,
         known: (Fitted, Vec<Fitted>),
@@ -182,7 +183,7 @@ impl Comparison {
         Self::found(bench, search)
     }
 
-    /// What a search found.
+    /// The result of a search.
     fn found(bench: &Bench<'_>, mut search: Search<'_, '_>) -> Result<Self, DiagnoseError> {
         let ended_early = search.fits.iter().filter(|own| !own.fit.is_optimum());
         let ended_early = ended_early.map(|own| (own.members.clone(), ended(&own.fit)));
@@ -213,7 +214,7 @@ impl Comparison {
             if sizes(fitted) >= most || bench.is_over_windows() {
                 return weight;
             }
-            // What has fewer sizes and explains nearly as much may be right, its law not exact.
+            // A hypothesis with fewer sizes that explains nearly as much may be the truth with an inexact law.
             weight.max(inexact(1.0 - explained(fitted) / all))
         };
         let weights: Vec<f64> = logs.iter().zip(&search.fits).map(weight).collect();
@@ -250,18 +251,18 @@ impl Comparison {
     }
 }
 
-/// Where a search ended.
+/// The reason why a search ended early.
 fn ended(fit: &Fit) -> String {
     let steps = fit.steps;
     if fit.gain > MOST_PROMISED {
         return format!(
-            "its search ended after {steps} steps where slopes lead nowhere, as at stiff friction: it may explain more \
-             than is told"
+            "its search ended after {steps} steps at diverging sensitivities, as with stiff friction: it may explain \
+             more than reported"
         );
     }
     format!(
-        "its search ended after {steps} steps where the next one promises {:.1} in log-likelihood and does not keep \
-         it: it may explain more than is told",
+        "its search ended after {steps} steps: the next one should increase the log likelihood by {:.1} but does not; \
+         it may explain more than reported",
         fit.gain
     )
 }

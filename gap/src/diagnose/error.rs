@@ -1,11 +1,11 @@
-//! Why nothing can be diagnosed.
+//! Errors of a diagnosis.
 
 use appell_estimate::EstimateError;
 use appell_spec::edit::EditError;
 
 use crate::effects::ModelError;
 
-/// What a person can mend.
+/// Why recordings cannot be diagnosed.
 #[derive(Debug, thiserror::Error)]
 pub enum DiagnoseError {
     /// No channel measures a quantity of the model.
@@ -34,7 +34,7 @@ pub enum DiagnoseError {
     /// A mechanism with effects that has no equations.
     #[error(transparent)]
     Model(#[from] ModelError),
-    /// The model is too far from the recordings for a search to begin.
+    /// The nominal model is too far from the recordings to be fitted.
     #[error(
         "the model as it is cannot be fitted to these recordings: {0}; a wrong unit or sign, a channel \
          that never changes, another mechanism or tolerances that are far too small look like this; \
@@ -47,16 +47,16 @@ pub enum DiagnoseError {
     /// Forces of motions that cannot be evaluated.
     #[error(transparent)]
     Forces(#[from] crate::base::BaseError),
-    /// What was found before cannot be written into the spec.
+    /// The effects found in the earlier recordings cannot be written into the spec.
     #[error(transparent)]
     Change(#[from] ChangeError),
-    /// A start that cannot be found.
+    /// Initial values that cannot be determined.
     #[error(transparent)]
     Start(#[from] crate::identify::IdentifyError),
 }
 
 impl DiagnoseError {
-    /// Where the nominal model itself cannot be fitted.
+    /// The same error, if it is the nominal model that cannot be fitted.
     pub(super) fn of_nominal(error: Self) -> Self {
         match error {
             Self::Estimate(error) => Self::Nominal(error),
@@ -68,10 +68,10 @@ impl DiagnoseError {
 /// Why a spec cannot be changed.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum ChangeError {
-    /// The spec or the items are not what they should be.
+    /// The spec or the items are invalid.
     #[error(transparent)]
     Edit(#[from] EditError),
-    /// The effect is there already.
+    /// The spec has the effect already.
     #[error(
         "the spec has `{name}` already: it holds this effect, and the report is about another spec"
     )]

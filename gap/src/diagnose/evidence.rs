@@ -1,11 +1,9 @@
-//! How much recordings speak for a hypothesis: the likelihood, averaged over what its parameters may
-//! be beforehand (Laplace's method; D. J. C. `MacKay`, *Information Theory, Inference, and Learning
-//! Algorithms*, 2003, chapter 28).
+//! The evidence of a hypothesis: the likelihood, averaged over the prior of its parameters (Laplace's method;
+//! D. J. C. `MacKay`, *Information Theory, Inference, and Learning Algorithms*, 2003, chapter 28).
 //!
-//! Effects of different kinds meet on equal terms because what is known beforehand of a size is said
-//! of the gap that it makes, not of its unit: the logarithm of d′, the size in its own standard
-//! deviations, is uniform from 1 to a thousand. Levels of noise and disturbance are the same under
-//! all hypotheses and stand at their optimum.
+//! Effects of different kinds are compared on equal terms because the prior of a size refers to its influence on the
+//! recordings, not to its unit: the logarithm of d′, the size in its own standard deviations, is uniform from 1 to a
+//! thousand. Levels of measurement and process noise are common to all hypotheses; they are not averaged but maximised.
 
 use std::f64::consts::TAU;
 
@@ -23,14 +21,14 @@ const SMALLEST: f64 = 1.0;
 pub(super) struct Fitted {
     /// Indices of the candidates; none for the nominal model.
     pub(super) members: Vec<usize>,
-    /// Places of the values.
+    /// Indices of the values.
     pub(super) layout: Layout,
     pub(super) fit: Fit,
     pub(super) evidence: Evidence,
 }
 
 impl Fitted {
-    /// Whether the recordings tell the sizes of all members from zero.
+    /// Whether the sizes of all members differ from zero by more than a standard deviation.
     pub(super) fn is_there(&self) -> bool {
         self.evidence.smallest > 1.0
     }
@@ -41,9 +39,9 @@ impl Fitted {
 pub(super) struct Evidence {
     /// Logarithm of the likelihood at the optimum.
     pub(super) log_likelihood: f64,
-    /// What the average over the parameters takes from it.
+    /// Change of that by averaging over the parameters (Occam factor).
     pub(super) occam: f64,
-    /// What inputs that follow the motion may tell beside it.
+    /// Gain by impulses of feedback inputs.
     pub(super) by_inputs: f64,
     /// Smallest size of a member in its standard deviations.
     pub(super) smallest: f64,
@@ -91,13 +89,13 @@ impl Evidence {
                 };
                 let size = (free.to_value(fit.coordinates[i]) - neutral).abs();
                 let in_value = match free.unknown {
-                    // A lag is counted by its logarithm, its deviation too.
+                    // The coordinate of a lag, and its deviation, are logarithmic.
                     Unknown::Lag(_) => size * deviations[place],
                     _ => deviations[place],
                 };
-                // A level may do what a member does: what is told of the member is what the level leaves. A
-                // step that was promised to the end might undo it, but for windows, where roughness ends searches
-                // within the tolerance.
+                // Noise levels may be correlated with the size of a member: its deviation is the marginal one. The
+                // last step that was not taken counts as a further error, except over windows, whose likelihood is
+                // rough within its tolerance.
                 let promised = if bench.is_over_windows() {
                     0.0
                 } else {
@@ -107,14 +105,14 @@ impl Evidence {
                     deviations[place] / whole[(i, i)].sqrt().hypot(promised)
                 });
                 smallest = smallest.min(size / in_value * left);
-                // The density of the coordinate: that of a lag is of its logarithm.
+                // The Jacobian of the coordinate: that of a lag is logarithmic.
                 let stretch = (in_value / deviations[place]).ln();
                 let two_sided = free.range[0] < neutral;
                 let hardware = &bench.hardware;
                 hardware.of_size(free.unknown, (size, in_value), two_sided) + stretch
             };
         }
-        // A member whose size stands at zero is not there.
+        // A member whose size is zero, at its limit, is not significant.
         for i in own..fit.free.len() {
             let free = &fit.free[i];
             if fit.at_limit[i] && free.prior.is_none() && !is_level(i) {
@@ -138,7 +136,7 @@ impl Evidence {
     }
 }
 
-/// Logarithm of the volume of a normal distribution with this information, and its deviations.
+/// Logarithm of the integral of an unnormalised normal density with this information, and its standard deviations.
 pub(super) fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
     let k = information.nrows();
     if k == 0 {
@@ -165,19 +163,19 @@ pub(super) fn volume(information: &DMatrix<f64>) -> (f64, Vec<f64>) {
     )
 }
 
-/// The evidence for sizes that are normal beforehand, averaged over how large they may be.
+/// The evidence for sizes with a normal prior, averaged over its variance.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct NormalSizes {
-    /// Logarithm of the Bayes factor for them.
+    /// Log Bayes factor for them.
     pub(super) log_bayes_factor: f64,
-    /// The variance that the recordings speak for most.
+    /// The most likely variance.
     pub(super) variance: f64,
 }
 
 impl NormalSizes {
-    /// By the squares of their slopes and by their scores.
+    /// From the Gram matrix of the sensitivities to them and from their scores.
     pub(super) fn of(squares: &DMatrix<f64>, scores: &DVector<f64>) -> Option<Self> {
-        /// Sizes that are tried, each twice the one before.
+        /// Number of prior deviations that are averaged, each twice the one before.
         const SIZES: usize = 12;
         if scores.is_empty() {
             return None;
@@ -215,7 +213,7 @@ pub(super) fn log_sum(logs: impl Iterator<Item = f64> + Clone) -> f64 {
     most + logs.map(|log| (log - most).exp()).sum::<f64>().ln()
 }
 
-/// What one size that gains so much takes from its gain.
+/// The Occam penalty of one size with a given gain.
 pub(super) fn occam(gain: f64) -> f64 {
     let d = (2.0 * gain).sqrt().max(SMALLEST);
     (2.0 * d * LN_1000).ln() - 0.5 * TAU.ln()

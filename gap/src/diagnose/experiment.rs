@@ -1,9 +1,9 @@
-//! The next experiment for a tie: the input that tells the tied hypotheses apart best.
+//! Experiment design for model discrimination: the input that separates two tied hypotheses best.
 //!
-//! One hypothesis makes a recording without noise; the filter of the other one is run on it. What it
-//! does not expect, whitened, is the difference of the two, and what its parameters can do within what
-//! is known of them by now is taken off: with innovations r, slopes S and the information I of the
-//! fit, d² = min over z of |r + S z|² + zᵀ I z. Two models d apart differ by d²/2 in log-likelihood.
+//! One hypothesis simulates a recording without noise; the filter of the other one is run on it. Its whitened
+//! innovations are the difference of the two, minimised over the parameters within their present
+//! uncertainty: with innovations r, sensitivities S and the information I of the
+//! fit, d² = min over z of |r + S z|² + zᵀ I z. Two models with separation d differ by d²/2 in log likelihood.
 
 use appell_estimate::{Coordinate, Estimation, Recording, Unknown};
 use nalgebra::{DMatrix, DVector};
@@ -20,25 +20,25 @@ use appell_recordings::{DataSet, Role};
 
 /// Longest experiment in s.
 const LONGEST: f64 = 20.0;
-/// Most rows of it.
+/// Largest number of its rows.
 const MOST_ROWS: f64 = 1e6;
-/// Parts of the limits that are tried.
+/// Amplitudes that are tried, relative to the limits.
 const SIZES: [f64; 4] = [1.0, 0.7, 0.4, 0.2];
-/// Where nothing is said, a measured channel may leave its recorded range by this part of it.
+/// Without a stated limit, a measured channel may exceed its recorded range by this part of it.
 const ROOM: f64 = 0.25;
 
-/// What may be done with the rig.
+/// The constraints of the experiment.
 struct Rig<'a> {
     bench: &'a Bench<'a>,
     step: f64,
     duration: f64,
-    /// Limits of the inputs by their index; nothing for those that nobody drives.
+    /// Limits of the inputs by their index; `None` for those that cannot be commanded.
     inputs: Vec<Option<[f64; 2]>>,
     /// Limits of the measured channels.
     channels: Vec<[f64; 2]>,
 }
 
-/// The best experiment for two hypotheses; nothing where no input that was tried keeps the motion
+/// The best experiment for two hypotheses; `None` if no input that was tried keeps the motion
 /// within its limits.
 pub(super) fn experiment(
     bench: &Bench<'_>,
@@ -60,13 +60,13 @@ pub(super) fn experiment(
     let mut best: Option<(f64, Excitation, usize, f64, Recording)> = None;
     for (input, limits) in rig.inputs.iter().enumerate() {
         let Some(limits) = limits else { continue };
-        // What leaves its limits by itself does so whatever is tried.
+        // A motion that leaves its limits without input does so with any.
         let idle = (Excitation::library(rig.duration, rig.step)[0], 0.0);
         if rig.made(truth, (input, *limits), idle)?.is_none() {
             continue;
         }
         for shape in Excitation::library(rig.duration, rig.step) {
-            // Smaller inputs where larger ones leave the limits.
+            // Smaller inputs if larger ones leave the limits.
             for size in SIZES {
                 let Some(recording) = rig.made(truth, (input, *limits), (shape, size))? else {
                     continue;
@@ -152,7 +152,7 @@ impl<'a> Rig<'a> {
         }
     }
 
-    /// The recording without noise that a hypothesis makes; nothing where the motion leaves its limits.
+    /// The recording without noise that a hypothesis predicts; `None` if the motion leaves its limits.
     fn made(
         &self,
         truth: &Fitted,
@@ -167,7 +167,7 @@ impl<'a> Rig<'a> {
             inputs[row * columns + input] = centre + half * sample;
         }
         let times = (0..rows).map(|row| row as f64 * self.step).collect();
-        // Nothing is known at the first row; later ones are compared with zero.
+        // The first row is missing; at all others the innovations against zero are the negative predictions.
         let mut nothing = vec![0.0; rows * channels];
         nothing[..channels].fill(f64::NAN);
         let blank = vec![Recording::new(times, inputs, nothing)?];
@@ -187,7 +187,7 @@ impl<'a> Rig<'a> {
         Ok(Some(blank[0].with_measurements(shown)?))
     }
 
-    /// The motion begins where the first run does, at rest.
+    /// Initial values: the positions at the beginning of the first run, at rest.
     fn rest(
         truth: &Fitted,
         estimation: &Estimation<'_>,
@@ -203,7 +203,7 @@ impl<'a> Rig<'a> {
         Ok(())
     }
 
-    /// The inputs that someone drives.
+    /// The inputs that can be commanded.
     fn driven(
         &self,
         recording: &Recording,
@@ -216,7 +216,7 @@ impl<'a> Rig<'a> {
     }
 }
 
-/// Smallest and largest value of a column in the runs to fit.
+/// Smallest and largest value of a column in the training runs.
 fn range(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let values = set.runs.iter().flat_map(|run| &run.values[column]);
     let seen = values.filter(|value| value.is_finite());
@@ -227,7 +227,7 @@ fn range(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     (range[0] <= range[1]).then_some(range)
 }
 
-/// How far a hypothesis stays from a recording of another one after its parameters have adapted.
+/// Separation of a hypothesis from the recording of another one after its parameters have adapted.
 fn distance(
     bench: &Bench<'_>,
     rival: &Fitted,
@@ -255,7 +255,7 @@ fn distance(
     Ok((rest.norm_squared() - adapted).max(0.0).sqrt())
 }
 
-/// What the recordings tell of the values that move the mean.
+/// Information of the present recordings about the values that affect the predicted mean.
 fn known(fitted: &Fitted) -> DMatrix<f64> {
     let moves = |i: &usize| {
         !matches!(

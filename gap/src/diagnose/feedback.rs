@@ -1,10 +1,10 @@
-//! Inputs that know the motion better than the recordings do.
+//! Feedback inputs from measurements that are not recorded.
 //!
-//! A controller that sees the state by sensors which are not recorded puts what it sees into its
-//! command. Then the command correlates with the error of the filter, although it acts as the model
-//! says; a delay or a gain of the actuator would explain a part of that. What such an input could tell is
-//! a kick at each change that no recorded sample predicts, in any direction, and every hypothesis has such kicks.
-//! They are bounded: a command knows no more of the state than what the filter does not know.
+//! If a controller uses sensors that are not recorded, its command is correlated with the error of the filter, although
+//! it acts as in the model; a delay or a gain of the actuator would explain a part of that correlation. Every hypothesis
+//! therefore has impulses on the equations in proportion to the innovation of such an input, the part that no recorded
+//! sample predicts. They are bounded: as a correlation cannot exceed one, their variance is at most that of the filter's
+//! own error.
 
 use appell_estimate::{Along, Direction, EstimateError, Estimation, Fit, Recording, Shapes};
 use appell_runtime::model::At;
@@ -13,22 +13,22 @@ use nalgebra::{DMatrix, DVector};
 use super::gram::Gram;
 use super::nuisance::{known, moves_the_mean};
 
-/// Earlier samples from which a command is predicted.
+/// Number of earlier samples from which a command is predicted.
 const LAGS: usize = 4;
-/// Earlier samples of the measurements, beside those of the same row.
+/// Number of earlier samples of the measurements, in addition to those of the same row.
 const SEEN: usize = 2;
-/// Kicks that follow an innovation of the input.
+/// Number of impulses after an innovation of the input.
 const KICKS: usize = 2;
 /// Innovations smaller than this part of the input are ignored.
 const PREDICTED: f64 = 1e-3;
-/// An input follows the motion where the measurements predict more of it than chance would in one of
-/// so many recordings; the logarithm of the ratio of likelihoods beyond one for each regressor.
+/// Threshold of the log likelihood ratio, in excess of one for each regressor, by which measurements must improve the
+/// prediction of a feedback input.
 const SURE: f64 = 7.0;
 
-/// Innovations of the inputs that follow the motion: for each run and row, a value for each such input.
+/// Innovations of feedback inputs: for each run and row, a value for each such input.
 #[derive(Debug, Clone, Default)]
 pub(super) struct InputInnovations {
-    /// Inputs that follow the motion.
+    /// Number of feedback inputs.
     pub(super) count: usize,
     /// For each run its times.
     times: Vec<Vec<f64>>,
@@ -61,7 +61,7 @@ impl InputInnovations {
         input_innovations
     }
 
-    /// Calls with the kicks as candidate additions, with none where no input follows the motion.
+    /// Calls a function with the impulses as additional columns, or with `None` without feedback inputs.
     pub(super) fn with_kicks<T>(&self, call: impl FnOnce(Option<Shapes<'_>>) -> T) -> T {
         let kicks = |run: usize, at: At<'_>, to: &mut [f64]| self.kicks(run, at.t, to);
         call((self.count > 0).then_some(Shapes {
@@ -71,8 +71,7 @@ impl InputInnovations {
         }))
     }
 
-    /// Writes the kicks at a time of a run: for each input that follows the motion, by its last
-    /// innovations.
+    /// Writes the impulses at a time of a run: the last innovations of each feedback input.
     fn kicks(&self, run: usize, t: f64, to: &mut [f64]) {
         let row = self.times[run].partition_point(|&own| own <= t);
         for (place, to) in to.iter_mut().enumerate() {
@@ -83,8 +82,7 @@ impl InputInnovations {
     }
 }
 
-/// How much recordings whose rows have a `weight` speak for kicks beside a fit, as a logarithm of a Bayes factor; zero
-/// where they speak against them.
+/// Log Bayes factor for impulses in addition to a fit, with rows of this likelihood weight; at least zero.
 pub(super) fn for_kicks(
     own: &InputInnovations,
     weight: f64,
@@ -114,13 +112,13 @@ pub(super) fn for_kicks(
     Ok(bounded(&beside, &tangent.added_squares, estimation))
 }
 
-/// The evidence for kicks by their squares and scores; `deviations` are the squares of a unit of each in deviations
-/// of the filter.
+/// The evidence for impulses from their Gram matrix and scores; `deviations` are the squares of a unit of each in
+/// standard deviations of the filter.
 fn bounded(gram: &Gram, deviations: &[f64], estimation: &Estimation<'_>) -> f64 {
-    /// Each bound that is tried is so many times firmer than the one before.
+    /// Factor between successive values of the regularisation.
     const FIRMER: f64 = 2.0;
     const TRIED: usize = 200;
-    // Parts of the variance of what the filter does not know along each disturbance.
+    // The bound: the error variance of the filter along each process noise.
     let most = estimation.setup().disturbances.len() as f64;
     let known: Vec<usize> = (0..deviations.len())
         .filter(|&i| deviations[i] > 0.0 && !gram.is_imitated[i])
@@ -157,8 +155,8 @@ fn bounded(gram: &Gram, deviations: &[f64], estimation: &Estimation<'_>) -> f64 
     0.0
 }
 
-/// The innovations of an input, for each run and row: what neither its past nor the measurements predict;
-/// `None` where the input does not follow the motion.
+/// The innovations of an input, for each run and row: the part that neither its past nor the measurements predict;
+/// `None` for an input without feedback.
 fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     let first = LAGS.max(SEEN);
     let channels = recordings[0].channel_len();
@@ -187,7 +185,7 @@ fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
             lag if lag < own => recording.inputs(row - lag)[input],
             seen => {
                 let (back, channel) = ((seen - own) / channels, (seen - own) % channels);
-                // Those before the row first, then those of the row.
+                // The earlier samples first, then those of the row.
                 let back = if back < SEEN { back + 1 } else { 0 };
                 recording.measured(row - back)[channel]
             }
@@ -212,9 +210,9 @@ fn innovation(recordings: &[Recording], input: usize) -> Option<Vec<Vec<f64>>> {
     Some(all)
 }
 
-/// What a regression leaves.
+/// The residual of a regression.
 fn rest(regressors: &DMatrix<f64>, values: &DVector<f64>) -> Option<DVector<f64>> {
-    /// Keeps regressors that follow from others in place, relative to their size.
+    /// Relative regularisation for linearly dependent regressors.
     const FLOOR: f64 = 1e-9;
     let scale: Vec<f64> = regressors
         .column_iter()
@@ -241,7 +239,7 @@ mod tests {
         (random.f64() - 0.5) * 12.0_f64.sqrt()
     }
 
-    /// A mass that a command pushes, seen with noise: the command is a sum of sines, or it knows the
+    /// A mass driven by a command, measured with noise: the command is a sum of sines, or feedback of the
     /// position.
     fn recording(follows: bool) -> Recording {
         let (mut random, h) = (fastrand::Rng::with_seed(7), 0.01);

@@ -1,6 +1,6 @@
-//! When the gap is there: the missing force of each equation in parts of the runs.
+//! The gap over time: the missing force of each equation in intervals of the runs.
 //!
-//! The states are those of the smoother under the nominal model, whose disturbance is free to be the
+//! The states are those of the smoother under the nominal model, whose process noise estimates the
 //! missing force.
 
 use appell_estimate::{Estimation, Recording};
@@ -14,14 +14,14 @@ use super::prediction::followed;
 use super::report::{ForceHistory, MissingForce};
 use super::windows;
 
-/// Most parts of all runs; more cannot be told apart.
+/// Largest number of intervals over all runs, the resolution of the plot.
 const PARTS: f64 = 160.0;
-/// Most steps that are looked at in a run.
+/// Largest number of steps that are evaluated in a run.
 const STEPS: usize = 2000;
-/// Part of a window whose mean is taken.
+/// Averaging time relative to a window.
 const PART_TOGETHER: f64 = 0.1;
 
-/// Of all runs that were fitted.
+/// The history of all training runs.
 pub(super) fn force_history(
     bench: &Bench<'_>,
     comparison: &Comparison,
@@ -45,7 +45,7 @@ pub(super) fn force_history(
     let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
     for (run, recording) in bench.recordings.iter().enumerate() {
         let (from, to) = ends(run);
-        // Parts are few.
+        // The number of intervals is small.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let parts = ((to - from) / part).ceil().max(1.0) as usize;
         let first = sizes[0].len();
@@ -79,13 +79,13 @@ pub(super) fn force_history(
     })
 }
 
-/// The value in the middle; a channel that jumps is a large force in a single step. Zero of nothing.
+/// The median, which is robust to a jump of a channel, a large force in a single step. Zero without values.
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or_default()
 }
 
-/// Steps whose mean is taken: over windows the disturbance is free at every row and takes the noise for a force.
+/// Number of steps to average: over windows the process noise is free at every row and contains the noise.
 pub(super) fn together(bench: &Bench<'_>, recording: &Recording) -> usize {
     if !bench.is_over_windows() {
         return 1;
@@ -93,7 +93,7 @@ pub(super) fn together(bench: &Bench<'_>, recording: &Recording) -> usize {
     let times = recording.times();
     let rows = PART_TOGETHER * windows::length(bench) * (times.len() - 1) as f64
         / (times[times.len() - 1] - times[0]);
-    // Rows of a part are few.
+    // The number of rows is small.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     (rows.round() as usize).max(1)
 }

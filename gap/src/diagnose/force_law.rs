@@ -1,7 +1,7 @@
-//! The force that the model lacks, over what it depends on, with the law that was found for it.
+//! The missing force over its variable, with the law of the best hypothesis.
 //!
-//! The states are those of the smoother under the nominal model, whose disturbance is free to be the
-//! missing force: what is drawn as data does not know the law.
+//! The states are those of the smoother under the nominal model, whose process noise estimates the
+//! missing force: the plotted data do not depend on the law.
 
 use appell_estimate::Estimation;
 use appell_runtime::model::ModelInfo;
@@ -14,13 +14,13 @@ use super::forces::{Forces, mean_missing};
 use super::prediction::followed;
 use super::report::{ForceLaw, ShareOf, Where};
 
-/// Most steps that are looked at.
+/// Largest number of steps that are evaluated.
 const STEPS: usize = 6000;
-/// Most points that are drawn.
+/// Largest number of plotted points.
 const POINTS: usize = 500;
-/// Parts of a variable along which a law is drawn.
+/// Number of cells of a variable over which a law is plotted.
 const PARTS: usize = 60;
-/// A law that explains less of itself than this along a variable depends on something else.
+/// Smallest part of its variance that a variable of a law has to explain.
 const DEPENDS: f64 = 0.3;
 
 /// One step of a recording.
@@ -29,13 +29,13 @@ pub(super) struct Step {
     pub(super) is_early: bool,
     /// States, then inputs.
     pub(super) variables: Vec<f64>,
-    /// What the data say.
+    /// The force by the data.
     pub(super) force: f64,
-    /// What the law says.
+    /// The force by the law.
     pub(super) law: f64,
 }
 
-/// Of the equation with the greatest share.
+/// The missing force of the equation with the greatest share.
 pub(super) fn force_law(
     bench: &Bench<'_>,
     comparison: &Comparison,
@@ -53,7 +53,7 @@ pub(super) fn force_law(
     Ok(over_its_variable(info, first, &steps))
 }
 
-/// Over the variable on which the law depends most, or the force where there is no law.
+/// The force over the variable that explains most of the law, or of the force itself without a law.
 pub(super) fn over_its_variable(
     info: &ModelInfo,
     first: &ShareOf,
@@ -131,7 +131,7 @@ fn steps(
     Ok(steps)
 }
 
-/// The steps in order of a variable, cut into parts with as many steps each.
+/// The steps sorted by a variable, in cells with equally many steps.
 fn parts(steps: &[Step], variable: usize) -> Vec<Vec<&Step>> {
     let mut sorted: Vec<&Step> = steps.iter().collect();
     sorted.sort_by(|a, b| a.variables[variable].total_cmp(&b.variables[variable]));
@@ -153,8 +153,8 @@ fn medians(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> Vec<[f
     parts.iter().map(point).collect()
 }
 
-/// Part of the variance of a force that its means along a variable tell in the half of each run in which they were
-/// not taken: what merely differs from run to run, or walks in time, depends on something else.
+/// Part of the variance of a force that its means over a variable explain, cross-validated between the halves of each
+/// run: forces that merely differ from run to run, or drift, are not explained.
 fn explained(steps: &[Step], variable: usize, of: impl Fn(&Step) -> f64) -> f64 {
     let all: Vec<&Step> = steps.iter().collect();
     let centre = mean(&all, &of);

@@ -1,5 +1,4 @@
-//! Forces in a step of a smoothed motion: what the state does beyond the equations, times the mass
-//! matrix.
+//! Forces in a step of a smoothed motion: the mass matrix times the acceleration in excess of the equations.
 
 use std::ops::Range;
 

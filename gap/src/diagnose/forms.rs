@@ -1,4 +1,4 @@
-//! Forms that a measured law may have: what one or two sizes and a few words tell instead of a curve.
+//! Closed forms of a measured law: simple functions with one or two coefficients instead of a curve.
 
 use appell_estimate::{Estimation, Shapes};
 use appell_runtime::model::At;
@@ -9,17 +9,17 @@ use super::evidence::Fitted;
 use super::report::Form;
 use super::unknown::{Dependence, LawGain, TermScores, Unnamed, term_scores};
 
-/// Forms that are told.
+/// Largest number of reported forms.
 const TOLD: usize = 3;
-/// Part of the gain of the law that a form has to reach.
+/// Smallest gain of a form relative to that of the law.
 const NEAR: f64 = 0.5;
-/// Places of corners and steps in the range of the variable.
+/// Number of positions of corners and steps in the range of the variable.
 const PLACES: usize = 9;
-/// Waves that are tried alone.
+/// Number of single harmonics.
 const WAVES: usize = 48;
-/// Rates that are tried on either side of the best wave, up to its neighbours.
+/// Number of frequencies on either side of the best harmonic, up to its neighbours.
 const FINER: u32 = 12;
-/// Width of a step in parts of the range.
+/// Width of a step relative to the range.
 const STEP: f64 = 0.01;
 
 /// One function of the variable.
@@ -27,16 +27,16 @@ struct Term {
     of: Box<dyn Fn(f64) -> f64 + Sync>,
 }
 
-/// A form on trial: places of its terms, and how many of its kind there are.
+/// A form with the indices of its terms, and the number of forms of its kind.
 struct Trial {
     text: String,
     terms: Vec<usize>,
     alike: usize,
-    /// Of a wave, radians per SI unit of the variable.
+    /// Frequency of a harmonic in radians per SI unit of the variable.
     rate: Option<f64>,
 }
 
-/// The forms that come near to a law.
+/// The forms close to a law.
 pub(super) fn forms(
     bench: &Bench<'_>,
     base: &Fitted,
@@ -45,7 +45,7 @@ pub(super) fn forms(
 ) -> Result<Vec<Form>, DiagnoseError> {
     let (terms, tried) = trials(bench, dependence);
     let mut forms = scored(bench, base, dependence, law, (terms, tried))?;
-    // The rates of waves are a grid: the best of them is found between its neighbours.
+    // The frequencies of harmonics are a grid: the best one is refined between its neighbours.
     let best = forms.iter().find_map(|(rate, _)| *rate);
     if let Some(rate) = best {
         let step = dependence.rate(1) - dependence.rate(0);
@@ -68,7 +68,7 @@ pub(super) fn forms(
     Ok(forms)
 }
 
-/// Forms that come near to the law, the best first; of waves with their rates.
+/// Forms close to the law, the best first; harmonics with their frequencies.
 fn scored(
     bench: &Bench<'_>,
     base: &Fitted,
@@ -120,7 +120,7 @@ fn judged(trial: Trial, scores: &TermScores, most: f64) -> Option<Form> {
     })
 }
 
-/// All forms of a variable, and the functions that they are made of.
+/// All forms of a variable, and the functions of which they consist.
 fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Trial>) {
     let (name, written) = dependence.letters(bench);
     let (low, high) = dependence.range;
@@ -206,7 +206,7 @@ fn trials(bench: &Bench<'_>, dependence: Dependence<'_>) -> (Vec<Term>, Vec<Tria
     (terms, trials)
 }
 
-/// A sine with a free phase for each of these rates.
+/// A sine with a free phase for each of these frequencies.
 fn waves(bench: &Bench<'_>, dependence: Dependence<'_>, rates: &[f64]) -> (Vec<Term>, Vec<Trial>) {
     let (name, written) = dependence.letters(bench);
     let scale = dependence.unit(bench).1;

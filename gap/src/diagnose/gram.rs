@@ -1,22 +1,22 @@
-//! Normal equations of columns beside what is free anyway: what some of them gain together.
+//! Normal equations of some columns with nuisance parameters eliminated, and the gains of subsets of columns.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
 
 use nalgebra::{DMatrix, DVector};
 
-/// Part of a slope that nothing free can imitate, below which there is none.
+/// Relative norm of the part orthogonal to the nuisance columns below which a column is dependent on them.
 const LEFT: f64 = 1e-4;
-/// A little of a square keeps what nothing tells in place.
+/// Relative regularisation for undetermined nuisance parameters.
 const RIDGE: f64 = 1e-10;
 
-/// Squares and scores of the columns with the nuisances taken off.
+/// Gram matrix and scores of the columns, projected on the complement of the nuisance columns.
 pub(super) struct Gram {
     pub(super) squares: DMatrix<f64>,
     pub(super) scores: DVector<f64>,
-    /// Which columns nuisances can imitate.
+    /// Which columns depend linearly on the nuisance columns.
     pub(super) is_imitated: Vec<bool>,
-    /// Log-likelihood with all sizes at zero.
+    /// Log likelihood with all sizes zero.
     pub(super) log_likelihood: f64,
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Solved {
 }
 
 impl Gram {
-    /// All columns but the first ones, with these taken off.
+    /// Eliminates the first columns from all others.
     pub(super) fn beside(
         first: Range<usize>,
         (squares, scores): (&DMatrix<f64>, &DVector<f64>),
@@ -71,7 +71,7 @@ impl Gram {
         rest
     }
 
-    /// The best sizes of some columns; nothing where nuisances or the others can imitate one.
+    /// The best sizes of some columns; `None` if one depends linearly on the nuisance columns or on the others.
     pub(super) fn solved(&self, columns: &[usize]) -> Option<Solved> {
         let n = columns.len();
         if columns.iter().any(|&column| self.is_imitated[column]) {

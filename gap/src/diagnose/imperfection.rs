@@ -1,4 +1,4 @@
-//! An imperfection of a channel that is fitted beside every hypothesis.
+//! An imperfection of a channel, a nuisance parameter of every hypothesis.
 
 use appell_estimate::{Coordinate, Free, Unknown};
 
@@ -9,12 +9,12 @@ use crate::effects::Acts;
 pub(super) struct Imperfection {
     /// How it acts.
     pub(super) acts: Acts,
-    /// What was found beside the best hypothesis.
+    /// Its estimate under the best hypothesis.
     pub(super) found: f64,
 }
 
 impl Imperfection {
-    /// What is expected of it: no more than was found. Beside a wrong model it would imitate what that lacks.
+    /// Its prior, as wide as the estimate: without one it would imitate the missing effects of a wrong model.
     pub(super) fn expected(&self, free: Free) -> Free {
         match free.coordinate {
             Coordinate::Plain => {

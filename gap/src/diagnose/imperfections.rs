@@ -1,6 +1,6 @@
-//! Imperfections of channels that change no prediction: long recordings tell a delay of a millisecond that matters
-//! to nobody. Such names no cause, and no hypothesis may lead because it bends to one. So they are fitted beside every
-//! hypothesis, the nominal model included.
+//! Imperfections of channels that do not affect predictions: in long recordings a delay of a millisecond is significant
+//! but immaterial. It is not a cause, and must not favour a hypothesis that imitates it. Such imperfections are
+//! therefore nuisance parameters of every hypothesis, including the nominal model.
 
 use appell_estimate::Estimation;
 
@@ -14,8 +14,8 @@ use super::horizon::Judged;
 use super::imperfection::Imperfection;
 use super::prediction::{errors, noise};
 
-/// Those imperfections beside forces of the leading hypothesis that close less of the gap of their channels than the
-/// tolerance, in predictions of the runs that were fitted. One that stands alone is all there is of the gap.
+/// The imperfections that the leading hypothesis has in addition to other effects and that close less of the gap of
+/// their channels than the tolerance, in predictions of the training runs. Alone they would be the cause of the gap.
 pub(super) fn immaterial(judged: &Judged<'_>) -> Result<Vec<Imperfection>, DiagnoseError> {
     let (bench, comparison) = (&judged.bench, &judged.comparison);
     let (best, nominal) = (comparison.best(), comparison.nominal());
@@ -51,7 +51,7 @@ pub(super) fn immaterial(judged: &Judged<'_>) -> Result<Vec<Imperfection>, Diagn
     Ok(immaterial)
 }
 
-/// The leading hypothesis of `before`, with what is fitted beside every hypothesis in place of those of its members.
+/// The leading hypothesis of `before`, in which nuisance parameters replace the members that are imperfections.
 pub(super) fn known(bench: &Bench<'_>, before: &Judged<'_>) -> Result<Fitted, DiagnoseError> {
     let best = before.comparison.best();
     let mut members = best.members.clone();

@@ -1,8 +1,8 @@
-//! The force that nobody has named, measured: a law of what it depends on, with its band.
+//! Measurement of a force outside the library: a law of its variable, with its band.
 //!
-//! The waves of the variable that tell most of it become terms of a load in the spec, beside the effects that
-//! are known, and their sizes are fitted as all others are: within a prior that lets a law be as rough as
-//! one with a step. So the law predicts runs, and a spec can have it.
+//! The harmonics of the variable with the largest gains become terms of a load in the spec, in addition to the
+//! identified effects, and their amplitudes are fitted like all other parameters, with a prior that allows a law as rough
+//! as one with a step. The law can therefore predict runs and be written into a spec.
 
 mod deviation;
 mod hidden_mass;
@@ -30,19 +30,19 @@ use appell_recordings::{DataSet, Part};
 /// The equations with the law.
 pub(super) struct Lawful {
     effects: EffectModel,
-    /// What it stands beside.
+    /// The hypothesis to which it is added.
     base: Fitted,
     left: Leftover,
     kind: Kind,
-    /// Where the search for its numbers begins.
+    /// Initial values of its coefficients.
     start: Vec<f64>,
 }
 
-/// What the law is.
+/// The kind of a law.
 enum Kind {
-    /// Waves of a variable.
+    /// Harmonics of a variable.
     Waves(Series),
-    /// A force that depends on what was before.
+    /// A force with a hidden state.
     Memory(Memory),
 }
 
@@ -50,19 +50,19 @@ enum Kind {
 pub(super) struct FittedLaw<'l> {
     pub(super) bench: Bench<'l>,
     pub(super) fitted: Fitted,
-    /// What it stands beside.
+    /// The hypothesis to which it is added.
     pub(super) base: &'l Fitted,
-    /// The runs that were held out, as its equations take them.
+    /// The held-out runs, bound to its equations.
     pub(super) runs: HeldOut,
     pub(super) law: Law,
-    /// The first estimate of it.
+    /// Its first estimate.
     left: &'l Leftover,
-    /// Logarithm of its evidence: that of the first estimate, with what the fit gains beyond it.
+    /// Log evidence: that of the first estimate, plus the further gain by the fit.
     log_evidence: f64,
 }
 
-/// The equations with what is left, where it is a force that depends on something the model knows: beside the best
-/// hypothesis, and alone where that may explain nothing.
+/// The equations with a law for the residual force, if it depends on quantities of the model: in addition to the best
+/// hypothesis, and to the nominal model if that hypothesis may be wrong.
 pub(super) fn lawful(
     bench: &Bench<'_>,
     comparison: &Comparison,
@@ -88,7 +88,7 @@ pub(super) fn lawful(
     Ok(all)
 }
 
-/// Fits them, one beside what each stands beside.
+/// Fits each law together with the hypothesis to which it is added.
 pub(super) fn fitted<'l>(
     laws: &'l [Lawful],
     main: &Bench<'_>,
@@ -97,7 +97,7 @@ pub(super) fn fitted<'l>(
     laws.iter().map(|law| law.fitted(main, test)).collect()
 }
 
-/// The one that the recordings speak for most; why it could not be fitted where none was. `runs` are those to fit.
+/// The law with the largest evidence, or the error if none could be fitted. `runs` are the training runs.
 pub(super) fn measured<'l>(
     fitted: Vec<Result<FittedLaw<'l>, DiagnoseError>>,
     comparison: &mut Comparison,
@@ -123,7 +123,8 @@ pub(super) fn measured<'l>(
 }
 
 impl FittedLaw<'_> {
-    /// Whether it predicts runs better than a hypothesis: states that nobody sees follow what they do not cause.
+    /// Whether it predicts runs better than a hypothesis: a filter may fit a hidden state to a motion that it does not
+    /// cause.
     fn predicts(
         &self,
         (other, bench): (&Fitted, &Bench<'_>),
@@ -139,7 +140,7 @@ impl FittedLaw<'_> {
     }
 }
 
-/// The equations with what a hypothesis leaves.
+/// The equations of a hypothesis with a law for its residual.
 fn beside(
     bench: &Bench<'_>,
     base: &Fitted,
@@ -168,10 +169,10 @@ fn beside(
     }))
 }
 
-/// A load, what it is, and where the search for its numbers begins.
+/// A load, its kind, and the initial values of its coefficients.
 type Found = Option<(Candidate, Kind, Vec<f64>)>;
 
-/// A force that depends on something the model knows.
+/// A force that depends on quantities of the model.
 fn of_variable(
     bench: &Bench<'_>,
     base: &Fitted,
@@ -194,13 +195,13 @@ fn of_variable(
     }))
 }
 
-/// On what a law depends, found in the same recordings, whole or in windows.
+/// The variable of a law, of the same recordings, whole or in windows.
 fn dependence<'b>(bench: &'b Bench<'_>, law: &Unnamed) -> Option<Dependence<'b>> {
     let mut all = Dependence::all(bench).into_iter();
     all.find(|one| one.name(bench) == law.variable)
 }
 
-/// A force that depends on what was before.
+/// A force with a hidden state.
 fn of_memory(bench: &Bench<'_>, memory: &Memory) -> Found {
     let scales = scales::of(&bench.set);
     let candidate = Candidate::remembering(&bench.effects.mechanism, &scales, memory)?;
@@ -209,7 +210,7 @@ fn of_memory(bench: &Bench<'_>, memory: &Memory) -> Found {
 }
 
 impl Lawful {
-    /// Fits the sizes beside all that is free under the hypothesis.
+    /// Fits the coefficients together with all free parameters of the hypothesis.
     fn fitted(&self, main: &Bench<'_>, test: &DataSet) -> Result<FittedLaw<'_>, DiagnoseError> {
         let bench = main.beside(&self.effects)?;
         let members: Vec<usize> = (0..self.effects.candidates.len()).collect();

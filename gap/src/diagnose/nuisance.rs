@@ -1,8 +1,8 @@
-//! What is free in a fit beside its members, and what is known of it beforehand.
+//! Nuisance parameters of a fit, and their priors.
 
 use appell_estimate::{Coordinate, Direction, Fit, Free, Unknown};
 
-/// What is free under a hypothesis and moves the mean.
+/// The free values of a hypothesis that affect the predicted mean.
 pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
     let free = fit.free.iter();
     free.map(|free| Direction::Value(free.unknown))
@@ -10,8 +10,8 @@ pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
         .collect()
 }
 
-/// How far a coordinate is off what is expected, and the slope of that by its value: slopes are by values, what is
-/// known beforehand is of coordinates.
+/// The deviation of a coordinate from its prior mean, in prior standard deviations, and its derivative by the value:
+/// sensitivities are by values, priors of coordinates.
 pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {
     let [expected, deviation] = free.prior?;
     let stretch = match free.coordinate {

@@ -1,8 +1,8 @@
 //! Errors of predictions over a horizon, in units of the noise, by blocks of time.
 //!
-//! A prediction starts from what the filter knows at a row and uses nothing that is measured
-//! afterwards, so that a disturbance cannot follow what a model lacks. Errors that overlap depend on
-//! each other: intervals come from a bootstrap over whole blocks (H. R. Künsch, *The jackknife and the
+//! A prediction starts from the filtered state at a row and uses no later measurement, so that process noise cannot
+//! absorb a missing effect. Errors of overlapping predictions are
+//! correlated: intervals come from a bootstrap over whole blocks (H. R. Künsch, *The jackknife and the
 //! bootstrap for general stationary observations*, Annals of Statistics 17, 1989).
 
 use std::collections::BTreeMap;
@@ -16,13 +16,13 @@ use super::bench::Bench;
 use super::evidence::Fitted;
 use crate::held_out::origins;
 
-/// Rows from which expected errors are estimated.
+/// Number of rows from which expected errors are computed.
 const EXPECTED_FROM: usize = 25;
-/// Times that disturbances are raised tenfold at most.
+/// Largest number of tenfold increases of the process noise.
 const MORE: usize = 6;
-/// Draws of the bootstrap.
+/// Number of bootstrap samples.
 const DRAWS: usize = 1000;
-/// Length of a block in horizons: errors over one overlap.
+/// Length of a block relative to the horizon, over which errors are correlated.
 const BLOCK: f64 = 1.0;
 /// The same in s for predictions of one step and of whole runs.
 const BLOCK_S: f64 = 2.0;
@@ -92,8 +92,7 @@ impl Paired {
         means
     }
 
-    /// Quantiles 2.5 and 97.5 % of a number that depends on the mean squares; the same draws in every run
-    /// of the program.
+    /// Quantiles 2.5 and 97.5 % of a function of the mean squares; with a fixed seed.
     pub(super) fn interval95(&self, number: impl Fn(&[f64]) -> f64) -> [f64; 2] {
         let mut drawn = self.drawn(number);
         drawn.sort_by(f64::total_cmp);
@@ -117,7 +116,7 @@ impl Paired {
     }
 }
 
-/// Errors of a fitted hypothesis on recordings, which need not be those that it was fitted to.
+/// Errors of a fitted hypothesis on recordings, which may differ from the training runs.
 pub(super) fn errors(
     recordings: &[Recording],
     bench: &Bench<'_>,
@@ -154,7 +153,7 @@ pub(super) fn errors(
     Ok(errors)
 }
 
-/// The error that remains where the hypothesis is right, root of the mean square.
+/// The expected error of a true hypothesis, root of the mean square.
 pub(super) fn floor(
     recordings: &[Recording],
     bench: &Bench<'_>,
@@ -188,11 +187,11 @@ pub(super) fn floor(
     Ok((squares / count.max(1.0)).sqrt())
 }
 
-/// The rig as the data set states it, with the levels of a fit.
+/// The model with the parameters stated by the data set, and the noise levels of a fit.
 pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
     let mut stated = fitted.clone();
     bench.perfected(&mut stated)?;
-    // Models without contacts that creep have fewer parameters: the first ones.
+    // Models without creeping contacts have fewer parameters: the first ones.
     let own = bench.effects.with(&fitted.members).info().parameter_len();
     for (value, parameter) in stated.fit.values[..own]
         .iter_mut()
@@ -203,8 +202,8 @@ pub(super) fn stated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Fitted, Diagn
     Ok(stated)
 }
 
-/// Values of a fit on these recordings. A filter that trusts its model so much that it loses a run
-/// which it has not seen gets more disturbance, until it follows.
+/// Values of a fit on these recordings. If the filter diverges on a run that was not fitted, its process noise is
+/// increased until it converges.
 pub(super) fn taken_over(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -228,8 +227,7 @@ pub(super) fn taken_over(
     Ok(values)
 }
 
-/// Values with which the disturbance follows what a fit lacks on the recordings that it was fitted to: over windows
-/// it was held back.
+/// Values of a fit with process noise, estimated on its training runs: fits over windows have none.
 pub(super) fn followed(
     bench: &Bench<'_>,
     fitted: &Fitted,

@@ -1,15 +1,15 @@
-//! How probable hypotheses are beforehand.
+//! Prior probabilities of hypotheses.
 
 use std::collections::BTreeSet;
 
 use crate::effects::{Candidate, EffectModel};
 
-/// Probability beforehand that there is no gap.
+/// Prior probability that there is no gap.
 pub(super) const NO_GAP: f64 = 0.5;
-/// Probability beforehand that an effect does not come alone.
+/// Prior probability that an effect is accompanied by another.
 const NOT_ALONE: f64 = 0.2;
 
-/// Names of effects; components of a vector are one.
+/// Names of effects; components of a vector are one effect.
 pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
     for name in members.iter().map(|&m| model.candidate(m).name()) {
@@ -20,7 +20,7 @@ pub(super) fn names(model: &EffectModel, members: &[usize]) -> Vec<String> {
     names
 }
 
-/// Logarithm of the probability beforehand of a hypothesis.
+/// Logarithm of the prior probability of a hypothesis.
 pub(super) fn prior(model: &EffectModel, members: &[usize]) -> f64 {
     let names = names(model, members);
     let of_names = names.iter().map(|name| of_components(model, name));
@@ -28,14 +28,14 @@ pub(super) fn prior(model: &EffectModel, members: &[usize]) -> f64 {
     of_count(model, counts.sum()) + of_names.sum::<f64>()
 }
 
-/// As how many effects one counts.
+/// Number of effects as which one counts.
 pub(super) fn counts(model: &EffectModel, name: &str) -> usize {
     let mut candidates = model.candidates.iter();
     let own = candidates.find(|own| own.name() == name);
     own.map_or(1, |own| own.counts)
 }
 
-/// The same of any hypothesis with so many effects.
+/// The same for any hypothesis with a number of effects.
 pub(super) fn of_count(model: &EffectModel, effects: usize) -> f64 {
     let candidates = model.candidates.iter();
     let names: BTreeSet<String> = candidates.map(Candidate::name).collect();
@@ -46,7 +46,7 @@ pub(super) fn of_count(model: &EffectModel, effects: usize) -> f64 {
     }
 }
 
-/// A vector may have any of its components: its probability is shared by them.
+/// The prior probability of a vector is shared by its subsets of components.
 pub(super) fn of_components(model: &EffectModel, name: &str) -> f64 {
     let components = model.candidates.iter();
     let components = components.filter(|own| own.is_component && own.name() == name);

@@ -1,4 +1,4 @@
-//! Typical sizes in recordings, which set the widths of rounded corners and the levels that are tried.
+//! Typical magnitudes in recordings, which determine the widths of smoothed corners and initial levels.
 
 mod extremes;
 
@@ -8,15 +8,15 @@ use crate::effects::{Scales, controlled};
 use crate::slope::{Slope, WINDOW};
 use extremes::{largest_of, reached};
 
-/// Places along a run at which rates are looked at.
+/// Number of points along a run at which rates are evaluated.
 const PLACES: usize = 200;
-/// Part of what is uncertain of such a slope over which signs are rounded: a filter is lost in what is much
-/// narrower than it sees, and a sign that is wider than that creeps where the mechanism sticks.
+/// Width over which the sign function is smoothed, relative to the uncertainty of such a rate: a filter diverges at a
+/// step far below its resolution, and with a wider one a sticking mechanism creeps.
 const ROUNDED: f64 = 0.17;
-/// Parts of the typical rate between which that lies: narrower signs are too stiff.
+/// Limits of that width relative to the typical rate: narrower ones are too stiff.
 const NARROW: [f64; 2] = [0.002, 0.005];
 
-/// Of the runs to fit.
+/// The typical magnitudes of the training runs.
 pub(super) fn of(set: &DataSet) -> Scales {
     let mechanism = &set.mechanism;
     let column = |role: Role| set.channels.iter().position(|channel| channel.role == role);
@@ -58,7 +58,7 @@ pub(super) fn of(set: &DataSet) -> Scales {
     }
 }
 
-/// Typical slope of a channel, and over what its sign is rounded.
+/// Typical rate of a channel, and the width over which its sign is smoothed.
 pub(super) fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let runs = set.runs.iter();
     let slopes: Vec<Slope> = runs.flat_map(|run| slopes(run, column)).collect();
@@ -75,7 +75,7 @@ pub(super) fn rates(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     Some([rate, part * rate])
 }
 
-/// Slopes of a channel at places along a run.
+/// Slopes of a channel at points along a run.
 fn slopes(run: &Run, column: usize) -> Vec<Slope> {
     let samples: Vec<(f64, f64)> = run
         .times

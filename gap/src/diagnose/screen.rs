@@ -1,8 +1,8 @@
-//! What every candidate would gain, to first order: the score of its size at zero, with what the
-//! nominal parameters can do within their tolerances taken off (C. R. Rao's score test).
+//! The expected gain of every candidate, to first order: C. R. Rao's score test of its size, projected on the
+//! complement of the sensitivities to the nominal parameters with their priors.
 //!
-//! With r the whitened innovations and S their slopes, the best step is −(SᵀS)⁻¹ Sᵀ r. Rows for what
-//! is known of the parameters beforehand stand below those of the samples.
+//! With r the whitened innovations and S their sensitivities, the best step is −(SᵀS)⁻¹ Sᵀ r. The priors of the
+//! parameters are further rows after those of the samples.
 
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -22,20 +22,20 @@ use crate::effects::{Acts, Part};
 pub(super) struct Screened {
     /// Its index.
     pub(super) candidate: usize,
-    /// What it would gain in log-likelihood, beyond what an input that knows the motion could tell.
+    /// Expected gain in log likelihood, in excess of the gain by impulses of feedback inputs.
     pub(super) gain: f64,
     /// The best sizes, one for each direction of the candidate.
     pub(super) sizes: Vec<f64>,
     /// Their standard deviations.
     pub(super) deviations: Vec<f64>,
-    /// What else its fit begins with: values of its parameters by their places, one list for each start.
+    /// Further initial values of its fit: values of its parameters by their indices, one list for each start.
     pub(super) starts: Vec<Vec<(usize, f64)>>,
-    /// By what disturbances are multiplied where its fit begins.
+    /// Factor on the process noise at the start of its fit.
     pub(super) levels: f64,
 }
 
 impl Screened {
-    /// A candidate that gains by a step which is known otherwise.
+    /// A candidate with a gain from a grid search.
     pub(super) fn tried(
         candidate: usize,
         gain: f64,
@@ -52,29 +52,29 @@ impl Screened {
         }
     }
 
-    /// The same beside disturbances that are multiplied by `levels`.
+    /// The same with process noise multiplied by `levels`.
     pub(super) fn beside(self, levels: f64) -> Self {
         Self { levels, ..self }
     }
 
-    /// The same, of whose gain inputs may tell a part.
+    /// The same, without the part of its gain that feedback inputs explain.
     pub(super) fn told(self, by_inputs: f64) -> Self {
         let gain = (self.gain - by_inputs).max(0.0);
         Self { gain, ..self }
     }
 }
 
-/// Part of a signature that nothing free can imitate, below which there is none.
+/// Relative norm of the part orthogonal to the free columns below which a column is dependent on them.
 const LEFT: f64 = 1e-4;
-/// Disturbances that do not follow what the model lacks, as a part of those that do.
+/// Factor on the process noise so that it does not absorb a missing effect.
 pub(super) const QUIET: f64 = 0.1;
 
-/// Gains below this cannot outweigh that there are many candidates, whatever a fit adds to them.
+/// Smallest gain of a promising candidate: a smaller one cannot compensate for the prior.
 pub(super) const LEAST_GAIN: f64 = 4.0;
-/// Part of the greatest gain below which no fit catches up.
+/// Smallest gain of a promising candidate relative to the largest one.
 const LEAST_PART: f64 = 0.25;
 
-/// The gain that makes a candidate worth a fit, where the best one gains so much.
+/// The smallest gain of a candidate that is worth a fit, given the largest gain.
 pub(super) fn least(best: f64) -> f64 {
     LEAST_GAIN.max(LEAST_PART * best)
 }
@@ -82,25 +82,25 @@ pub(super) fn least(best: f64) -> f64 {
 /// All candidates.
 #[derive(Debug, Clone)]
 pub(super) struct Screen {
-    /// The greatest gain first.
+    /// The candidates, with the greatest gain first.
     pub(super) list: Vec<Screened>,
 }
 
-/// Whitened innovations and their slopes, with what a hypothesis already has taken off.
+/// Whitened innovations and their sensitivities, projected on the complement of the free columns of a hypothesis.
 pub(super) struct Projected<'t> {
     pub(super) tangent: &'t Tangent,
-    /// Root of the weight of a row.
+    /// Root of the likelihood weight of a row.
     root: f64,
-    /// Orthogonal basis of what is already free.
+    /// Orthogonal basis of the free columns.
     basis: DMatrix<f64>,
-    /// Rows for what is known beforehand.
+    /// Number of rows of the priors.
     prior_rows: usize,
-    /// Innovations that remain.
+    /// Projected innovations.
     pub(super) rest: DVector<f64>,
 }
 
 impl<'t> Projected<'t> {
-    /// About a fit; `tangent` starts with the directions that are already free, and some `others` are.
+    /// About a fit; the first directions of `tangent` and the `others` are free.
     pub(super) fn new(
         (tangent, weight): (&'t Tangent, f64),
         fitted: &Fitted,
@@ -140,7 +140,7 @@ impl<'t> Projected<'t> {
         }
     }
 
-    /// Log-likelihood at the best values of what is free.
+    /// Log likelihood, maximised over the free directions.
     pub(super) fn log_likelihood(&self) -> f64 {
         let samples = self.tangent.samples.iter();
         let scales: f64 = samples
@@ -149,7 +149,7 @@ impl<'t> Projected<'t> {
         -0.5 * (self.root * self.root * scales + self.rest.norm_squared())
     }
 
-    /// Slopes of some columns that nothing free can imitate.
+    /// Projected sensitivities of some columns.
     pub(super) fn slopes(&self, columns: &[usize]) -> DMatrix<f64> {
         let samples = self.tangent.samples.len();
         let mut slopes = DMatrix::zeros(samples + self.prior_rows, columns.len());
@@ -158,16 +158,16 @@ impl<'t> Projected<'t> {
                 .view_mut((0, place), (samples, 1))
                 .copy_from(&(self.root * self.tangent.slopes.column(column)));
         }
-        // Turned, the product runs along the memory.
+        // The transpose is contiguous in memory for the product.
         let along = self.basis.transpose() * &slopes;
         slopes -= &self.basis * along;
         slopes
     }
 }
 
-/// An orthonormal basis of the columns, without those that follow from others.
+/// An orthonormal basis of the span of the columns.
 fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
-    /// Part of a column that has to be new.
+    /// Smallest relative norm of the part of an independent column that is orthogonal to the others.
     const NEW: f64 = 1e-6;
     let mut basis: Vec<DVector<f64>> = Vec::new();
     for column in columns.column_iter() {
@@ -192,7 +192,7 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 }
 
 impl Screen {
-    /// About a fit, of all candidates that it does not have.
+    /// Screens all candidates that are not members of a fit.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let mut screen = Self::first_order((bench, fitted))?;
         let best = screen.list.first().map_or(0.0, |best| best.gain);
@@ -202,7 +202,7 @@ impl Screen {
         Ok(screen)
     }
 
-    /// All but those that bring a coordinate.
+    /// Screens all candidates without an additional coordinate.
     fn first_order((bench, fitted): (&Bench<'_>, &Fitted)) -> Result<Self, DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
@@ -231,7 +231,7 @@ impl Screen {
     }
 }
 
-/// Multiplies the disturbances among values.
+/// Multiplies the process noise among values.
 pub(super) fn quieten(
     estimation: &Estimation<'_>,
     values: &mut [f64],
@@ -243,7 +243,7 @@ pub(super) fn quieten(
     Ok(())
 }
 
-/// Candidates that do something, but nothing about a fit that what is free there cannot do as well.
+/// Candidates whose sensitivities about a fit are non-zero, but linearly dependent on those of its free parameters.
 pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>, DiagnoseError> {
     let setup = bench.whole_setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
@@ -265,7 +265,7 @@ pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>,
     Ok(imitated.map(|(candidate, _)| candidate).collect())
 }
 
-/// What is free, then the directions of all candidates that a hypothesis does not have; which are whose.
+/// The free directions, then those of all candidates outside a hypothesis; and the columns of each candidate.
 fn others(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -286,7 +286,7 @@ fn others(
     (directions, columns)
 }
 
-/// Shapes of candidates that are not members stand where their spec has them.
+/// Sets candidates that are not members to zero size, with the shapes of their specs.
 pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
     let info = bench.effects.info();
     for (index, candidate) in bench.effects.candidates.iter().enumerate() {
@@ -302,7 +302,7 @@ pub(super) fn shapes(bench: &Bench<'_>, values: &mut [f64], members: &[usize]) {
     }
 }
 
-/// Directions in which a candidate starts from zero.
+/// The directions of a candidate at zero size.
 pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> {
     let candidate = bench.candidate(candidate);
     let value = |unknown| vec![Direction::Value(unknown)];
@@ -325,7 +325,7 @@ pub(super) fn directions(bench: &Bench<'_>, candidate: usize) -> Vec<Direction> 
     }
 }
 
-/// Which directions have one side only.
+/// Which directions are one-sided.
 pub(super) fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
     let candidate = bench.candidate(candidate);
     let info = bench.effects.info();
@@ -341,7 +341,7 @@ pub(super) fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
     }
 }
 
-/// The best step along the columns of a candidate, without those that would leave their side.
+/// The best step along the columns of a candidate, without one-sided ones of the wrong sign.
 fn screened(
     projected: &Projected<'_>,
     candidate: usize,

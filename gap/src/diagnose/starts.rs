@@ -1,4 +1,4 @@
-//! The values from which searches and predictions start.
+//! Initial values of searches and predictions.
 
 use appell_estimate::{Estimation, Setup, Unknown};
 
@@ -8,12 +8,12 @@ use super::evidence::Fitted;
 use crate::effects::Part as Role;
 use crate::identify::begin;
 
-/// First values are this many times less certain than a measurement: they are measured again by the first row.
+/// Factor on the standard deviation of initial values that are measured: the filter uses the first row once more.
 const CAUTION: f64 = 10.0;
 
 impl Bench<'_> {
-    /// States at the first rows. Channels are read as the model has them without members: what these show in their
-    /// place is near.
+    /// States at the first rows. Channels are assumed to measure the quantities of the model without members; the
+    /// outputs that replace them are close.
     pub(super) fn begin(
         &self,
         estimation: &Estimation<'_>,
@@ -28,19 +28,19 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// Values of a hypothesis for another filter: what both have is taken over.
+    /// Values of a hypothesis for another filter, as far as both have them.
     pub(super) fn carried(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
         self.carried_by(from, to, Some)
     }
 
-    /// The same for other equations, with parameters by their names.
+    /// The same for other equations, with parameters matched by name.
     pub(super) fn carried_by_name(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
         let (was, is) = (self.effects.info(), to.setup().model.info());
         let before = |place: usize| was.parameter_index(&is.parameters[place].name);
         self.carried_by(from, to, before)
     }
 
-    /// `before` tells the place that a parameter had.
+    /// `before` gives the former index of a parameter.
     fn carried_by(
         &self,
         from: &Fitted,
@@ -62,7 +62,7 @@ impl Bench<'_> {
                 Unknown::Scale(channel),
             ];
             pairs.extend(of_channel.map(same));
-            // A channel that is never late has no delay.
+            // A channel without a delay has no such value.
             if setup.channels[channel].longest_delay.is_some() {
                 pairs.push(same(Unknown::SensorDelay(channel)));
             }
@@ -80,8 +80,8 @@ impl Bench<'_> {
             let lag = |setup: &Setup<'_>| setup.lag_of_channel(channel).map(Unknown::Lag);
             pairs.extend(lag(&was).zip(lag(setup)));
         }
-        // Other recordings begin as those that were fitted did. Coordinates follow the pseudo-velocities,
-        // of which there may be one more.
+        // The initial states of other recordings have the distribution of those that were fitted. Coordinates come
+        // after the pseudo-velocities, of which there may be one more.
         let speeds = [was.model.info().speeds, info.speeds];
         for run in 0..to.recordings().len() {
             let old = run.min(self.recordings.len() - 1);
@@ -106,14 +106,14 @@ impl Bench<'_> {
         values
     }
 
-    /// The coordinates that members bring begin somewhere within their sizes, and soon find their places.
+    /// Sets the initial uncertainty of additional and hidden coordinates; the filter soon converges.
     pub(super) fn hide(
         &self,
         members: &[usize],
         estimation: &Estimation<'_>,
         values: &mut [f64],
     ) -> Result<(), DiagnoseError> {
-        /// Part of a size by which the rate changes in a second.
+        /// Initial standard deviation of the rate, in sizes per second.
         const CROSSED: f64 = 1.0;
         let (info, layout) = (estimation.setup().model.info(), estimation.layout());
         for candidate in members.iter().map(|&member| self.candidate(member)) {
@@ -139,7 +139,7 @@ impl Bench<'_> {
     }
 }
 
-/// Channels that lag begin near their first readings.
+/// Sets the initial lag states of channels near their first readings.
 fn begin_lags(estimation: &Estimation<'_>, values: &mut [f64]) {
     let (setup, layout) = (estimation.setup(), estimation.layout());
     for channel in 0..setup.channels.len() {
@@ -156,7 +156,7 @@ fn begin_lags(estimation: &Estimation<'_>, values: &mut [f64]) {
     }
 }
 
-/// Where a state stood in a model with other pseudo-velocities; nothing for one that it did not have.
+/// Index of a state in a model with other pseudo-velocities; `None` for one that it did not have.
 fn moved(state: usize, [was, is]: [usize; 2]) -> Option<usize> {
     if state < is {
         (state < was).then_some(state)

@@ -1,5 +1,5 @@
-//! What people look at of the runs that were held out: channels beside predictions of them, and how
-//! errors grow with the horizon.
+//! Plots of held-out runs: channels with their predictions, and errors over the
+//! horizon.
 
 use appell_estimate::Estimation;
 
@@ -13,9 +13,9 @@ use super::prediction::{noise, stated, taken_over};
 use super::report::{Ahead, Trace};
 use crate::held_out::{AHEAD, HORIZONS, origins};
 
-/// Most points of a trace.
+/// Largest number of points of a trace.
 const POINTS: usize = 1000;
-/// Rows from which the expected error is estimated.
+/// Number of rows from which the expected error is computed.
 const EXPECTED_FROM: usize = 25;
 
 impl HeldOut {
@@ -97,7 +97,7 @@ impl HeldOut {
         Ok(traces)
     }
 
-    /// Predictions of the first run in SI, by channel and row; NaN where nothing is predicted.
+    /// Predictions of the first run in SI, by channel and row; NaN without a prediction.
     fn predicted(
         &self,
         bench: &Bench<'_>,
@@ -116,7 +116,7 @@ impl HeldOut {
         Ok(predicted)
     }
 
-    /// Standard deviations in SI that errors have if a hypothesis is right, by channel.
+    /// Expected standard deviations of the errors of a true hypothesis in SI, by channel.
     fn deviations(&self, bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<f64>, DiagnoseError> {
         let setup = bench.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;

@@ -1,5 +1,5 @@
-//! Hypotheses under two names that say the same of every motion: a bias of a motor and a constant force where it
-//! acts, say. No experiment tells them apart, so they share one probability.
+//! Equivalent hypotheses with different names, such as a bias of a motor and a constant force along it.
+//! No experiment can distinguish them, so they share one probability.
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -8,8 +8,8 @@ use super::compare::Comparison;
 use super::screen::imitated;
 use crate::effects::Acts;
 
-/// Places of the fits that say the same as the best one: their evidence is the same as far as searches go, and at
-/// the best one nothing of what they have besides is new.
+/// Indices of the fits that are equivalent to the best one: their evidence is the same within the accuracy of searches,
+/// and about the best one the sensitivities of their other members are linearly dependent.
 pub(super) fn of_best(
     bench: &Bench<'_>,
     comparison: &Comparison,
@@ -25,7 +25,7 @@ pub(super) fn of_best(
         return Ok(Vec::new());
     }
     let imitated = imitated(bench, best)?;
-    // Lags and delays are alike where they are short, and not the same.
+    // Short lags and delays are similar, but not equivalent.
     let is_late = |member: usize| {
         let acts = bench.candidate(member).acts;
         matches!(

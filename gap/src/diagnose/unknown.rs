@@ -1,11 +1,11 @@
-//! What nobody has named: a force in an equation or an error of a channel, as a law of a position, a
-//! rate, an input, or a channel that was recorded beside them. A law is a sum of waves of the variable
-//! whose sizes fall off as those of a law with a step do, or one wave alone. About the best hypothesis
-//! they tell what it leaves and on what that depends. Forces may also remember: a mass that swings by itself,
-//! friction that gives way before it slides.
+//! Nonparametric laws outside the library: a force in an equation or an error of a channel, as a function of a
+//! position, a rate, an input, or a recorded channel that is not in the model. A law is a sum of harmonics of the
+//! variable whose prior amplitudes decrease like those of a law with a step, or a single harmonic. Fitted in addition to
+//! the best hypothesis, they describe its residual and the variable on which it depends. Forces may also have a hidden
+//! state: an oscillating mass, friction with presliding displacement.
 //!
-//! A law has to predict runs that it was not found in: what does not return with the state is a disturbance,
-//! and there are levels for these. What walks in time has to walk alike in every run.
+//! A law has to predict runs to which it was not fitted: a force that is no function of the state is process noise.
+//! A drift has to be the same in every run.
 
 mod dependence;
 mod hysteresis;
@@ -30,54 +30,53 @@ pub(super) use dependence::Dependence;
 use memory::Memories;
 pub(super) use series::{LawGain, Series, TermScores};
 
-/// Part of its gain that a law has to repeat on runs that it was not found in.
+/// Smallest cross-validated gain of a law relative to its gain on all runs.
 const REPEATED: f64 = 0.5;
-/// Disturbances follow what the model lacks. The laws that gained most are looked for again beside disturbances that
-/// are quieter by this part each time, as long as the best one gains by it, no more often than this.
+/// Process noise absorbs missing effects. The laws with the largest gains are therefore evaluated again with process
+/// noise reduced by this factor each time, while that increases the largest gain, at most so many times.
 const LEVELS: usize = 7;
 const QUIETER: f64 = 0.55;
 const MOST: usize = 8;
 
-/// What a law that nobody has named would gain beside a hypothesis.
+/// A nonparametric law with its expected gain in addition to a hypothesis.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Unnamed {
-    /// What it adds to.
+    /// Whether it is a force or an error of a channel.
     pub(super) along: Along,
-    /// Index of the pseudo-velocity whose equation has it, or of the channel.
+    /// Index of the pseudo-velocity in whose equation it acts, or of the channel.
     pub(super) place: usize,
-    /// On what it depends, also in words.
+    /// Its variable, also in words.
     pub(super) on: On,
     pub(super) variable: String,
     /// Gain in log-likelihood.
     pub(super) gain: f64,
-    /// Gain on runs that it was not found in.
+    /// Gain on runs to which it was not fitted.
     pub(super) cross_validated: f64,
     /// Logarithm of the Bayes factor for it.
     pub(super) log_bayes_factor: f64,
 }
 
-/// On what a law depends.
+/// The variable of a law.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) enum On {
-    /// On a variable; with the number of its wave, if that is one alone.
+    /// A variable; with the number of a single harmonic.
     Variable(Option<usize>),
-    /// On what was before, with a first estimate of its numbers.
+    /// A hidden state, with a first estimate of its coefficients.
     Memory(Memory),
 }
 
-/// All of them together.
+/// The laws for the residual of a hypothesis.
 #[derive(Debug, Clone)]
 pub(super) struct Leftover {
-    /// The one that the recordings speak for most.
+    /// The most probable one.
     pub(super) first: Unnamed,
-    /// Logarithm of the Bayes factor for any of them, all alike beforehand.
+    /// Log Bayes factor for any of them, all with the same prior.
     pub(super) log_bayes_factor: f64,
-    /// The same beside the disturbances of the fit alone: disturbances may also be quieter beside other hypotheses.
+    /// The same with the process noise of the fit alone: less process noise may also favour other hypotheses.
     pub(super) beside_fitted: f64,
 }
 
-/// What a hypothesis leaves that a law without a name explains; nothing where no law generalises
-/// other runs.
+/// The laws for the residual of a hypothesis; `None` if no law generalises to other runs.
 pub(super) fn leftover(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -98,7 +97,7 @@ pub(super) fn leftover(
     order.truncate(MOST);
     kinds = order.iter().map(|&place| kinds[place]).collect();
     let memory = with_memory((bench, &estimation), fitted)?;
-    // The law that is told is one beside the disturbances of the fit.
+    // The reported law is that with the process noise of the fit.
     let [smooth, single] = families.clone();
     let told = joined([smooth, single, memory.clone()]);
     let mut best = order
@@ -107,7 +106,7 @@ pub(super) fn leftover(
     let mut quiet = fitted.clone();
     for _ in 0..LEVELS {
         quieten(&estimation, &mut quiet.fit.values, QUIETER)?;
-        // A filter that trusts the model more may lose a run.
+        // With less process noise the filter may diverge.
         let Ok(gains) = of_variables(
             (bench, &estimation),
             &quiet,
@@ -136,7 +135,7 @@ pub(super) fn leftover(
     }))
 }
 
-/// What laws of variables may depend on, and what they may add to.
+/// The variables of laws, each with the kind of their effect, forces or errors of channels.
 fn kinds<'b>(bench: &'b Bench<'_>) -> Vec<(Dependence<'b>, Along)> {
     let all = Dependence::all(bench).into_iter();
     all.flat_map(|one| {
@@ -147,8 +146,8 @@ fn kinds<'b>(bench: &'b Bench<'_>) -> Vec<(Dependence<'b>, Along)> {
     .collect()
 }
 
-/// Adds the laws of variables beside the disturbances of a fit. They gain over what the recordings are worth with the
-/// disturbances that were fitted, which is `base` from the first law on. Returns the greatest gain of each kind.
+/// Adds the laws of variables with the process noise of a fit. Gains are relative to the log likelihood of the first
+/// call, with the fitted process noise, which is stored in `base`. Returns the greatest gain of each kind.
 fn of_variables(
     (bench, estimation): (&Bench<'_>, &Estimation<'_>),
     fitted: &Fitted,
@@ -180,8 +179,8 @@ fn of_variables(
     Ok(gains)
 }
 
-/// The same of forces that depend on what was before: they have few numbers, as effects do, where a law of a
-/// variable may be any function.
+/// The same for forces with a hidden state only: like effects they have few parameters, whereas a law of a variable is
+/// an arbitrary function.
 pub(super) fn remembered(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -192,7 +191,7 @@ pub(super) fn remembered(
     Ok(joined([Family::new(), Family::new(), memory]))
 }
 
-/// Forces that depend on what was before.
+/// Forces with a hidden state.
 fn with_memory(
     (bench, estimation): (&Bench<'_>, &Estimation<'_>),
     fitted: &Fitted,
@@ -229,7 +228,7 @@ fn with_memory(
     Ok(family)
 }
 
-/// A law of a dependence at a place.
+/// A law of a variable in an equation or a channel.
 fn unnamed((on, variable): (On, String), (along, place): (Along, usize), law: LawGain) -> Unnamed {
     Unnamed {
         along,
@@ -242,7 +241,7 @@ fn unnamed((on, variable): (On, String), (along, place): (Along, usize), law: La
     }
 }
 
-/// What the waves of a dependence tell of the force in each equation, or of the error of each channel.
+/// The scores of the harmonics of a variable for the force in each equation, or for the error of each channel.
 pub(super) fn wave_scores(
     (bench, estimation): (&Bench<'_>, &Estimation<'_>),
     fitted: &Fitted,
@@ -261,7 +260,7 @@ pub(super) fn wave_scores(
     term_scores((bench, estimation), fitted, shapes)
 }
 
-/// The same of any terms.
+/// The same for any terms.
 pub(super) fn term_scores(
     (bench, estimation): (&Bench<'_>, &Estimation<'_>),
     fitted: &Fitted,
@@ -314,7 +313,7 @@ impl Family {
     }
 }
 
-/// All kinds are as probable beforehand, and so are the laws of a kind.
+/// All kinds have the same prior probability, and so have all laws of a kind.
 fn joined<const KINDS: usize>(families: [Family; KINDS]) -> Option<Leftover> {
     let weighed = families.into_iter().flat_map(|family| {
         let weight = -((KINDS * family.tried.max(1)) as f64).ln();
@@ -331,8 +330,8 @@ fn joined<const KINDS: usize>(families: [Family; KINDS]) -> Option<Leftover> {
     })
 }
 
-/// Channels that the model does not know and on which the gap of a hypothesis depends, each with the
-/// place where it shows most: one false one in twenty.
+/// Channels outside the model on which the gap of a hypothesis depends, each with the equation of the strongest
+/// dependence: those with odds of at least twenty, corrected for the number tried.
 pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;

@@ -1,17 +1,16 @@
-//! Channels that were recorded and that the model does not know, with their rates: what the gap may
-//! depend on.
+//! Recorded channels outside the model, with their rates: possible variables of the gap.
 
 use crate::slope::{Slope, WINDOW};
 use appell_recordings::{DataSet, Role, Run};
 
-/// Part of a channel's variance that a straight line over time has to leave: what does not return
-/// tells the time.
+/// Smallest residual variance of a channel about a straight line over time: a monotonic channel only encodes the
+/// time.
 const RETURNS: f64 = 0.1;
 
 /// A channel or its rate along the runs to fit.
 #[derive(Debug, Clone)]
 pub(super) struct UnmodelledChannel {
-    /// What it is called.
+    /// Its name.
     pub(super) name: String,
     /// Its lowest and its highest value.
     pub(super) range: (f64, f64),
@@ -40,7 +39,7 @@ impl UnmodelledChannel {
         all
     }
 
-    /// Unless it never changes, or only tells the time.
+    /// `None` for a channel that is constant or only encodes the time.
     fn new(name: String, runs: &[Run], values: Vec<Vec<f64>>) -> Option<Self> {
         let seen = values.iter().flatten().filter(|value| value.is_finite());
         let range = seen.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), &value| {
@@ -76,7 +75,7 @@ fn rates(times: &[f64], values: &[f64]) -> Vec<f64> {
     (0..rows).map(rate).collect()
 }
 
-/// Part of the variance that a straight line over time leaves.
+/// Relative residual variance about a straight line over time.
 fn left_by_a_line(times: &[f64], values: &[f64]) -> f64 {
     let seen: Vec<(f64, f64)> = (times.iter().copied().zip(values.iter().copied()))
         .filter(|(_, value)| value.is_finite())

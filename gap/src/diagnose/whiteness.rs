@@ -1,7 +1,7 @@
-//! How many innovations tell something of their own.
+//! Effective sample size of innovations.
 //!
-//! Innovations are white where the model and its levels are right. Where they follow each other, n of
-//! them tell as much as n / (1 + 2 Σ ρₖ) that do not (G. E. P. Box, G. M. Jenkins and G. C. Reinsel,
+//! Innovations are white if the model and its noise levels are right. If they are autocorrelated, n of
+//! them count as n / (1 + 2 Σ ρₖ) independent ones (G. E. P. Box, G. M. Jenkins and G. C. Reinsel,
 //! *Time Series Analysis*, 4th edition, 2008, section 2.1).
 
 use appell_estimate::{Estimation, Innovation};
@@ -10,12 +10,12 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
 
-/// Longest distance in samples over which they are compared.
+/// Largest lag in samples.
 const FARTHEST: usize = 100;
-/// A correlation below so many of its standard deviations is none, nor is any farther on.
+/// Significance of a correlation in standard deviations; lags after the first insignificant one do not count.
 const NONE: f64 = 3.0;
 
-/// Part of the samples that counts, from 0 to 1.
+/// Effective sample size relative to the number of samples, from 0 to 1.
 pub(super) fn independent(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
@@ -34,7 +34,7 @@ pub(super) fn independent(bench: &Bench<'_>, fitted: &Fitted) -> Result<f64, Dia
     Ok(if all > 0.0 { counted / all } else { 1.0 })
 }
 
-/// 1 + 2 Σ ρₖ over the distances at which samples follow each other.
+/// 1 + 2 Σ ρₖ over the lags with a significant correlation.
 fn following(series: &[Vec<f64>]) -> f64 {
     let together = |distance: usize| {
         let (mut sum, mut pairs) = (0.0, 0.0);
@@ -63,7 +63,7 @@ fn following(series: &[Vec<f64>]) -> f64 {
 mod tests {
     use super::*;
 
-    /// A sequence in which each number keeps a part of the one before it.
+    /// An autoregressive sequence of first order.
     fn kept(part: f64) -> Vec<f64> {
         let mut random = fastrand::Rng::with_seed(5);
         let mut last = 0.0;

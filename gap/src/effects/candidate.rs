@@ -8,7 +8,7 @@ use super::load::Stated;
 use super::place::Source;
 use super::site::{Site, Sites};
 
-/// Stands for the places of an effect that all drives have.
+/// Site name of an effect at all drives.
 const DRIVES: &str = "drives";
 
 /// How a candidate acts.
@@ -33,7 +33,7 @@ pub enum Acts {
 }
 
 impl Acts {
-    /// The channel that is not perfect, if it acts by one.
+    /// The imperfect channel, for an effect of a sensor.
     pub(crate) const fn channel(self) -> Option<usize> {
         match self {
             Self::Bias(channel)
@@ -44,7 +44,7 @@ impl Acts {
         }
     }
 
-    /// The same by a channel at another place; nothing where it has none, or for what is not of a channel.
+    /// The same with the index of its channel mapped; `None` where the channel has no image, or for other effects.
     pub(crate) fn moved(self, place: impl Fn(usize) -> Option<usize>) -> Option<Self> {
         match self {
             Self::Bias(channel) => place(channel).map(Self::Bias),
@@ -61,27 +61,27 @@ impl Acts {
 pub(crate) enum Part {
     /// Size of the effect; zero without it.
     Size,
-    /// Its shape, relevant if the size is not zero: of one sign, or of any with this standard deviation beforehand.
+    /// Shape of the effect, undetermined at size zero: of fixed sign, or of any sign with this prior standard deviation.
     Shape(Option<f64>),
     /// Switch: one with the effect, zero without.
     Switch,
-    /// A number in one of many terms; normal beforehand with this mean and standard deviation.
+    /// A coefficient with a normal prior of this mean and standard deviation.
     Term([f64; 2]),
 }
 
 impl Part {
-    /// Whether it says nothing without a size.
+    /// Whether it is undetermined at size zero.
     pub(crate) const fn is_shape(self) -> bool {
         matches!(self, Self::Shape(_))
     }
 }
 
-/// An effect at a place.
+/// An effect at a site.
 #[derive(Debug, Clone)]
 pub struct Candidate {
     /// Kind of the effect.
     pub kind: String,
-    /// The place.
+    /// Name of the site.
     pub site: String,
     /// The drives, where it acts at all of them.
     pub(super) drives: Vec<String>,
@@ -97,23 +97,23 @@ pub struct Candidate {
     pub(crate) parameters: Vec<(String, Part)>,
     /// Prefix of its names in the spec.
     pub(super) stem: String,
-    /// Centre of mass of the body where it acts, if it acts at one.
+    /// Centre of mass of the body on which it acts, if any.
     pub(super) centre: Option<String>,
     /// Items for the spec.
     pub(super) items: String,
-    /// The pseudo-velocity beside which it brings a coordinate of its own, if it brings any. That one and
-    /// its rate are the last ones among the coordinates and the rates of a model that it alone has.
+    /// The pseudo-velocity of the joint, for an effect with an additional coordinate. Such an effect has its own model,
+    /// whose last coordinate and pseudo-velocity are the additional ones.
     pub(crate) brings: Option<usize>,
-    /// Every model with it has a coordinate more, the last one, that nothing disturbs and nobody sees: standard
-    /// deviations with which its rate and itself begin.
+    /// For a law with a hidden state: initial standard deviations of its rate and of its coordinate, the last one of
+    /// the model, which is not measured and has no process noise.
     pub(crate) hides: Option<[f64; 2]>,
     /// Additions to inputs: name and expression.
     pub(crate) added: Vec<(String, String)>,
-    /// What is added to the expression of a load.
+    /// The load that it limits, with the term added to its expression.
     pub(super) limits: Option<(Stated, String)>,
-    /// As how many effects it counts beforehand.
+    /// Number of effects as which it counts in the prior.
     pub(crate) counts: usize,
-    /// What channels show in place of a coordinate or pseudo-velocity: its name and an output.
+    /// Outputs that channels measure instead of a coordinate or pseudo-velocity: its name and the output.
     pub(crate) shows: Vec<(String, String)>,
     /// Its file, for effects of users.
     pub(super) source: Option<Source>,
@@ -125,13 +125,13 @@ impl Candidate {
         format!("{}@{}", self.kind, self.site)
     }
 
-    /// What it adds to a spec, its sizes at zero.
+    /// The items that it adds to a spec, with sizes of zero.
     pub fn items(&self) -> &str {
         &self.items
     }
 
-    /// A force beside a pseudo-velocity that is no effect of the library: `force` in the language of a spec, where
-    /// `{law}` stands before the names of its numbers. Each of these has a unit, and what is known beforehand.
+    /// A measured force along a pseudo-velocity, no effect of the library: `force` is an expression of the spec
+    /// language, in which `{law}` is the prefix of its coefficients. Each of these has a unit and a normal prior.
     pub(crate) fn measured(
         mechanism: &Mechanism,
         speed: &str,
@@ -162,7 +162,7 @@ impl Candidate {
             site: speed.to_owned(),
             drives: Vec::new(),
             family: Family::Force,
-            about: format!("the measured force beside {speed}"),
+            about: format!("measured force along {speed}"),
             is_component: false,
             acts: Acts::Items,
             parameters: terms,
@@ -184,7 +184,7 @@ impl Candidate {
         !self.drives.is_empty()
     }
 
-    /// Its places in the mechanism.
+    /// Its sites in the mechanism.
     pub(crate) fn sites(&self) -> Vec<String> {
         match self.drives.as_slice() {
             [] => vec![self.site.clone()],
@@ -192,7 +192,7 @@ impl Candidate {
         }
     }
 
-    /// What is expected of the numbers of its terms.
+    /// Prior means of its coefficients.
     pub(crate) fn expected(&self) -> Vec<f64> {
         let expected = |(_, part): &(String, Part)| match part {
             Part::Term([expected, _]) => Some(*expected),
@@ -201,18 +201,18 @@ impl Candidate {
         self.parameters.iter().filter_map(expected).collect()
     }
 
-    /// Whether it lets a contact slide.
+    /// Whether it replaces rolling of a contact by creep.
     pub(super) fn creeps(&self) -> bool {
         self.family == Family::Constraint
     }
 
-    /// What follows its name in the name of one of its parameters.
+    /// The name of one of its parameters without the prefix.
     pub(crate) fn short<'p>(&self, parameter: &'p str) -> &'p str {
         let short = parameter.strip_prefix(self.stem.as_str());
         short.map_or(parameter, |short| short.trim_start_matches('_'))
     }
 
-    /// Its parameters alone.
+    /// The candidate with the declarations of its parameters only.
     pub(super) fn declared(&self) -> Self {
         let mut document: DocumentMut = self.items.parse().unwrap_or_default();
         document.retain(|section, _| section == "parameters");
@@ -222,7 +222,7 @@ impl Candidate {
         }
     }
 
-    /// No force along the coordinate where it acts.
+    /// A zero force along its coordinate, as an expression.
     pub(super) fn nothing(&self) -> String {
         let words = self.source.iter().flat_map(|source| &source.words);
         let mut units = words.filter(|(word, _)| word == "force");
@@ -230,7 +230,7 @@ impl Candidate {
         format!("0 [{unit}]")
     }
 
-    /// With the placeholders that are known once its mechanism has equations.
+    /// Replaces the placeholders that depend on the equations of motion.
     pub(super) fn told(&self, words: &[(&str, &str)]) -> Self {
         Self {
             items: filled(&self.items, words),
@@ -268,7 +268,7 @@ impl Candidate {
         Ok(candidates)
     }
 
-    /// An effect at all drives: each has sizes of its own.
+    /// An effect at all drives, with sizes for each of them.
     fn together(
         effect: &Effect,
         mechanism: &Mechanism,
@@ -312,7 +312,7 @@ impl Candidate {
         let own = variant
             .iter()
             .map(|(word, text)| (word.as_str(), text.as_str()));
-        // The words of a variant may themselves mean words of the place.
+        // Placeholders of a variant may contain placeholders of the site.
         let of_site = site.words.iter().map(|(word, text)| (*word, text.as_str()));
         words.extend(own.chain(of_site));
         let filled = filled(&filled(&effect.text, &words), &words);
@@ -404,7 +404,7 @@ impl Candidate {
     }
 }
 
-/// Adds the sections of a part, which has other names.
+/// Adds the sections of another document; their keys are disjoint.
 fn merge(items: &mut DocumentMut, part: &DocumentMut) {
     for (section, own) in part.iter() {
         let whole = items
@@ -419,7 +419,7 @@ fn merge(items: &mut DocumentMut, part: &DocumentMut) {
     }
 }
 
-/// What channels show in place of coordinates and pseudo-velocities, as outputs of its own.
+/// Moves the section `[channel]` to outputs: the measured quantities with the outputs that replace them.
 fn shown(document: &mut DocumentMut, id: &str) -> Vec<(String, String)> {
     let channel = document.remove("channel");
     let channel = channel.iter().flat_map(texts);
@@ -438,7 +438,7 @@ fn shown(document: &mut DocumentMut, id: &str) -> Vec<(String, String)> {
     shows
 }
 
-/// A text with what stands for its words.
+/// Replaces the placeholders of a text.
 pub(super) fn filled(text: &str, words: &[(&str, &str)]) -> String {
     let mut text = text.to_owned();
     for (word, meaning) in words {
@@ -457,7 +457,7 @@ fn texts(item: &Item) -> Vec<(String, String)> {
         .collect()
 }
 
-/// Puts the value of a product such as `0.5*12.3` in its place.
+/// Replaces a product such as `0.5*12.3` by its value.
 fn compute(table: &mut dyn TableLike, key: &str) -> Result<(), String> {
     let Some(text) = table.get(key).and_then(Item::as_str).map(str::to_owned) else {
         return Ok(());
@@ -476,7 +476,7 @@ fn number(item: &Item) -> Option<f64> {
     item.as_float().or_else(whole)
 }
 
-/// A name that is a valid identifier: columns may have any.
+/// A valid identifier for a name; those of columns are arbitrary.
 pub(super) fn identifier(name: &str) -> String {
     let valid = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
     name.chars().map(valid).collect()

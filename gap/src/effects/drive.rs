@@ -3,7 +3,7 @@
 use appell_runtime::model::{At, Model};
 use nalgebra::DMatrix;
 
-/// Largest relative variation of a lever along the range.
+/// Largest relative variation of a constant lever along the range.
 const SAME: f64 = 1e-9;
 /// Range of the coordinates, in SI.
 const AWAY: f64 = 0.3;
@@ -18,7 +18,7 @@ pub(crate) struct Drive {
 }
 
 impl Drive {
-    /// Of a model with some parameters; nothing where no input acts, or one through a lever that changes.
+    /// The drive of a pseudo-velocity; `None` if no input acts along it, or one through a varying lever.
     pub(crate) fn of(model: &dyn Model, p: &[f64], speed: usize) -> Option<Self> {
         let info = model.info();
         let (s, inputs) = (info.speeds, info.declared_inputs);

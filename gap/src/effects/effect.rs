@@ -5,25 +5,25 @@
 //! family   = "force"                 # force, parameter, actuator, sensor, constraint, joint
 //! site     = "coordinate"            # see SiteKind
 //! about    = "spring at {site}"
-//! words    = { part = "0.5" }        # what further words in the text stand for
-//! variants = [{ axis = "x" }]        # each a hypothesis of its own, with words of its own
-//! vector   = true                    # the variants are components, which may come together
-//! together = true                    # where many coordinates are driven: at all of them, as one hypothesis more
-//! counts   = 2                       # as how many effects it counts beforehand
-//! switch   = "{effect}_on"           # a parameter that is 1 where the effect is there
-//! filter   = "lag"                   # what acts beside the equations: lag, delay, bias, scale, late, slow
+//! words    = { part = "0.5" }        # further placeholders and their texts
+//! variants = [{ axis = "x" }]        # separate hypotheses, each with its own placeholders
+//! vector   = true                    # the variants are components of one vector
+//! together = true                    # also as one hypothesis at all drives, where there are many
+//! counts   = 2                       # number of effects as which it counts in the prior
+//! switch   = "{effect}_on"           # a parameter that is 1 with the effect and 0 without
+//! filter   = "lag"                   # outside the equations of motion: lag, delay, bias, scale, late, slow
 //!
-//! [parameters]                       # value 0: how much of the effect there is; other values: its shape
+//! [parameters]                       # value 0: size of the effect; other values: its shape
 //! "{effect}_stiffness" = { value = 0, unit = "{force}/({unit})" }
 //!
 //! [loads]                            # and any other section of the spec language
 //! "{effect}" = { kind = "generalized", coordinate = "{site}", force = "-{effect}_stiffness*{site}" }
 //!
-//! [input]                            # what is added to an input wherever it acts
+//! [input]                            # terms added to an input wherever it acts
 //!
-//! [load]                             # what is added to the expression of a load
+//! [load]                             # terms added to the expression of a load
 //!
-//! [channel]                          # what channels show in place of a coordinate or pseudo-velocity; an empty
+//! [channel]                          # quantities measured instead of a coordinate or pseudo-velocity; an empty
 //! "{site}" = "{site} + {effect}"     # text changes nothing
 //! ```
 
@@ -68,7 +68,7 @@ impl Family {
         }
     }
 
-    /// Location of a gap of this family; play of a joint is a violated constraint.
+    /// Domain of a gap of this family; backlash of a joint is a violated constraint.
     pub const fn domain(self) -> &'static str {
         match self {
             Self::Joint => Self::Constraint.word(),
@@ -123,9 +123,9 @@ pub struct Effect {
     pub(super) variants: Vec<Vec<(String, String)>>,
     /// Whether the variants are components of one vector.
     pub(super) is_vector: bool,
-    /// Whether drives have it together.
+    /// Whether it is also a candidate at all drives together.
     pub(super) is_together: bool,
-    /// As how many effects it counts beforehand.
+    /// Number of effects as which it counts in the prior.
     pub(super) counts: usize,
     pub(super) switch: Option<String>,
     pub(super) filter: Option<Filter>,
@@ -151,11 +151,11 @@ pub(super) const KEYS: &[&str] = &[
     "name", "family", "site", "about", "words", "variants", "vector", "together", "counts",
     "switch", "filter",
 ];
-/// What the first words of an effect stand for.
+/// Placeholders that are available at every site.
 const EVERYWHERE: &[&str] = &["effect", "site"];
 
 impl Effect {
-    /// Reads an effect of a user from a file; `name` names it unless it has a `name` of its own.
+    /// Reads a user-defined effect from a file; `name` is its name unless the file states one.
     pub fn read(name: &str, file: &str, text: &str) -> Result<Self, EffectError> {
         Ok(Self {
             file: Some(file.to_owned()),
@@ -180,7 +180,7 @@ impl Effect {
         lines.join(" ")
     }
 
-    /// The drawing below them, in letters.
+    /// The drawing below them, in characters.
     pub fn picture(&self) -> String {
         let lines = self.heading().skip_while(|line| !line.is_empty()).skip(1);
         lines.collect::<Vec<_>>().join("\n")
@@ -267,14 +267,14 @@ impl Effect {
     }
 }
 
-/// The words of families and filters.
+/// The keywords of families and filters.
 #[cfg(test)]
 pub(super) fn choices() -> Vec<&'static str> {
     let families = Family::ALL.into_iter().map(Family::word);
     families.chain(Filter::ALL.map(|(word, _)| word)).collect()
 }
 
-/// `true` or `false`; `false` where it is absent.
+/// `true` or `false`; `false` if the key is absent.
 fn flag(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> bool {
     let Some(value) = header.get(key) else {
         return false;
@@ -286,7 +286,7 @@ fn flag(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> bool {
     flag.unwrap_or(false)
 }
 
-/// A number of effects; one where it is absent.
+/// A number of effects; one if the key is absent.
 fn count(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> usize {
     const MOST: usize = 3;
     let Some(value) = header.get(key) else {
@@ -304,7 +304,7 @@ fn count(fields: &mut Fields<'_>, header: &DeTable<'_>, key: &str) -> usize {
     count.unwrap_or(1)
 }
 
-/// One of some words, which may be absent; another one is reported.
+/// An optional choice among keywords; any other value is reported.
 fn choice<T>(
     fields: &mut Fields<'_>,
     header: &DeTable<'_>,
@@ -322,7 +322,7 @@ fn choice<T>(
     found
 }
 
-/// Words and what they stand for, one list for each variant: those of all variants, then its own.
+/// Placeholders with their texts, one list for each variant: the common ones, then its own.
 fn variants(fields: &mut Fields<'_>, header: &DeTable<'_>) -> Vec<Vec<(String, String)>> {
     let common = header.get("words").map_or_else(Vec::new, |value| {
         words(
@@ -346,7 +346,7 @@ fn variants(fields: &mut Fields<'_>, header: &DeTable<'_>) -> Vec<Vec<(String, S
     own.map(|own| [common.clone(), own].concat()).collect()
 }
 
-/// Words and what they stand for.
+/// Placeholders with their texts.
 fn words(fields: &mut Fields<'_>, value: &Value<'_>, wanted: &str) -> Vec<(String, String)> {
     let Some(table) = value.get_ref().as_table() else {
         fields.wrong_type(value, wanted);
@@ -377,11 +377,11 @@ fn unknown_words(fields: &mut Fields<'_>, table: &DeTable<'_>, text: &str, known
                 continue;
             }
             let from = place.start + start;
-            let message = format!("`{{{}}}` stands for nothing here", shown(word));
+            let message = format!("unknown placeholder `{{{}}}`", shown(word));
             let all: Vec<String> = known.iter().map(|word| format!("{{{word}}}")).collect();
             let similar = closest(word, known.iter().copied());
             let help = similar.map_or_else(
-                || format!("words at such a site are {}", all.join(", ")),
+                || format!("placeholders at such a site: {}", all.join(", ")),
                 |similar| format!("did you mean `{{{similar}}}`?"),
             );
             fields.tell(Code::UnknownName, message, from..from + end + 2, &help);
@@ -389,7 +389,7 @@ fn unknown_words(fields: &mut Fields<'_>, table: &DeTable<'_>, text: &str, known
     }
 }
 
-/// The places of all keys and texts.
+/// The positions of all keys and texts.
 fn spans(table: &DeTable<'_>, places: &mut Vec<Span>) {
     for (key, value) in table {
         places.push(key.span());
@@ -438,19 +438,19 @@ mod tests {
     }
 
     #[test]
-    fn a_word_that_stands_for_nothing_is_told_with_its_place() {
+    fn an_unknown_placeholder_is_reported_with_its_position() {
         let text = "[effect]\nfamily = 'force'\nsite = 'body'\nabout = 'drag on {site}'\n\
                     [loads]\n# as {nobody} reads this\n'{effect}' = { on = '{center}', force = '{unit}' }\n";
-        let told = told(text);
+        let message = told(text);
         for part in [
-            "`{center}` stands for nothing here",
+            "unknown placeholder `{center}`",
             "mine/own.toml:7:22",
             "did you mean `{centre}`?",
-            "`{unit}` stands",
-            "words at such a site are {effect}, {site}, {centre}, {frame}",
+            "unknown placeholder `{unit}`",
+            "placeholders at such a site: {effect}, {site}, {centre}, {frame}",
         ] {
-            assert!(told.contains(part), "`{part}` is missing in\n{told}");
+            assert!(message.contains(part), "`{part}` is missing in\n{message}");
         }
-        assert!(!told.contains("`{nobody}`"), "{told}");
+        assert!(!message.contains("`{nobody}`"), "{message}");
     }
 }

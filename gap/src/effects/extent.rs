@@ -1,17 +1,17 @@
-//! How far a body reaches, by what its drawing says of it.
+//! The size of a body, from its centre of mass and its inertia.
 
 use appell_spec::Mechanism;
 use appell_spec::expr::{Expr, Quantity};
 use appell_spec::mechanism::BodyId;
 
-/// Of a body that a drawing gives no size.
+/// Radius of a body whose spec gives no size.
 const UNKNOWN: f64 = 1.0;
 
 /// In m.
 pub(super) struct Extent {
-    /// From where the body is held to its centre of mass, in its frame.
+    /// From the origin of its frame to its centre of mass, in that frame.
     pub(super) away: [f64; 3],
-    /// That distance and the radius of gyration together.
+    /// Root of the sum of squares of that distance and of the radius of gyration.
     pub(super) reach: f64,
 }
 
@@ -31,7 +31,7 @@ impl Extent {
         {
             for (sum, part) in away.iter_mut().zip(&point.at) {
                 let part = value(part);
-                // What moves along the body has no place.
+                // Coordinates that vary along the body do not count.
                 *sum += if part.is_finite() { part } else { 0.0 };
             }
             next = point.from;

@@ -1,5 +1,5 @@
-//! A mass that a spring and a damper hold at a coordinate, and that the spec counts with what the coordinate
-//! moves: a load that swings, a liquid that sloshes, an elastic drive.
+//! A mass coupled to a coordinate by a spring and a damper, which the spec includes in the inertia of the
+//! coordinate: a swinging load, a sloshing liquid, an elastic drive.
 
 use appell_spec::Mechanism;
 
@@ -8,23 +8,23 @@ use super::site::{Scales, Sites, number};
 use super::site_kind::SiteKind;
 use super::stem::{Known, Stem};
 
-/// Where it is, and its numbers, in SI.
+/// Its coordinate and parameters, in SI.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct HiddenMass {
     /// The coordinate.
     pub(crate) behind: String,
     /// Mass, or moment of inertia.
     pub(crate) mass: Known,
-    /// Rate at which it swings, without damping.
+    /// Undamped natural frequency in rad/s.
     pub(crate) rate: Known,
     /// Damping ratio.
     pub(crate) damping: Known,
 }
 
-/// Part of a number below which there is no such mass.
+/// Lower limits relative to the first estimates.
 const LEAST: f64 = 1e-3;
 
-/// What both kinds have; `{m}` is the unit of the coordinate, `{kg}` that of the inertia.
+/// Items common to masses and moments of inertia; `{m}` is the unit of the coordinate, `{kg}` that of the inertia.
 const HELD: &str = r#"
 [parameters]
 "{law}_mass"    = { value = {mass}, unit = "{kg}", at_least = {least_mass}, about = "mass that swings behind {site}" }
@@ -62,7 +62,7 @@ const TURNING: &str = r#"
 "#;
 
 impl HiddenMass {
-    /// The law; nothing where it is no mass, or the coordinate moves nothing by itself.
+    /// The law; `None` without a positive mass, or where the rate of the coordinate appears in no pseudo-velocity.
     pub(super) fn candidate(&self, mechanism: &Mechanism, scales: &Scales) -> Option<Candidate> {
         let coordinate = self.behind.as_str();
         let sites = Sites::new(mechanism, scales);
@@ -96,7 +96,7 @@ impl HiddenMass {
             ("damping", self.damping),
         ];
         let about = format!("a mass that swings behind {coordinate}");
-        // The mass may be left behind, or swing on, by what the coordinate moves in a radian of its swing.
+        // Initial deflection: up to the travel of the coordinate in one radian of the oscillation.
         let typical = scales.rates[site.index];
         Some(stem.candidate(about, items, &known, [typical, typical / rate]))
     }

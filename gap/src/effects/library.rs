@@ -8,7 +8,7 @@ macro_rules! files {
     };
 }
 
-/// Files in the order in which people read the library.
+/// Files in the order in which the library is listed.
 const FILES: [(&str, &str); 33] = files![
     "viscous_friction",
     "coulomb_friction",

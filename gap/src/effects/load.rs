@@ -1,4 +1,4 @@
-//! A load that follows the motion as a controller does, and what its spec says of it.
+//! A load that depends on the motion like a feedback controller, as stated by the spec.
 
 use appell_spec::Mechanism;
 use appell_spec::expr::{Expr, ExprKind, Quantity};
@@ -7,8 +7,8 @@ use appell_spec::units::Dimension;
 use num_traits::Zero;
 use toml_edit::{Array, DocumentMut, InlineTable, Item, Table, Value};
 
-/// The expression of a load that an input and the motion decide together, or a place and a rate; its place among the
-/// components.
+/// The expression of a load that depends on an input and the motion, or on a coordinate and a rate, with its index
+/// among the components.
 pub(crate) fn controlled(load: &Load) -> Option<(usize, &Expr)> {
     let (place, law) = match &load.kind {
         LoadKind::Generalized { force, .. } => (0, force),
@@ -34,7 +34,7 @@ fn is_zero(part: &Expr) -> bool {
     matches!(&part.kind, ExprKind::Number(n) if n.is_zero())
 }
 
-/// What a spec says of such a load.
+/// The statement of such a load in the spec.
 #[derive(Debug, Clone)]
 pub(super) struct Stated {
     key: &'static str,
@@ -46,7 +46,7 @@ pub(super) struct Stated {
 }
 
 impl Stated {
-    /// Nothing for loads of which nothing can be said.
+    /// `None` for loads of other kinds.
     pub(super) fn of(mechanism: &Mechanism, load: &Load, text: &str) -> Option<Self> {
         let (place, _) = controlled(load)?;
         let (key, unit) = match &load.kind {
@@ -74,7 +74,7 @@ impl Stated {
         })
     }
 
-    /// What its expression is called beside an effect.
+    /// Name of the definition that holds its expression, given the name of an effect.
     pub(super) fn name(effect: &str) -> String {
         format!("{effect}_stated")
     }
@@ -90,7 +90,7 @@ impl Stated {
         section("definitions", &Self::name(effect), item)
     }
 
-    /// The load with more in its expression, as an item of a spec.
+    /// The load with terms added to its expression, as an item of a spec.
     pub(super) fn with(&self, name: &str, added: &[&str]) -> String {
         let sum = [&[self.expression()], added].concat().join(" + ");
         let mut parts = self.parts.clone();

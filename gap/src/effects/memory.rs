@@ -1,5 +1,4 @@
-//! Forces that depend on what was before: laws that are no effect of the library, each with a state of its own
-//! that nobody measures.
+//! Forces that depend on the past motion: laws outside the library, each with an unmeasured state.
 
 use appell_spec::Mechanism;
 
@@ -8,7 +7,7 @@ use super::hidden_mass::HiddenMass;
 use super::hysteresis::Hysteresis;
 use super::site::Scales;
 
-/// One of them.
+/// A force with a hidden state.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Memory {
     HiddenMass(HiddenMass),
@@ -16,8 +15,8 @@ pub(crate) enum Memory {
 }
 
 impl Candidate {
-    /// A force that remembers; nothing where its first estimate makes no sense, or its coordinate moves
-    /// nothing by itself.
+    /// A force with a hidden state; `None` where its first estimate is not positive and finite, or where the rate of its
+    /// coordinate appears in no pseudo-velocity.
     pub(crate) fn remembering(
         mechanism: &Mechanism,
         scales: &Scales,

@@ -1,11 +1,11 @@
 //! A mechanism with many candidates, derived at once.
 //!
-//! All of them stand in one spec with sizes of zero: at these values its equations are those of the
-//! mechanism, and their derivatives are what each candidate would do first. A hypothesis sets some
-//! sizes free.
+//! All of them are items of one spec with sizes of zero: at these values its equations are those of the
+//! mechanism, and the derivatives by the sizes are the first-order effects of the candidates. A hypothesis
+//! frees some sizes.
 //!
-//! A candidate that brings a coordinate has a model of its own, with all others beside it, derived once it
-//! is asked for. Its parameters stand in every model, so that they have the same places everywhere.
+//! A candidate with an additional coordinate has a model of its own, together with all other candidates, derived on
+//! demand. Its parameters are declared in every model, so that parameter indices agree.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
@@ -26,10 +26,10 @@ use super::site::{Scales, Sites, number};
 use super::{Candidate, Drive, Part};
 use appell_recordings::Spec;
 
-/// Sections whose expressions inputs act in.
+/// Sections in whose expressions inputs act.
 pub(crate) const ACTING: [&str; 2] = ["loads", "constraints"];
 
-/// Stands for the centre of mass of a body with what moves it so far.
+/// Placeholder of the centre of mass of a body after the preceding offsets.
 const LAST_CENTRE: &str = "{last_centre}";
 
 /// Why a mechanism with effects has no equations.
@@ -38,13 +38,13 @@ pub enum ModelError {
     /// The file of an effect is wrong.
     #[error(transparent)]
     Effect(#[from] EffectError),
-    /// The spec cannot be added to.
+    /// The items cannot be added to the spec.
     #[error(transparent)]
     Edit(#[from] EditError),
     /// The spec with its effects is wrong.
     #[error("{}", .0.plain())]
     Spec(Box<Report>),
-    /// No machine code can be made.
+    /// Machine code cannot be generated.
     #[error(transparent)]
     Jit(#[from] JitError),
 }
@@ -59,36 +59,36 @@ pub struct EffectModel {
     /// The spec with all of them.
     pub spec: Spec,
     model: Arc<JitModel>,
-    /// The model without contacts that creep, which is much shorter. Its parameters come first in the
-    /// whole one.
+    /// The model without creeping contacts, which is much shorter. Its parameters are the first ones of the
+    /// whole model.
     rolling: Option<Arc<JitModel>>,
-    /// The equations of hypotheses that were asked for.
+    /// The equations of hypotheses, derived on demand.
     hypotheses: OnceLock<Box<Hypothesis>>,
-    /// For each candidate that brings a coordinate, once it was asked for.
+    /// The model of each candidate with an additional coordinate, derived on demand.
     augmented: Vec<OnceLock<Option<Augmented>>>,
     /// The spec that candidates are added to.
     plain: Spec,
-    /// Whether values are those of recordings before, so that an error is a change.
+    /// Whether parameter values are those of earlier recordings, so that a gap is a change.
     pub(crate) is_of_changes: bool,
 }
 
-/// The equations of some candidates, and those that were asked for after them.
+/// The equations of some candidates, in a list of those derived so far.
 #[derive(Debug)]
 struct Hypothesis {
     members: Vec<usize>,
-    /// The equations that also have all others.
+    /// The equations that also contain all other candidates.
     whole: Arc<JitModel>,
     own: Option<JitModel>,
     next: OnceLock<Box<Hypothesis>>,
 }
 
-/// A model with a coordinate that a candidate brings.
+/// A model with the additional coordinate of a candidate.
 #[derive(Debug)]
 struct Augmented {
-    /// The candidate, all words of its items told.
+    /// The candidate, with all placeholders replaced.
     candidate: Candidate,
     model: Arc<JitModel>,
-    /// The longest step in s that it bears, where it is fast.
+    /// The largest integration step in s, for a fast model.
     longest_step: Option<f64>,
 }
 
@@ -110,7 +110,7 @@ pub fn candidates(
     Ok(all)
 }
 
-/// A candidate with all its words, as a spec has it beside no other; nothing where it acts on a drive, and none is there.
+/// A candidate with all placeholders replaced, alone in its spec; `None` where it needs a drive and there is none.
 pub fn written(spec: &Spec, candidate: &Candidate) -> Result<Option<Candidate>, ModelError> {
     let centre = candidate.centre.clone().unwrap_or_default();
     let candidate = candidate.told(&[(LAST_CENTRE.trim_matches(['{', '}']), &centre)]);
@@ -123,12 +123,12 @@ pub fn written(spec: &Spec, candidate: &Candidate) -> Result<Option<Candidate>, 
     Ok(drive.map(|drive| candidate.driven(&mechanism, &drive)))
 }
 
-/// Whether the effect of a user makes a spec wrong: that is told in the words of its file.
+/// Checks the spec with a user-defined effect; errors refer to the file of the effect.
 fn check(spec: &Spec, candidate: &Candidate) -> Result<(), ModelError> {
     let Some(source) = &candidate.source else {
         return Ok(());
     };
-    // What a coordinate of its own needs is known once there are equations; zero has its dimension.
+    // The force of the drive is known only with the equations; here a zero of the same dimension replaces it.
     let (force, inertia) = (candidate.nothing(), number(1.0));
     let whole = candidate.told(&[("drive", &force), ("inertia", &inertia)]);
     let text = with_candidates(&spec.text, &[whole])?;
@@ -139,7 +139,7 @@ fn check(spec: &Spec, candidate: &Candidate) -> Result<(), ModelError> {
 }
 
 impl Candidate {
-    /// With the words about what drives it.
+    /// Replaces the placeholders of its drive.
     fn driven(&self, mechanism: &Mechanism, drive: &Drive) -> Self {
         let inputs = mechanism.inputs.iter();
         let force = drive.written(inputs.map(|input| input.label.name.as_str()));
@@ -149,10 +149,10 @@ impl Candidate {
 }
 
 impl EffectModel {
-    /// Derives the mechanism of a spec with candidates, without those of contacts where the forces of
-    /// these cannot be told.
+    /// Derives the mechanism of a spec with candidates, without those of contacts where contact forces are
+    /// undetermined.
     pub fn new(spec: &Spec, mut candidates: Vec<Candidate>) -> Result<Self, ModelError> {
-        // The last ones, so that all other parameters keep their places without them.
+        // Creeping contacts come last, so that the indices of all other parameters do not depend on them.
         candidates.sort_by_key(Candidate::creeps);
         let others = candidates.partition_point(|one| !one.creeps());
         if others == candidates.len() {
@@ -168,7 +168,7 @@ impl EffectModel {
         })
     }
 
-    /// The same for forces of motions alone, without candidates that bring coordinates or let contacts creep.
+    /// The same for inverse dynamics, without candidates that add coordinates or make contacts creep.
     pub(crate) fn of_forces(
         spec: &Spec,
         mut candidates: Vec<Candidate>,
@@ -218,7 +218,7 @@ impl EffectModel {
         Self::new(&self.plain, candidates)
     }
 
-    /// Derives the model of a candidate that brings a coordinate; whether there is one.
+    /// Derives the model of a candidate with an additional coordinate; returns whether that succeeded.
     pub(crate) fn augment(&self, index: usize, drive: &Drive) -> bool {
         let augmented = self.augmented[index].get_or_init(|| self.augmented(index, drive).ok());
         augmented.is_some()
@@ -242,19 +242,19 @@ impl EffectModel {
         })
     }
 
-    /// Whether a candidate can stand beside none that brings a coordinate.
+    /// Whether a candidate is incompatible with every one that adds a coordinate.
     pub(crate) fn stands_alone(&self, index: usize) -> bool {
         let candidate = &self.candidates[index];
         candidate.creeps() || candidate.brings.is_some()
     }
 
-    /// A candidate, with all words that are told by now.
+    /// A candidate, with all placeholders replaced that are known by now.
     pub fn candidate(&self, index: usize) -> &Candidate {
         let augmented = self.augmented[index].get().and_then(Option::as_ref);
         augmented.map_or(&self.candidates[index], |augmented| &augmented.candidate)
     }
 
-    /// The model with the coordinate that a member brings.
+    /// The model with the additional coordinate of a member, if any.
     fn augmented_with(&self, members: &[usize]) -> Option<&Augmented> {
         let mut augmented = members
             .iter()
@@ -262,7 +262,7 @@ impl EffectModel {
         augmented.find_map(Option::as_ref)
     }
 
-    /// The longest step in s that some candidates bear, where their equations are fast.
+    /// The largest integration step in s for some candidates, if their equations are fast.
     pub(crate) fn longest_step(&self, members: &[usize]) -> Option<f64> {
         let own = self.mechanism.longest_step;
         let augmented = self
@@ -271,8 +271,8 @@ impl EffectModel {
         own.into_iter().chain(augmented).reduce(f64::min)
     }
 
-    /// The shortest equations that have some candidates. Derivatives with respect to the parameters of others are
-    /// zero; at sizes of others that are not zero they have these too.
+    /// The shortest equations with some candidates. Derivatives with respect to the parameters of all others are
+    /// zero; they are valid only while the sizes of all others are zero.
     pub fn with(&self, members: &[usize]) -> &dyn Model {
         let whole = self.whole(members);
         let mut place = &self.hypotheses;
@@ -307,7 +307,7 @@ impl EffectModel {
         }
     }
 
-    /// Equations that have some candidates and others.
+    /// Equations that contain some candidates among others.
     fn whole(&self, members: &[usize]) -> &Arc<JitModel> {
         if let Some(augmented) = self.augmented_with(members) {
             return &augmented.model;
@@ -321,13 +321,13 @@ impl EffectModel {
         }
     }
 
-    /// The equations of all candidates that can stand beside some members.
+    /// The equations with all candidates that are compatible with some members.
     pub fn beside(&self, members: &[usize]) -> &dyn Model {
         let augmented = self.augmented_with(members);
         &**augmented.map_or(&self.model, |augmented| &augmented.model)
     }
 
-    /// Places of the parameters of a candidate, with what each is.
+    /// Indices of the parameters of a candidate, with their roles.
     pub(crate) fn own(&self, candidate: &Candidate) -> Vec<(usize, Part)> {
         let info = self.info();
         let own = candidate.parameters.iter();
@@ -341,7 +341,7 @@ impl EffectModel {
     }
 }
 
-/// Why a spec has no equations: the effect of a user, if one has none alone.
+/// The reason why a spec has no equations: the first user-defined effect that fails alone, if any.
 fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelError {
     let alone = |candidate: &Candidate| {
         let source = candidate.source.as_ref()?;
@@ -370,11 +370,11 @@ fn derive(
 /// A spec with candidates.
 pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, EditError> {
     let mut spec = Composition::new(text)?;
-    // What drives a coordinate that a candidate brings feels what others add to inputs.
+    // Terms that other candidates add to inputs also act on the drive of an additional coordinate.
     for candidate in candidates.iter().filter(|one| one.brings.is_some()) {
         spec.add(&candidate.items)?;
     }
-    // Expressions that effects name, once each: inputs act in them too.
+    // Expressions of loads that effects refer to, each defined once: inputs act in them too.
     let mut stated = Composition::new("")?;
     for (load, own) in limited(candidates) {
         let added: Vec<&str> = own.iter().map(|(_, _, added)| *added).collect();
@@ -401,7 +401,7 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
         stated.substitute(&["definitions"], input, &parts.join(" + "));
     }
     spec.add(&stated.text())?;
-    // What other candidates add does not.
+    // Inputs in the items of other candidates are not substituted.
     let mut centres: BTreeMap<&str, &str> = BTreeMap::new();
     for candidate in candidates.iter().filter(|one| one.brings.is_none()) {
         let moved = candidate.items.contains(LAST_CENTRE);
@@ -417,7 +417,7 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
     Ok(spec.text())
 }
 
-/// A candidate's name in a spec, the load as it stands there, and what is added to it.
+/// A candidate's name in a spec, the load as stated there, and the term added to it.
 type Limit<'c> = (&'c str, &'c Stated, &'c str);
 
 /// The loads to whose expressions candidates add.

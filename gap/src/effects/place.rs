@@ -1,5 +1,5 @@
-//! What is wrong with the file of an effect, told in its words and at its places: mistakes show only once
-//! the effect stands in a spec, whose text its author has never seen.
+//! Errors of the file of an effect, reported at positions of this file: they are found only when the effect is part of
+//! a spec, whose text the author of the effect does not know.
 
 use std::ops::ControlFlow;
 
@@ -11,10 +11,10 @@ use toml::de::{DeTable, DeValue};
 use super::EffectError;
 use super::candidate::filled;
 
-/// Keys that lead to a value; those of a list are numbers.
+/// Keys on the path to a value; those of a list are numbers.
 type Path = Vec<String>;
 
-/// The file of an effect, and what its words stand for at a place of a mechanism.
+/// The file of an effect, and the texts of its placeholders at a site of a mechanism.
 #[derive(Debug, Clone)]
 pub(super) struct Source {
     pub(super) file: String,
@@ -23,14 +23,14 @@ pub(super) struct Source {
 }
 
 impl Source {
-    /// The mistakes in a spec with the effect as mistakes in its file.
+    /// The errors of a spec with the effect as errors of its file.
     pub(super) fn blamed(&self, report: &Report, spec: &str) -> EffectError {
         let diagnostics = report.diagnostics().iter();
         let diagnostics = diagnostics.map(|one| self.translated(one, spec));
         EffectError::from(Report::new(&*self.file, &*self.text, diagnostics.collect()))
     }
 
-    /// A mistake in a parameter.
+    /// An error in a parameter.
     pub(super) fn wrong(&self, name: &str, key: Option<&str>, message: &str) -> EffectError {
         let mut path = vec!["parameters".to_owned(), name.to_owned()];
         path.extend(key.map(str::to_owned));
@@ -39,9 +39,9 @@ impl Source {
         self.told(at, message)
     }
 
-    /// What its words stand for makes it no file of TOML any more.
+    /// The file is not TOML after its placeholders are replaced.
     pub(super) fn unwritten(&self, message: &str) -> EffectError {
-        let message = format!("with the meaning of its words the file is no TOML: {message}");
+        let message = format!("with its placeholders replaced, the file is not TOML: {message}");
         self.told(None, &message)
     }
 
@@ -78,8 +78,8 @@ impl Source {
         }
     }
 
-    /// A text with `{effect}` in the place of what it stands for. Other words stand for what is too short to
-    /// be told from the rest.
+    /// A text with the name of the effect replaced by `{effect}`. Texts of other placeholders are too short to be
+    /// recognised.
     fn in_its_words(&self, text: &str) -> String {
         let effect = self.words.iter().find(|(word, _)| word == "effect");
         effect.map_or_else(
@@ -88,14 +88,14 @@ impl Source {
         )
     }
 
-    /// Where the file has what stands somewhere in a spec; nothing where the spec had it before.
+    /// The position in the file that corresponds to one in a spec; `None` for text that is not from this file.
     fn place(&self, spec: &str, at: &Span) -> Option<Span> {
         let (table, _) = DeTable::parse_recoverable(spec);
         let path = path_to(&table, at)?;
         let (table, _) = DeTable::parse_recoverable(&self.text);
         let whole = self.follow(table.get_ref(), &path)?;
         let (part, own) = (spec.get(at.clone())?, self.text.get(whole.clone())?);
-        // Within a text the same words, if it has them.
+        // Within a text the same part, if it is found.
         let same = [part.to_owned(), self.in_its_words(part)];
         let mut found = same.iter().filter(|words| !words.is_empty());
         let found = found.find_map(|words| Some((own.find(words.as_str())?, words.len())));
@@ -104,7 +104,7 @@ impl Source {
         }))
     }
 
-    /// The place of the deepest value on a path of the spec; nothing where the file has not even the item.
+    /// The position of the deepest value on a path of the spec; `None` if the item is not from this file.
     fn follow(&self, table: &DeTable<'_>, path: &[String]) -> Option<Span> {
         let words: Vec<(&str, &str)> = (self.words.iter())
             .map(|(word, meaning)| (word.as_str(), meaning.as_str()))
@@ -127,7 +127,7 @@ impl Source {
         Some(last)
     }
 
-    /// What is added to an input: that stands within expressions that the spec had before.
+    /// The section `[input]`, whose terms appear within expressions of the spec itself.
     fn input(&self) -> Option<Span> {
         let (table, _) = DeTable::parse_recoverable(&self.text);
         let inputs = table.get_ref().get("input")?.get_ref().as_table()?;
@@ -135,7 +135,7 @@ impl Source {
     }
 }
 
-/// The keys that lead to a place.
+/// The keys on the path to a position.
 fn path_to(table: &Spanned<DeTable<'_>>, at: &Span) -> Option<Path> {
     let mut path = Vec::new();
     let found = search(table.get_ref(), at, &mut path);
@@ -156,7 +156,7 @@ fn search(table: &DeTable<'_>, at: &Span, path: &mut Path) -> ControlFlow<()> {
 
 fn within(value: &Spanned<DeValue<'_>>, at: &Span, path: &mut Path) -> ControlFlow<()> {
     match value.get_ref() {
-        // The place of a section is its heading alone.
+        // The position of a section is its heading alone.
         DeValue::Table(table) => search(table, at, path)?,
         DeValue::Array(parts) => {
             for (index, part) in parts.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! The sites in a mechanism at which effects may act, and their placeholders in the text of an
+//! The sites in a mechanism at which effects may act, and the placeholders that they define in the text of an
 //! effect.
 
 use appell_spec::expr::{Expr, ExprKind, Quantity};
@@ -18,30 +18,30 @@ use super::site_kind::{LATER_BODY, LATER_DRIVEN, SiteKind};
 pub struct Scales {
     /// Typical rate of each coordinate.
     pub rates: Vec<f64>,
-    /// Rate over which a sign of each coordinate's rate is rounded.
+    /// Rate over which the sign function of each coordinate's rate is smoothed.
     pub narrow: Vec<f64>,
     /// Largest value of each input.
     pub largest: Vec<f64>,
-    /// Smallest and largest value of each coordinate that was measured, where it came back from one.
+    /// Smallest and largest value of each measured coordinate that reversed at one of them.
     pub reached: Vec<Option<[f64; 2]>>,
-    /// Largest magnitude of each load that follows the motion as a controller does; zero of others.
+    /// Largest magnitude of each load that depends on the motion like a controller; zero for others.
     pub loads: Vec<f64>,
     /// Columns of the measured channels.
     pub channels: Vec<String>,
-    /// Parameters with a tolerance, which may be wrong by more.
+    /// Parameters with a tolerance, whose errors may exceed it.
     pub uncertain: Vec<usize>,
 }
 
-/// Part of the largest input over which a corner is rounded.
+/// Width, relative to the largest input, over which a corner is smoothed.
 const NARROW: f64 = 0.005;
 
-/// As many drives are likely to be of one make.
+/// Number of drives from which a common cause at all of them is considered.
 const MANY_DRIVES: usize = 3;
 
-/// More coordinates have pairs of neighbours only.
+/// Number of coordinates beyond which only neighbours form pairs.
 const MANY_PAIRS: usize = 3;
 
-/// Part of its range by which a stop is sought within the end of a motion.
+/// Distance of the initial position of a stop from the end of the motion, relative to its range.
 const WITHIN: f64 = 0.05;
 
 /// A site.
@@ -49,13 +49,13 @@ const WITHIN: f64 = 0.05;
 pub(super) struct Site {
     /// Name in the spec; `gravity` for the weight, the column for a channel.
     pub(super) name: String,
-    /// Its index among its like: parameters, inputs, channels.
+    /// Its index among the parameters, inputs, channels, and so on.
     pub(super) index: usize,
-    /// Words and what they stand for.
+    /// Placeholders with their texts.
     pub(super) words: Vec<(&'static str, String)>,
-    /// Axes along which the drawing already places the centre of mass.
+    /// Axes along which a parameter of the spec already gives the position of the centre of mass.
     pub(super) placed_along: Vec<&'static str>,
-    /// What the spec says of a load.
+    /// The statement of a load in the spec.
     pub(super) stated: Option<Stated>,
 }
 
@@ -63,7 +63,7 @@ pub(super) struct Site {
 pub(super) struct Sites<'m> {
     mechanism: &'m Mechanism,
     scales: &'m Scales,
-    /// The text of its spec, where that is known.
+    /// The text of its spec, if known.
     text: &'m str,
 }
 
@@ -169,7 +169,7 @@ impl<'m> Sites<'m> {
         self.mechanism.coordinates[coordinate].label.unit.dimension
     }
 
-    /// Coordinates whose rates stand in definitions of the pseudo-velocities: the others follow.
+    /// Coordinates whose rates appear in definitions of the pseudo-velocities; all others are dependent.
     fn moving(&self) -> Vec<CoordinateId> {
         let stands = |&q: &CoordinateId| {
             let mut speeds = self.mechanism.pseudo_velocities.iter();
@@ -178,7 +178,7 @@ impl<'m> Sites<'m> {
         self.mechanism.coordinates.ids().filter(stands).collect()
     }
 
-    /// A coordinate, with the places within which it moved.
+    /// A coordinate, with the range of its motion.
     fn reached(&self, index: CoordinateId) -> Option<Site> {
         let [least, most] = self.scales.reached[index.index()]?;
         let range = most - least;
@@ -237,7 +237,7 @@ impl<'m> Sites<'m> {
         })
     }
 
-    /// Loads whose law the spec states.
+    /// Loads that depend on the motion like a controller.
     fn loads(&self) -> Vec<Site> {
         let loads = self.mechanism.loads.iter().enumerate();
         let site = |(index, load): (usize, &Load)| {
@@ -259,7 +259,7 @@ impl<'m> Sites<'m> {
         loads.filter_map(site).collect()
     }
 
-    /// Coordinates whose rates are pseudo-velocities and stand in no other one, if there are inputs; the
+    /// Coordinates whose rates are pseudo-velocities and appear in no other one, if there are inputs; the
     /// index is that of the pseudo-velocity.
     fn driven(&self, fits: impl Fn(&CoordinateId) -> bool) -> Vec<Site> {
         let speeds = &self.mechanism.pseudo_velocities;
@@ -346,7 +346,7 @@ impl<'m> Sites<'m> {
         }
     }
 
-    /// A body, with how far it reaches.
+    /// A body, with its size.
     fn rigid_body(&self, index: BodyId) -> Site {
         let extent = Extent::of(self.mechanism, index);
         let mut site = self.body(index);
@@ -360,7 +360,7 @@ impl<'m> Sites<'m> {
         site
     }
 
-    /// Axes of the frame of a body along which its centre is placed: an error there is one of a
+    /// Axes of the frame of a body along which parameters give its centre: an error there is one of a
     /// parameter.
     fn placed_along(&self, index: BodyId) -> Vec<&'static str> {
         let body = &self.mechanism.bodies[index];
@@ -486,7 +486,7 @@ impl<'m> Sites<'m> {
     fn input(&self, index: InputId) -> Site {
         let label = &self.mechanism.inputs[index].label;
         let largest = self.scales.largest[index.index()];
-        // Numbers of a fragment are in SI; so has to be its unit.
+        // Numbers of a fragment are in SI, and so must be its unit.
         let unit = if label.unit.is_si() {
             label.unit.text.clone()
         } else {
@@ -504,7 +504,7 @@ impl<'m> Sites<'m> {
         }
     }
 
-    /// A constant expression in the words of the spec.
+    /// A constant expression in the language of the spec.
     fn written(&self, expr: &Expr) -> Option<String> {
         match &expr.kind {
             ExprKind::Quantity(Quantity::Parameter(p)) => {
@@ -515,7 +515,7 @@ impl<'m> Sites<'m> {
     }
 }
 
-/// Digits that are enough for a scale, and give the same text everywhere.
+/// A scale with few digits, so that its text is the same on all machines.
 pub(super) fn number(value: f64) -> String {
     format!("{value:.3e}")
 }

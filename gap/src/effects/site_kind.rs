@@ -1,15 +1,15 @@
-//! Kinds of places at which effects act, and the words that stand for something there.
+//! Kinds of sites at which effects act, and the placeholders that each defines.
 
 /// Kinds of sites.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SiteKind {
-    /// A coordinate whose rate moves something by itself.
+    /// A coordinate whose rate appears in a pseudo-velocity.
     Coordinate,
     /// Such a coordinate that is a length.
     Slider,
     /// Such a coordinate that is an angle.
     Hinge,
-    /// A slider that a pseudo-velocity of its own moves, and an input.
+    /// A slider whose rate is a pseudo-velocity, driven by an input.
     DrivenSlider,
     /// Such a hinge.
     DrivenHinge,
@@ -29,15 +29,15 @@ pub enum SiteKind {
     Input,
     /// A measured channel.
     Channel,
-    /// A measured coordinate that came back from where it got.
+    /// A measured coordinate that reversed at an end of its range.
     Reached,
     /// Two coordinates.
     Pair,
-    /// A load that follows the motion as a controller does.
+    /// A load that depends on the motion like a feedback controller.
     Load,
 }
 
-/// Word, kind, and what it is.
+/// Keyword, kind and description.
 const WORDS: [(&str, SiteKind, &str); 16] = [
     (
         "coordinate",
@@ -49,12 +49,12 @@ const WORDS: [(&str, SiteKind, &str); 16] = [
     (
         "driven_slider",
         SiteKind::DrivenSlider,
-        "length that inputs drive, its rate a pseudo-velocity",
+        "driven length whose rate is a pseudo-velocity",
     ),
     (
         "driven_hinge",
         SiteKind::DrivenHinge,
-        "angle that inputs drive, its rate a pseudo-velocity",
+        "driven angle whose rate is a pseudo-velocity",
     ),
     ("body", SiteKind::Body, "body"),
     ("rigid_body", SiteKind::RigidBody, "body with a frame"),
@@ -71,17 +71,17 @@ const WORDS: [(&str, SiteKind, &str); 16] = [
     (
         "reached",
         SiteKind::Reached,
-        "measured coordinate that came back from where it got",
+        "measured coordinate that reversed at an end of its range",
     ),
     (
         "pair",
         SiteKind::Pair,
-        "pair of coordinates, neighbours where there are many",
+        "pair of coordinates, of neighbours only where there are many",
     ),
     (
         "load",
         SiteKind::Load,
-        "load that follows the motion as a controller does",
+        "load that depends on the motion like a feedback controller",
     ),
 ];
 
@@ -100,12 +100,12 @@ impl SiteKind {
         WORDS.map(|(word, ..)| word).join(", ")
     }
 
-    /// Its word.
+    /// Its keyword.
     pub fn word(self) -> &'static str {
         self.row().map_or("", |(word, ..)| word)
     }
 
-    /// What each is, in words.
+    /// Description of such a site.
     pub fn about(self) -> &'static str {
         self.row().map_or("", |(.., about)| about)
     }
@@ -114,7 +114,7 @@ impl SiteKind {
         WORDS.iter().find(|(_, kind, _)| *kind == self)
     }
 
-    /// Lists of words that stand for something at such a place, beside `effect` and `site`.
+    /// Lists of placeholders at such a site, in addition to `effect` and `site`.
     pub(super) fn words(self) -> &'static [&'static [&'static str]] {
         match self {
             Self::Coordinate | Self::Slider | Self::Hinge => &[OF_COORDINATE, ACROSS],
@@ -166,7 +166,7 @@ const OF_WHEEL: &[&str] = &[
     "normal_y",
     "normal_z",
 ];
-/// Words whose meaning is known once the mechanism has equations.
+/// Placeholders whose texts depend on the equations of the mechanism.
 pub(super) const LATER_DRIVEN: &[&str] = &["drive", "inertia"];
-/// A word whose meaning is known once all effects of the body are.
+/// A placeholder whose text depends on the other effects of the body.
 pub(super) const LATER_BODY: &[&str] = &["last_centre"];

@@ -1,14 +1,14 @@
-//! A law that is no effect of the library: its place, its names, its numbers.
+//! A law outside the library: its site, its names and its coefficients.
 
 use appell_spec::Mechanism;
 
 use super::candidate::{Acts, Candidate, Part, identifier, unused};
 use super::effect::Family;
 
-/// What is known of a number beforehand: mean and standard deviation.
+/// Normal prior of a coefficient: mean and standard deviation.
 pub(crate) type Known = [f64; 2];
 
-/// The place of a law, and what its names begin with.
+/// The site of a law, and the prefix of its names.
 pub(super) struct Stem<'n> {
     site: &'n str,
     stem: String,

@@ -30,7 +30,7 @@ enum Kind {
 pub(crate) struct Addition {
     name: String,
     kind: Kind,
-    /// Place of the input or channel.
+    /// Index of the input or channel.
     index: usize,
     /// Unit of a channel.
     unit: (String, f64),
@@ -121,7 +121,7 @@ impl Addition {
             Kind::Scale => Unknown::Scale(self.index),
             Kind::SensorDelay => Unknown::SensorDelay(self.index),
         };
-        // A lag shorter than the steps changes nothing and is stiff.
+        // A lag shorter than the steps has no effect and makes the equations stiff.
         let steps = runs.iter().map(|run| run.sampling.step);
         let step = steps.fold(0.0, f64::max).min(setup.longest_step);
         let (value, range) = match self.kind {

@@ -75,7 +75,7 @@ pub struct Known {
 /// Result of an identification.
 #[derive(Debug, Clone)]
 pub struct Answer {
-    /// Whether the search ended at an optimum. If not, deviations are enlarged by the step that it could not take.
+    /// Whether the search ended at an optimum. If not, the last step, which was not taken, enlarges the deviations.
     pub is_optimum: bool,
     /// Parameters in the requested order.
     pub parameters: Vec<Estimate>,
@@ -85,13 +85,13 @@ pub struct Answer {
     pub combinations: Vec<Known>,
     /// Noise of the channels.
     pub noise: Vec<Level>,
-    /// Disturbing forces: standard deviations of their integrals over one second.
+    /// Process noise: standard deviations of its integral over one second.
     pub disturbances: Vec<Level>,
-    /// Log-likelihood of the nominal model with fitted levels, and of the fitted one.
+    /// Log-likelihood of the nominal model with fitted noise, and of the fitted one.
     pub log_likelihoods: [f64; 2],
-    /// Correlation of neighbouring innovations of each channel, with the band where they are white.
+    /// Test of the innovations of each channel for whiteness.
     pub whiteness: Vec<(String, Consistency)>,
-    /// Parameters in the single training runs; empty where there is one alone.
+    /// Parameters in the single training runs; empty if there is only one run.
     pub repeatability: Vec<Repeatability>,
     /// Drifting parameters along the training runs.
     pub courses: Vec<Course>,
@@ -186,8 +186,8 @@ fn block(estimation: &Estimation<'_>) -> usize {
     rows.max(1)
 }
 
-/// Combinations of the parameters at fixed levels, which are determined by the variances of
-/// innovations, independently of the parameters.
+/// Combinations of the parameters at fixed noise levels: the variances of innovations determine the levels
+/// independently of the parameters.
 fn combinations(sensitivity: &Sensitivity, fit: &Fit, parameters: &[Free]) -> Vec<Known> {
     let count = parameters.len();
     let part = Sensitivity {

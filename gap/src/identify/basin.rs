@@ -1,11 +1,11 @@
-//! The search for an optimum, and its starts.
+//! The search for an optimum, and its starting points.
 //!
-//! Where the model does not do what was recorded, its disturbances do; they hide which parameters would do better, and
-//! the likelihood has an optimum near many a start. Where predictions of what was found miss the recordings by far more
-//! than their noise, or where a search ended before an optimum, it therefore begins elsewhere as well: at the parameters
-//! that are the most likely ones if disturbances are so small that the model itself has to follow the recordings, as in
-//! an output-error fit (L. Ljung, *System Identification*, 1999), and at those of multiple shooting. All results are
-//! compared by the same posterior, and the most likely one counts.
+//! Where the model does not reproduce the recordings, process noise does; it masks the sensitivity to the parameters,
+//! and the likelihood has many local optima. If the predictions of a fitted model miss the recordings by far more than
+//! their noise, or if a search ended before an optimum, the search is therefore repeated from two other points: from the
+//! optimum with so little process noise that the model itself has to reproduce the recordings, as in an output-error fit
+//! (L. Ljung, *System Identification*, 1999), and from the result of multiple shooting. All results are compared by the
+//! same posterior; the most probable one is taken.
 
 use appell_estimate::{Effort, EstimateError, Estimation, Fit, Free, Predicted, Unknown};
 
@@ -14,15 +14,15 @@ use super::problem::{EFFORT, Problem, most_likely};
 use super::{IdentifyError, Options, shooting};
 use crate::held_out::{AHEAD, origins};
 
-/// Part of a recorded motion, as a root mean square, that a free run of a fitted model may miss.
+/// Tolerated error of a free run of a fitted model, relative to the recorded motion (root mean squares).
 const MISSED: f64 = 0.05;
-/// Error a second ahead, in units of the noise of the sensor, that disturbances may explain.
+/// Tolerated error of predictions a second ahead, in units of the sensor noise.
 const MISSED_AHEAD: f64 = 3.0;
-/// Most rows of a run from which it is predicted a second ahead.
+/// Largest number of rows of a run from which predictions a second ahead start.
 const ORIGINS: usize = 20;
-/// A free run begins after this part of a recording, when the filter knows the state.
+/// A free run begins after this part of a recording, when the filter has converged.
 const KNOWN: usize = 8;
-/// Small disturbances as parts of the forces, over one second.
+/// Small process noise relative to the forces, over one second.
 const SMALL: [f64; 2] = [1e-3, 1e-4];
 /// Searches for a start need not end at an optimum.
 const START: Effort = Effort {
@@ -37,7 +37,7 @@ pub(super) struct Search<'p, 'e> {
     pub(super) options: &'p Options,
 }
 
-/// What a model misses, of the channel that is missed most.
+/// Prediction errors of a model, of the channel with the largest one.
 struct Missed {
     /// By free runs, relative to the recorded motion.
     of_motion: f64,
@@ -61,12 +61,12 @@ impl Missed {
 }
 
 impl Search<'_, '_> {
-    /// The optimum of the levels for the nominal parameters.
+    /// The optimum of the noise levels for the nominal parameters.
     pub(super) fn levels(&self, start: &[f64]) -> Result<Fit, EstimateError> {
         self.of(start, &self.problem.levels)
     }
 
-    /// The most likely optimum of all free values that is found, given the nominal one of the levels.
+    /// The most probable optimum of all free values, given the noise levels of the nominal model.
     pub(super) fn best(
         &self,
         nominal: &Fit,
@@ -115,10 +115,10 @@ impl Search<'_, '_> {
             Begin::Nominal => nominal.values.clone(),
             Begin::Shooting => {
                 stage("shooting at the recordings");
-                // Levels that are likely for other parameters than the right ones mislead.
+                // Noise levels that are likely for wrong parameters mislead.
                 let start = &self.problem.start;
                 let shots = shooting::shots(self.estimation, self.problem, start)?;
-                // The filter may fail although the motion did not.
+                // The filter may fail although the simulation did not.
                 let levels = shots.iter().filter_map(|shot| {
                     let start = most_likely(self.estimation, shot, &self.problem.sizes).ok()?;
                     self.levels(&start).ok()
@@ -140,7 +140,7 @@ impl Search<'_, '_> {
         self.of(start, &self.free())
     }
 
-    /// The likely values near those which are the most likely ones if disturbances are this part of the forces.
+    /// The optimum near that with process noise held at this part of the forces.
     fn quiet(&self, part: f64) -> Result<Fit, EstimateError> {
         let layout = self.estimation.layout();
         let mut start = self.problem.start.clone();
@@ -153,8 +153,8 @@ impl Search<'_, '_> {
         Fit::quick(self.estimation, &held.values, &self.free(), START)
     }
 
-    /// An optimum; where the likelihood is rough and no better values are found, what scoring reaches, with the step
-    /// that it could not take in the deviations.
+    /// An optimum; where the likelihood is rough and scoring stops before one, its last iterate, whose deviations
+    /// include the step that was not taken.
     fn of(&self, start: &[f64], free: &[Free]) -> Result<Fit, EstimateError> {
         if self.options.rough {
             return Fit::quick(self.estimation, start, free, EFFORT);
@@ -165,7 +165,7 @@ impl Search<'_, '_> {
         }
     }
 
-    /// What a fitted model misses; everything without one.
+    /// The prediction errors of a fitted model; infinite without one.
     fn missed(&self, fit: Option<&Fit>) -> Result<Missed, IdentifyError> {
         let Some(fit) = fit else {
             return Ok(Missed::EVERYTHING);

@@ -90,7 +90,7 @@ pub(super) fn begin(
     Ok(())
 }
 
-/// Disturbance and state of a drift.
+/// Indices of the process noise and of the state of a drift.
 fn places(setup: &Setup<'_>, index: usize) -> (usize, usize) {
     let info = setup.model.info();
     (

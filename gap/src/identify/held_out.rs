@@ -69,7 +69,7 @@ impl<'a> Test<'a> {
         let mut values = Vec::new();
         for fit in fits {
             let mut own = estimation.nominal();
-            // What comes before the runs stands at the same places.
+            // The values before those of the runs have the same indices.
             own[..first_run].copy_from_slice(&fit[..first_run]);
             begin(estimation, &mut own)?;
             drift::begin(drifts, estimation, &mut own)?;

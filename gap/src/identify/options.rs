@@ -9,7 +9,7 @@ pub enum Begin {
     /// At the values of the rig.
     #[default]
     Nominal,
-    /// At the result of multiple shooting from there, for values far from the truth.
+    /// At the result of multiple shooting from these, for values far from the truth.
     Shooting,
 }
 
@@ -24,7 +24,7 @@ pub struct Options {
     /// Drifting parameters, with the standard deviations of their changes in one second, in their
     /// units.
     pub drifting: Vec<(String, f64)>,
-    /// Whether no free parameter at all is accepted.
+    /// Whether a problem without free parameters is accepted.
     pub allow_none: bool,
     /// Where the search begins.
     pub begin: Begin,

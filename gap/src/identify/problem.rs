@@ -9,20 +9,20 @@ use super::start::{Start, forces, start};
 use super::{IdentifyError, Options};
 use appell_recordings::{Channel, DataSet, Parameter};
 
-/// Factor by which a stated noise level may be wrong.
+/// Logarithm of the factor by which a stated noise level may be wrong.
 const NOISE_FACTOR: f64 = std::f64::consts::LN_2;
 /// Fraction of a signal assumed as noise if nothing is known.
 const NOISE_PART: f64 = 1e-2;
 /// Limits of the estimated noise, relative to the initial one.
 const NOISE_RANGE: [f64; 2] = [1e-2, 1e3];
-/// Initial levels of disturbances, relative to the forces, over one second.
+/// Initial levels of process noise, relative to the forces, over one second.
 const PARTS: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 /// The search ends within a hundredth of a standard deviation.
 pub(super) const EFFORT: Effort = Effort {
     gain: 5e-5,
     steps: 200,
 };
-/// Limits of disturbances, relative to the forces.
+/// Limits of process noise, relative to the forces.
 const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];
 
 /// A fitting problem.
@@ -33,7 +33,7 @@ pub(crate) struct Problem {
     pub(crate) wanted: Vec<Free>,
     /// Their quantities, with nominal values.
     pub(super) quantities: Vec<Quantity>,
-    /// Levels of disturbances and noise, which are always free.
+    /// Levels of process and measurement noise, which are always free.
     pub(crate) levels: Vec<Free>,
     /// Sizes of the forces in each equation.
     pub(super) sizes: Vec<f64>,
@@ -93,11 +93,11 @@ pub(super) fn parameter(name: &str, info: &ModelInfo) -> Result<usize, IdentifyE
         })
 }
 
-/// Values that a parameter may have within a declared range: no mass and no inertia turns negative, whatever is fitted.
+/// Values that a parameter may have within a declared range: masses and inertias remain positive in every fit.
 pub(crate) fn possible([low, high]: [f64; 2], parameter: Parameter) -> [f64; 2] {
-    /// Tolerances from zero at which a value keeps its sign.
+    /// Distance from zero, in tolerances, beyond which a value keeps its sign.
     const FAR: f64 = 2.0;
-    /// Part of the value that is left at least.
+    /// Lower limit relative to the value.
     const LEAST: f64 = 0.01;
     let (value, least) = (parameter.value, LEAST * parameter.value);
     let is_far = |std: f64| value.abs() > FAR * std;
@@ -209,8 +209,8 @@ pub(crate) fn begin(
     Ok(starts)
 }
 
-/// How far an input goes from its first value, as a root mean square. Before the first row it was somewhere there, so
-/// that what lags behind it may begin as far from it.
+/// Root mean square of an input about its first value. The input before the first row is unknown to that extent, and
+/// so is the initial state of a lag.
 fn course(recording: &Recording, input: usize) -> f64 {
     let rows = 0..recording.times().len();
     let first = recording.inputs(0)[input];
@@ -218,7 +218,7 @@ fn course(recording: &Recording, input: usize) -> f64 {
     (squares.sum::<f64>() / recording.times().len() as f64).sqrt()
 }
 
-/// The values with the most likely ones of some initial levels of disturbances.
+/// The values with the most likely of some initial levels of process noise.
 pub(super) fn most_likely(
     estimation: &Estimation<'_>,
     values: &[f64],

@@ -1,10 +1,10 @@
-//! How far parameters differ from run to run: each run fitted alone, beside all together.
+//! Variation of parameters from run to run: each run fitted alone, compared with the fit of all runs.
 //!
-//! An interval tells how well one value is known that all runs share. Where friction, temperature or a payload
-//! differs, runs have values of their own, whose spread is estimated beyond what their intervals explain
+//! An interval is that of one value common to all runs. Where friction, temperature or a payload
+//! differs, runs have different values, whose spread beyond their own intervals is estimated
 //! (R. `DerSimonian` and N. Laird, *Meta-analysis in clinical trials*, Controlled Clinical Trials 7, 1986). Whether they
-//! differ at all is tested by the sum of their squares over their variances, Q, which is χ² where they do not
-//! (W. G. Cochran, 1954), at 5 % for all parameters together (Bonferroni).
+//! differ at all is tested by Q, the sum of their squared deviations over their variances, which is χ² distributed
+//! if they do not (W. G. Cochran, 1954), at 5 % for all parameters together (Bonferroni).
 
 use appell_estimate::{
     Effort, Estimation, Fit, Free, Recording, Setup, Unknown, chi_squared_probability,
@@ -28,7 +28,7 @@ pub struct Repeatability {
     pub runs: Vec<(String, [f64; 2])>,
     /// Standard deviation of the value from run to run in SI, beyond that of the single values.
     pub spread: f64,
-    /// Probability of values as different as these where all runs share one.
+    /// Probability of values at least as different as these if all runs share one value.
     pub p_value: f64,
     /// Whether that is below 5 % over the number of parameters.
     pub differs: bool,
@@ -37,8 +37,8 @@ pub struct Repeatability {
 /// Probability of a difference of any parameter where there is none.
 const LEVEL: f64 = 0.05;
 
-/// Of all free parameters, from the fit of all runs; nothing where a run alone cannot be fitted. Deviations of the
-/// single values are widened by these factors, as those of all runs together are where residuals are correlated.
+/// The repeatability of all free parameters; empty where a single run cannot be fitted. Deviations of the
+/// single values are widened by these factors, as those of the joint fit are for correlated residuals.
 pub(super) fn repeatability(
     setup: &Setup<'_>,
     runs: &[(&str, &Recording)],
@@ -78,7 +78,7 @@ pub(super) fn repeatability(
     Ok(found)
 }
 
-/// Values and standard deviations of the parameters in one run, levels as in all of them.
+/// Values and standard deviations of the parameters in one run, with the noise levels of the joint fit.
 fn alone(
     setup: &Setup<'_>,
     recording: &Recording,
@@ -90,7 +90,7 @@ fn alone(
     let layout = estimation.layout();
     let mut start = estimation.nominal();
     let first_run = all.layout().place(Unknown::Initial { run: 0, state: 0 })?;
-    // What comes before the runs stands at the same places.
+    // The values before those of the runs have the same indices.
     start[..first_run].copy_from_slice(&fit.values[..first_run]);
     begin(&estimation, &mut start)?;
     let mut around = Vec::with_capacity(free.len());
@@ -114,15 +114,15 @@ fn alone(
     Ok(Some(values))
 }
 
-/// How different values are.
+/// Heterogeneity of values.
 struct Heterogeneity {
-    /// Standard deviation between them beyond their own.
+    /// Standard deviation between them in excess of their own.
     spread: f64,
     p_value: f64,
 }
 
 impl Heterogeneity {
-    /// Of values with their standard deviations.
+    /// From values with their standard deviations.
     fn of(values: &[[f64; 2]]) -> Self {
         let is_known = |[_, deviation]: &&[f64; 2]| deviation.is_finite() && *deviation > 0.0;
         let known: Vec<[f64; 2]> = values.iter().filter(is_known).copied().collect();

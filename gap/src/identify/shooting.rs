@@ -1,5 +1,5 @@
 //! Initial parameters if those of the rig are far from the truth, by multiple shooting without a
-//! filter, with open gaps and with closed ones.
+//! filter, with and without continuity between the segments.
 
 use appell_estimate::{Estimation, Free, Recording, Shooting, Unknown};
 

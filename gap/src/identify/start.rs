@@ -8,11 +8,11 @@ use crate::slope::{Slope, WINDOW};
 
 /// Number of points along a run at which slopes and forces are evaluated.
 const PLACES: usize = 100;
-/// First values are this many times less certain than a measurement: they are measured again by the
-/// first row.
+/// Factor on the standard deviation of initial values that are measured: the filter uses the first
+/// row once more.
 const CAUTION: f64 = 10.0;
-/// A parabola over the first samples misses a motion that a step sets off: the true slope lies within
-/// so many of what it tells.
+/// Smallest standard deviation of an initial slope relative to its estimate: a parabola over the first samples cannot
+/// reproduce a motion that starts with a step of a force.
 const CAREFUL: f64 = 3.0;
 
 /// Initial state of a run.

@@ -1,11 +1,11 @@
 //! Whether a filter may step from row to row.
 //!
-//! Steps are cut at corners of the equations, such as those of dry friction that sticks, only where that changes the
-//! likelihood: elsewhere it costs time, and makes the likelihood of fast smooth motions rough.
+//! Steps are shortened at non-smooth points of the equations, such as sticking of dry friction, only where that changes
+//! the likelihood: elsewhere it costs time, and makes the likelihood of fast smooth motions rough.
 
 use appell_estimate::{EstimateError, Estimation, Recording, Setup};
 
-/// Difference of the log-likelihood that tells two sets of parameters apart.
+/// Difference of the log-likelihood that distinguishes two sets of parameters.
 const DIFFERENT: f64 = 5.0;
 
 /// Whether steps from row to row are too long for these values.

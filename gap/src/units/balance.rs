@@ -1,6 +1,6 @@
-//! How far recordings miss the equations when their channels are read with factors: the motion is
-//! smoothed, and each equation is balanced with the accelerations, each rate and output with what the
-//! coordinates say.
+//! Residuals of the equations when the channels of recordings are scaled by factors: the motion is
+//! smoothed; the equations are compared with the accelerations, rates and outputs with those that follow from the
+//! coordinates.
 
 use std::ops::Range;
 
@@ -10,7 +10,7 @@ use appell_recordings::{DataSet, Measured, Part, Role, Run};
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
 
-/// Runs and rows of each that are looked at.
+/// Largest number of runs, and of rows of each.
 const MOST: [usize; 2] = [6, 2500];
 /// Relative step of the derivative of q̇ along the motion.
 const STEP: f64 = 1e-6;
@@ -21,7 +21,7 @@ const FAR: f64 = 2.0;
 
 /// Measured values and their first two derivatives.
 type Derivatives = [DVector<f64>; 3];
-/// ω and ω̇, where something tells them.
+/// ω and ω̇, where the measurements determine them.
 type Speeds = Option<[DVector<f64>; 2]>;
 
 /// Recordings and equations.
@@ -35,7 +35,7 @@ pub(super) struct Balance<'a> {
     inputs: Vec<Option<usize>>,
 }
 
-/// What is missed in relation to what is measured, summed over a motion.
+/// Sums of magnitudes over a motion: of the residual, and of the measured value.
 #[derive(Clone, Copy, Default)]
 struct Miss {
     error: f64,
@@ -74,8 +74,8 @@ impl<'a> Balance<'a> {
         runs.filter(|run| run.part == Part::Fit).take(MOST[0])
     }
 
-    /// The part that is missed of each equation, rate and output, where the recordings tell it; above one
-    /// where the model expects more than is measured.
+    /// The relative residual of each equation, rate and output, where the recordings determine it; above one
+    /// where the model predicts more than is measured.
     pub(super) fn missed(&self, factors: &[f64]) -> Vec<Option<f64>> {
         let info = self.model.info();
         let mut misses = vec![Miss::default(); self.varying()];
@@ -103,8 +103,8 @@ impl<'a> Balance<'a> {
         missed
     }
 
-    /// How many of the statistics of [`missed`](Self::missed) vary with the size of a channel; whether a
-    /// value is inside its range does not.
+    /// How many of the statistics of [`missed`](Self::missed) vary continuously with the factor of a channel; the
+    /// test of a declared range does not.
     pub(super) fn varying(&self) -> usize {
         self.model.info().speeds + 2 * self.measured.len()
     }
@@ -134,7 +134,7 @@ impl<'a> Balance<'a> {
         Track::of(&records).ok()
     }
 
-    /// Means of the inputs over a time.
+    /// Means of the inputs over an interval of time.
     fn inputs(&self, run: &Run, [from, to]: [f64; 2], factors: &[f64]) -> Vec<f64> {
         let rows: Range<usize> =
             run.times.partition_point(|t| *t < from)..run.times.partition_point(|t| *t < to);
@@ -233,7 +233,7 @@ impl<'a> Balance<'a> {
         Some([read(0), read(1)])
     }
 
-    /// Adds what a motion misses.
+    /// Adds the residuals of a motion.
     fn add(&self, misses: &mut [Miss], t: f64, derivatives: &Derivatives, u: &[f64]) {
         let info = self.model.info();
         let speeds = info.speeds;
@@ -273,7 +273,7 @@ impl<'a> Balance<'a> {
         }
     }
 
-    /// Whether a coordinate is far outside its declared range, as a part that is missed.
+    /// Whether a coordinate is far outside its declared range, on the scale of relative residuals.
     fn outside(&self, (index, measured): (usize, Measured), factors: &[f64]) -> Option<f64> {
         let Measured::Coordinate(i) = measured else {
             return None;
@@ -306,7 +306,7 @@ fn rescaled(factor: f64) -> bool {
     (factor - 1.0).abs() > f64::EPSILON
 }
 
-/// Fills missing values on straight lines.
+/// Fills missing values by linear interpolation.
 fn bridge(times: &[f64], values: &mut [f64]) {
     let present: Vec<usize> = (0..values.len())
         .filter(|row| values[*row].is_finite())

@@ -1,10 +1,10 @@
-//! Some candidates fitted to residual forces, with their evidence.
+//! A set of candidates fitted to residual forces, with its evidence.
 //!
-//! Each equation has the variance of what it leaves; motions that follow each other tell less than as many
-//! independent ones, and no law is exact: a twentieth of the mean square of an equation is one unit (J. W. Miller,
-//! D. B. Dunson, *Robust Bayesian inference via coarsening*, 2019). What is likely are the measured inputs u, given
-//! the motion: p(u) = p(r) |det E| where the residual r has −E u. Without this factor an input without any force
-//! would explain whatever force is missing.
+//! The variance of each equation is that of its residual; correlated motions count as fewer independent ones, and as no
+//! law is exact the likelihood is coarsened: a twentieth of the mean square of an equation is one unit (J. W. Miller,
+//! D. B. Dunson, *Robust Bayesian inference via coarsening*, 2019). The likelihood is that of the measured inputs u,
+//! given the motion: p(u) = p(r) |det E|, where the residual r contains −E u. Without this factor an input of zero gain
+//! would explain any missing force.
 
 use std::f64::consts::TAU;
 
@@ -15,23 +15,23 @@ use super::super::hardware::LN_1000;
 use super::super::window_bench::TOLERANCE;
 use super::motions::Motions;
 
-/// How often the variances are taken from what is left.
+/// Largest number of iterations of the variances.
 const PASSES: usize = 12;
-/// Shortest part of a step.
+/// Smallest damping factor of a Newton step.
 const SHORTEST: f64 = 1e-3;
 /// Largest lag of correlations, in motions.
 const LAGS: usize = 50;
-/// A correlation below this is chance.
+/// A correlation below this is taken as zero.
 const CHANCE: f64 = 0.05;
 
-/// A parameter that a hypothesis sets free.
+/// A free parameter of a hypothesis.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Open {
     /// Its column.
     pub(super) column: usize,
-    /// Standard deviation about its value beforehand; nothing for sizes.
+    /// Prior standard deviation about its stated value; `None` for sizes.
     pub(super) std: Option<f64>,
-    /// What its difference may be.
+    /// Range of its difference.
     pub(super) range: [f64; 2],
 }
 
@@ -40,7 +40,7 @@ pub(super) struct Member {
     /// Its index.
     pub(super) candidate: usize,
     pub(super) open: Vec<Open>,
-    /// Whether it is not there without all of its sizes.
+    /// Whether it requires all of its sizes.
     pub(super) is_whole: bool,
 }
 
@@ -55,41 +55,41 @@ impl Member {
 pub(super) struct Hypothesis {
     /// Indices of the candidates; none for the nominal model.
     pub(super) members: Vec<usize>,
-    /// Difference of every parameter that varies.
+    /// Difference of every variable parameter from its stated value.
     pub(super) changes: DVector<f64>,
-    /// Standard deviation of each that is free and at no limit.
+    /// Standard deviation of each parameter that is free and not at a limit.
     pub(super) deviations: Vec<Option<f64>>,
-    /// Variance that each equation leaves.
+    /// Residual variance of each equation.
     pub(super) variances: Vec<f64>,
     pub(super) log_likelihood: f64,
     /// Logarithm of the evidence.
     pub(super) log: f64,
 }
 
-/// The most likely moves of some parameters, and the inverse of their covariance.
+/// The most probable differences of some parameters, and the inverse of their covariance.
 pub(super) struct Moves {
     pub(super) values: DVector<f64>,
     pub(super) information: DMatrix<f64>,
 }
 
-/// The most likely values.
+/// The most probable values.
 struct Solved {
     values: DVector<f64>,
     information: DMatrix<f64>,
     variances: Vec<f64>,
-    /// What inputs whose forces change add to the log-likelihood.
+    /// ln |det E| relative to the nominal one, its part of the log likelihood.
     log_levers: f64,
 }
 
 /// Sums of squares over the motions.
 #[derive(Debug, Clone)]
 pub(super) struct Squares {
-    /// For each equation, those of slopes and residual, the residual last.
+    /// For each equation, the Gram matrix of regressors and residual, the residual last.
     equations: Vec<DMatrix<f64>>,
     /// Number of motions.
     count: f64,
     levers: Vec<(usize, DMatrix<f64>)>,
-    /// Part of the motions that tell something of their own.
+    /// Effective sample size of each equation relative to the number of motions.
     pub(super) independent: Vec<f64>,
 }
 
@@ -117,8 +117,8 @@ impl Squares {
         }
     }
 
-    /// ln |det E⁻¹ E(p)| with its derivatives by what is open, minus the second ones; nothing where inputs lose
-    /// their forces.
+    /// ln |det E⁻¹ E(p)| with its gradient and its negative Hessian by the free parameters; `None` if E becomes
+    /// singular.
     fn levers(
         &self,
         open: &[Open],
@@ -154,7 +154,7 @@ impl Squares {
         Some((determinant.ln(), slope, curvature))
     }
 
-    /// With the correlations of what a hypothesis leaves: n motions count as n / (1 + 2 Σ ρ).
+    /// With the autocorrelation of the residuals of a hypothesis: n motions count as n / (1 + 2 Σ ρ).
     pub(super) fn correlated(&self, motions: &Motions, fitted: &Hypothesis) -> Self {
         let mut squares = self.clone();
         for (equation, independent) in squares.independent.iter_mut().enumerate() {
@@ -176,8 +176,8 @@ impl Squares {
         squares
     }
 
-    /// The best values of what is open, without those that would leave their range; nothing where they cannot be told
-    /// from each other or where a member is not there. `others` are parameters of the mechanism.
+    /// The most probable values of the free parameters; those that would leave their range keep their stated values.
+    /// `None` if they are not identifiable or if a member is not significant. `others` are parameters of the mechanism.
     pub(super) fn fitted(&self, members: &[Member], others: &[Open]) -> Option<Hypothesis> {
         let mut open: Vec<Open> = others.to_vec();
         open.extend(members.iter().flat_map(|member| &member.open));
@@ -199,7 +199,7 @@ impl Squares {
         }
     }
 
-    /// The best values of what is open.
+    /// The most probable values of the free parameters.
     pub(super) fn moves(&self, open: &[Open]) -> Option<Moves> {
         let Solved {
             values,
@@ -235,7 +235,7 @@ impl Squares {
                 -(d * deviation * sides * LN_1000).ln()
             };
         }
-        // A member most of whose sizes are not told from zero is not there.
+        // A member is accepted if most of its sizes differ significantly from zero.
         let is_told = |member: &Member| {
             let is_told =
                 |column: usize| known[column].is_some_and(|std| changes[column].abs() > std);
@@ -261,7 +261,7 @@ impl Squares {
         })
     }
 
-    /// The most likely values by Newton's method, with variances that follow.
+    /// The most probable values by Newton's method, alternating with the residual variances.
     fn solved(&self, open: &[Open]) -> Option<Solved> {
         let last = self.equations.first()?.nrows() - 1;
         let count = open.len();
@@ -289,7 +289,7 @@ impl Squares {
                 }
             }
             let next = solve(&information, &right)?;
-            // A step after which inputs would have lost their forces is shortened.
+            // A step to a singular E is shortened.
             let mut part = 1.0;
             let near = |part: f64| &values + part * (&next - &values);
             while part > SHORTEST && self.levers(open, &near(part)).is_none() {
@@ -307,7 +307,7 @@ impl Squares {
         })
     }
 
-    /// Mean squares of what is left.
+    /// Mean squares of the residuals.
     fn variances(&self, open: &[Open], values: &DVector<f64>) -> Vec<f64> {
         let left = self.equations.iter().map(|squares| {
             let last = squares.nrows() - 1;
@@ -323,7 +323,7 @@ impl Squares {
         left.collect()
     }
 
-    /// What a hypothesis that leaves nothing but noise would gain.
+    /// The gain of a hypothesis whose residual is the noise.
     pub(super) fn beyond(&self, fitted: &Hypothesis, noise: &DVector<f64>) -> f64 {
         let equations = fitted.variances.iter().zip(noise.iter());
         let gains = equations.zip(&self.independent);
@@ -340,14 +340,14 @@ impl Squares {
     }
 }
 
-/// Part of so many motions that counts, where no law is exact.
+/// Likelihood weight of so many motions: coarsening for inexact laws.
 fn coarse(count: f64) -> f64 {
     (2.0 / TOLERANCE / count.max(1.0)).min(1.0)
 }
 
-/// Solves the normal equations, their unknowns scaled; nothing where they are singular.
+/// Solves the normal equations with scaled unknowns; `None` if they are singular.
 fn solve(information: &DMatrix<f64>, right: &DVector<f64>) -> Option<DVector<f64>> {
-    /// Part of itself that a column has to have beyond the others, squared.
+    /// Smallest squared part of a column that is independent of the others.
     const NEW: f64 = 1e-8;
     if right.is_empty() {
         return Some(right.clone());

@@ -1,4 +1,4 @@
-//! Residual forces of recorded motions, and what each size would add to them.
+//! Residual forces of recorded motions, and their derivatives by the sizes of effects.
 
 use appell_estimate::Moment;
 use appell_recordings::{DataSet, Part as OfSet};
@@ -11,11 +11,11 @@ use crate::base::recorded;
 use crate::effects::{EffectModel, Part};
 use crate::inverse::coordinates;
 
-/// Most motions that are evaluated, spread over the recordings.
+/// Largest number of motions that are evaluated, spread over the recordings.
 const MOST: usize = 3000;
-/// Step of a size in SI; forces are linear in sizes, and what is quadratic cancels.
+/// Step of a size in SI; forces are linear in sizes, and quadratic terms cancel in central differences.
 const STEP: f64 = 1e-2;
-/// The same of a parameter, as a part of its value.
+/// The same for a parameter, relative to its value.
 const PART: f64 = 1e-4;
 
 /// Step of coordinates, rates, accelerations and inputs in SI.
@@ -31,18 +31,18 @@ pub(super) struct Motion {
     pub(super) x: Vec<f64>,
     /// Inputs.
     pub(super) u: Vec<f64>,
-    /// What inputs do in each equation.
+    /// Generalised force of the inputs in each equation.
     pub(super) driven: DVector<f64>,
     /// M ω̇ + b − Π with the parameters of the data set.
     pub(super) residual: DVector<f64>,
-    /// Its derivatives by the parameters that vary.
+    /// Its derivatives by the variable parameters.
     pub(super) slopes: DMatrix<f64>,
-    /// Its variances by the noise of the channels.
+    /// Its variances due to the noise of the channels.
     pub(super) noise: DVector<f64>,
 }
 
 impl Motion {
-    /// Of a model with the parameters `p`, some of which vary.
+    /// For a model with the parameters `p`, of which `parameters` are variable.
     fn of(model: &dyn Model, moment: Moment, p: &[f64], parameters: &[usize]) -> Self {
         let info = model.info();
         let residual = demand(model, &moment, p);
@@ -73,7 +73,7 @@ impl Motion {
         }
     }
 
-    /// The same where channels have noise: `spread` is the covariance of the coordinates, each with the place of its
+    /// The same with noise of the channels: `spread` is the covariance of the coordinates, each with the index of its
     /// rate among the states, and of the inputs, all with their derivatives.
     fn noisy(
         self,
@@ -105,7 +105,7 @@ impl Motion {
         Self { noise, ..self }
     }
 
-    /// The residual where parameters differ by so much from those of the data set.
+    /// The residual with parameters that differ from those of the data set by `changes`.
     pub(super) fn left(&self, changes: &DVector<f64>) -> DVector<f64> {
         &self.residual + &self.slopes * changes
     }
@@ -113,16 +113,16 @@ impl Motion {
 
 /// The recorded motions of some runs.
 pub(super) struct Motions {
-    /// The parameters that vary: those of the mechanism with a tolerance, sizes of effects.
+    /// The variable parameters: those of the mechanism with a tolerance, and sizes of effects.
     pub(super) parameters: Vec<usize>,
     /// E⁻¹ ∂E/∂p where Π = E u + …, by the column of the parameter; without those that are zero.
     pub(super) levers: Vec<(usize, DMatrix<f64>)>,
-    /// Stretches without a gap, each with the name of its run.
+    /// Segments without missing samples, each with the name of its run.
     pub(super) stretches: Vec<(String, Vec<Motion>)>,
 }
 
 impl Motions {
-    /// Of all runs of a data set, which are of one part.
+    /// The motions of all runs of a data set, which are all training or all test runs.
     pub(super) fn of(set: &DataSet, effects: &EffectModel) -> Result<Self, DiagnoseError> {
         let model = effects.beside(&[]);
         let info = model.info();
@@ -159,7 +159,7 @@ impl Motions {
         self.stretches.iter().flat_map(|(_, motions)| motions)
     }
 
-    /// The motions of each run, whatever gaps it has.
+    /// The motions of each run, over its missing samples.
     pub(super) fn runs(&self) -> Vec<(&str, Vec<&Motion>)> {
         let mut runs: Vec<(&str, Vec<&Motion>)> = Vec::new();
         for (run, own) in &self.stretches {
@@ -171,10 +171,10 @@ impl Motions {
         runs
     }
 
-    /// Noise of each equation's force, standard deviation: the smaller one of two bounds from above. One comes from the
-    /// noise of the channels about their splines, where inputs may vary faster; the other is what changes from one
-    /// motion to the next beside a hypothesis (J. von Neumann, *Distribution of the ratio of the mean square successive
-    /// difference to the variance*, 1941).
+    /// Standard deviation of the noise of each equation's force: the smaller of two upper bounds. One propagates the
+    /// residuals of the channels about their splines, which include fast variations of inputs; the other is the mean
+    /// square successive difference of the residual of a hypothesis (J. von Neumann, *Distribution of the ratio of the
+    /// mean square successive difference to the variance*, 1941).
     pub(super) fn noise(&self, changes: &DVector<f64>) -> DVector<f64> {
         let equations = self.all().next().map_or(0, |motion| motion.noise.len());
         let of_channels = mean(equations, self.all().map(|motion| motion.noise.clone()));
@@ -205,8 +205,8 @@ fn demand(model: &dyn Model, moment: &Moment, p: &[f64]) -> DVector<f64> {
     demand
 }
 
-/// How parameters change the forces of unit inputs, in parts of these. Each input drives a coordinate, so that these
-/// depend on no motion.
+/// Relative change of the forces of unit inputs by the parameters. Each input drives a coordinate, so that these forces
+/// do not depend on the motion.
 fn levers(
     model: &dyn Model,
     first: &Moment,

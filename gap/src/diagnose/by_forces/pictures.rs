@@ -1,17 +1,17 @@
-//! Missing forces over time and over what they depend on, and forces of inputs beside those that motions take.
+//! Missing forces over time and over their variables, and forces of inputs with those predicted by inverse dynamics.
 
 use super::super::force_history::median;
 use super::super::force_law::{Step, over_its_variable};
 use super::super::localise::force_unit;
 use super::super::report::{ForceHistory, MissingForce, Pictures, Trace, Where};
 use super::motions::{Motion, Motions};
-use super::search::Findings;
 use super::told::added;
+use super::search::Findings;
 use crate::effects::EffectModel;
 
-/// Most parts of all runs; more cannot be told apart.
+/// Largest number of intervals over all runs, the resolution of the plot.
 const PARTS: f64 = 160.0;
-/// Shortest part in s.
+/// Shortest interval in s.
 const SHORTEST: f64 = 0.5;
 
 pub(super) fn of(
@@ -33,7 +33,7 @@ pub(super) fn of(
     }
 }
 
-/// What is missing of each motion, beside re-fitted parameters; a missing force is what M ω̇ + b − Π is too much.
+/// The missing force of each motion, M ω̇ + b − Π with re-fitted parameters.
 fn steps(model: &EffectModel, found: &Findings, motions: &Motions, equation: usize) -> Vec<Step> {
     let best = found.best();
     let mut steps = Vec::new();
@@ -66,7 +66,7 @@ fn force_history(model: &EffectModel, found: &Findings, motions: &Motions) -> Fo
     let mut sizes: Vec<Vec<Vec<f64>>> = vec![Vec::new(); info.speeds];
     for (run, own) in &all {
         let (from, to) = ends(own);
-        // Parts are few.
+        // The number of intervals is small.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let parts = ((to - from) / part).ceil().max(1.0) as usize;
         let first = sizes[0].len();
@@ -96,7 +96,7 @@ fn force_history(model: &EffectModel, found: &Findings, motions: &Motions) -> Fo
     }
 }
 
-/// The forces of the inputs in the first run, and what the model needs for its motion.
+/// The forces of the inputs in the first run, and those that the models predict for its motion.
 fn traces(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<Trace> {
     let info = model.info();
     let runs = motions.runs();

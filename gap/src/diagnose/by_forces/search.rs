@@ -1,6 +1,6 @@
 //! The most probable hypotheses on residual forces.
 //!
-//! Every candidate is tried alone, then beside each of the best hypotheses, up to four effects.
+//! Every candidate is tried alone, then added to each of the best hypotheses, up to four effects.
 
 use std::collections::BTreeSet;
 
@@ -15,28 +15,28 @@ use super::motions::Motions;
 use crate::effects::{Acts, Candidate, EffectModel, Part};
 use crate::identify::possible;
 
-/// Hypotheses that others join.
+/// Number of best hypotheses to which candidates are added.
 const KEPT: usize = 6;
-/// Most effects of a hypothesis.
+/// Largest number of effects of a hypothesis.
 const MOST_EFFECTS: usize = 4;
-/// Hypotheses below this probability are not told.
+/// Hypotheses below this probability are not reported.
 const IMPROBABLE: f64 = 1e-4;
-/// Most candidates: components of a vector count as one effect.
+/// Largest number of candidates of a hypothesis; components of a vector count as one effect.
 const MOST_MEMBERS: usize = 6;
 
-/// What was found.
+/// Result of a search.
 pub(super) struct Findings {
     /// Hypotheses with their probabilities, the most probable first.
     pub(super) fits: Vec<(Hypothesis, f64)>,
-    /// Place of the nominal model among them.
+    /// Index of the nominal model among them.
     pub(super) nominal: usize,
-    /// Probability that nothing in the library explains the gap.
+    /// Probability that no effect of the library explains the gap.
     pub(super) unknown: f64,
-    /// Part of the motions that tell something of their own, the mean over the equations.
+    /// Effective sample size relative to the number of motions, mean over the equations.
     pub(super) independent: f64,
     /// Noise of each equation's force.
     pub(super) noise: DVector<f64>,
-    /// Every candidate alone.
+    /// The hypothesis of every candidate alone.
     pub(super) alone: Vec<Hypothesis>,
 }
 
@@ -68,8 +68,8 @@ impl<'s> Search<'s> {
         }
     }
 
-    /// Twice: what the best hypothesis leaves tells how much of their own the motions tell. Nothing where not even the
-    /// nominal model has finite forces.
+    /// Searches twice, with the effective sample size by the residuals of the best hypothesis of the first search.
+    /// `None` if not even the nominal model has finite forces.
     pub(super) fn found(&self) -> Option<Findings> {
         let first = self.fits(&self.squares);
         let best = first
@@ -100,7 +100,7 @@ impl<'s> Search<'s> {
             if !is_part || own.members.len() == all[best].members.len() {
                 return weight;
             }
-            // A part of it that explains nearly as much may be right, its law not exact.
+            // A subset that explains nearly as much may be the truth with an inexact law.
             weight.max(inexact(1.0 - explained(own) / explained(&all[best])))
         };
         let weights: Vec<f64> = logs.iter().zip(&all).map(weight).collect();
@@ -134,7 +134,7 @@ impl<'s> Search<'s> {
         })
     }
 
-    /// The nominal model first.
+    /// All fitted hypotheses, the nominal model first.
     fn fits(&self, squares: &Squares) -> Vec<Hypothesis> {
         let mut all: Vec<Hypothesis> = self.fitted(squares, &[]).into_iter().collect();
         let mut tried: BTreeSet<Vec<usize>> = BTreeSet::new();
@@ -259,7 +259,7 @@ impl<'s> Search<'s> {
         squares.fitted(&own.collect::<Vec<_>>(), &others)
     }
 
-    /// Places of the re-fitted parameters, their moves and the information about these.
+    /// Indices of the re-fitted parameters, their differences and the information about these.
     pub(super) fn refitted(&self) -> Option<(Vec<usize>, Moves)> {
         let nominal = self.fitted(&self.squares, &[])?;
         let squares = self.squares.correlated(self.motions, &nominal);
@@ -271,13 +271,13 @@ impl<'s> Search<'s> {
         Some((free, squares.moves(&open)?))
     }
 
-    /// Some members, and nothing else than what they need.
+    /// The hypothesis of some members, with all variable parameters of the mechanism.
     pub(super) fn of(&self, members: &[usize]) -> Option<Hypothesis> {
         self.fitted(&self.squares, members)
     }
 }
 
-/// Sum over the equations of the mean squares that a hypothesis leaves beyond the noise, in units of the noise.
+/// Sum over the equations of the residual mean squares in excess of the noise, in units of the noise.
 fn beyond(fitted: &Hypothesis, noise: &DVector<f64>) -> f64 {
     let squares = fitted.variances.iter().zip(noise.iter());
     squares

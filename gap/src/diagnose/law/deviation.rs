@@ -5,9 +5,9 @@ use nalgebra::DMatrix;
 
 use super::super::evidence::Fitted;
 
-/// Standard deviations of what is linear in some values of a fit.
+/// Standard deviations of linear functions of some values of a fit.
 pub(super) struct Deviation {
-    /// Places of the values among those that were free.
+    /// Indices of the values among the free ones.
     free: Vec<Option<usize>>,
     covariance: Option<DMatrix<f64>>,
 }
@@ -24,7 +24,7 @@ impl Deviation {
         }
     }
 
-    /// Of the sum of the values times these slopes.
+    /// Standard deviation of the sum of the values times these coefficients.
     pub(super) fn along(&self, slopes: &[f64]) -> f64 {
         let mut variance = 0.0;
         for (i, a) in self.free.iter().zip(slopes) {

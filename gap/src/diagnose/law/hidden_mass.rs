@@ -1,4 +1,4 @@
-//! A mass that swings behind a coordinate, told as the apparent mass that it adds over the frequency.
+//! A mass coupled to a coordinate by a spring and a damper, reported as its apparent mass over the frequency.
 
 use std::f64::consts::TAU;
 
@@ -9,11 +9,11 @@ use super::super::report::Law;
 use super::super::unknown::Unnamed;
 use super::deviation::Deviation;
 
-/// Places at which the apparent mass is told.
+/// Number of frequencies at which the apparent mass is reported.
 const PLACES: usize = 81;
-/// Range of their frequencies, in that of the swing.
+/// Range of these frequencies relative to the natural frequency.
 const RANGE: [f64; 2] = [0.25, 4.0];
-/// Step of a number for a difference, in its size.
+/// Relative step of finite differences.
 const STEP: f64 = 1e-4;
 
 /// The law with its band.
@@ -63,7 +63,8 @@ pub(super) fn told(
     }
 }
 
-/// Size of the apparent mass beyond that of a mass that is fixed, at a rate; from mass, rate and damping ratio.
+/// Magnitude of the difference between the apparent mass and a rigidly attached one, at an angular frequency; from mass,
+/// natural frequency and damping ratio.
 fn apparent(values: &[f64], rate: f64) -> f64 {
     let ratio = rate / values[1];
     let stiff = 1.0 - ratio * ratio;
@@ -79,7 +80,7 @@ mod tests {
         let values = [2.0, 6.0, 0.05];
         assert!(apparent(&values, 0.06) < 1e-3);
         assert!((apparent(&values, 6.0) - 20.0).abs() < 1e-9);
-        // It takes away what was counted.
+        // At high frequency the hidden mass, which the spec includes, does not move.
         assert!((apparent(&values, 600.0) - 2.0).abs() < 1e-3);
     }
 }

@@ -1,4 +1,4 @@
-//! A force that follows the way since the last turn, told over that way.
+//! A force with hysteresis, reported over the travel since the last reversal.
 
 use super::super::bench::Bench;
 use super::super::evidence::Fitted;
@@ -7,12 +7,12 @@ use super::super::report::Law;
 use super::super::unknown::Unnamed;
 use super::deviation::Deviation;
 
-/// Places at which the force is told.
+/// Number of points at which the force is reported.
 const PLACES: usize = 81;
-/// How far from the turn, in ways that it follows.
+/// Range of the travel since the reversal, in presliding displacements.
 const REACH: f64 = 5.0;
 
-/// The law with its band: the force against a motion that turned after a long way in the other direction.
+/// The law with its band: the force against a motion that reversed after a long travel in the other direction.
 pub(super) fn told(
     main: &Bench<'_>,
     law: &Unnamed,

@@ -1,4 +1,4 @@
-//! A law of a variable: a load with a term for each wave.
+//! A law of a variable: a load with a term for each harmonic.
 
 use std::fmt::Write as _;
 
@@ -12,12 +12,12 @@ use super::super::unknown::{Dependence, Series, Unnamed};
 use super::deviation::Deviation;
 use crate::effects::Candidate;
 
-/// Places at which the law is told, at least and for each half of its shortest wave.
+/// Number of points at which the law is reported: at least, and for each half of its shortest period.
 const PLACES: [usize; 2] = [81, 10];
-/// Standard deviation of the length of a wave, in the distance of those that are tried.
+/// Prior standard deviation of the frequency of a single harmonic, relative to the spacing of the grid.
 const APART: f64 = 0.5;
 
-/// The load. The length of a wave that is one alone is fitted too.
+/// The load. The frequency of a single harmonic is fitted too.
 pub(super) fn candidate(
     bench: &Bench<'_>,
     dependence: Dependence<'_>,
@@ -78,7 +78,7 @@ pub(super) fn told(
         .collect();
     let shortest = series.terms.iter().map(|(wave, ..)| wave + 1).max();
     let places_told = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
-    // After the sizes of the waves.
+    // After the amplitudes.
     let rate = values.get(2 * series.terms.len()).copied();
     let point = |place: usize| {
         let x = low + (high - low) * place as f64 / (places_told - 1) as f64;
@@ -94,7 +94,7 @@ pub(super) fn told(
             .map(|(size, wave)| size * wave)
             .sum();
         if rate.is_some() {
-            // The slope by the rate of one wave.
+            // The derivative by the frequency of a single harmonic.
             waves.push(x * (values[0] * waves[1] - values[1] * waves[0]));
         }
         [x / scale, force, deviation.along(&waves)]

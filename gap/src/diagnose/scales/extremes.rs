@@ -1,4 +1,4 @@
-//! How far coordinates went in recordings, and how large loads were.
+//! Ranges of coordinates and largest loads in recordings.
 
 use appell_recordings::{DataSet, Measured, Role, Run};
 use appell_spec::expr::{Expr, ExprKind, Quantity};
@@ -6,12 +6,12 @@ use appell_spec::expr::{Expr, ExprKind, Quantity};
 use super::PLACES;
 use crate::slope::{Slope, WINDOW};
 
-/// Part of the rows beyond which a coordinate is said to have got no further, and that of a run at whose ends it did not
-/// come back.
+/// Part of the rows that may lie beyond an end of the range, and part of a run at whose ends a reversal is not
+/// recognised.
 const RARE: f64 = 0.002;
 const ENDS: f64 = 0.01;
 
-/// The places between which a channel moved; nothing where it came back from neither.
+/// The range of a channel; `None` if it reversed at neither end.
 pub(super) fn reached(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let of_run = |run: &Run| -> Vec<(f64, bool)> {
         let rows = run.values[column].len() as f64;
@@ -34,7 +34,7 @@ pub(super) fn reached(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     (came_back && most.0 > least.0).then_some([least.0, most.0])
 }
 
-/// The largest magnitude of an expression along the runs; zero where what it depends on was not recorded.
+/// The largest magnitude of an expression along the runs; zero if one of its quantities was not recorded.
 pub(super) fn largest_of(set: &DataSet, law: &Expr) -> f64 {
     let mut largest = 0.0_f64;
     for run in &set.runs {
@@ -52,7 +52,7 @@ pub(super) fn largest_of(set: &DataSet, law: &Expr) -> f64 {
     largest
 }
 
-/// A quantity in the middle of a window of a run; not finite where it was not recorded.
+/// A quantity in the middle of a window of a run; not finite if it was not recorded.
 fn known(set: &DataSet, run: &Run, first: usize, quantity: Quantity) -> f64 {
     let column = |role: Role| set.channels.iter().position(|channel| channel.role == role);
     let window = first..first + WINDOW;

@@ -1,8 +1,8 @@
-//! What a law that nobody has named may depend on.
+//! The variables of nonparametric laws.
 //!
-//! Its waves run along a variable. They may be multiplied with the time, for a friction that changes, with an
-//! input: a gain that walks in time or with the position, a friction that grows with the load; and with a rate or its
-//! sign, for a friction that changes along the way, or a clock that drifts.
+//! Harmonics are functions of a variable. They may be multiplied by the time, for varying friction; by an
+//! input, for a gain that varies with time or position, or friction that grows with the load; and by a rate or its
+//! sign, for friction that varies with position, or a clock that drifts.
 
 use std::f64::consts::{PI, TAU};
 
@@ -13,33 +13,33 @@ use appell_spec::units;
 use super::super::bench::Bench;
 use super::super::unmodelled::UnmodelledChannel;
 
-/// Waves of a variable.
+/// Number of harmonics of a variable.
 pub(super) const WAVES: usize = 24;
-/// Waves of a position along which a force acts: teeth and poles are many along a path.
+/// Number of harmonics of a position for forces: teeth and poles have short periods.
 const FINE: usize = 64;
-/// Waves of the time: what walks changes slowly.
+/// Number of harmonics of the time: drifts are slow.
 const SLOW: usize = 4;
-/// Waves of a rate that are multiplied with a load or the time: what changes so is smooth.
+/// Number of harmonics of a rate that are multiplied by a load or the time: such laws are smooth.
 const MULTIPLIED: usize = 8;
-/// Range of a rate in typical rates.
+/// Range of a rate relative to the typical rate.
 const REACH: f64 = 2.5;
-/// Rates below this part of their range have no sign.
+/// Width over which the sign of a rate is smoothed, relative to its range.
 const SMALL: f64 = 0.02;
 
-/// Along what the waves run.
+/// The variable of the harmonics.
 #[derive(Clone, Copy)]
 enum Source<'b> {
     /// A state, then an input.
     Own(usize),
-    /// The change of an input since the row before.
+    /// The change of an input since the previous row.
     Change(usize),
     /// The time.
     Time,
-    /// A channel that the model does not know.
+    /// A channel outside the model.
     Unmodelled(&'b UnmodelledChannel),
 }
 
-/// What the waves are multiplied with.
+/// The factor of the harmonics.
 #[derive(Clone, Copy, PartialEq)]
 enum Factor {
     /// Nothing.
@@ -48,20 +48,20 @@ enum Factor {
     Time,
     /// An input.
     Input(usize),
-    /// The size of an input.
+    /// The magnitude of an input.
     Load(usize),
     /// A rate.
     Rate(usize),
-    /// The sign of a rate, smooth about a small one.
+    /// The sign of a rate, smoothed over a small one.
     Sign(usize, f64),
 }
 
-/// What a law depends on.
+/// The variable and the factor of a law.
 #[derive(Clone, Copy)]
 pub(in super::super) struct Dependence<'b> {
     source: Source<'b>,
     factor: Factor,
-    /// Angle of the first wave per unit.
+    /// Angular frequency of the first harmonic per unit.
     first: f64,
     /// Whether it is a position.
     is_position: bool,
@@ -73,14 +73,14 @@ pub(in super::super) struct Dependence<'b> {
 pub(in super::super) struct Written {
     /// The variable as a pure number.
     pub(in super::super) variable: String,
-    /// What the waves are multiplied with; nothing where that is one.
+    /// The factor of the harmonics; `None` if that is one.
     pub(in super::super) factor: Option<String>,
-    /// Unit of that.
+    /// Its unit.
     pub(in super::super) factor_unit: Option<String>,
 }
 
 impl<'b> Dependence<'b> {
-    /// On a channel that the model does not know.
+    /// A law of a channel outside the model.
     pub(super) fn unmodelled(channel: &'b UnmodelledChannel) -> Self {
         Self {
             source: Source::Unmodelled(channel),
@@ -91,8 +91,8 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// Positions and rates that return, over whole turns where an angle makes several; inputs; rates with the
-    /// time and with the load; the time, alone and with inputs; channels that the model does not know.
+    /// Positions and rates, over full turns for an angle with several; inputs; rates with the
+    /// time and with the load; the time, alone and with inputs; channels outside the model.
     pub(in super::super) fn all(bench: &'b Bench<'_>) -> Vec<Self> {
         let info = bench.effects.info();
         let (states, inputs) = (info.state_len(), bench.recordings[0].input_len());
@@ -142,7 +142,8 @@ impl<'b> Dependence<'b> {
         };
         all.extend(moving.iter().map(|&input| walking(Factor::Input(input))));
         all.extend((0..info.speeds).map(|rate| walking(Factor::Rate(rate))));
-        // In one run a level that walks is a disturbance; in runs that are alike the time tells the motion.
+        // In a single run a drift is process noise; in runs with the same motion it cannot be separated from a
+        // function of the state.
         if bench.recordings.len() > 1 && !are_alike(&bench.recordings) {
             all.push(walking(Factor::One));
         }
@@ -168,7 +169,7 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// The variable at a place; NaN where nothing tells it.
+    /// The variable at a state and time; NaN if it was not recorded.
     pub(in super::super) fn variable(
         self,
         (bench, model): (&Bench<'_>, &dyn Model),
@@ -191,7 +192,7 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// What the waves are multiplied with at a place.
+    /// The factor of the harmonics at a state and time.
     pub(in super::super) fn factor(
         self,
         (bench, model): (&Bench<'_>, &dyn Model),
@@ -210,7 +211,7 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// The waves at a place, as pairs of sine and cosine.
+    /// The harmonics at a state and time, as pairs of sine and cosine.
     pub(super) fn waves_at(
         self,
         (bench, model): (&Bench<'_>, &dyn Model),
@@ -229,12 +230,12 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// Angle of a wave per unit.
+    /// Angular frequency of a harmonic per unit.
     pub(in super::super) fn rate(self, wave: usize) -> f64 {
         (wave + 1) as f64 * self.first
     }
 
-    /// How many waves a law of it has.
+    /// Number of harmonics of a law.
     pub(super) fn waves(self, along: Along) -> usize {
         match (self.source, self.factor, along) {
             (Source::Time, ..) => SLOW,
@@ -246,7 +247,7 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// Whether errors of channels may have it: of a variable alone, or of a clock.
+    /// Whether errors of channels may depend on it: on a variable alone, or on a drifting clock.
     pub(super) fn is_of_channels(self) -> bool {
         match (self.source, self.factor) {
             (Source::Time, Factor::Rate(_)) => true,
@@ -255,12 +256,12 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// Whether forces may have it.
+    /// Whether forces may depend on it.
     pub(super) fn is_of_forces(self) -> bool {
         !matches!((self.source, self.factor), (Source::Time, Factor::Rate(_)))
     }
 
-    /// Name of the variable, and what the waves are multiplied with.
+    /// Name of the variable, and the factor of the harmonics.
     pub(in super::super) fn letters(self, bench: &Bench<'_>) -> (String, Option<String>) {
         let name = match self.source {
             Source::Own(index) => quantity(bench, index).0,
@@ -310,7 +311,7 @@ impl<'b> Dependence<'b> {
         }
     }
 
-    /// In the language of a spec; nothing for what the model does not know.
+    /// In the language of a spec; `None` for channels outside the model.
     pub(in super::super) fn written(self, bench: &Bench<'_>) -> Option<Written> {
         let states = bench.effects.info().state_len();
         let variable = match self.source {
@@ -359,7 +360,7 @@ fn input_name(bench: &Bench<'_>, input: usize) -> String {
     quantity(bench, bench.effects.info().state_len() + input).0
 }
 
-/// The root mean square of the change of an input from row to row; nothing where it does not change.
+/// The root mean square of the change of an input from row to row; `None` if it is constant.
 fn change(recordings: &[Recording], input: usize) -> Option<f64> {
     let changes = recordings.iter().flat_map(|run| {
         let rows = 1..run.times().len();
@@ -399,7 +400,7 @@ fn quantity(bench: &Bench<'_>, index: usize) -> (String, String, f64) {
 
 /// Whether the runs show the same motion at the same times.
 fn are_alike(runs: &[Recording]) -> bool {
-    /// Part of the variance of a channel that has to be its own.
+    /// Mean square difference between two runs, relative to the variance of the channel, below which they are alike.
     const OWN: f64 = 0.2;
     let Some((first, others)) = runs.split_first() else {
         return false;
@@ -431,8 +432,8 @@ fn times(bench: &Bench<'_>) -> (f64, f64) {
 }
 
 impl Bench<'_> {
-    /// Range of a state or input along the recordings: as recorded, or typical rates of what is
-    /// measured.
+    /// Range of a state or input along the recordings: as recorded, or from typical rates of measured
+    /// coordinates.
     pub(in super::super) fn range(&self, index: usize) -> Option<(f64, f64)> {
         let states = self.effects.info().state_len();
         let shown = |shown: &Measured| *shown == Measured::State(index);
@@ -449,7 +450,7 @@ impl Bench<'_> {
         for run in &self.recordings {
             for row in 0..run.times().len() {
                 let value = recorded(run, row);
-                // What is missing changes neither.
+                // Missing values change neither.
                 (low, high) = (low.min(value), high.max(value));
             }
         }

@@ -1,18 +1,18 @@
-//! A force that follows the way since the last turn.
+//! A force with hysteresis, which depends on the travel since the last reversal.
 
 use super::trace::{Span, Trace};
 use crate::effects::{Hysteresis, Memory};
 
-/// Ways over which it follows a turn.
+/// Number of presliding displacements that are tried.
 const WAYS: usize = 8;
-/// The longest, as a part of the range; what follows more slowly is a spring.
+/// The longest, relative to the range; with a longer one the force is a spring.
 const LONGEST: f64 = 0.5;
-/// The shortest, in noise and in the way of the fastest row; what follows faster is dry friction.
+/// The shortest, relative to the noise and to the largest travel per row; with a shorter one it is dry friction.
 const SHORTEST: [f64; 2] = [10.0, 0.25];
-/// Turns that are smaller than this, in noise, are none.
+/// Reversals smaller than this, relative to the noise, are ignored.
 const PLAY: f64 = 3.0;
 
-/// Standard deviation of the noise: what rows are off the line through their neighbours, in the median.
+/// Standard deviation of the noise, from the median deviation of samples from the line through their neighbours.
 pub(super) fn noise(traces: &[Trace]) -> f64 {
     /// Quantile of a normal distribution.
     const MEDIAN: f64 = 0.6745;
@@ -21,7 +21,7 @@ pub(super) fn noise(traces: &[Trace]) -> f64 {
     off.get(off.len() / 2).map_or(0.0, |off| off / MEDIAN)
 }
 
-/// Its ways, the shortest first.
+/// The presliding displacements that are tried, the shortest first.
 pub(super) fn ways(traces: &[Trace], noise: f64) -> Vec<f64> {
     let values = || traces.iter().flat_map(|trace| &trace.values);
     let low = values().copied().fold(f64::INFINITY, f64::min);
@@ -32,10 +32,10 @@ pub(super) fn ways(traces: &[Trace], noise: f64) -> Vec<f64> {
 }
 
 pub(super) fn name(coordinate: &str) -> String {
-    format!("the way of {coordinate} since it turned")
+    format!("the travel of {coordinate} since its last reversal")
 }
 
-/// What is known of it beforehand, from a first estimate of its size.
+/// The law with its prior, from a first estimate of its size.
 pub(super) fn first(coordinate: &str, [way, apart]: [f64; 2], size: f64) -> Memory {
     Memory::Hysteresis(Hysteresis {
         along: coordinate.to_owned(),
@@ -44,11 +44,11 @@ pub(super) fn first(coordinate: &str, [way, apart]: [f64; 2], size: f64) -> Memo
     })
 }
 
-/// What is remembered of the way, in -1 to 1: exact while the direction stays.
+/// The hysteresis state, -1 to 1: exact while the direction does not change.
 pub(super) fn terms(trace: &Trace, noise: f64, way: f64) -> [Vec<f64>; 1] {
     let (mut at, mut memory) = (trace.values[0], 0.0);
     let remembered = trace.values.iter().map(|&value| {
-        // Play keeps the noise from turning it.
+        // Backlash suppresses reversals by noise.
         let next = at.clamp(value - PLAY * noise, value + PLAY * noise);
         let (step, direction) = ((next - at).abs(), (next - at).signum());
         at = next;
@@ -71,7 +71,7 @@ mod tests {
         let [memory] = terms(&Trace { times, values }, 0.001, 1.0);
         let [first, turned, last] = [100, 569, 999].map(|row| memory[row]);
         assert!((first - (1.0 - (-1.0_f64).exp())).abs() < 0.01, "{first}");
-        // The way after which half of the turn is followed.
+        // The travel after which half of the reversal is completed.
         assert!(turned.abs() < 0.02, "{turned}");
         assert!((last + 1.0).abs() < 0.02, "{last}");
     }

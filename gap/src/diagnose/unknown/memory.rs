@@ -1,7 +1,7 @@
-//! Forces that depend on what was before, each kind with one number that says how far back: the frequency of a mass
-//! that swings by itself, the way over which a force follows a turn.
+//! Forces with a hidden state, each kind with one parameter on a grid: the natural frequency of a hidden mass, the
+//! presliding displacement of hysteresis.
 //!
-//! What they remember is computed from the recordings, once: it stands beside them as a channel would.
+//! The hidden state is computed from the recordings once, and then used like a recorded channel.
 
 use appell_estimate::Measured;
 use appell_runtime::model::At;
@@ -12,18 +12,18 @@ use super::{hysteresis, swing};
 use crate::effects::Memory;
 use appell_recordings::Run;
 
-/// What a force remembers.
+/// The kind of a hidden state.
 #[derive(Clone, Copy)]
 enum Kind {
     Swing,
     Way,
 }
 
-/// Forces of a kind behind a coordinate, one of each size.
+/// Forces of a kind along a coordinate, one for each value of the parameter.
 pub(super) struct Memories {
     kind: Kind,
     coordinate: String,
-    /// The numbers that say how far back, the smallest first.
+    /// The values of the parameter, the smallest first.
     sizes: Vec<f64>,
     /// For each whole run its times, and a value of each term at each.
     runs: Vec<(Vec<f64>, Vec<Vec<f64>>)>,
@@ -32,7 +32,7 @@ pub(super) struct Memories {
 }
 
 impl Memories {
-    /// Behind all coordinates that are measured. Windows remember the run before them.
+    /// Along all measured coordinates. In windows the state depends on the run before them.
     pub(super) fn all(bench: &Bench<'_>) -> Vec<Self> {
         let info = bench.effects.info();
         let place = |run: &Run| bench.whole.iter().position(|whole| whole.name == run.name);
@@ -86,7 +86,7 @@ impl Memories {
         }
     }
 
-    /// How many there are.
+    /// Number of forces.
     pub(super) const fn len(&self) -> usize {
         self.sizes.len()
     }
@@ -97,12 +97,12 @@ impl Memories {
         (each * number..each * (number + 1)).collect()
     }
 
-    /// How many terms they have together.
+    /// Total number of terms.
     pub(super) fn count(&self) -> usize {
         self.runs[0].1.len()
     }
 
-    /// The terms at a place.
+    /// The terms at a time.
     pub(super) fn at(&self, run: usize, at: At<'_>, to: &mut [f64]) {
         let (times, values) = &self.runs[self.places[run]];
         let row = times.partition_point(|&own| own <= at.t).saturating_sub(1);
@@ -119,19 +119,19 @@ impl Memories {
         }
     }
 
-    /// What is known beforehand of one of them, from a first estimate of its term.
+    /// One of them with its prior, from a first estimate of its coefficient.
     pub(super) fn first(&self, number: usize, term: f64) -> Memory {
         let own = self.sizes[number];
         let next = self.sizes.get(number + 1);
         let known = [own, next.map_or(own, |next| next - own)];
-        // It acts against what it remembers.
+        // The force opposes the hysteresis state.
         match self.kind {
             Kind::Swing => swing::first(&self.coordinate, known, -term),
             Kind::Way => hysteresis::first(&self.coordinate, known, -term),
         }
     }
 
-    /// The one that gains most, if its size lies within the range: at its ends it looks like something else.
+    /// The one with the largest gain, if it is inside the range of the parameter: at an end another law is likely.
     pub(super) fn best(gains: &[f64]) -> Option<usize> {
         let best = (0..gains.len()).max_by(|&a, &b| gains[a].total_cmp(&gains[b]))?;
         (best > 0 && best + 1 < gains.len()).then_some(best)

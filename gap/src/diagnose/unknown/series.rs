@@ -1,7 +1,7 @@
-//! What the waves of a variable tell of the force in an equation, or of the error of a channel.
+//! The harmonics of a variable as regressors of the force in an equation, or of the error of a channel.
 //!
-//! A law is linear in the sizes of its waves, so what it gains, and how probable it makes the recordings
-//! when its sizes are normal, has a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
+//! A law is linear in the amplitudes of its harmonics, so that its gain, and its evidence under a normal prior
+//! of the amplitudes, have a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
 //! Processes for Machine Learning*, 2006, chapter 2).
 
 use appell_estimate::Innovation;
@@ -11,20 +11,20 @@ use super::super::evidence::{NormalSizes, occam};
 use super::super::screen::Projected;
 use super::dependence::WAVES;
 
-/// Most waves of a law that is written down.
+/// Largest number of harmonics of a measured law.
 const MOST_TERMS: usize = 10;
-/// Part of the gain of all waves that those have to reach.
+/// Sufficient part of the gain of all harmonics.
 const ENOUGH: f64 = 0.98;
-/// A little of the larger square keeps a wave that is hardly there in place.
+/// Relative regularisation for nearly constant harmonics.
 const FLOOR: f64 = 1e-9;
 
-/// Some waves with their sizes.
+/// Some harmonics with their amplitudes.
 pub(in super::super) struct Series {
-    /// Number of the wave, sizes of its sine and cosine, their standard deviation beforehand.
+    /// Number of the harmonic, amplitudes of its sine and cosine, their prior standard deviation.
     pub(in super::super) terms: Vec<(usize, [f64; 2], f64)>,
 }
 
-/// What a law would gain, on all runs and on runs that it was not found in.
+/// Gain of a law, on all runs and cross-validated between runs.
 #[derive(Clone, Copy)]
 pub(in super::super) struct LawGain {
     pub(in super::super) gain: f64,
@@ -33,7 +33,7 @@ pub(in super::super) struct LawGain {
 }
 
 impl LawGain {
-    /// The same beside what gains so much by itself.
+    /// The same with a constant added to the gains.
     pub(super) fn beside(self, offset: f64) -> Self {
         Self {
             gain: self.gain + offset,
@@ -43,19 +43,19 @@ impl LawGain {
     }
 }
 
-/// What the terms of a law tell, run by run: the squares of their slopes and their scores.
+/// The Gram matrices and scores of the terms of a law, by run.
 pub(in super::super) struct TermScores {
     runs: Vec<(DMatrix<f64>, DVector<f64>)>,
     squares: DMatrix<f64>,
     scores: DVector<f64>,
-    /// Log-likelihood without any of them.
+    /// Log likelihood without any of them.
     pub(super) log_likelihood: f64,
 }
 
 impl TermScores {
     pub(super) fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
         let samples = &projected.tangent.samples;
-        // By rows the products below run along the memory.
+        // The transpose is contiguous in memory for the products below.
         let turned = slopes.transpose();
         let wave_scores = |from: usize, rows: usize| {
             let turned = turned.columns(from, rows);
@@ -70,7 +70,7 @@ impl TermScores {
             runs.push(wave_scores(from, rows));
             from += rows;
         }
-        // The rows for what is known of the parameters beforehand belong to no run.
+        // The rows of the priors belong to no run.
         let (mut squares, mut scores) = wave_scores(from, slopes.nrows() - from);
         for (own, score) in &runs {
             squares += own;
@@ -84,7 +84,7 @@ impl TermScores {
         }
     }
 
-    /// A law whose waves fall off as one over their number, averaged over its size.
+    /// A law whose prior amplitudes decrease as one over the number of the harmonic, averaged over its size.
     pub(super) fn smooth(&self) -> Option<LawGain> {
         let count = self.scores.len().min(2 * WAVES);
         let fall = DVector::from_fn(count, |i, _| ((i / 2 + 1) as f64).recip());
@@ -98,7 +98,7 @@ impl TermScores {
         })
     }
 
-    /// The waves that make most of a smooth law, or a given one, and the variance of their sizes beforehand.
+    /// The dominant harmonics of a smooth law, or a given one, with their prior standard deviations.
     pub(in super::super) fn series(&self, wave: Option<usize>) -> Option<Series> {
         if let Some(wave) = wave {
             let sizes = self.sizes(&[2 * wave, 2 * wave + 1])?;
@@ -147,12 +147,12 @@ impl TermScores {
         Some(Series { terms })
     }
 
-    /// One wave of two sizes.
+    /// A single harmonic with two amplitudes.
     pub(super) fn single(&self, wave: usize) -> Option<LawGain> {
         self.of(&[2 * wave, 2 * wave + 1])
     }
 
-    /// Some terms alone, with sizes that may be any.
+    /// Some terms only, with arbitrary amplitudes.
     pub(in super::super) fn of(&self, terms: &[usize]) -> Option<LawGain> {
         let own = self.part(terms);
         let (gain, cross_validated) = own.gains(own.floor()?)?;
@@ -163,7 +163,7 @@ impl TermScores {
         })
     }
 
-    /// Their sizes.
+    /// Their amplitudes.
     pub(super) fn sizes(&self, terms: &[usize]) -> Option<DVector<f64>> {
         let own = self.part(terms);
         solved(&own.squares, &own.scores, own.floor()?)
@@ -189,7 +189,7 @@ impl TermScores {
         }
     }
 
-    /// What is added to the squares; nothing where they are nothing.
+    /// The regularisation; `None` if all terms vanish.
     fn floor(&self) -> Option<f64> {
         let size = self.squares.diagonal().max();
         (size > 0.0).then_some(FLOOR * size)
@@ -214,8 +214,8 @@ impl TermScores {
         }
     }
 
-    /// What the most probable sizes gain, and what those found in the other runs gain in each; `held`
-    /// is the inverse of their variance.
+    /// The gain of the most probable amplitudes, and the sum over the runs of the gains of those fitted to all other
+    /// runs; `held` is the inverse of their prior variance.
     fn gains(&self, held: f64) -> Option<(f64, f64)> {
         let sizes = solved(&self.squares, &self.scores, held)?;
         let gain = gained(&sizes, &self.squares, &self.scores);

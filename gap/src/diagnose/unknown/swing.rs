@@ -1,22 +1,22 @@
-//! A mass that hangs on a coordinate by a spring and a damper, and swings by itself.
+//! A hidden mass coupled to a coordinate by a spring and a damper.
 
 use std::f64::consts::TAU;
 
 use super::trace::{Span, Trace};
 use crate::effects::{HiddenMass, Memory};
 
-/// Frequencies of a hidden mass.
+/// Number of natural frequencies that are tried.
 const FREQUENCIES: usize = 12;
-/// Swings in a run at least, and rows in a swing at least.
+/// Smallest number of periods in a run, and of rows in a period.
 const SWINGS: f64 = 2.0;
 const ROWS: f64 = 25.0;
 /// Damping ratio of a hidden mass.
 const DAMPING: f64 = 0.1;
-/// Most small steps between two rows.
+/// Largest number of integration steps between two rows.
 const MOST_PARTS: usize = 1000;
 
-/// Its frequencies in 1/s, from some swings in a run to some rows in a swing, the lowest first. A disturbance with
-/// a colour looks like a swing at the end of that range; a mass has a frequency within.
+/// Natural frequencies in rad/s, from some periods in a run to some rows in a period, the lowest first. A coloured
+/// disturbance resembles a mass at an end of that range; the frequency of a mass is within.
 pub(super) fn frequencies(traces: &[Trace]) -> Vec<f64> {
     let longest = traces.iter().map(Trace::duration).fold(0.0, f64::max);
     let step = traces.iter().map(Trace::step).fold(0.0, f64::max);
@@ -26,10 +26,10 @@ pub(super) fn frequencies(traces: &[Trace]) -> Vec<f64> {
 /// One of them in words.
 pub(super) fn name(coordinate: &str, frequency: f64) -> String {
     let hertz = frequency / TAU;
-    format!("a swing of {coordinate} at {hertz:.2} Hz that the model lacks")
+    format!("an oscillation of a hidden mass at {coordinate} with {hertz:.2} Hz")
 }
 
-/// What is known beforehand of one of them, from a first estimate of its size.
+/// The law with its prior, from a first estimate of its size.
 pub(super) fn first(coordinate: &str, [rate, apart]: [f64; 2], size: f64) -> Memory {
     Memory::HiddenMass(HiddenMass {
         behind: coordinate.to_owned(),
@@ -55,11 +55,11 @@ pub(super) fn terms(trace: &Trace, frequency: f64) -> [Vec<f64>; 2] {
         };
         stretches.push(frequency * frequency * (values[row] - at));
         rates.push(frequency * (slope - rate));
-        // A count of small steps; within many periods the spring comes to rest.
+        // The number of steps; after many periods the spring is at rest.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let parts = ((10.0 * step * frequency).ceil() as usize).clamp(1, MOST_PARTS);
         let part = step / parts as f64;
-        // Half a push, a drift, half a push (Verlet): a lag of half a step would be a force.
+        // Velocity Verlet: a phase lag of half a step would act as a force.
         for number in 0..parts {
             for end in [0, 1] {
                 let value = values[row] + slope * (number + end) as f64 * part;

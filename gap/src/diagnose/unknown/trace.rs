@@ -24,7 +24,7 @@ impl Trace {
         self.duration() / (self.times.len() - 1) as f64
     }
 
-    /// How far each row is off the line through its neighbours, in what the noise of all three lets expect.
+    /// Deviation of each sample from the line through its neighbours, normalised to the noise of one sample.
     pub(super) fn off_the_line(&self) -> impl Iterator<Item = f64> {
         self.times
             .windows(3)
@@ -46,7 +46,7 @@ impl Trace {
 pub(super) struct Span(pub(super) f64, pub(super) f64);
 
 impl Span {
-    /// So many of them, each by the same factor larger; none where there is no range.
+    /// A geometric sequence of numbers in it; none if it is empty.
     pub(super) fn places(&self, count: usize) -> Vec<f64> {
         let &Self(low, high) = self;
         if !(low > 0.0 && high > low) {
@@ -59,7 +59,7 @@ impl Span {
     }
 }
 
-/// What is missing keeps the value before.
+/// Replaces missing values by the previous ones.
 fn filled(mut values: Vec<f64>) -> Vec<f64> {
     let first = values.iter().copied().find(|value| !value.is_nan());
     let mut last = first.unwrap_or(0.0);

@@ -98,7 +98,7 @@ pub fn identify(
     }
     let estimation = Estimation::new(&setup, &recordings)?;
     stage("computing intervals and identifiable combinations");
-    let mut answer = Answer::of(set, &estimation, &problem, (&nominal, &fit))?;
+    let mut answer = Answer::of(set, &estimation, &problem, &nominal, &fit)?;
     let runs: Vec<&Run> = set
         .runs
         .iter()
@@ -112,7 +112,7 @@ pub fn identify(
         let each: Vec<(&str, &Recording)> = (runs.iter().zip(&recordings))
             .map(|(run, recording)| (run.name.as_str(), recording))
             .collect();
-        let free = (problem.wanted.as_slice(), names.as_slice());
+
         let widening = answer.parameters.iter();
         let widening: Vec<f64> = widening
             .map(|own| {
@@ -123,8 +123,16 @@ pub fn identify(
                 }
             })
             .collect();
-        let whole = (&estimation, &fit);
-        answer.repeatability = repeatability::repeatability(&setup, &each, free, &widening, whole)?;
+        let free = &problem.wanted;
+        answer.repeatability = repeatability::repeatability(
+            &setup,
+            &each,
+            free,
+            &names,
+            &widening,
+            &estimation,
+            &fit,
+        )?;
     }
     answer.courses = drift::courses(&drifts, &estimation, &fit.values, &runs)?;
     stage("predicting the held-out runs");
@@ -133,7 +141,7 @@ pub fn identify(
         return Ok(answer);
     }
     let estimation = Estimation::new(&setup, &recordings)?;
-    let test = Test::new(set, &estimation, ([&nominal.values, &fit.values], &drifts))?;
+    let test = Test::new(set, &estimation, [&nominal.values, &fit.values], &drifts)?;
     answer.held_out = test.errors()?;
     answer.traces = test.traces()?;
     Ok(answer)

@@ -90,7 +90,8 @@ struct Solved {
 pub(super) fn adjust(
     recorded: &Recorded<'_>,
     equations: Equations<'_>,
-    (start, speeds): (DVector<f64>, usize),
+    start: DVector<f64>,
+    speeds: usize,
 ) -> Result<Adjusted, BaseError> {
     let mut pieces = pieces(recorded, speeds);
     let sizes = sizes(recorded);
@@ -98,7 +99,7 @@ pub(super) fn adjust(
     let mut levels = DVector::zeros(speeds);
     for adjustment in 1.. {
         let linear = in_parallel(&pieces, |piece| {
-            linearise(piece, equations, &values, (&recorded.noise, &sizes))
+            linearise(piece, equations, &values, &recorded.noise, &sizes)
         });
         let linear: Vec<Linear> = linear.into_iter().collect::<Result<_, _>>()?;
         let mut whitened = whiten(&linear, &levels)?;
@@ -118,12 +119,7 @@ pub(super) fn adjust(
             piece.adjust(linear, lambda, speeds);
         }
         values += &solved.change;
-        let found = Adjusted::new(
-            &pieces,
-            (&linear, &multipliers),
-            &whitened,
-            (&values, &solved),
-        );
+        let found = Adjusted::new(&pieces, &linear, &multipliers, &whitened, &values, &solved);
         let is_settled = (solved.change.iter().zip(found.deviations.iter()))
             .all(|(change, deviation)| change.abs() <= SETTLED * deviation);
         if is_settled && adjustment > 1 || adjustment == ADJUSTMENTS {
@@ -171,7 +167,8 @@ fn linearise(
     piece: &Piece<'_>,
     equations: Equations<'_>,
     values: &DVector<f64>,
-    (noise, sizes): (&DMatrix<f64>, &[DVector<f64>; 3]),
+    noise: &DMatrix<f64>,
+    sizes: &[DVector<f64>; 3],
 ) -> Result<Linear, BaseError> {
     let e = |motion: &Motion| {
         let own = equations(motion)?;
@@ -423,9 +420,11 @@ impl Adjusted {
     /// within a block.
     fn new(
         pieces: &[Piece<'_>],
-        (linear, multipliers): (&[Linear], &[DVector<f64>]),
+        linear: &[Linear],
+        multipliers: &[DVector<f64>],
         whitened: &[Whitened],
-        (values, solved): (&DVector<f64>, &Solved),
+        values: &DVector<f64>,
+        solved: &Solved,
     ) -> Self {
         let count = values.len();
         let (square, _) = normalised_square(whitened, &solved.change);

@@ -100,7 +100,7 @@ pub(super) fn fit(
         let parameters = gains(equations, structure, recorded, model, p);
         return Err(BaseError::Scale { parameters });
     }
-    let adjusted = adjust(recorded, &equation, (start, speeds))?;
+    let adjusted = adjust(recorded, &equation, start, speeds)?;
     let training: Vec<&Rows> = all.iter().filter(|rows| rows.part == Part::Fit).collect();
     let test: Vec<&Rows> = all.iter().filter(|rows| rows.part == Part::Test).collect();
     let estimates = adjusted.values.iter().zip(adjusted.deviations.iter());

@@ -98,7 +98,7 @@ pub(super) fn screened(
         if !effects.augment(index, &drive) {
             return Ok(None);
         }
-        let grid = Grid::of((bench, fitted), index, (sample.as_ref(), least(best)));
+        let grid = Grid::of(bench, fitted, index, sample.as_ref(), least(best));
         Ok(best_size(&grid)?.map(|one| one.told(told_by_inputs)))
     });
     let list: Result<Vec<_>, DiagnoseError> = list.into_iter().collect();
@@ -230,9 +230,11 @@ struct Grid<'g, 'b> {
 
 impl<'g, 'b> Grid<'g, 'b> {
     fn of(
-        (bench, fitted): (&'g Bench<'b>, &'g Fitted),
+        bench: &'g Bench<'b>,
+        fitted: &'g Fitted,
         candidate: usize,
-        (sample, least): (Option<&'g Sample>, f64),
+        sample: Option<&'g Sample>,
+        least: f64,
     ) -> Self {
         let members = [fitted.members.as_slice(), &[candidate]].concat();
         Self {

@@ -17,8 +17,8 @@
 mod hypothesis;
 mod motions;
 mod pictures;
-mod told;
 mod search;
+mod told;
 
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
 use appell_spec::mechanism::ParameterId;
@@ -28,8 +28,8 @@ use super::{DiagnoseError, Options};
 use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
 use motions::Motions;
-use told::HeldOut;
 use search::Search;
+use told::HeldOut;
 
 /// Whether the recordings determine the residual force of every equation.
 pub(super) fn applies(set: &DataSet, options: &Options) -> bool {

@@ -59,7 +59,7 @@ pub(super) fn force_history(
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let index = ((recording.times()[row] - from) / part) as usize;
             let rows = row..(row + several).min(states.len());
-            let forces = mean_missing(setup.model, (recording, &states), rows, p);
+            let forces = mean_missing(setup.model, recording, &states, rows, p);
             for (own, force) in sizes.iter_mut().zip(&forces) {
                 own[first + index.min(parts - 1)].push(force.abs());
             }

@@ -117,7 +117,7 @@ fn steps(
         for row in (1..states.len()).step_by(stride) {
             let rows = row..(row + several).min(states.len());
             let forces = Forces::new(model, recording, &states, rows.start + rows.len() / 2);
-            let missing = mean_missing(model, (recording, &states), rows, &without);
+            let missing = mean_missing(model, recording, &states, rows, &without);
             let own = |force: Vec<f64>| force[equation];
             steps.push(Step {
                 is_early: 2 * row < states.len(),

@@ -8,7 +8,8 @@ use appell_runtime::model::{At, Model};
 /// The mean missing force over the time of the steps that end at rows.
 pub(super) fn mean_missing(
     model: &dyn Model,
-    (recording, states): (&Recording, &[Smoothed]),
+    recording: &Recording,
+    states: &[Smoothed],
     rows: Range<usize>,
     p: &[f64],
 ) -> Vec<f64> {

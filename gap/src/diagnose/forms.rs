@@ -79,8 +79,8 @@ fn scored(
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
-        let x = dependence.variable((bench, setup.model), run, at);
-        let factor = dependence.factor((bench, setup.model), at);
+        let x = dependence.variable(bench, setup.model, run, at);
+        let factor = dependence.factor(bench, setup.model, at);
         for (value, term) in values.iter_mut().zip(&terms) {
             *value = if x.is_nan() {
                 0.0
@@ -94,7 +94,7 @@ fn scored(
         count: terms.len(),
         values: &write,
     };
-    let scores = term_scores((bench, &estimation), base, shapes)?;
+    let scores = term_scores(bench, &estimation, base, shapes)?;
     let Some((_, scores)) = scores.into_iter().find(|(place, _)| *place == law.place) else {
         return Ok(Vec::new());
     };

@@ -184,11 +184,11 @@ fn of_variable(
     };
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let scores = wave_scores((bench, &estimation), base, dependence, law.along)?;
+    let scores = wave_scores(bench, &estimation, base, dependence, law.along)?;
     let mut scores = scores.into_iter().filter(|(place, _)| *place == law.place);
     let series = scores.next().and_then(|(_, scores)| scores.series(wave));
     Ok(series.and_then(|series| {
-        let candidate = waves::candidate(bench, dependence, (law, wave), &series)?;
+        let candidate = waves::candidate(bench, dependence, law, wave, &series)?;
         let sizes = series.terms.iter().flat_map(|(_, sizes, _)| *sizes);
         let start = sizes.collect();
         Some((candidate, Kind::Waves(series), start))
@@ -227,24 +227,19 @@ impl Lawful {
         bench.hide(&members, &estimation, &mut start)?;
         let fitted = bench.fit(&members, &estimation, &start)?;
         drop(estimation);
-        let told = (&fitted, places.as_slice());
+        let first = &self.left.first;
         let law = match &self.kind {
             Kind::Memory(Memory::HiddenMass(hidden)) => {
-                hidden_mass::told(main, &self.left.first, &hidden.behind, told)
+                hidden_mass::law(main, first, &hidden.behind, &fitted, &places)
             }
             Kind::Memory(Memory::Hysteresis(hysteresis)) => {
-                hysteresis::told(main, &self.left.first, &hysteresis.along, told)
+                hysteresis::law(main, first, &hysteresis.along, &fitted, &places)
             }
             Kind::Waves(series) => {
-                let dependence = dependence(main, &self.left.first);
+                let dependence = dependence(main, first);
                 let dependence = dependence.ok_or(DiagnoseError::NothingToFit)?;
-                waves::told(
-                    (main, &self.base),
-                    &self.left.first,
-                    dependence,
-                    series,
-                    told,
-                )?
+                let base = &self.base;
+                waves::law(main, base, first, dependence, series, &fitted, &places)?
             }
         };
         let gain = fitted.fit.log_posterior - self.base.fit.log_posterior;

@@ -102,7 +102,8 @@ pub(super) struct Projected<'t> {
 impl<'t> Projected<'t> {
     /// About a fit; the first directions of `tangent` and the `others` are free.
     pub(super) fn new(
-        (tangent, weight): (&'t Tangent, f64),
+        tangent: &'t Tangent,
+        weight: f64,
         fitted: &Fitted,
         free: usize,
         others: Range<usize>,
@@ -194,7 +195,7 @@ fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
 impl Screen {
     /// Screens all candidates that are not members of a fit.
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
-        let mut screen = Self::first_order((bench, fitted))?;
+        let mut screen = Self::first_order(bench, fitted)?;
         let best = screen.list.first().map_or(0.0, |best| best.gain);
         let augmented = augmented::screened((bench, fitted), fitted.evidence.by_inputs, best)?;
         screen.list.extend(augmented);
@@ -203,7 +204,7 @@ impl Screen {
     }
 
     /// Screens all candidates without an additional coordinate.
-    fn first_order((bench, fitted): (&Bench<'_>, &Fitted)) -> Result<Self, DiagnoseError> {
+    fn first_order(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let setup = bench.whole_setup(&fitted.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let free = moving(&fitted.fit);
@@ -213,10 +214,10 @@ impl Screen {
         let tangent = bench
             .input_innovations
             .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
-        let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
+        let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), 0..0);
         let kicked = directions.len()..tangent.slopes.ncols();
         let for_kicks = fitted.evidence.by_inputs;
-        let beyond = Projected::new((&tangent, bench.weight), fitted, free.len(), kicked);
+        let beyond = Projected::new(&tangent, bench.weight, fitted, free.len(), kicked);
         let all = in_parallel(own, |(candidate, columns)| {
             let positive = positive(bench, candidate);
             let one = screened(&projected, candidate, &columns, &positive)?;
@@ -252,7 +253,7 @@ pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>,
     let mut values = bench.carried(fitted, &estimation);
     shapes(bench, &mut values, &fitted.members);
     let tangent = estimation.tangent(&values, &directions, None)?;
-    let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
+    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), 0..0);
     let is_imitated = |(_, columns): &(usize, Vec<usize>)| {
         let slopes = projected.slopes(columns);
         let mut columns = columns.iter().zip(slopes.column_iter());

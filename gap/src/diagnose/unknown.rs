@@ -85,18 +85,12 @@ pub(super) fn leftover(
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let mut families = [const { Family::new() }; 2];
     let (mut kinds, mut base) = (kinds(bench), None);
-    let gains = of_variables(
-        (bench, &estimation),
-        fitted,
-        &kinds,
-        &mut base,
-        &mut families,
-    )?;
+    let gains = of_variables(bench, &estimation, fitted, &kinds, &mut base, &mut families)?;
     let mut order: Vec<usize> = (0..kinds.len()).collect();
     order.sort_by(|&a, &b| gains[b].total_cmp(&gains[a]));
     order.truncate(MOST);
     kinds = order.iter().map(|&place| kinds[place]).collect();
-    let memory = with_memory((bench, &estimation), fitted)?;
+    let memory = with_memory(bench, &estimation, fitted)?;
     // The reported law is that with the process noise of the fit.
     let [smooth, single] = families.clone();
     let told = joined([smooth, single, memory.clone()]);
@@ -107,13 +101,8 @@ pub(super) fn leftover(
     for _ in 0..LEVELS {
         quieten(&estimation, &mut quiet.fit.values, QUIETER)?;
         // With less process noise the filter may diverge.
-        let Ok(gains) = of_variables(
-            (bench, &estimation),
-            &quiet,
-            &kinds,
-            &mut base,
-            &mut families,
-        ) else {
+        let Ok(gains) = of_variables(bench, &estimation, &quiet, &kinds, &mut base, &mut families)
+        else {
             break;
         };
         let gain = gains.into_iter().fold(f64::NEG_INFINITY, f64::max);
@@ -149,7 +138,8 @@ fn kinds<'b>(bench: &'b Bench<'_>) -> Vec<(Dependence<'b>, Along)> {
 /// Adds the laws of variables with the process noise of a fit. Gains are relative to the log likelihood of the first
 /// call, with the fitted process noise, which is stored in `base`. Returns the greatest gain of each kind.
 fn of_variables(
-    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
     fitted: &Fitted,
     kinds: &[(Dependence<'_>, Along)],
     base: &mut Option<f64>,
@@ -158,15 +148,15 @@ fn of_variables(
     let mut gains = Vec::with_capacity(kinds.len());
     for &(dependence, along) in kinds {
         let mut best = f64::NEG_INFINITY;
-        let scores = wave_scores((bench, estimation), fitted, dependence, along)?;
+        let scores = wave_scores(bench, estimation, fitted, dependence, along)?;
         for (place, wave_scores) in scores {
             let base = *base.get_or_insert(wave_scores.log_likelihood);
             let offset = wave_scores.log_likelihood - base;
             let mut unnamed = |wave, law: LawGain| {
                 let law = law.beside(offset);
                 best = best.max(law.gain);
-                let on = (On::Variable(wave), dependence.name(bench));
-                unnamed(on, (along, place), law)
+                let on = On::Variable(wave);
+                unnamed(on, dependence.name(bench), along, place, law)
             };
             smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
             for wave in 0..dependence.waves(along) {
@@ -187,13 +177,14 @@ pub(super) fn remembered(
 ) -> Result<Option<Leftover>, DiagnoseError> {
     let setup = bench.setup(&fitted.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let memory = with_memory((bench, &estimation), fitted)?;
+    let memory = with_memory(bench, &estimation, fitted)?;
     Ok(joined([Family::new(), Family::new(), memory]))
 }
 
 /// Forces with a hidden state.
 fn with_memory(
-    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
     fitted: &Fitted,
 ) -> Result<Family, DiagnoseError> {
     let mut family = Family::new();
@@ -204,7 +195,7 @@ fn with_memory(
             count: memories.count(),
             values: &write,
         };
-        for (place, scores) in term_scores((bench, estimation), fitted, shapes)? {
+        for (place, scores) in term_scores(bench, estimation, fitted, shapes)? {
             let laws: Vec<Option<LawGain>> = (0..memories.len())
                 .map(|number| scores.of(&memories.terms(number)))
                 .collect();
@@ -215,11 +206,7 @@ fn with_memory(
                     let term = scores.sizes(&memories.terms(number));
                     let term = term.map_or(0.0, |sizes| sizes[0]);
                     let on = On::Memory(memories.first(number, term));
-                    unnamed(
-                        (on, memories.name(number)),
-                        (Along::Disturbances, place),
-                        law,
-                    )
+                    unnamed(on, memories.name(number), Along::Disturbances, place, law)
                 };
                 family.add(law.filter(|_| best == Some(number)).map(unnamed));
             }
@@ -229,7 +216,7 @@ fn with_memory(
 }
 
 /// A law of a variable in an equation or a channel.
-fn unnamed((on, variable): (On, String), (along, place): (Along, usize), law: LawGain) -> Unnamed {
+fn unnamed(on: On, variable: String, along: Along, place: usize, law: LawGain) -> Unnamed {
     Unnamed {
         along,
         place,
@@ -243,33 +230,35 @@ fn unnamed((on, variable): (On, String), (along, place): (Along, usize), law: La
 
 /// The scores of the harmonics of a variable for the force in each equation, or for the error of each channel.
 pub(super) fn wave_scores(
-    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
     fitted: &Fitted,
     dependence: Dependence<'_>,
     along: Along,
 ) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
     let model = estimation.setup().model;
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
-        dependence.waves_at((bench, model), run, at, values);
+        dependence.waves_at(bench, model, run, at, values);
     };
     let shapes = Shapes {
         along,
         count: 2 * dependence.waves(along),
         values: &write,
     };
-    term_scores((bench, estimation), fitted, shapes)
+    term_scores(bench, estimation, fitted, shapes)
 }
 
 /// The same for any terms.
 pub(super) fn term_scores(
-    (bench, estimation): (&Bench<'_>, &Estimation<'_>),
+    bench: &Bench<'_>,
+    estimation: &Estimation<'_>,
     fitted: &Fitted,
     shapes: Shapes<'_>,
 ) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
     let (free, setup) = (moving(&fitted.fit), estimation.setup());
     let (along, count) = (shapes.along, shapes.count);
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
-    let projected = Projected::new((&tangent, bench.weight), fitted, free.len(), 0..0);
+    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), 0..0);
     let places: Vec<Option<usize>> = match along {
         Along::Disturbances => (setup.disturbances.iter())
             .map(|one| match *one {
@@ -340,11 +329,11 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
     let mut tried = 0;
     for dependence in bench.unmodelled.iter().map(Dependence::unmodelled) {
         let mut family = Family::new();
-        let scores = wave_scores((bench, &estimation), fitted, dependence, along)?;
+        let scores = wave_scores(bench, &estimation, fitted, dependence, along)?;
         for (place, wave_scores) in scores {
             let law = wave_scores.smooth();
-            let on = (On::Variable(None), dependence.name(bench));
-            let unnamed = |law| unnamed(on, (along, place), law);
+            let variable = dependence.name(bench);
+            let unnamed = |law| unnamed(On::Variable(None), variable, along, place, law);
             family.add(law.map(unnamed));
         }
         tried += family.tried;

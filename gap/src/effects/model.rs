@@ -117,7 +117,7 @@ pub fn written(spec: &Spec, candidate: &Candidate) -> Result<Option<Candidate>, 
     let Some(speed) = candidate.brings else {
         return Ok(Some(candidate));
     };
-    let (mechanism, model) = derive((&spec.file, &spec.text), &FunctionKind::ALL)?;
+    let (mechanism, model) = derive(&spec.file, &spec.text, &FunctionKind::ALL)?;
     let parameters = model.info().default_parameters();
     let drive = Drive::of(model.as_ref(), &parameters, speed);
     Ok(drive.map(|drive| candidate.driven(&mechanism, &drive)))
@@ -195,8 +195,8 @@ impl EffectModel {
         };
         let declared: Vec<Candidate> = candidates.iter().map(declared).collect();
         let text = with_candidates(&spec.text, &declared)?;
-        let (mechanism, model) = derive((&spec.file, &text), functions)
-            .map_err(|error| blamed(spec, &declared, error))?;
+        let (mechanism, model) =
+            derive(&spec.file, &text, functions).map_err(|error| blamed(spec, &declared, error))?;
         Ok(Self {
             augmented: candidates.iter().map(|_| OnceLock::new()).collect(),
             candidates,
@@ -234,7 +234,7 @@ impl EffectModel {
         });
         let beside: Vec<Candidate> = beside.collect();
         let text = with_candidates(&self.plain.text, &beside)?;
-        let (mechanism, model) = derive((&self.plain.file, &text), &FunctionKind::ALL)?;
+        let (mechanism, model) = derive(&self.plain.file, &text, &FunctionKind::ALL)?;
         Ok(Augmented {
             candidate,
             model,
@@ -346,7 +346,7 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
     let alone = |candidate: &Candidate| {
         let source = candidate.source.as_ref()?;
         let text = with_candidates(&spec.text, std::slice::from_ref(candidate)).ok()?;
-        match derive((&spec.file, &text), &FunctionKind::ALL) {
+        match derive(&spec.file, &text, &FunctionKind::ALL) {
             Err(ModelError::Spec(report)) => Some(source.blamed(&report, &text).into()),
             _ => None,
         }
@@ -356,7 +356,8 @@ fn blamed(spec: &Spec, candidates: &[Candidate], error: ModelError) -> ModelErro
 
 /// The mechanism of a spec, and machine code of its equations.
 fn derive(
-    (file, text): (&str, &str),
+    file: &str,
+    text: &str,
     functions: &[FunctionKind],
 ) -> Result<(Mechanism, Arc<JitModel>), ModelError> {
     let wrong = |report: Report| ModelError::Spec(Box::new(report));

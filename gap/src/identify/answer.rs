@@ -106,7 +106,8 @@ impl Answer {
         set: &DataSet,
         estimation: &Estimation<'_>,
         problem: &Problem,
-        (nominal, fit): (&Fit, &Fit),
+        nominal: &Fit,
+        fit: &Fit,
     ) -> Result<Self, IdentifyError> {
         let info = estimation.setup().model.info();
         let layout = estimation.layout();

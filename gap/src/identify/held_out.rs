@@ -59,7 +59,8 @@ impl<'a> Test<'a> {
     pub(super) fn new(
         set: &'a DataSet,
         estimation: &'a Estimation<'a>,
-        (fits, drifts): ([&[f64]; 2], &[Drift]),
+        fits: [&[f64]; 2],
+        drifts: &[Drift],
     ) -> Result<Self, IdentifyError> {
         let (layout, channels) = (
             estimation.layout(),

@@ -48,7 +48,7 @@ impl Problem {
         let (layout, setup) = (estimation.layout(), estimation.setup());
         let drifts = drift::named(&options.drifting, set, setup.model.info())?;
         let (mut wanted, mut quantities) =
-            free_parameters(set, (setup.model.info(), &drifts), options)?;
+            free_parameters(set, setup.model.info(), &drifts, options)?;
         let mut values = estimation.nominal();
         let own = setup.model.info().parameter_len();
         for (value, parameter) in values[..own].iter_mut().zip(&set.parameters) {
@@ -111,7 +111,8 @@ pub(crate) fn possible([low, high]: [f64; 2], parameter: Parameter) -> [f64; 2] 
 /// The free parameters, each within its range and with its prior.
 fn free_parameters(
     set: &DataSet,
-    (info, drifts): (&ModelInfo, &[Drift]),
+    info: &ModelInfo,
+    drifts: &[Drift],
     options: &Options,
 ) -> Result<(Vec<Free>, Vec<Quantity>), IdentifyError> {
     let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);

@@ -42,9 +42,11 @@ const LEVEL: f64 = 0.05;
 pub(super) fn repeatability(
     setup: &Setup<'_>,
     runs: &[(&str, &Recording)],
-    (free, names): (&[Free], &[String]),
+    free: &[Free],
+    names: &[String],
     widening: &[f64],
-    whole: (&Estimation<'_>, &Fit),
+    all: &Estimation<'_>,
+    fit: &Fit,
 ) -> Result<Vec<Repeatability>, IdentifyError> {
     let mut found: Vec<Repeatability> = names
         .iter()
@@ -57,7 +59,7 @@ pub(super) fn repeatability(
         })
         .collect();
     for (name, recording) in runs {
-        let Some(values) = alone(setup, recording, free, whole)? else {
+        let Some(values) = alone(setup, recording, free, all, fit)? else {
             continue;
         };
         for (one, value) in found.iter_mut().zip(values) {
@@ -83,7 +85,8 @@ fn alone(
     setup: &Setup<'_>,
     recording: &Recording,
     free: &[Free],
-    (all, fit): (&Estimation<'_>, &Fit),
+    all: &Estimation<'_>,
+    fit: &Fit,
 ) -> Result<Option<Vec<[f64; 2]>>, IdentifyError> {
     let recordings = [recording.clone()];
     let estimation = Estimation::new(setup, &recordings)?;

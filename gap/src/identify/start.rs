@@ -50,8 +50,7 @@ pub(super) fn start(
     let seen: Vec<(usize, Slopes)> = (info.speeds..info.state_len())
         .filter_map(|state| Some((state, Slopes::of(recording, columns[state]?)?)))
         .collect();
-    if let Some((speeds, sizes)) = speeds(setup.model, &start.state, parameters, (&unknown, &seen))
-    {
+    if let Some((speeds, sizes)) = speeds(setup.model, &start.state, parameters, &unknown, &seen) {
         for (place, &state) in unknown.iter().enumerate() {
             start.state[state] = speeds[place];
             start.spread[state] = sizes[place];
@@ -107,7 +106,8 @@ fn speeds(
     model: &dyn Model,
     state: &[f64],
     parameters: &[f64],
-    (unknown, seen): (&[usize], &[(usize, Slopes)]),
+    unknown: &[usize],
+    seen: &[(usize, Slopes)],
 ) -> Option<(DVector<f64>, DVector<f64>)> {
     if unknown.is_empty() || seen.is_empty() {
         return None;

@@ -99,7 +99,8 @@ impl<'a> Balance<'a> {
             part.is_finite().then_some(part)
         };
         let mut missed: Vec<Option<f64>> = misses.iter().map(missed).collect();
-        missed.extend(self.measured.iter().map(|own| self.outside(*own, factors)));
+        let measured = self.measured.iter();
+        missed.extend(measured.map(|&(index, own)| self.outside(index, own, factors)));
         missed
     }
 
@@ -274,7 +275,7 @@ impl<'a> Balance<'a> {
     }
 
     /// Whether a coordinate is far outside its declared range, on the scale of relative residuals.
-    fn outside(&self, (index, measured): (usize, Measured), factors: &[f64]) -> Option<f64> {
+    fn outside(&self, index: usize, measured: Measured, factors: &[f64]) -> Option<f64> {
         let Measured::Coordinate(i) = measured else {
             return None;
         };

@@ -78,7 +78,8 @@ impl Motion {
     fn noisy(
         self,
         model: &dyn Model,
-        (moment, spread): (&Moment, &DMatrix<f64>),
+        moment: &Moment,
+        spread: &DMatrix<f64>,
         p: &[f64],
         coordinates: &[[usize; 2]],
     ) -> Self {
@@ -144,7 +145,7 @@ impl Motions {
             let moments = stretch.moments.into_iter().zip(&stretch.spreads);
             let motions = moments.step_by(stride).map(|(moment, spread)| {
                 let motion = Motion::of(model, moment.clone(), &p, &parameters);
-                motion.noisy(model, (&moment, spread), &p, &coordinates)
+                motion.noisy(model, &moment, spread, &p, &coordinates)
             });
             (set.runs[stretch.run].name.clone(), motions.collect())
         });

@@ -17,11 +17,12 @@ const RANGE: [f64; 2] = [0.25, 4.0];
 const STEP: f64 = 1e-4;
 
 /// The law with its band.
-pub(super) fn told(
+pub(super) fn law(
     main: &Bench<'_>,
     law: &Unnamed,
     coordinate: &str,
-    (fitted, places): (&Fitted, &[usize]),
+    fitted: &Fitted,
+    places: &[usize],
 ) -> Law {
     let values: Vec<f64> = (places.iter())
         .map(|&place| fitted.fit.values[place])

@@ -13,11 +13,12 @@ const PLACES: usize = 81;
 const REACH: f64 = 5.0;
 
 /// The law with its band: the force against a motion that reversed after a long travel in the other direction.
-pub(super) fn told(
+pub(super) fn law(
     main: &Bench<'_>,
     law: &Unnamed,
     coordinate: &str,
-    (fitted, places): (&Fitted, &[usize]),
+    fitted: &Fitted,
+    places: &[usize],
 ) -> Law {
     let value = |number: usize| fitted.fit.values[places[number]];
     let (force, way) = (value(0), value(1));

@@ -21,7 +21,8 @@ const APART: f64 = 0.5;
 pub(super) fn candidate(
     bench: &Bench<'_>,
     dependence: Dependence<'_>,
-    (law, alone): (&Unnamed, Option<usize>),
+    law: &Unnamed,
+    alone: Option<usize>,
     series: &Series,
 ) -> Option<Candidate> {
     let written = dependence.written(bench)?;
@@ -61,12 +62,14 @@ pub(super) fn candidate(
 }
 
 /// The law with its band.
-pub(super) fn told(
-    (main, base): (&Bench<'_>, &Fitted),
+pub(super) fn law(
+    main: &Bench<'_>,
+    base: &Fitted,
     unnamed: &Unnamed,
     dependence: Dependence<'_>,
     series: &Series,
-    (fitted, places): (&Fitted, &[usize]),
+    fitted: &Fitted,
+    places: &[usize],
 ) -> Result<Law, DiagnoseError> {
     let (variable_unit, scale) = dependence.unit(main);
     let written = dependence.written(main);
@@ -77,11 +80,11 @@ pub(super) fn told(
         .map(|&place| fitted.fit.values[place])
         .collect();
     let shortest = series.terms.iter().map(|(wave, ..)| wave + 1).max();
-    let places_told = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
+    let points = PLACES[0].max(PLACES[1] * shortest.unwrap_or(1));
     // After the amplitudes.
     let rate = values.get(2 * series.terms.len()).copied();
     let point = |place: usize| {
-        let x = low + (high - low) * place as f64 / (places_told - 1) as f64;
+        let x = low + (high - low) * place as f64 / (points - 1) as f64;
         let waves = series.terms.iter().flat_map(|(wave, ..)| {
             let rate = rate.unwrap_or_else(|| dependence.rate(*wave));
             let (sin, cos) = (rate * x).sin_cos();
@@ -108,7 +111,7 @@ pub(super) fn told(
         variable: dependence.letters(main).0,
         variable_unit,
         factor: written.and_then(|own| own.factor),
-        curve: (0..places_told).map(point).collect(),
+        curve: (0..points).map(point).collect(),
         log_bayes_factor: unnamed.log_bayes_factor,
         forms: forms(main, base, dependence, unnamed)?,
     })

@@ -172,7 +172,8 @@ impl<'b> Dependence<'b> {
     /// The variable at a state and time; NaN if it was not recorded.
     pub(in super::super) fn variable(
         self,
-        (bench, model): (&Bench<'_>, &dyn Model),
+        bench: &Bench<'_>,
+        model: &dyn Model,
         run: usize,
         at: At<'_>,
     ) -> f64 {
@@ -193,11 +194,7 @@ impl<'b> Dependence<'b> {
     }
 
     /// The factor of the harmonics at a state and time.
-    pub(in super::super) fn factor(
-        self,
-        (bench, model): (&Bench<'_>, &dyn Model),
-        at: At<'_>,
-    ) -> f64 {
+    pub(in super::super) fn factor(self, bench: &Bench<'_>, model: &dyn Model, at: At<'_>) -> f64 {
         match self.factor {
             Factor::One => 1.0,
             Factor::Time => at.t,
@@ -214,16 +211,17 @@ impl<'b> Dependence<'b> {
     /// The harmonics at a state and time, as pairs of sine and cosine.
     pub(super) fn waves_at(
         self,
-        (bench, model): (&Bench<'_>, &dyn Model),
+        bench: &Bench<'_>,
+        model: &dyn Model,
         run: usize,
         at: At<'_>,
         to: &mut [f64],
     ) {
-        let x = self.variable((bench, model), run, at);
+        let x = self.variable(bench, model, run, at);
         if x.is_nan() {
             return to.fill(0.0);
         }
-        let factor = self.factor((bench, model), at);
+        let factor = self.factor(bench, model, at);
         for (wave, pair) in to.chunks_exact_mut(2).enumerate() {
             let (sin, cos) = (self.rate(wave) * x).sin_cos();
             pair.copy_from_slice(&[factor * sin, factor * cos]);

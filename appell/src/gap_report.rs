@@ -17,7 +17,11 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
     });
     let windows = report.place.windows.iter().map(|w| {
-        json!({ "run": w.run, "from_s": w.from, "to_s": w.to, "equation": w.equation, "z": w.z })
+        let mut window = json!({ "run": w.run, "from_s": w.from, "to_s": w.to, "equation": w.equation, "z": w.z });
+        if let Some(channel) = &w.unexplained {
+            window["unexplained"] = json!(channel);
+        }
+        window
     });
     let region = report
         .place
@@ -78,6 +82,12 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "equation": hint.equation,
             "gain": hint.gain,
             "log_bayes_factor": hint.log_bayes_factor,
+        })).collect::<Vec<_>>(),
+        "tolerances": report.tolerances.map(|found| json!({
+            "factor": found.factor, "log_bayes_factor": found.log_bayes_factor,
+        })),
+        "interpolated": report.interpolated.iter().map(|found| json!({
+            "input": found.input, "log_likelihood": found.log_likelihood,
         })).collect::<Vec<_>>(),
         "by_simulation": report.is_by_simulation,
         "by_forces": report.is_by_forces,

@@ -7,8 +7,8 @@ use appell::fleet::Rig;
 use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
-    Headline, before_sentence, divided, doubts, hinted, imperfections, is_determined, joined,
-    law_sentence, left_of_forces, left_out, percent, said, share, short, values,
+    Headline, before_sentence, divided, doubts, events, hints, imperfections, is_determined,
+    joined, law_sentence, left_of_forces, left_out, percent, said, share, short, values,
 };
 use appell_report::text::number;
 
@@ -91,6 +91,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
             shares.join(", ")
         );
     }
+    if let Some(events) = events(report) {
+        let _ = writeln!(text, "  events    {events}");
+    }
     for hypothesis in report.which.iter().take(LISTED) {
         let _ = writeln!(text, "  which     {}", line(report, hypothesis));
     }
@@ -104,8 +107,8 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     if let Some(named) = imperfections(report) {
         let _ = writeln!(text, "  sensors   {named}");
     }
-    for hint in &report.hints {
-        let _ = writeln!(text, "  hint      {}", hinted(hint));
+    for hint in hints(report) {
+        let _ = writeln!(text, "  hint      {hint}");
     }
     if let Some(law) = law_sentence(report) {
         let _ = writeln!(text, "  left      {law}");

@@ -12,7 +12,7 @@
 //!          --horizon--> whether simulations over windows agree; if not, they decide instead
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> what no candidate explains, and what it depends on
-//!          --localise--> equations, windows of time, regions
+//!          --localise, windows, outside--> equations, windows of time, regions, events that no hypothesis predicts
 //!          --assembly--> hypotheses with their values and ties, in the words of the report
 //!          --law--> what is left, measured as a force that depends on something
 //!          --held_out, prediction--> errors of predictions: nominal, re-fitted, with the effect, noise
@@ -30,6 +30,7 @@
 mod against;
 mod alternative;
 mod assembly;
+mod assumptions;
 mod augmented;
 mod bench;
 mod budget;
@@ -55,6 +56,7 @@ mod law;
 mod localise;
 mod nuisance;
 mod options;
+mod outside;
 mod prediction;
 mod prior;
 mod report;
@@ -81,8 +83,8 @@ pub use error::{ChangeError, DiagnoseError};
 pub use options::Options;
 pub use report::{
     Ahead, Before, Change, Detectable, Experiment, ForceHistory, ForceLaw, Form, Found, GapVerdict,
-    Hint, HowFar, Hypothesis, Law, Left, Limit, MissingForce, Pictures, Region, Report, Share,
-    ShareOf, Trace, Value, Where, Window,
+    Hint, HowFar, Hypothesis, Interpolated, Law, Left, Limit, MissingForce, Pictures, Region,
+    Report, Share, ShareOf, Tolerances, Trace, Value, Where, Window,
 };
 
 use alternative::{Alternative, Rival};
@@ -150,11 +152,22 @@ fn by_filter(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
+    let mut first = judged((whole, fitted), model, &mut stage)?;
+    let training = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
+    let rest = outside::rest(&first, whole)?;
+    let rest = rest.map(|rest| (rest.stretches(most_rows(&rest)), rest));
+    if let Some((fitted, rest)) = &rest {
+        stage("fitting without the windows that no hypothesis predicts");
+        if let Ok(again) = judged((rest, fitted), model, &mut stage) {
+            first = again.without_events();
+        }
+    }
+    let (fitted, rest) = (rest.as_ref()).map_or((fitted, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
         bench,
         screen,
         mut comparison,
-    } = judged((whole, fitted), model, &mut stage)?;
+    } = first;
     stage("measuring what is left");
     let test = set.only(Part::Test);
     // A law that cannot be written is a row, not the end.
@@ -163,7 +176,7 @@ fn by_filter(
         Err(reason) => (Vec::new(), Some(Err(reason))),
     };
     let fitted_laws = law::fitted(&laws, &bench, &test);
-    let measured = law::measured(fitted_laws, &mut comparison, (&bench, whole)).or(unwritten);
+    let measured = law::measured(fitted_laws, &mut comparison, (&bench, rest)).or(unwritten);
     stage("fitting the alternatives");
     let alternatives = Alternative::all(&options.alternatives, fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
@@ -174,6 +187,10 @@ fn by_filter(
     report.failed.append(&mut lost);
     report.rows = [fitted.rows(), whole.rows()];
     report.hints = assembly::hints(&bench, &comparison)?;
+    report.tolerances = assumptions::tolerances(comparison.best());
+    // A filter that loses the other reading says nothing of it.
+    report.interpolated =
+        assumptions::interpolated(&bench, comparison.best(), fitted).unwrap_or_default();
     let held_out = HeldOut::of(&test, &bench)?;
     let before = before.map(|set| HeldOut::of(&set.all(Part::Test), &bench));
     let before = before.transpose()?;
@@ -186,6 +203,10 @@ fn by_filter(
         Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
         None => None,
     };
+    for (set, runs) in [(whole, &training), (&test, &held_out)] {
+        let outside = outside::windows((&bench, comparison.best()), set, &runs.recordings);
+        report.place.windows.extend(outside?);
+    }
     let best = Leader {
         bench: &bench,
         fitted: comparison.best(),

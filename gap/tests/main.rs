@@ -8,6 +8,7 @@ mod base;
 mod by_forces;
 mod decay;
 mod engine;
+mod events;
 mod fuzz;
 mod shared;
 mod signs;

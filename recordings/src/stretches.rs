@@ -43,6 +43,17 @@ impl DataSet {
         }
     }
 
+    /// The same without the rows between two times of a run, for each of these windows; pieces too short for a motion
+    /// are dropped.
+    #[must_use]
+    pub fn without(&self, windows: &[(String, [f64; 2])]) -> Self {
+        let pieces = self.runs.iter().flat_map(|run| without(run, windows));
+        Self {
+            runs: pieces.collect(),
+            ..self.clone()
+        }
+    }
+
     /// Windows of so many seconds, about `most` of them, spread evenly over all runs, each with no more than
     /// about `rows` rows.
     pub fn windows(
@@ -149,6 +160,28 @@ pub(crate) fn uninterrupted(
     pieces
 }
 
+/// The pieces of a run outside of its windows.
+fn without(run: &Run, windows: &[(String, [f64; 2])]) -> Vec<Run> {
+    let own = windows.iter().filter(|(name, _)| *name == run.name);
+    let mut cuts: Vec<[usize; 2]> = own
+        .map(|(_, [from, to])| {
+            let end = run.times.partition_point(|t| t <= to);
+            [run.times.partition_point(|t| t < from), end]
+        })
+        .collect();
+    cuts.sort_unstable();
+    cuts.push([run.times.len(); 2]);
+    let mut start = 0;
+    let mut pieces = Vec::new();
+    for [from, to] in cuts {
+        if from >= start + SHORTEST {
+            pieces.push(cut(run, start..from));
+        }
+        start = start.max(to);
+    }
+    pieces
+}
+
 /// Stretches of `kept` rows together and about `least` rows each at least, each in the middle of its part of the run.
 fn pieces(rows: usize, kept: usize, least: usize) -> Vec<Range<usize>> {
     let count = (kept / least).max(1);
@@ -173,6 +206,35 @@ fn cut(run: &Run, rows: Range<usize>) -> Run {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Part;
+
+    #[test]
+    fn rows_between_two_times_are_taken_out_of_their_run() {
+        let times: Vec<f64> = (0..100).map(f64::from).collect();
+        let run = |name: &str| Run {
+            name: name.to_owned(),
+            part: Part::Fit,
+            sampling: Sampling::of(&times),
+            values: vec![times.clone()],
+            times: times.clone(),
+        };
+        let runs = [run("a"), run("b")];
+        let windows = [
+            ("a", [60.0, 70.0]),
+            ("a", [20.5, 30.0]),
+            ("a", [95.0, 200.0]),
+        ];
+        let rest: Vec<_> = runs
+            .iter()
+            .map(|run| without(run, &windows.map(|(n, w)| (n.to_owned(), w))))
+            .collect();
+        let ends = |run: &Run| [run.times[0], run.times[run.times.len() - 1]];
+        assert_eq!(
+            rest[0].iter().map(ends).collect::<Vec<_>>(),
+            [[0.0, 20.0], [31.0, 59.0], [71.0, 94.0]]
+        );
+        assert_eq!(rest[1].iter().map(ends).collect::<Vec<_>>(), [[0.0, 99.0]]);
+    }
 
     #[test]
     fn stretches_lie_apart_within_their_run_and_have_the_rows_that_were_asked_for() {

@@ -105,6 +105,8 @@ pub(super) fn assemble(
         change: None,
         independent: comparison.independent,
         hints: Vec::new(),
+        tolerances: None,
+        interpolated: Vec::new(),
         found,
         horizons: Vec::new(),
         pictures: None,

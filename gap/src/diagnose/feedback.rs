@@ -66,13 +66,18 @@ impl InputInnovations {
         let kicks = |run: usize, at: At<'_>, to: &mut [f64]| self.kicks(run, at.t, to);
         call((self.count > 0).then_some(Shapes {
             along: Along::Disturbances,
-            count: self.count * KICKS,
+            count: self.kick_count(),
             values: &kicks,
         }))
     }
 
+    /// Number of impulses on each equation.
+    pub(super) fn kick_count(&self) -> usize {
+        self.count * KICKS
+    }
+
     /// Writes the impulses at a time of a run: the last innovations of each feedback input.
-    fn kicks(&self, run: usize, t: f64, to: &mut [f64]) {
+    pub(super) fn kicks(&self, run: usize, t: f64, to: &mut [f64]) {
         let row = self.times[run].partition_point(|&own| own <= t);
         for (place, to) in to.iter_mut().enumerate() {
             let (input, back) = (place / KICKS, place % KICKS + 1);

@@ -46,11 +46,25 @@ const LONGEST: f64 = 0.7;
 /// Hypotheses that longer windows compare.
 const COMPARED: usize = 8;
 
+/// Probability that the library has no name for a gap that shows in a few windows only.
+const EVENTS: f64 = 0.95;
+
 /// The hypotheses, with the bench that ranks them.
 pub(super) struct Judged<'a> {
     pub(super) bench: Bench<'a>,
     pub(super) screen: Screen,
     pub(super) comparison: Comparison,
+}
+
+impl Judged<'_> {
+    /// Of recordings without the windows that no hypothesis predicts: what acted there is no effect of the library,
+    /// even where there is no gap elsewhere.
+    pub(super) fn without_events(mut self) -> Self {
+        if self.comparison.best().members.is_empty() {
+            self.comparison.unknown = self.comparison.unknown.max(EVENTS);
+        }
+        self
+    }
 }
 
 /// What one-step predictions say, as long as simulations over windows bear it out; else what these say. Beside

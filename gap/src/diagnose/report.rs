@@ -131,10 +131,12 @@ pub struct Window {
     pub from: f64,
     /// End in s.
     pub to: f64,
-    /// Pseudo-velocity.
+    /// Pseudo-velocity; empty where predictions of a channel fail.
     pub equation: String,
     /// Size in standard deviations.
     pub z: f64,
+    /// The channel whose predictions fail there under the best hypothesis as well; nothing where it explains the gap.
+    pub unexplained: Option<String>,
 }
 
 /// A region of the state space in which the gap shows.
@@ -328,6 +330,24 @@ pub struct Hint {
     pub log_bayes_factor: f64,
 }
 
+/// Stated tolerances that the re-fitted parameters speak against.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tolerances {
+    /// The factor on all of them that is most probable.
+    pub factor: f64,
+    /// Logarithm of the Bayes factor for it.
+    pub log_bayes_factor: f64,
+}
+
+/// An input that was held between rows and fits better along lines.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Interpolated {
+    /// Channel.
+    pub input: String,
+    /// Increase of the log-likelihood under the best hypothesis.
+    pub log_likelihood: f64,
+}
+
 /// What differs from the recordings before.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
@@ -425,6 +445,10 @@ pub struct Report {
     pub change: Option<Change>,
     /// Channels that the model does not know and that the gap depends on, the surest first.
     pub hints: Vec<Hint>,
+    /// Tolerances that are too small, under the best hypothesis.
+    pub tolerances: Option<Tolerances>,
+    /// Inputs that fit better along lines, under the best hypothesis.
+    pub interpolated: Vec<Interpolated>,
     /// Effects of the best hypothesis in words.
     pub found: Vec<Found>,
     /// Errors over horizons; empty where no run was held out.

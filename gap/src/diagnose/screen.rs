@@ -5,7 +5,6 @@
 //! parameters are further rows after those of the samples.
 
 use std::f64::consts::TAU;
-use std::ops::Range;
 
 use appell_estimate::{Direction, Estimation, Tangent, Unknown, in_parallel};
 use nalgebra::{DMatrix, DVector};
@@ -106,7 +105,7 @@ impl<'t> Projected<'t> {
         weight: f64,
         fitted: &Fitted,
         free: usize,
-        others: Range<usize>,
+        others: &[usize],
     ) -> Self {
         let (samples, root) = (tangent.samples.len(), weight.sqrt());
         let known: Vec<(usize, f64, f64)> = (0..free)
@@ -117,7 +116,7 @@ impl<'t> Projected<'t> {
             .collect();
         let rows = samples + known.len();
         let mut own = DMatrix::zeros(rows, free + others.len());
-        for (column, slope) in (0..free).chain(others).enumerate() {
+        for (column, slope) in (0..free).chain(others.iter().copied()).enumerate() {
             let slope = root * tangent.slopes.column(slope);
             own.view_mut((0, column), (samples, 1)).copy_from(&slope);
         }
@@ -214,10 +213,10 @@ impl Screen {
         let tangent = bench
             .input_innovations
             .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
-        let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), 0..0);
-        let kicked = directions.len()..tangent.slopes.ncols();
+        let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), &[]);
+        let kicked: Vec<usize> = (directions.len()..tangent.slopes.ncols()).collect();
         let for_kicks = fitted.evidence.by_inputs;
-        let beyond = Projected::new(&tangent, bench.weight, fitted, free.len(), kicked);
+        let beyond = Projected::new(&tangent, bench.weight, fitted, free.len(), &kicked);
         let all = in_parallel(own, |(candidate, columns)| {
             let positive = positive(bench, candidate);
             let one = screened(&projected, candidate, &columns, &positive)?;
@@ -253,7 +252,7 @@ pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>,
     let mut values = bench.carried(fitted, &estimation);
     shapes(bench, &mut values, &fitted.members);
     let tangent = estimation.tangent(&values, &directions, None)?;
-    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), 0..0);
+    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), &[]);
     let is_imitated = |(_, columns): &(usize, Vec<usize>)| {
         let slopes = projected.slopes(columns);
         let mut columns = columns.iter().zip(slopes.column_iter());

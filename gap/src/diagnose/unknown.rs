@@ -257,8 +257,30 @@ pub(super) fn term_scores(
 ) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
     let (free, setup) = (moving(&fitted.fit), estimation.setup());
     let (along, count) = (shapes.along, shapes.count);
-    let tangent = estimation.tangent(&fitted.fit.values, &free, Some(shapes))?;
-    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), 0..0);
+    // The command of a controller depends on the error of the filter: impulses in proportion to its innovation are
+    // nuisances of every law.
+    let kicks = match along {
+        Along::Disturbances => bench.input_innovations.kick_count(),
+        Along::Channels => 0,
+    };
+    let with_kicks = |run: usize, at: At<'_>, to: &mut [f64]| {
+        let (own, impulses) = to.split_at_mut(count);
+        (shapes.values)(run, at, own);
+        bench.input_innovations.kicks(run, at.t, impulses);
+    };
+    let block = count + kicks;
+    let all = Shapes {
+        along,
+        count: block,
+        values: &with_kicks,
+    };
+    let tangent = estimation.tangent(&fitted.fit.values, &free, Some(all))?;
+    let added = free.len()..tangent.slopes.ncols();
+    let nuisances: Vec<usize> = added
+        .clone()
+        .filter(|column| (column - added.start) % block.max(1) >= count)
+        .collect();
+    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), &nuisances);
     let places: Vec<Option<usize>> = match along {
         Along::Disturbances => (setup.disturbances.iter())
             .map(|one| match *one {
@@ -269,8 +291,8 @@ pub(super) fn term_scores(
         Along::Channels => (0..setup.channels.len()).map(Some).collect(),
     };
     let places: Vec<_> = places.into_iter().enumerate().collect();
-    let scores = in_parallel(places, |(block, place)| {
-        let first = free.len() + block * count;
+    let scores = in_parallel(places, |(number, place)| {
+        let first = free.len() + number * block;
         let columns: Vec<usize> = (first..first + count).collect();
         Some((
             place?,

@@ -120,6 +120,7 @@ fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
                 to: from + length,
                 equation: equation.to_owned(),
                 z,
+                unexplained: None,
             }
         })
         .collect()

@@ -16,7 +16,8 @@ use super::law::law;
 use super::numbers::{is_determined, percent};
 use super::plots;
 use super::words::{
-    alternatives, hinted, imperfections, joined, left_out, next_best, percent_of, said, statement,
+    alternatives, events, hints, imperfections, joined, left_out, next_best, percent_of, said,
+    statement,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
@@ -112,8 +113,11 @@ fn place(set: &DataSet, report: &Report) -> Markup {
     html! {
         h2 { "Where" }
         (locus(report))
-        @for hint in &report.hints {
-            p { (capital(&hinted(hint))) "." }
+        @for hint in hints(report) {
+            p { (capital(&hint)) "." }
+        }
+        @if let Some(events) = events(report) {
+            p { (capital(&events)) "." }
         }
         @if let Some(svg) = drawing(set, report) {
             @let caption = if svg.contains("class=\"ring") {
@@ -213,7 +217,9 @@ fn equations(set: &DataSet, place: &Where) -> Markup {
 }
 
 fn windows(place: &Where) -> Markup {
-    let windows = place.windows.iter().map(|w| {
+    let explained = place.windows.iter().filter(|w| w.unexplained.is_none());
+    let count = explained.clone().count();
+    let windows = explained.map(|w| {
         [
             html! { (w.run) },
             html! { (short(w.from)) " to " (short(w.to)) " s" },
@@ -229,9 +235,9 @@ fn windows(place: &Where) -> Markup {
         ]
     });
     html! {
-        @if !place.windows.is_empty() {
+        @if count > 0 {
             details {
-                summary { (place.windows.len()) (if place.windows.len() == 1 { " window" } else { " windows" }) " with a significant gap" }
+                summary { (count) (if count == 1 { " window" } else { " windows" }) " with a significant gap" }
                 (table(["run", "when", "equation of", "size in deviations"], windows, 3))
             }
         }

@@ -3,7 +3,7 @@
 use appell_gap::diagnose::{Change, GapVerdict, Hint, HowFar, Hypothesis, Left, Report, Share};
 
 use super::numbers::{bounded, measured, part_of_all, percent};
-use crate::text::with_unit;
+use crate::text::{short, with_unit};
 
 /// The verdict in one sentence, with the alternatives.
 pub fn sentence(report: &Report) -> String {
@@ -425,11 +425,61 @@ fn rivals(report: &Report) -> Vec<String> {
 }
 
 /// The sentence of a hint.
-pub fn hinted(hint: &Hint) -> String {
+fn hinted(hint: &Hint) -> String {
     format!(
         "the gap in the equation of {} depends on {}, a channel that is not in the model",
         hint.equation, hint.variable
     )
+}
+
+/// What speaks against statements of the data set: channels that the model lacks, tolerances, inputs between rows.
+pub fn hints(report: &Report) -> Vec<String> {
+    let tolerances = report.tolerances.iter().map(|found| {
+        format!(
+            "the parameters move by more than their tolerances allow: {} times the stated ones are the most probable \
+             (log Bayes factor {})",
+            short(found.factor),
+            short(found.log_bayes_factor)
+        )
+    });
+    let interpolated = report.interpolated.iter().map(|found| {
+        format!(
+            "{} fits better along lines between its rows than held (log likelihood + {}): if it was sampled from a \
+             continuous signal, write interpolation = \"linear\" in its line and diagnose again",
+            found.input,
+            short(found.log_likelihood)
+        )
+    });
+    let channels = report.hints.iter().map(hinted);
+    channels.chain(tolerances).chain(interpolated).collect()
+}
+
+/// Windows that no hypothesis predicts, if any.
+pub fn events(report: &Report) -> Option<String> {
+    /// Longer lists are for the page.
+    const MOST: usize = 4;
+    let windows = report.place.windows.iter();
+    let mut events: Vec<String> = windows
+        .filter_map(|window| {
+            let channel = window.unexplained.as_ref()?;
+            let [from, to] = [window.from, window.to].map(short);
+            Some(format!(
+                "{} at {from} to {to} s (the error of {channel} is {} times an ordinary one)",
+                window.run,
+                short(window.z)
+            ))
+        })
+        .collect();
+    if events.is_empty() {
+        return None;
+    }
+    let more = events.split_off(events.len().min(MOST)).len();
+    let more = (more > 0).then(|| format!(" and {more} more"));
+    Some(format!(
+        "an external force, a contact or a fault of the log: {}{}",
+        events.join(", "),
+        more.unwrap_or_default()
+    ))
 }
 
 /// A note on unused training rows, if any.

@@ -83,6 +83,8 @@ pub(super) fn report(
         law: None,
         change: None,
         hints: Vec::new(),
+        tolerances: None,
+        interpolated: Vec::new(),
         found: self::found(model, &best.members),
         horizons: Vec::new(),
         experiment: None,

@@ -1,0 +1,166 @@
+//! Windows in which the best hypothesis fails by far more than elsewhere: an external force, a contact, a fault of
+//! the log.
+//!
+//! Errors of predictions over a fraction of a second add up a force that acts throughout and average out jitter. Their
+//! scale is that of the ordinary rows: the quantile of 90 % as of a normal distribution, which one row in ten cannot
+//! move (P. J. Rousseeuw and C. Croux, *Alternatives to the median absolute deviation*, Journal of the American
+//! Statistical Association 88, 1993, on scales by quantiles).
+
+use appell_estimate::{Estimation, Recording};
+use appell_recordings::{DataSet, Part};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::evidence::Fitted;
+use super::held_out::HeldOut;
+use super::horizon::Judged;
+use super::prediction::taken_over;
+use super::report::Window;
+use super::windows;
+use crate::held_out::origins;
+
+/// Origins of predictions in a horizon, and in a run at most.
+const EACH: f64 = 5.0;
+const MOST: usize = 1000;
+/// Quantile of the ordinary errors, and that of the standard normal distribution's modulus.
+const ORDINARY: f64 = 0.9;
+const QUANTILE: f64 = 1.645;
+/// An error is outside of the ordinary ones by so many scales.
+const OUTSIDE: f64 = 8.0;
+/// Part of the predictions that may be outside: what fails more often belongs to the mechanism.
+const RARE: f64 = 0.1;
+/// Windows that are reported at most.
+const MOST_WINDOWS: usize = 20;
+
+/// An error of a prediction in units of its channel's scale.
+struct Error {
+    run: usize,
+    from: f64,
+    to: f64,
+    times: f64,
+    channel: usize,
+}
+
+/// The windows of some recordings, the worst first.
+pub(super) fn windows(
+    (bench, fitted): (&Bench<'_>, &Fitted),
+    set: &DataSet,
+    recordings: &[Recording],
+) -> Result<Vec<Window>, DiagnoseError> {
+    let mut errors = errors((bench, fitted), recordings)?;
+    let mut channels = 0;
+    for error in &errors {
+        channels = channels.max(error.channel + 1);
+    }
+    for channel in 0..channels {
+        let own = errors.iter().filter(|one| one.channel == channel);
+        let scale = scale(own.map(|one| one.times).collect());
+        let own = errors.iter_mut().filter(|one| one.channel == channel);
+        own.for_each(|one| one.times /= scale);
+    }
+    let all = errors.len() as f64;
+    errors.retain(|one| one.times > OUTSIDE);
+    if errors.len() as f64 > RARE * all {
+        return Ok(Vec::new());
+    }
+    let measured = set.measured(bench.effects.info());
+    let column = |channel: usize| measured.get(channel).map(|(own, _)| own.column.clone());
+    let mut found: Vec<Window> = together(errors)
+        .into_iter()
+        .map(|one| Window {
+            run: set.runs[one.run].name.clone(),
+            from: one.from,
+            to: one.to,
+            equation: String::new(),
+            z: one.times,
+            unexplained: column(one.channel),
+        })
+        .collect();
+    found.sort_by(|a, b| b.z.total_cmp(&a.z));
+    found.truncate(MOST_WINDOWS);
+    Ok(found)
+}
+
+/// Training runs without the windows that the best hypothesis does not predict; nothing where there is none, or no
+/// gap either.
+pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSet>, DiagnoseError> {
+    let comparison = &judged.comparison;
+    if comparison.best().members.is_empty() && !comparison.leads_unknown() {
+        return Ok(None);
+    }
+    let bench = &judged.bench;
+    let runs = HeldOut::of(&whole.all(Part::Test), bench)?;
+    let found = windows((bench, comparison.best()), whole, &runs.recordings)?;
+    let margin = 0.5 * windows::length(bench);
+    let cut = found.into_iter();
+    let cut = cut.map(|one| (one.run, [one.from - margin, one.to + margin]));
+    let cut: Vec<_> = cut.collect();
+    Ok((!cut.is_empty()).then(|| whole.without(&cut)))
+}
+
+/// Moduli of the errors of predictions.
+fn errors(
+    (bench, fitted): (&Bench<'_>, &Fitted),
+    recordings: &[Recording],
+) -> Result<Vec<Error>, DiagnoseError> {
+    let setup = bench.setup(&fitted.members);
+    let estimation = Estimation::new(&setup, recordings)?;
+    let values = taken_over(bench, fitted, &estimation)?;
+    let horizon = windows::length(bench);
+    let mut errors = Vec::new();
+    for (run, recording) in recordings.iter().enumerate() {
+        let times = recording.times();
+        let duration = times[times.len() - 1] - times[0];
+        // As many as asked for.
+        #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+        let most = (EACH * duration / horizon).ceil() as usize;
+        let origins = origins(recording, most.clamp(1, MOST));
+        let predicted = estimation.predictions(&values, run, horizon, &origins)?;
+        errors.extend(predicted.into_iter().map(|one| Error {
+            run,
+            from: times[one.origin],
+            to: times[one.row],
+            times: one.residual.abs(),
+            channel: one.channel,
+        }));
+    }
+    Ok(errors)
+}
+
+/// The scale of ordinary errors.
+fn scale(mut sizes: Vec<f64>) -> f64 {
+    sizes.sort_by(f64::total_cmp);
+    // A place in a list.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let place = (ORDINARY * sizes.len() as f64) as usize;
+    let ordinary = sizes.get(place).copied().unwrap_or(f64::INFINITY);
+    (ordinary / QUANTILE).max(f64::MIN_POSITIVE)
+}
+
+/// Errors of overlapping predictions are one event. It begins where the first of them ends, and is over when the filter
+/// has found the state again.
+fn together(mut errors: Vec<Error>) -> Vec<Error> {
+    errors.sort_by(|a, b| a.run.cmp(&b.run).then(a.from.total_cmp(&b.from)));
+    let mut events: Vec<(Error, [f64; 2])> = Vec::new();
+    for one in errors {
+        match events.last_mut() {
+            Some((event, [_, last])) if event.run == one.run && one.from <= event.to => {
+                *last = one.from;
+                event.to = event.to.max(one.to);
+                if one.times > event.times {
+                    (event.times, event.channel) = (one.times, one.channel);
+                }
+            }
+            _ => {
+                let ends = [one.to - (one.to - one.from) / EACH, one.from];
+                events.push((one, ends));
+            }
+        }
+    }
+    let narrowed = events.into_iter().map(|(event, [first, last])| Error {
+        from: first.min(last),
+        to: first.max(last),
+        ..event
+    });
+    narrowed.collect()
+}

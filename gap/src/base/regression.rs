@@ -109,14 +109,14 @@ pub(super) fn fit(
         std,
         interval95: [-1.0, 1.0].map(|side| value + side * HALF_WIDTH_95 * std),
     });
-    let told = |rows: &[&Rows]| match rows {
+    let residuals = |rows: &[&Rows]| match rows {
         [] => Vec::new(),
-        rows => told(rows, &adjusted.values, model),
+        rows => residuals(rows, &adjusted.values, model),
     };
     Ok(Fit {
         estimates: estimates.collect(),
-        training: told(&training),
-        test: told(&test),
+        training: residuals(&training),
+        test: residuals(&test),
         motions: training.iter().map(|rows| rows.right.len() / speeds).sum(),
         condition: adjusted.condition,
     })
@@ -194,7 +194,7 @@ fn rows(
     rows
 }
 
-fn told(stretches: &[&Rows], values: &DVector<f64>, model: &dyn Model) -> Vec<Speed> {
+fn residuals(stretches: &[&Rows], values: &DVector<f64>, model: &dyn Model) -> Vec<Speed> {
     let info = model.info();
     let root_mean_square = |speed: usize, of: &dyn Fn(&Rows) -> DVector<f64>| {
         let own = stretches.iter().flat_map(|rows| {

@@ -231,7 +231,7 @@ impl Candidate {
     }
 
     /// Replaces the placeholders that depend on the equations of motion.
-    pub(super) fn told(&self, words: &[(&str, &str)]) -> Self {
+    pub(super) fn with_words(&self, words: &[(&str, &str)]) -> Self {
         Self {
             items: filled(&self.items, words),
             ..self.clone()

@@ -410,7 +410,7 @@ fn of_value(value: &Value<'_>, places: &mut Vec<Span>) {
 mod tests {
     use super::*;
 
-    fn told(text: &str) -> String {
+    fn errors(text: &str) -> String {
         let read = Effect::read("own", "mine/own.toml", text);
         read.err()
             .map_or_else(String::new, |error| error.to_string())
@@ -419,8 +419,11 @@ mod tests {
     #[test]
     fn a_file_tells_what_it_lacks_and_where() {
         let lacks = |text, message: &str, place: &str| {
-            let told = told(text);
-            assert!(told.contains(message) && told.contains(place), "{told}");
+            let errors = errors(text);
+            assert!(
+                errors.contains(message) && errors.contains(place),
+                "{errors}"
+            );
         };
         let place = "mine/own.toml:1:1";
         lacks("[loads]", "the section `[effect]` is missing", place);
@@ -441,7 +444,7 @@ mod tests {
     fn an_unknown_placeholder_is_reported_with_its_position() {
         let text = "[effect]\nfamily = 'force'\nsite = 'body'\nabout = 'drag on {site}'\n\
                     [loads]\n# as {nobody} reads this\n'{effect}' = { on = '{center}', force = '{unit}' }\n";
-        let message = told(text);
+        let message = errors(text);
         for part in [
             "unknown placeholder `{center}`",
             "mine/own.toml:7:22",

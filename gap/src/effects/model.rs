@@ -113,7 +113,7 @@ pub fn candidates(
 /// A candidate with all placeholders replaced, alone in its spec; `None` where it needs a drive and there is none.
 pub fn written(spec: &Spec, candidate: &Candidate) -> Result<Option<Candidate>, ModelError> {
     let centre = candidate.centre.clone().unwrap_or_default();
-    let candidate = candidate.told(&[(LAST_CENTRE.trim_matches(['{', '}']), &centre)]);
+    let candidate = candidate.with_words(&[(LAST_CENTRE.trim_matches(['{', '}']), &centre)]);
     let Some(speed) = candidate.brings else {
         return Ok(Some(candidate));
     };
@@ -130,7 +130,7 @@ fn check(spec: &Spec, candidate: &Candidate) -> Result<(), ModelError> {
     };
     // The force of the drive is known only with the equations; here a zero of the same dimension replaces it.
     let (force, inertia) = (candidate.nothing(), number(1.0));
-    let whole = candidate.told(&[("drive", &force), ("inertia", &inertia)]);
+    let whole = candidate.with_words(&[("drive", &force), ("inertia", &inertia)]);
     let text = with_candidates(&spec.text, &[whole])?;
     match appell_spec::load(&spec.file, &text) {
         Ok(_) => Ok(()),
@@ -144,7 +144,7 @@ impl Candidate {
         let inputs = mechanism.inputs.iter();
         let force = drive.written(inputs.map(|input| input.label.name.as_str()));
         let inertia = number(drive.inertia);
-        self.told(&[("drive", &force), ("inertia", &inertia)])
+        self.with_words(&[("drive", &force), ("inertia", &inertia)])
     }
 }
 

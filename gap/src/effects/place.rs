@@ -36,24 +36,24 @@ impl Source {
         path.extend(key.map(str::to_owned));
         let (table, _) = DeTable::parse_recoverable(&self.text);
         let at = self.follow(table.get_ref(), &path);
-        self.told(at, message)
+        self.error_at(at, message)
     }
 
     /// The file is not TOML after its placeholders are replaced.
     pub(super) fn unwritten(&self, message: &str) -> EffectError {
         let message = format!("with its placeholders replaced, the file is not TOML: {message}");
-        self.told(None, &message)
+        self.error_at(None, &message)
     }
 
-    fn told(&self, at: Option<Span>, message: &str) -> EffectError {
+    fn error_at(&self, at: Option<Span>, message: &str) -> EffectError {
         let diagnostic = Diagnostic::error(Code::WrongType, self.in_its_words(message));
         let diagnostic = diagnostic.at(at.unwrap_or(0..0), "");
         Report::new(&*self.file, &*self.text, vec![diagnostic]).into()
     }
 
-    fn translated(&self, told: &Diagnostic, spec: &str) -> Diagnostic {
+    fn translated(&self, diagnostic: &Diagnostic, spec: &str) -> Diagnostic {
         let mut labels: Vec<(Span, String)> = Vec::new();
-        for (at, words) in &told.labels {
+        for (at, words) in &diagnostic.labels {
             if let Some(place) = self.place(spec, at) {
                 labels.push((place, self.in_its_words(words)));
             }
@@ -71,10 +71,10 @@ impl Source {
             };
         }
         Diagnostic {
-            message: self.in_its_words(&told.message),
+            message: self.in_its_words(&diagnostic.message),
             labels,
-            help: told.help.as_deref().map(|help| self.in_its_words(help)),
-            ..told.clone()
+            help: (diagnostic.help.as_deref()).map(|help| self.in_its_words(help)),
+            ..diagnostic.clone()
         }
     }
 

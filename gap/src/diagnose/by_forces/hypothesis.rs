@@ -195,7 +195,7 @@ impl Squares {
                 }
                 continue;
             }
-            return self.told(members, &open, solved);
+            return self.evaluated(members, &open, solved);
         }
     }
 
@@ -212,7 +212,7 @@ impl Squares {
         })
     }
 
-    fn told(&self, members: &[Member], open: &[Open], solved: Solved) -> Option<Hypothesis> {
+    fn evaluated(&self, members: &[Member], open: &[Open], solved: Solved) -> Option<Hypothesis> {
         let Solved {
             values,
             information,

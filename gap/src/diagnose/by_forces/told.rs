@@ -21,17 +21,17 @@ use super::pictures;
 use super::search::{Findings, Search};
 use crate::effects::{Acts, EffectModel, Part};
 
-/// Length of a block in s: errors in one depend on each other.
+/// Length of a block of correlated errors in s.
 const BLOCK_S: f64 = 2.0;
 
-/// Motions that nothing was fitted to.
+/// Motions that are not fitted.
 pub(super) struct HeldOut<'m> {
     pub(super) test: Option<&'m Motions>,
-    /// Of recordings before.
+    /// Those of earlier recordings.
     pub(super) before: Option<&'m Motions>,
 }
 
-/// The whole report; the motions are those of the runs to fit, and of those that were held out.
+/// The whole report, from the motions of training and held-out runs.
 pub(super) fn report(
     (model, set): (&EffectModel, &DataSet),
     found: &Findings,
@@ -45,7 +45,7 @@ pub(super) fn report(
     let place = place(model, found, training);
     let far = match test {
         Some(test) => Some(HowFar {
-            // Its forces have the noise that they have now.
+            // The noise of the forces is that of the new recordings.
             before: held_out.before.map(|before| {
                 let stated = nominal.changes.map(|_| 0.0);
                 errors(before, &stated, &found.noise).mean().sqrt()
@@ -91,7 +91,7 @@ pub(super) fn report(
     })
 }
 
-/// The hypotheses of the library, and that it has none.
+/// The hypotheses of the library, and `unknown`.
 fn which(
     (model, set): (&EffectModel, &DataSet),
     found: &Findings,
@@ -168,7 +168,7 @@ fn values(
     values
 }
 
-/// What a hypothesis changes in the spec.
+/// The changes of the spec under a hypothesis.
 fn changes(
     (model, set): (&EffectModel, &DataSet),
     fitted: &Hypothesis,
@@ -220,7 +220,7 @@ pub(super) fn added(
     &motion.slopes * sizes
 }
 
-/// The equations of the best hypothesis, weighed by what they leave.
+/// The equations of the best hypothesis, weighted by their residual variances.
 fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
     let (nominal, best) = (found.nominal(), found.best());
     let Some(&first) = best.members.first() else {
@@ -260,7 +260,7 @@ fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
     }
 }
 
-/// Forces that are left of the runs that were held out, in units of their noise.
+/// Residual forces of the held-out runs, in units of their noise.
 fn how_far(
     (model, set): (&EffectModel, &DataSet),
     found: &Findings,
@@ -276,7 +276,7 @@ fn how_far(
     let means = paired.means();
     let ends = Ends {
         stated: &stated,
-        // Parameters that were fitted may predict worse than stated ones: then they are no base.
+        // If the fitted parameters predict worse than the stated ones, these are the base.
         base: if means[1] < means[0] { &refit } else { &stated },
         effects: &effect,
         law: None,
@@ -298,7 +298,7 @@ fn how_far(
     Ok(HowFar::of(&paired, (0.0, floor), budget, runs))
 }
 
-/// Mean squares of the forces that are left, by blocks of time.
+/// Mean squares of the residual forces, by blocks of time.
 fn errors(motions: &Motions, changes: &DVector<f64>, noise: &DVector<f64>) -> Errors {
     let mut errors = Errors::default();
     for (stretch, (_, own)) in motions.stretches.iter().enumerate() {
@@ -316,7 +316,7 @@ fn errors(motions: &Motions, changes: &DVector<f64>, noise: &DVector<f64>) -> Er
     errors
 }
 
-/// What each effect would need to be seen.
+/// The smallest detectable size of each effect.
 fn detectable(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<Detectable> {
     let info = model.info();
     let mut told: Vec<Detectable> = Vec::new();

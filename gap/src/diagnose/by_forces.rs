@@ -99,7 +99,7 @@ pub(super) fn diagnose(
         test: test.as_ref(),
         before: before.as_ref(),
     };
-    told::report((model, &fit), &found, (&training, held_out), options)
+    told::report(model, &fit, &found, &training, held_out, options)
 }
 
 /// Whether a candidate is a parameter or adds forces that are linear in its sizes.

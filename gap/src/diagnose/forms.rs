@@ -44,7 +44,7 @@ pub(super) fn forms(
     law: &Unnamed,
 ) -> Result<Vec<Form>, DiagnoseError> {
     let (terms, tried) = trials(bench, dependence);
-    let mut forms = scored(bench, base, dependence, law, (terms, tried))?;
+    let mut forms = scored(bench, base, dependence, law, terms, tried)?;
     // The frequencies of harmonics are a grid: the best one is refined between its neighbours.
     let best = forms.iter().find_map(|(rate, _)| *rate);
     if let Some(rate) = best {
@@ -54,8 +54,8 @@ pub(super) fn forms(
             rate + beside * step
         });
         let finer: Vec<f64> = finer.filter(|rate| *rate > 0.0).collect();
-        let finer = waves(bench, dependence, &finer);
-        let finer = scored(bench, base, dependence, law, finer)?;
+        let (terms, tried) = waves(bench, dependence, &finer);
+        let finer = scored(bench, base, dependence, law, terms, tried)?;
         let place = forms.iter().position(|(own, _)| *own == best);
         let better = finer.into_iter().next().zip(place);
         if let Some((better, place)) = better {
@@ -74,7 +74,8 @@ fn scored(
     base: &Fitted,
     dependence: Dependence<'_>,
     law: &Unnamed,
-    (terms, trials): (Vec<Term>, Vec<Trial>),
+    terms: Vec<Term>,
+    trials: Vec<Trial>,
 ) -> Result<Vec<(Option<f64>, Form)>, DiagnoseError> {
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;

@@ -17,7 +17,8 @@ const SHORTEST: f64 = 0.5;
 pub(super) fn of(
     model: &EffectModel,
     found: &Findings,
-    (training, test): (&Motions, Option<&Motions>),
+    training: &Motions,
+    test: Option<&Motions>,
     place: &Where,
 ) -> Pictures {
     let force_law = place.equations.first().and_then(|first| {

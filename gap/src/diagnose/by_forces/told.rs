@@ -33,13 +33,15 @@ pub(super) struct HeldOut<'m> {
 
 /// The whole report, from the motions of training and held-out runs.
 pub(super) fn report(
-    (model, set): (&EffectModel, &DataSet),
+    model: &EffectModel,
+    set: &DataSet,
     found: &Findings,
-    (training, held_out): (&Motions, HeldOut<'_>),
+    training: &Motions,
+    held_out: HeldOut<'_>,
     options: &Options,
 ) -> Result<Report, DiagnoseError> {
     let test = held_out.test;
-    let which = which((model, set), found, training)?;
+    let which = which(model, set, found, training)?;
     let tied = tied(&which);
     let (nominal, best) = (found.nominal(), found.best());
     let place = place(model, found, training);
@@ -50,7 +52,7 @@ pub(super) fn report(
                 let stated = nominal.changes.map(|_| 0.0);
                 errors(before, &stated, &found.noise).mean().sqrt()
             }),
-            ..how_far((model, set), found, (training, test), options)?
+            ..how_far(model, set, found, training, test, options)?
         }),
         None => None,
     };
@@ -67,7 +69,7 @@ pub(super) fn report(
             .map(|(speed, (before, after))| (speed.name.to_string(), before.sqrt(), after.sqrt()))
             .collect(),
         pictures: (options.pictures && first != GapVerdict::NoGap)
-            .then(|| pictures::of(model, found, (training, test), &place)),
+            .then(|| pictures::of(model, found, training, test, &place)),
         place: match first {
             GapVerdict::NoGap => Where::nowhere(),
             _ => place,
@@ -93,7 +95,8 @@ pub(super) fn report(
 
 /// The hypotheses of the library, and `unknown`.
 fn which(
-    (model, set): (&EffectModel, &DataSet),
+    model: &EffectModel,
+    set: &DataSet,
     found: &Findings,
     motions: &Motions,
 ) -> Result<Vec<Told>, DiagnoseError> {
@@ -112,8 +115,8 @@ fn which(
             probability,
             same_as: None,
             log_bayes_factor: Some(fitted.log - base),
-            parameters: values((model, set), fitted, motions),
-            changes: Some(changes((model, set), fitted, motions)?),
+            parameters: values(model, set, fitted, motions),
+            changes: Some(changes(model, set, fitted, motions)?),
         });
     }
     which.push(Told {
@@ -139,7 +142,8 @@ fn change(fitted: &Hypothesis, motions: &Motions, parameter: usize) -> (f64, Opt
 
 /// Values of the members of a hypothesis; a size at its limit has no deviation.
 fn values(
-    (model, set): (&EffectModel, &DataSet),
+    model: &EffectModel,
+    set: &DataSet,
     fitted: &Hypothesis,
     motions: &Motions,
 ) -> Vec<Value> {
@@ -170,7 +174,8 @@ fn values(
 
 /// The changes of the spec under a hypothesis.
 fn changes(
-    (model, set): (&EffectModel, &DataSet),
+    model: &EffectModel,
+    set: &DataSet,
     fitted: &Hypothesis,
     motions: &Motions,
 ) -> Result<Changes, DiagnoseError> {
@@ -262,9 +267,11 @@ fn place(model: &EffectModel, found: &Findings, motions: &Motions) -> Where {
 
 /// Residual forces of the held-out runs, in units of their noise.
 fn how_far(
-    (model, set): (&EffectModel, &DataSet),
+    model: &EffectModel,
+    set: &DataSet,
     found: &Findings,
-    (training, test): (&Motions, &Motions),
+    training: &Motions,
+    test: &Motions,
     options: &Options,
 ) -> Result<HowFar, DiagnoseError> {
     let (refitted, best) = (found.nominal(), found.best());

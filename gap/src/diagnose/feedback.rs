@@ -6,12 +6,12 @@
 //! sample predicts. They are bounded: as a correlation cannot exceed one, their variance is at most that of the filter's
 //! own error.
 
-use appell_estimate::{Along, Direction, EstimateError, Estimation, Fit, Recording, Shapes};
+use appell_estimate::{Along, EstimateError, Estimation, Fit, Recording, Shapes};
 use appell_runtime::model::At;
 use nalgebra::{DMatrix, DVector};
 
-use super::gram::Gram;
-use super::nuisance::{known, moves_the_mean};
+use super::gram::{Gram, Normal, whitened};
+use super::nuisance::{moving, priors};
 
 /// Number of earlier samples from which a command is predicted.
 const LAGS: usize = 4;
@@ -96,24 +96,11 @@ pub(super) fn for_kicks(
     if own.count == 0 {
         return Ok(0.0);
     }
-    let free: Vec<(Direction, Option<[f64; 2]>)> = (fit.free.iter().zip(&fit.coordinates))
-        .map(|(free, coordinate)| (Direction::Value(free.unknown), known(free, *coordinate)))
-        .filter(|(direction, _)| moves_the_mean(*direction))
-        .collect();
-    let directions: Vec<Direction> = free.iter().map(|(direction, _)| *direction).collect();
+    let directions = moving(fit);
     let tangent = own.with_kicks(|kicks| estimation.tangent(&fit.values, &directions, kicks))?;
-    let samples = tangent.samples.iter();
-    let samples = samples.map(|(_, sample)| sample.whitened());
-    let rest = DVector::from_iterator(tangent.samples.len(), samples);
-    let mut squares = weight * tangent.slopes.tr_mul(&tangent.slopes);
-    let mut scores = weight * tangent.slopes.tr_mul(&rest);
-    for (place, (_, known)) in free.iter().enumerate() {
-        if let Some([off, slope]) = known {
-            squares[(place, place)] += slope * slope;
-            scores[place] += slope * off;
-        }
-    }
-    let beside = Gram::beside(0..free.len(), (&squares, &scores), 0.0);
+    let normal = Normal::of(&tangent, &whitened(&tangent), weight, &priors(fit));
+    let nuisances: Vec<usize> = (0..directions.len()).collect();
+    let beside = normal.beside(&nuisances, nuisances.len()..tangent.slopes.ncols());
     Ok(bounded(&beside, &tangent.added_squares, estimation))
 }
 

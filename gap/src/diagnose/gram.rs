@@ -3,12 +3,204 @@
 use std::f64::consts::TAU;
 use std::ops::Range;
 
-use nalgebra::{DMatrix, DVector};
+use appell_estimate::Tangent;
+use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
 
 /// Relative norm of the part orthogonal to the nuisance columns below which a column is dependent on them.
 const LEFT: f64 = 1e-4;
 /// Relative regularisation for undetermined nuisance parameters.
 const RIDGE: f64 = 1e-10;
+
+/// Normal equations of the columns of a tangent: SᵀS, Sᵀr and rᵀr with the whitened innovations r, and priors.
+pub(super) struct Normal {
+    pub(super) squares: DMatrix<f64>,
+    pub(super) scores: DVector<f64>,
+    /// The sum of squares, and that of the logarithms of the variances.
+    square: f64,
+    pub(super) scales: f64,
+}
+
+impl Normal {
+    /// With innovations `rest` and the likelihood weight of a row; the first columns have priors: how far each is off
+    /// its mean in standard deviations, and the derivative of that.
+    pub(super) fn of(
+        tangent: &Tangent,
+        rest: &DVector<f64>,
+        weight: f64,
+        priors: &[Option<[f64; 2]>],
+    ) -> Self {
+        // The transpose is contiguous in memory for the product.
+        let turned = tangent.slopes.transpose();
+        let mut squares = weight * (&turned * &tangent.slopes);
+        let mut scores = weight * (turned * rest);
+        let mut square = weight * rest.norm_squared();
+        for (place, prior) in priors.iter().enumerate() {
+            if let Some([off, slope]) = prior {
+                squares[(place, place)] += slope * slope;
+                scores[place] += slope * off;
+                square += off * off;
+            }
+        }
+        Self {
+            squares,
+            scores,
+            square,
+            scales: weight * scales(tangent),
+        }
+    }
+
+    /// The columns `own` with the columns `first` eliminated.
+    pub(super) fn beside(&self, first: &[usize], own: Range<usize>) -> Gram {
+        let order: Vec<usize> = first.iter().copied().chain(own).collect();
+        let squares = DMatrix::from_fn(order.len(), order.len(), |i, j| {
+            self.squares[(order[i], order[j])]
+        });
+        let scores = DVector::from_fn(order.len(), |i, _| self.scores[order[i]]);
+        let log_likelihood = -0.5 * (self.scales + self.square);
+        Gram::beside(0..first.len(), (&squares, &scores), log_likelihood)
+    }
+}
+
+/// The whitened innovations.
+pub(super) fn whitened(tangent: &Tangent) -> DVector<f64> {
+    let samples = tangent.samples.iter();
+    let samples = samples.map(|(_, sample)| sample.whitened());
+    DVector::from_iterator(tangent.samples.len(), samples)
+}
+
+/// The sum of the logarithms of their variances.
+fn scales(tangent: &Tangent) -> f64 {
+    let samples = tangent.samples.iter();
+    samples
+        .map(|(_, sample)| (TAU * sample.white_variance).ln())
+        .sum()
+}
+
+/// The same by runs, where nuisance columns have common values in all of them.
+pub(super) struct ByRun<'t> {
+    tangent: &'t Tangent,
+    weight: f64,
+    /// Rows, transposed nuisance columns, their normal equations and the innovations of each run.
+    runs: Vec<OfRun>,
+    /// Derivatives of the priors of the nuisances, and how far these are off, in standard deviations.
+    priors: DVector<f64>,
+    off: DVector<f64>,
+    factor: Cholesky<f64, Dyn>,
+    /// The best values of the nuisances.
+    values: DVector<f64>,
+    /// Log likelihood with these.
+    pub(super) log_likelihood: f64,
+}
+
+struct OfRun {
+    rows: Range<usize>,
+    turned: DMatrix<f64>,
+    squares: DMatrix<f64>,
+    scores: DVector<f64>,
+    rest: DVector<f64>,
+}
+
+impl<'t> ByRun<'t> {
+    /// With the likelihood weight of a row and the nuisance columns, each with its prior, if it has one.
+    pub(super) fn new(
+        tangent: &'t Tangent,
+        weight: f64,
+        nuisances: &[(usize, Option<[f64; 2]>)],
+    ) -> Option<Self> {
+        let rest = whitened(tangent);
+        let samples = &tangent.samples;
+        let mut runs = Vec::new();
+        let mut from = 0;
+        while let Some((run, _)) = samples.get(from) {
+            let count = samples[from..].iter().take_while(|(own, _)| own == run);
+            let rows = from..from + count.count();
+            let turned = DMatrix::from_fn(nuisances.len(), rows.len(), |i, row| {
+                tangent.slopes[(rows.start + row, nuisances[i].0)]
+            });
+            let rest = rest.rows(rows.start, rows.len()).into_owned();
+            from = rows.end;
+            runs.push(OfRun {
+                squares: weight * (&turned * turned.transpose()),
+                scores: weight * (&turned * &rest),
+                rows,
+                turned,
+                rest,
+            });
+        }
+        let of_priors = |place: usize| {
+            let known = nuisances
+                .iter()
+                .map(|(_, prior)| prior.map_or(0.0, |own| own[place]));
+            DVector::from_iterator(nuisances.len(), known)
+        };
+        let (off, priors) = (of_priors(0), of_priors(1));
+        let mut squares = DMatrix::from_diagonal(&priors.component_mul(&priors));
+        let mut scores = priors.component_mul(&off);
+        for run in &runs {
+            squares += &run.squares;
+            scores += &run.scores;
+        }
+        for i in 0..nuisances.len() {
+            let own = squares[(i, i)];
+            squares[(i, i)] = own + RIDGE * own.max(f64::MIN_POSITIVE);
+        }
+        let factor = squares.cholesky()?;
+        let values = factor.solve(&scores);
+        let square = weight * rest.norm_squared() + off.norm_squared() - scores.dot(&values);
+        Some(Self {
+            tangent,
+            weight,
+            runs,
+            priors,
+            off,
+            factor,
+            values,
+            log_likelihood: -0.5 * (weight * scales(tangent) + square),
+        })
+    }
+
+    /// Gram matrices and scores of some columns with the nuisances eliminated: of each run, and of the priors.
+    pub(super) fn of(&self, columns: Range<usize>) -> Vec<(DMatrix<f64>, DVector<f64>)> {
+        let raw = self.runs.iter().map(|run| {
+            let own = self.tangent.slopes.view(
+                (run.rows.start, columns.start),
+                (run.rows.len(), columns.len()),
+            );
+            // The transpose is contiguous in memory for the products.
+            let turned = own.transpose();
+            (
+                self.weight * (&turned * own),
+                self.weight * (&turned * &run.rest),
+                self.weight * (&run.turned * own),
+            )
+        });
+        let raw: Vec<_> = raw.collect();
+        let mut mixed = DMatrix::zeros(self.priors.len(), columns.len());
+        for (.., of_run) in &raw {
+            mixed += of_run;
+        }
+        // A unit of a column moves the nuisances by so much.
+        let moved = self.factor.solve(&mixed);
+        let of_runs = raw.into_iter().zip(&self.runs);
+        let mut all: Vec<_> = of_runs
+            .map(|((squares, scores, mixed), run)| {
+                let across = mixed.transpose() * &moved;
+                let squares = squares - &across - across.transpose()
+                    + moved.transpose() * (&run.squares * &moved);
+                let left = &run.scores - &run.squares * &self.values;
+                let scores = scores - mixed.transpose() * &self.values - moved.transpose() * left;
+                (squares, scores)
+            })
+            .collect();
+        let by_priors = DMatrix::from_fn(self.priors.len(), columns.len(), |i, j| {
+            self.priors[i] * moved[(i, j)]
+        });
+        let left = &self.off - self.priors.component_mul(&self.values);
+        let turned = by_priors.transpose();
+        all.push((&turned * &by_priors, -(turned * left)));
+        all
+    }
+}
 
 /// Gram matrix and scores of the columns, projected on the complement of the nuisance columns.
 pub(super) struct Gram {

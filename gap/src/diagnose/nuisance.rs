@@ -10,6 +10,14 @@ pub(super) fn moving(fit: &Fit) -> Vec<Direction> {
         .collect()
 }
 
+/// Their priors.
+pub(super) fn priors(fit: &Fit) -> Vec<Option<[f64; 2]>> {
+    let free = fit.free.iter().zip(&fit.coordinates);
+    free.filter(|(own, _)| moves_the_mean(Direction::Value(own.unknown)))
+        .map(|(own, coordinate)| known(own, *coordinate))
+        .collect()
+}
+
 /// The deviation of a coordinate from its prior mean, in prior standard deviations, and its derivative by the value:
 /// sensitivities are by values, priors of coordinates.
 pub(super) fn known(free: &Free, coordinate: f64) -> Option<[f64; 2]> {

@@ -4,16 +4,15 @@
 //! With r the whitened innovations and S their sensitivities, the best step is −(SᵀS)⁻¹ Sᵀ r. The priors of the
 //! parameters are further rows after those of the samples.
 
-use std::f64::consts::TAU;
-
-use appell_estimate::{Direction, Estimation, Tangent, Unknown, in_parallel};
+use appell_estimate::{Direction, Estimation, Unknown, in_parallel};
 use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::nuisance::{known, moving};
+use super::gram::{Gram, Normal, whitened};
+use super::nuisance::{moving, priors};
 use crate::effects::{Acts, Part};
 
 /// A candidate after the screen.
@@ -63,8 +62,6 @@ impl Screened {
     }
 }
 
-/// Relative norm of the part orthogonal to the free columns below which a column is dependent on them.
-const LEFT: f64 = 1e-4;
 /// Factor on the process noise so that it does not absorb a missing effect.
 pub(super) const QUIET: f64 = 0.1;
 
@@ -83,112 +80,6 @@ pub(super) fn least(best: f64) -> f64 {
 pub(super) struct Screen {
     /// The candidates, with the greatest gain first.
     pub(super) list: Vec<Screened>,
-}
-
-/// Whitened innovations and their sensitivities, projected on the complement of the free columns of a hypothesis.
-pub(super) struct Projected<'t> {
-    pub(super) tangent: &'t Tangent,
-    /// Root of the likelihood weight of a row.
-    root: f64,
-    /// Orthogonal basis of the free columns.
-    basis: DMatrix<f64>,
-    /// Number of rows of the priors.
-    prior_rows: usize,
-    /// Projected innovations.
-    pub(super) rest: DVector<f64>,
-}
-
-impl<'t> Projected<'t> {
-    /// About a fit; the first directions of `tangent` and the `others` are free.
-    pub(super) fn new(
-        tangent: &'t Tangent,
-        weight: f64,
-        fitted: &Fitted,
-        free: usize,
-        others: &[usize],
-    ) -> Self {
-        let (samples, root) = (tangent.samples.len(), weight.sqrt());
-        let known: Vec<(usize, f64, f64)> = (0..free)
-            .filter_map(|i| {
-                let [off, slope] = known(&fitted.fit.free[i], fitted.fit.coordinates[i])?;
-                Some((i, off, slope))
-            })
-            .collect();
-        let rows = samples + known.len();
-        let mut own = DMatrix::zeros(rows, free + others.len());
-        for (column, slope) in (0..free).chain(others.iter().copied()).enumerate() {
-            let slope = root * tangent.slopes.column(slope);
-            own.view_mut((0, column), (samples, 1)).copy_from(&slope);
-        }
-        let mut rest = DVector::zeros(rows);
-        for (row, (_, sample)) in tangent.samples.iter().enumerate() {
-            rest[row] = root * sample.whitened();
-        }
-        for (row, &(column, off, slope)) in known.iter().enumerate() {
-            own[(samples + row, column)] = slope;
-            rest[samples + row] = off;
-        }
-        let basis = orthogonal(&own);
-        let along = basis.tr_mul(&rest);
-        rest -= &basis * along;
-        Self {
-            tangent,
-            root,
-            basis,
-            prior_rows: known.len(),
-            rest,
-        }
-    }
-
-    /// Log likelihood, maximised over the free directions.
-    pub(super) fn log_likelihood(&self) -> f64 {
-        let samples = self.tangent.samples.iter();
-        let scales: f64 = samples
-            .map(|(_, sample)| (TAU * sample.white_variance).ln())
-            .sum();
-        -0.5 * (self.root * self.root * scales + self.rest.norm_squared())
-    }
-
-    /// Projected sensitivities of some columns.
-    pub(super) fn slopes(&self, columns: &[usize]) -> DMatrix<f64> {
-        let samples = self.tangent.samples.len();
-        let mut slopes = DMatrix::zeros(samples + self.prior_rows, columns.len());
-        for (place, &column) in columns.iter().enumerate() {
-            slopes
-                .view_mut((0, place), (samples, 1))
-                .copy_from(&(self.root * self.tangent.slopes.column(column)));
-        }
-        // The transpose is contiguous in memory for the product.
-        let along = self.basis.transpose() * &slopes;
-        slopes -= &self.basis * along;
-        slopes
-    }
-}
-
-/// An orthonormal basis of the span of the columns.
-fn orthogonal(columns: &DMatrix<f64>) -> DMatrix<f64> {
-    /// Smallest relative norm of the part of an independent column that is orthogonal to the others.
-    const NEW: f64 = 1e-6;
-    let mut basis: Vec<DVector<f64>> = Vec::new();
-    for column in columns.column_iter() {
-        let mut column = column.into_owned();
-        let size = column.norm();
-        // Twice is enough (Kahan).
-        for _ in 0..2 {
-            for own in &basis {
-                let along = own.dot(&column);
-                column.axpy(-along, own, 1.0);
-            }
-        }
-        let rest = column.norm();
-        if rest > NEW * size {
-            basis.push(column / rest);
-        }
-    }
-    if basis.is_empty() {
-        return DMatrix::zeros(columns.nrows(), 0);
-    }
-    DMatrix::from_columns(&basis)
 }
 
 impl Screen {
@@ -213,13 +104,21 @@ impl Screen {
         let tangent = bench
             .input_innovations
             .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
-        let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), &[]);
-        let kicked: Vec<usize> = (directions.len()..tangent.slopes.ncols()).collect();
+        let normal = Normal::of(
+            &tangent,
+            &whitened(&tangent),
+            bench.weight,
+            &priors(&fitted.fit),
+        );
+        let columns = free.len()..directions.len();
+        let mut nuisances: Vec<usize> = (0..free.len()).collect();
+        let gram = normal.beside(&nuisances, columns.clone());
+        nuisances.extend(directions.len()..tangent.slopes.ncols());
+        let beyond = normal.beside(&nuisances, columns);
         let for_kicks = fitted.evidence.by_inputs;
-        let beyond = Projected::new(&tangent, bench.weight, fitted, free.len(), &kicked);
         let all = in_parallel(own, |(candidate, columns)| {
             let positive = positive(bench, candidate);
-            let one = screened(&projected, candidate, &columns, &positive)?;
+            let one = screened(&gram, candidate, &columns, &positive)?;
             let beyond = screened(&beyond, candidate, &columns, &positive);
             let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
             let told = (one.gain - beyond).clamp(0.0, for_kicks);
@@ -252,20 +151,27 @@ pub(super) fn imitated(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<usize>,
     let mut values = bench.carried(fitted, &estimation);
     shapes(bench, &mut values, &fitted.members);
     let tangent = estimation.tangent(&values, &directions, None)?;
-    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), &[]);
+    let normal = Normal::of(
+        &tangent,
+        &whitened(&tangent),
+        bench.weight,
+        &priors(&fitted.fit),
+    );
+    let nuisances: Vec<usize> = (0..free.len()).collect();
+    let gram = normal.beside(&nuisances, free.len()..directions.len());
     let is_imitated = |(_, columns): &(usize, Vec<usize>)| {
-        let slopes = projected.slopes(columns);
-        let mut columns = columns.iter().zip(slopes.column_iter());
-        columns.all(|(&column, left)| {
-            let whole = projected.root * tangent.slopes.column(column).norm();
-            whole > 0.0 && left.norm() <= LEFT * whole
-        })
+        let is_there = |column: &usize| {
+            let column = free.len() + column;
+            normal.squares[(column, column)] > 0.0
+        };
+        (columns.iter()).all(|column| is_there(column) && gram.is_imitated[*column])
     };
     let imitated = own.into_iter().filter(is_imitated);
     Ok(imitated.map(|(candidate, _)| candidate).collect())
 }
 
-/// The free directions, then those of all candidates outside a hypothesis; and the columns of each candidate.
+/// The free directions, then those of all candidates outside a hypothesis; and the columns of each candidate after the
+/// free ones.
 fn others(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -281,7 +187,8 @@ fn others(
         }
         let first = directions.len();
         directions.extend(self::directions(bench, candidate));
-        columns.push((candidate, (first..directions.len()).collect()));
+        let columns_of = first - free.len()..directions.len() - free.len();
+        columns.push((candidate, columns_of.collect()));
     }
     (directions, columns)
 }
@@ -343,26 +250,21 @@ pub(super) fn positive(bench: &Bench<'_>, candidate: usize) -> Vec<bool> {
 
 /// The best step along the columns of a candidate, without one-sided ones of the wrong sign.
 fn screened(
-    projected: &Projected<'_>,
+    gram: &Gram,
     candidate: usize,
     columns: &[usize],
     positive: &[bool],
 ) -> Option<Screened> {
-    let slopes = projected.slopes(columns);
-    let squares = slopes.tr_mul(&slopes);
-    let score = slopes.tr_mul(&projected.rest);
-    let seen = |place: &usize| {
-        let whole = projected.root * projected.tangent.slopes.column(columns[*place]).norm();
-        let left = squares[(*place, *place)].sqrt();
-        whole > 0.0 && left.is_finite() && left > LEFT * whole
-    };
+    let seen = |place: &usize| !gram.is_imitated[columns[*place]];
     let mut open: Vec<usize> = (0..columns.len()).filter(seen).collect();
     loop {
         if open.is_empty() {
             return None;
         }
-        let part = DMatrix::from_fn(open.len(), open.len(), |i, j| squares[(open[i], open[j])]);
-        let right = DVector::from_fn(open.len(), |i, _| -score[open[i]]);
+        let part = DMatrix::from_fn(open.len(), open.len(), |i, j| {
+            gram.squares[(columns[open[i]], columns[open[j]])]
+        });
+        let right = DVector::from_fn(open.len(), |i, _| -gram.scores[columns[open[i]]]);
         let factor = part.cholesky()?;
         let step = factor.solve(&right);
         let against = (0..open.len()).find(|&i| positive[open[i]] && step[i] <= 0.0);

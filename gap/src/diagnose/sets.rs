@@ -10,16 +10,14 @@
 //! every set keeps its value, also those without the members.
 
 use std::collections::{BTreeMap, BTreeSet};
-use std::f64::consts::TAU;
 
 use appell_estimate::{Direction, Estimation, Tangent, Unknown, in_parallel};
-use nalgebra::{DMatrix, DVector};
 
 use super::DiagnoseError;
 use super::augmented;
 use super::bench::{Bench, WRONG};
 use super::evidence::{Fitted, occam};
-use super::gram::{Gram, Solved};
+use super::gram::{Gram, Normal, Solved, whitened};
 use super::nuisance::{known, moves_the_mean};
 use super::prior::{counts, of_components, of_count, prior};
 use super::screen::{Screened, directions, positive, quieten, shapes};
@@ -542,40 +540,20 @@ impl Level {
         let (free, own) = (nuisances.len(), columns.len());
         let kicks = tangent.slopes.ncols() - free - own;
         // Innovations with all sizes at zero.
-        let mut rest = DVector::from_iterator(
-            tangent.samples.len(),
-            tangent.samples.iter().map(|(_, sample)| sample.whitened()),
-        );
+        let mut rest = whitened(tangent);
         for (place, column) in columns.iter().enumerate() {
             if column.size != 0.0 {
                 rest.axpy(-column.size, &tangent.slopes.column(free + place), 1.0);
             }
         }
-        let mut squares = bench.weight * tangent.slopes.tr_mul(&tangent.slopes);
-        let mut scores = bench.weight * tangent.slopes.tr_mul(&rest);
-        let mut square = bench.weight * rest.norm_squared();
-        for (place, nuisance) in nuisances.iter().enumerate() {
-            if let Some([off, slope]) = nuisance.known {
-                squares[(place, place)] += slope * slope;
-                scores[place] += slope * off;
-                square += off * off;
-            }
-        }
-        let scales: f64 = (tangent.samples.iter())
-            .map(|(_, sample)| (TAU * sample.white_variance).ln())
-            .sum();
-        let log_likelihood = -0.5 * (bench.weight * scales + square);
+        let priors: Vec<_> = nuisances.iter().map(|nuisance| nuisance.known).collect();
+        let mut normal = Normal::of(tangent, &rest, bench.weight, &priors);
         // What a command knows of the motion is no more than what the filter does not.
         for (place, own) in (free + own..).zip(&tangent.added_squares) {
-            squares[(place, place)] += own;
+            normal.squares[(place, place)] += own;
         }
-        let of_kicks = free + own..free + own + kicks;
-        let order: Vec<usize> = (0..free).chain(of_kicks).chain(free..free + own).collect();
-        let squares = DMatrix::from_fn(order.len(), order.len(), |i, j| {
-            squares[(order[i], order[j])]
-        });
-        let scores = DVector::from_fn(order.len(), |i, _| scores[order[i]]);
-        let mut gram = Gram::beside(0..free + kicks, (&squares, &scores), log_likelihood);
+        let eliminated: Vec<usize> = (0..free).chain(free + own..free + own + kicks).collect();
+        let mut gram = normal.beside(&eliminated, free..free + own);
         for (place, column) in columns.iter().enumerate() {
             if let Some(deviation) = column.known {
                 gram.squares[(place, place)] += deviation.powi(-2);
@@ -584,7 +562,7 @@ impl Level {
         let told = bench.weight * tangent.samples.len() as f64;
         let free_noise = bench
             .is_over_windows()
-            .then_some([told, -0.5 * bench.weight * scales]);
+            .then_some([told, -0.5 * normal.scales]);
         Self {
             scale,
             gram,

@@ -22,8 +22,9 @@ use super::bench::Bench;
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::evidence::log_sum;
-use super::nuisance::moving;
-use super::screen::{Projected, quieten};
+use super::gram::ByRun;
+use super::nuisance::{moving, priors};
+use super::screen::quieten;
 use crate::effects::Memory;
 
 pub(super) use dependence::Dependence;
@@ -276,11 +277,15 @@ pub(super) fn term_scores(
     };
     let tangent = estimation.tangent(&fitted.fit.values, &free, Some(all))?;
     let added = free.len()..tangent.slopes.ncols();
-    let nuisances: Vec<usize> = added
-        .clone()
-        .filter(|column| (column - added.start) % block.max(1) >= count)
-        .collect();
-    let projected = Projected::new(&tangent, bench.weight, fitted, free.len(), &nuisances);
+    // Their variance is at most that of the error of the filter.
+    let of_kicks = added.clone().zip(&tangent.added_squares);
+    let of_kicks = of_kicks
+        .filter(|(column, _)| (column - added.start) % block.max(1) >= count)
+        .map(|(column, square)| (column, Some([0.0, square.sqrt()])));
+    let nuisances: Vec<_> = (0..).zip(priors(&fitted.fit)).chain(of_kicks).collect();
+    let Some(by_run) = ByRun::new(&tangent, bench.weight, &nuisances) else {
+        return Ok(Vec::new());
+    };
     let places: Vec<Option<usize>> = match along {
         Along::Disturbances => (setup.disturbances.iter())
             .map(|one| match *one {
@@ -293,11 +298,7 @@ pub(super) fn term_scores(
     let places: Vec<_> = places.into_iter().enumerate().collect();
     let scores = in_parallel(places, |(number, place)| {
         let first = free.len() + number * block;
-        let columns: Vec<usize> = (first..first + count).collect();
-        Some((
-            place?,
-            TermScores::new(&projected, &projected.slopes(&columns)),
-        ))
+        Some((place?, TermScores::new(&by_run, first..first + count)))
     });
     Ok(scores.into_iter().flatten().collect())
 }

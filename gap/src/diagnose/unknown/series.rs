@@ -4,11 +4,12 @@
 //! of the amplitudes, have a closed form (C. E. Rasmussen and C. K. I. Williams, *Gaussian
 //! Processes for Machine Learning*, 2006, chapter 2).
 
-use appell_estimate::Innovation;
+use std::ops::Range;
+
 use nalgebra::{DMatrix, DVector};
 
 use super::super::evidence::{NormalSizes, occam};
-use super::super::screen::Projected;
+use super::super::gram::ByRun;
 use super::dependence::WAVES;
 
 /// Largest number of harmonics of a measured law.
@@ -53,34 +54,22 @@ pub(in super::super) struct TermScores {
 }
 
 impl TermScores {
-    pub(super) fn new(projected: &Projected<'_>, slopes: &DMatrix<f64>) -> Self {
-        let samples = &projected.tangent.samples;
-        // The transpose is contiguous in memory for the products below.
-        let turned = slopes.transpose();
-        let wave_scores = |from: usize, rows: usize| {
-            let turned = turned.columns(from, rows);
-            let squares = turned * slopes.rows(from, rows);
-            (squares, -(turned * projected.rest.rows(from, rows)))
-        };
-        let mut runs = Vec::new();
-        let mut from = 0;
-        while let Some((run, _)) = samples.get(from) {
-            let of_run = |sample: &&(usize, Innovation)| sample.0 == *run;
-            let rows = samples[from..].iter().take_while(of_run).count();
-            runs.push(wave_scores(from, rows));
-            from += rows;
+    /// Of the columns of a law, in which nuisances are eliminated.
+    pub(super) fn new(by_run: &ByRun<'_>, columns: Range<usize>) -> Self {
+        let mut runs = by_run.of(columns);
+        // Steps are against the scores.
+        for (_, score) in &mut runs {
+            score.neg_mut();
         }
-        // The rows of the priors belong to no run.
-        let (mut squares, mut scores) = wave_scores(from, slopes.nrows() - from);
-        for (own, score) in &runs {
-            squares += own;
-            scores += score;
-        }
+        let squares = runs.iter().map(|(squares, _)| squares).sum();
+        let scores = runs.iter().map(|(_, scores)| scores).sum();
+        // The priors belong to no run.
+        runs.pop();
         Self {
             runs,
             squares,
             scores,
-            log_likelihood: projected.log_likelihood(),
+            log_likelihood: by_run.log_likelihood,
         }
     }
 

@@ -15,6 +15,7 @@ from scipy.optimize import least_squares
 
 import catalogue
 import generate
+import loops
 import mechanisms
 import oracle
 import rigid
@@ -163,6 +164,21 @@ def lugre_and_play_lose_energy():
         assert energy[-1] < energy[0] + 1e-6, (effect.kind, effect.law, energy[[0, -1]])
 
 
+def normalised(place, rig, trial, measured):
+    """Innovations of the oracle's filter with the true law, each row in its standard deviations."""
+    filter = oracle.Filter(rig, trial, place.noise, place.disturbance_sd)
+    inputs, still = oracle.held(trial.commands), np.zeros(len(place.disturbance_sd))
+    x, out = trial.states[0].copy(), []
+    for k in range(len(trial.t)):
+        e = measured[k] - x[: filter.n]
+        out.append(filter.white[k] @ e)
+        x = x + filter.K[k] @ e
+        if k + 1 < len(trial.t):
+            step = trial.t[k + 1] - trial.t[k]
+            x = oracle.flow(place.mechanism, place.true, x, inputs[k], still, step)
+    return np.array(out[10:])
+
+
 def innovations_of_the_true_filter_are_white():
     """The oracle's filter on recordings without a gap: mean normalised innovation of one."""
     for name, number in generate.names().items():
@@ -172,21 +188,41 @@ def innovations_of_the_true_filter_are_white():
         place = generate.world(number, case)
         rig = place.rig([])
         trial = generate.trial(place, rig, 0)
-        measured = generate.recorded(place, rig, trial, 0)
-        filter = oracle.Filter(rig, trial, place.noise, place.disturbance_sd)
-        inputs = oracle.held(trial.commands)
-        x, out = trial.states[0].copy(), []
-        for k in range(len(trial.t)):
-            e = measured[k] - x[: filter.n]
-            out.append(filter.white[k] @ e)
-            x = x + filter.K[k] @ e
-            if k + 1 < len(trial.t):
-                step = trial.t[k + 1] - trial.t[k]
-                x = oracle.flow(
-                    place.mechanism, place.true, x, inputs[k], np.zeros(len(place.disturbance_sd)), step
-                )
-        mean = np.mean(np.square(out[10:]))
+        out = normalised(place, rig, trial, generate.recorded(place, rig, trial, 0))
+        mean = np.mean(np.square(out))
         assert abs(mean - 1) < 4 * np.sqrt(2 / np.size(out)), (name, mean)
+
+
+def loops_have_no_gap():
+    """Innovations of the true filter have variance one and correlate neither with the last ones nor with changes
+    of the last command, where gusts are white or there are none."""
+    for name, loop in loops.LOOPS.items():
+        place = loops.world(name)
+        if place.case.gusts and place.correlation_s:
+            continue
+        place.disturbance_sd = place.disturbance_sd * (1.0 if loop.gusts else 1e-6)
+        trials, shown = loops.trials(place)
+        out = normalised(place, place.rig([]), trials[0], shown[0])
+        rounding = np.square([generate.resolution(noise)[0] for noise in place.noise]) / 12
+        most = 1 + np.max(rounding / np.square(place.noise))
+        chance = 4 * np.sqrt(2 / np.size(out))
+        assert 1 - chance < np.mean(np.square(out)) < most + chance, (name, np.mean(np.square(out)))
+        before = np.diff(trials[0].commands, axis=0)[8 : 8 + len(out)]
+        for channel in out.T:
+            known = [channel[:-1], *before.T[:, 1:]]
+            correlations = [np.corrcoef(channel[1:], other)[0, 1] for other in known]
+            assert np.max(np.abs(correlations)) < 4.5 / np.sqrt(len(out)), (name, correlations)
+
+
+def loops_move_as_by_the_other_integrator():
+    """The recorded commands, given again."""
+    for name in ("loop_17", "loop_23", "loop_39"):
+        place = loops.world(name)
+        trial = loops.trials(place)[0][0]
+        again = simulate.run(
+            place.rig([]), lambda k, t, x: trial.commands[k], trial.t[:200], trial.states[0], trial.disturbance
+        )
+        assert np.max(np.abs(again.states - trial.states[:200])) < 1e-5, name
 
 
 class Seen:
@@ -349,6 +385,8 @@ def main():
         delays_shift_the_command,
         lugre_and_play_lose_energy,
         innovations_of_the_true_filter_are_white,
+        loops_have_no_gap,
+        loops_move_as_by_the_other_integrator,
         an_effect_is_its_own_twin,
         twins_are_mutual,
         separations_are_those_of_a_filter_with_the_wrong_law,

@@ -43,7 +43,7 @@ def sampled_regulator(A, B, states, effort, step):
     return np.linalg.solve(np.diag(effort) + G.T @ P @ G, G.T @ P @ F)
 
 
-def linearised(mechanism, p, kept):
+def linearised(mechanism, p, kept, still=None):
     """A and B about standing still, of some of the states."""
     n = len(mechanism.coordinates)
 
@@ -53,9 +53,13 @@ def linearised(mechanism, p, kept):
         return np.concatenate([mechanism.kinematics(p, q) @ v, mechanism.acceleration(p, q, v, f)])[kept]
 
     size, inputs = n + len(mechanism.speeds), len(mechanism.inputs)
-    still, idle = np.zeros(size), np.zeros(inputs)
+    still, idle = np.zeros(size) if still is None else still, np.zeros(inputs)
     A = np.stack(
-        [(rates(NUDGE * e, idle) - rates(-NUDGE * e, idle)) / (2 * NUDGE) for e in np.eye(size)[kept]], axis=1
+        [
+            (rates(still + NUDGE * e, idle) - rates(still - NUDGE * e, idle)) / (2 * NUDGE)
+            for e in np.eye(size)[kept]
+        ],
+        axis=1,
     )
     B = np.stack(
         [(rates(still, NUDGE * e) - rates(still, -NUDGE * e)) / (2 * NUDGE) for e in np.eye(inputs)], axis=1

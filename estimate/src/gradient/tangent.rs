@@ -196,7 +196,9 @@ impl<'p, 'a> Forward<'p, 'a> {
         let info = setup.model.info();
         let zeros = |len| vec![0.0; len];
         let candidates = columns - directions.len();
-        let times = estimation.recordings()[pass.run].times();
+        let recording = &estimation.recordings()[pass.run];
+        let times = recording.times();
+        let samples = times.len() * setup.channels.len();
         let whole = times.last().zip(times.first());
         let whole = whole.map_or(0.0, |(last, first)| last - first);
         let mut z = zeros(n * columns);
@@ -223,7 +225,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             scratch: pass.system.plant.scratch(),
             earlier: pass.held.clone(),
             switched: false,
-            rows: Vec::new(),
+            rows: Vec::with_capacity(columns * samples),
             interval: whole / (times.len() - 1).max(1) as f64,
             added_squares: zeros(candidates),
             pass,
@@ -321,6 +323,9 @@ impl<'p, 'a> Forward<'p, 'a> {
                 let mut square = 0.0_f64;
                 for i in 0..n {
                     let column = on.columns[i * disturbances + j];
+                    if column == 0.0 {
+                        continue;
+                    }
                     let row = &mut self.added[i * columns + first..][..shapes.count];
                     add_scaled(half * column, &self.tried, row);
                     let root = &on.root[i * n..(i + 1) * n];

@@ -95,8 +95,9 @@ fn scored(
         count: terms.len(),
         values: &write,
     };
-    let scores = term_scores(bench, &estimation, base, shapes)?;
-    let Some((_, scores)) = scores.into_iter().find(|(place, _)| *place == law.place) else {
+    let scores = term_scores(bench, &estimation, base, shapes, &[shapes.count])?;
+    let mut scores = scores.into_iter().flatten();
+    let Some((_, scores)) = scores.find(|(place, _)| *place == law.place) else {
         return Ok(Vec::new());
     };
     let mut forms: Vec<(Option<f64>, Form)> = trials

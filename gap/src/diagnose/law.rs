@@ -184,8 +184,11 @@ fn of_variable(
     };
     let setup = bench.setup(&base.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let scores = wave_scores(bench, &estimation, base, dependence, law.along)?;
-    let mut scores = scores.into_iter().filter(|(place, _)| *place == law.place);
+    let scores = wave_scores(bench, &estimation, base, &[dependence], law.along)?;
+    let mut scores = scores
+        .into_iter()
+        .flatten()
+        .filter(|(place, _)| *place == law.place);
     let series = scores.next().and_then(|(_, scores)| scores.series(wave));
     Ok(series.and_then(|series| {
         let candidate = waves::candidate(bench, dependence, law, wave, &series)?;

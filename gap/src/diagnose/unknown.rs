@@ -146,28 +146,63 @@ fn of_variables(
     base: &mut Option<f64>,
     [smooth, single]: &mut [Family; 2],
 ) -> Result<Vec<f64>, DiagnoseError> {
-    let mut gains = Vec::with_capacity(kinds.len());
-    for &(dependence, along) in kinds {
-        let mut best = f64::NEG_INFINITY;
-        let scores = wave_scores(bench, estimation, fitted, dependence, along)?;
-        for (place, wave_scores) in scores {
-            let base = *base.get_or_insert(wave_scores.log_likelihood);
-            let offset = wave_scores.log_likelihood - base;
-            let mut unnamed = |wave, law: LawGain| {
-                let law = law.beside(offset);
-                best = best.max(law.gain);
-                let on = On::Variable(wave);
-                unnamed(on, dependence.name(bench), along, place, law)
-            };
-            smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
-            for wave in 0..dependence.waves(along) {
-                let law = wave_scores.single(wave);
-                single.add(law.map(|law| unnamed(Some(wave), law)));
+    let mut gains = vec![f64::NEG_INFINITY; kinds.len()];
+    for batch in batches(estimation, kinds) {
+        let along = kinds[batch[0]].1;
+        let own: Vec<Dependence<'_>> = batch.iter().map(|&place| kinds[place].0).collect();
+        let of_batch = wave_scores(bench, estimation, fitted, &own, along)?;
+        for (number, scores) in batch.into_iter().zip(of_batch) {
+            let dependence = kinds[number].0;
+            for (place, wave_scores) in scores {
+                let base = *base.get_or_insert(wave_scores.log_likelihood);
+                let offset = wave_scores.log_likelihood - base;
+                let best = &mut gains[number];
+                let mut unnamed = |wave, law: LawGain| {
+                    let law = law.beside(offset);
+                    *best = best.max(law.gain);
+                    let on = On::Variable(wave);
+                    unnamed(on, dependence.name(bench), along, place, law)
+                };
+                smooth.add(wave_scores.smooth().map(|law| unnamed(None, law)));
+                for wave in 0..dependence.waves(along) {
+                    let law = wave_scores.single(wave);
+                    single.add(law.map(|law| unnamed(Some(wave), law)));
+                }
             }
         }
-        gains.push(best);
     }
     Ok(gains)
+}
+
+/// Kinds of laws that one pass of the filter evaluates together.
+fn batches(estimation: &Estimation<'_>, kinds: &[(Dependence<'_>, Along)]) -> Vec<Vec<usize>> {
+    /// Columns of a pass, for its memory.
+    const COLUMNS: usize = 600;
+    let setup = estimation.setup();
+    let mut batches: Vec<Vec<usize>> = Vec::new();
+    for along in [Along::Disturbances, Along::Channels] {
+        let places = match along {
+            Along::Disturbances => setup.disturbances.len(),
+            Along::Channels => setup.channels.len(),
+        };
+        let mut room = 0;
+        for (number, (dependence, _)) in
+            kinds.iter().enumerate().filter(|(_, kind)| kind.1 == along)
+        {
+            let columns = 2 * dependence.waves(along) * places;
+            match batches.last_mut() {
+                Some(batch) if columns <= room => {
+                    batch.push(number);
+                    room -= columns;
+                }
+                _ => {
+                    batches.push(vec![number]);
+                    room = COLUMNS.saturating_sub(columns);
+                }
+            }
+        }
+    }
+    batches
 }
 
 /// The same for forces with a hidden state only: like effects they have few parameters, whereas a law of a variable is
@@ -196,7 +231,8 @@ fn with_memory(
             count: memories.count(),
             values: &write,
         };
-        for (place, scores) in term_scores(bench, estimation, fitted, shapes)? {
+        let of_memories = term_scores(bench, estimation, fitted, shapes, &[shapes.count])?;
+        for (place, scores) in of_memories.into_iter().flatten() {
             let laws: Vec<Option<LawGain>> = (0..memories.len())
                 .map(|number| scores.of(&memories.terms(number)))
                 .collect();
@@ -229,33 +265,40 @@ fn unnamed(on: On, variable: String, along: Along, place: usize, law: LawGain) -
     }
 }
 
-/// The scores of the harmonics of a variable for the force in each equation, or for the error of each channel.
+/// The scores of the harmonics of each variable for the force in each equation, or for the error of each channel.
 pub(super) fn wave_scores(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
     fitted: &Fitted,
-    dependence: Dependence<'_>,
+    dependences: &[Dependence<'_>],
     along: Along,
-) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
+) -> Result<Vec<Vec<(usize, TermScores)>>, DiagnoseError> {
     let model = estimation.setup().model;
-    let write = |run: usize, at: At<'_>, values: &mut [f64]| {
-        dependence.waves_at(bench, model, run, at, values);
+    let counts = dependences.iter().map(|own| 2 * own.waves(along));
+    let counts: Vec<usize> = counts.collect();
+    let write = |run: usize, at: At<'_>, mut values: &mut [f64]| {
+        for (dependence, count) in dependences.iter().zip(&counts) {
+            let (own, rest) = values.split_at_mut(*count);
+            dependence.waves_at(bench, model, run, at, own);
+            values = rest;
+        }
     };
     let shapes = Shapes {
         along,
-        count: 2 * dependence.waves(along),
+        count: counts.iter().sum(),
         values: &write,
     };
-    term_scores(bench, estimation, fitted, shapes)
+    term_scores(bench, estimation, fitted, shapes, &counts)
 }
 
-/// The same for any terms.
+/// The same for groups of any terms, with the number of terms of each.
 pub(super) fn term_scores(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
     fitted: &Fitted,
     shapes: Shapes<'_>,
-) -> Result<Vec<(usize, TermScores)>, DiagnoseError> {
+    groups: &[usize],
+) -> Result<Vec<Vec<(usize, TermScores)>>, DiagnoseError> {
     let (free, setup) = (moving(&fitted.fit), estimation.setup());
     let (along, count) = (shapes.along, shapes.count);
     // The command of a controller depends on the error of the filter: impulses in proportion to its innovation are
@@ -284,7 +327,7 @@ pub(super) fn term_scores(
         .map(|(column, square)| (column, Some([0.0, square.sqrt()])));
     let nuisances: Vec<_> = (0..).zip(priors(&fitted.fit)).chain(of_kicks).collect();
     let Some(by_run) = ByRun::new(&tangent, bench.weight, &nuisances) else {
-        return Ok(Vec::new());
+        return Ok(groups.iter().map(|_| Vec::new()).collect());
     };
     let places: Vec<Option<usize>> = match along {
         Along::Disturbances => (setup.disturbances.iter())
@@ -295,12 +338,19 @@ pub(super) fn term_scores(
             .collect(),
         Along::Channels => (0..setup.channels.len()).map(Some).collect(),
     };
-    let places: Vec<_> = places.into_iter().enumerate().collect();
-    let scores = in_parallel(places, |(number, place)| {
-        let first = free.len() + number * block;
-        Some((place?, TermScores::new(&by_run, first..first + count)))
+    let places = places.into_iter().enumerate();
+    let places = places.filter_map(|(number, place)| Some((number, place?)));
+    let places: Vec<(usize, usize)> = places.collect();
+    let mut before = 0;
+    let of_groups = groups.iter().map(|&terms| {
+        let first = before;
+        before += terms;
+        in_parallel(places.clone(), |(number, place)| {
+            let first = free.len() + number * block + first;
+            (place, TermScores::new(&by_run, first..first + terms))
+        })
     });
-    Ok(scores.into_iter().flatten().collect())
+    Ok(of_groups.collect())
 }
 
 /// Laws of one kind.
@@ -352,8 +402,8 @@ pub(super) fn hints(bench: &Bench<'_>, fitted: &Fitted) -> Result<Vec<Unnamed>, 
     let mut tried = 0;
     for dependence in bench.unmodelled.iter().map(Dependence::unmodelled) {
         let mut family = Family::new();
-        let scores = wave_scores(bench, &estimation, fitted, dependence, along)?;
-        for (place, wave_scores) in scores {
+        let scores = wave_scores(bench, &estimation, fitted, &[dependence], along)?;
+        for (place, wave_scores) in scores.into_iter().flatten() {
             let law = wave_scores.smooth();
             let variable = dependence.name(bench);
             let unnamed = |law| unnamed(On::Variable(None), variable, along, place, law);

@@ -162,6 +162,8 @@ fr = { kind = "damper", coordinate = "th", damping = "c" }
             let Some(written) = written(&spec, candidate).expect("a model") else {
                 panic!("nothing drives {name}");
             };
+            let about = &candidate.about;
+            assert!(!about.contains('{'), "a word is left in {name}: {about}");
             let items = written.items();
             let open = items.match_indices('{').find(|(at, _)| {
                 let next = items[at + 1..].chars().next();

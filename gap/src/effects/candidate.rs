@@ -384,7 +384,7 @@ impl Candidate {
             site: site.name.clone(),
             drives: Vec::new(),
             family: effect.family,
-            about: effect.about.replace("{site}", &site.name),
+            about: self::filled(&effect.about, &words),
             is_component: effect.is_vector,
             acts,
             parameters,

@@ -37,6 +37,7 @@ mod budget;
 mod by_forces;
 mod calibration;
 mod changes;
+mod coloured;
 mod compare;
 mod error;
 mod evidence;
@@ -327,5 +328,7 @@ fn judged_beside<'m>(
     let known = before.and_then(|before| known(&bench, before).ok());
     let hypotheses = (nominal, known.into_iter().collect());
     let judged = horizon::judged((bench, hypotheses, screen), over, stage)?;
-    horizon::lengthened(judged, (&levels, whole), stage)
+    let mut judged = horizon::lengthened(judged, (&levels, whole), stage)?;
+    judged.comparison = coloured::weighed(&judged.bench, judged.comparison)?;
+    Ok(judged)
 }

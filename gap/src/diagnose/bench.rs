@@ -469,14 +469,23 @@ impl<'a> Bench<'a> {
         self.fit_by((Fit::quick, self.effort()), members, estimation, start)
     }
 
+    /// Fits some values.
+    pub(super) fn fit_free(
+        &self,
+        estimation: &Estimation<'_>,
+        start: &[f64],
+        free: &[Free],
+    ) -> Result<Fit, DiagnoseError> {
+        self.weighed(estimation, start, free, (Fit::quick, self.effort()))
+    }
+
     /// Fits the levels alone.
     pub(super) fn levelled(
         &self,
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fit, DiagnoseError> {
-        let search = (Fit::quick as Search, self.effort());
-        self.weighed(estimation, start, &self.problem.levels, search)
+        self.fit_free(estimation, start, &self.problem.levels)
     }
 
     /// The same as well as shares of a gap need it.
@@ -513,6 +522,7 @@ impl<'a> Bench<'a> {
             layout: estimation.layout(),
             fit,
             evidence,
+            coloured: 0.0,
         })
     }
 }

@@ -65,8 +65,9 @@ impl Comparison {
         let gain = left.map_or(0.0, |left| left.first.gain);
         let explained = self.explained().max(0.0);
         Rest {
+            // A law has to explain more than process noise with memory does.
             log_bayes_factor: left.map_or(f64::NEG_INFINITY, |left| {
-                self.independent * left.log_bayes_factor
+                self.independent * (left.log_bayes_factor - self.best().coloured)
             }),
             share: if bench.is_over_windows() {
                 self.stays * (1.0 - bench.left(gain))
@@ -172,6 +173,13 @@ impl Comparison {
         let mut search = Search::new(bench, known);
         search.better()?;
         Self::found(bench, search)
+    }
+
+    /// The same after changes of the evidence of some hypotheses.
+    pub(super) fn again(self, bench: &Bench<'_>) -> Result<Self, DiagnoseError> {
+        let mut again = self.with(bench, Vec::new())?;
+        again.weigh_unknown(bench)?;
+        Ok(again)
     }
 
     /// The same with further hypotheses that were fitted elsewhere.

@@ -25,6 +25,8 @@ pub(super) struct Fitted {
     pub(super) layout: Layout,
     pub(super) fit: Fit,
     pub(super) evidence: Evidence,
+    /// The part of its log evidence by process noise with memory.
+    pub(super) coloured: f64,
 }
 
 impl Fitted {

@@ -220,7 +220,7 @@ impl Lawful {
         let setup = bench.setup(&members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut start = main.carried_by_name(&self.base, &estimation);
-        let law = self.effects.candidates.iter().find(|one| one.kind == "law");
+        let law = self.effects.candidates.iter().find(|one| one.is_measured());
         let places: Vec<usize> = law.map_or_else(Vec::new, |law| {
             bench.own(law).iter().map(|(place, _)| *place).collect()
         });

@@ -139,6 +139,7 @@ impl Bench<'_> {
             layout,
             fit,
             evidence: fitted.evidence,
+            coloured: fitted.coloured,
         })
     }
 }

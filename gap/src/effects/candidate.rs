@@ -179,6 +179,11 @@ impl Candidate {
         }
     }
 
+    /// Whether it is a measured force.
+    pub(crate) fn is_measured(&self) -> bool {
+        self.kind == "law"
+    }
+
     /// Whether it acts at all drives.
     pub(crate) fn is_of_drives(&self) -> bool {
         !self.drives.is_empty()

@@ -1,0 +1,161 @@
+//! Process noise with memory.
+//!
+//! A gust lasts for many rows, and a controller answers it: with white process noise its command seems to act too
+//! weakly, too late, or on another coordinate (L. Ljung, *System Identification*, 2nd edition, 1999, section 13.4, on
+//! the bias of closed loops with a wrong noise model). Where innovations are correlated, the most probable hypotheses
+//! are therefore fitted once more with a force along every pseudo-velocity that walks at random.
+
+use appell_estimate::{Disturbance, Estimation, Free, Setup, Unknown};
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::compare::Comparison;
+use super::evidence::{Evidence, Fitted};
+use super::feedback::for_kicks;
+use super::localise::force_unit;
+use crate::effects::Candidate;
+
+/// Number of hypotheses that are fitted again, in addition to the nominal model.
+const COMPARED: usize = 2;
+/// Part of the samples that is independent above which process noise is white.
+const WHITE: f64 = 0.9;
+/// Initial rates of the forces that are tried, relative to the forces of the mechanism over one second.
+const RATES: [f64; 3] = [0.01, 0.1, 1.0];
+/// The largest rate relative to these forces; the range of a level ends there.
+const LARGEST: f64 = 1e3;
+
+/// The comparison with the better of both kinds of process noise for each of these hypotheses.
+pub(super) fn weighed(
+    bench: &Bench<'_>,
+    mut comparison: Comparison,
+) -> Result<Comparison, DiagnoseError> {
+    let is_null = comparison.best().members.is_empty() && !comparison.leads_unknown();
+    if bench.is_over_windows() || is_null || comparison.independent > WHITE {
+        return Ok(comparison);
+    }
+    let mut compared: Vec<usize> = (0..comparison.fits.len().min(COMPARED)).collect();
+    if !compared.contains(&comparison.nominal) {
+        compared.push(comparison.nominal);
+    }
+    let mut is_better = false;
+    for place in compared {
+        let fitted = &mut comparison.fits[place].0;
+        // A filter that loses the recordings says nothing for this noise.
+        let gain = gain(bench, fitted).unwrap_or(0.0);
+        is_better |= gain > 0.0;
+        fitted.coloured = gain.max(0.0);
+        fitted.evidence.log_likelihood += fitted.coloured;
+    }
+    if is_better {
+        comparison.again(bench)
+    } else {
+        Ok(comparison)
+    }
+}
+
+/// The gain in log evidence of a hypothesis by coloured process noise.
+fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
+    if base
+        .members
+        .iter()
+        .any(|&member| bench.candidate(member).brings.is_some())
+    {
+        return Ok(0.0);
+    }
+    let mechanism = &bench.effects.mechanism;
+    let walking = bench.effects.info().states[..bench.effects.info().speeds]
+        .iter()
+        .enumerate()
+        .map(|(place, speed)| {
+            let unit = force_unit(mechanism, place).replace(' ', "*");
+            let size = [("1".to_owned(), unit, [0.0, 1.0])];
+            Candidate::measured(mechanism, &speed.name, "{law}_1", &size)
+        });
+    let members = base.members.iter().map(|&member| bench.candidate(member));
+    let effects = bench
+        .effects
+        .again(members.cloned().chain(walking).collect())?;
+    let other = bench.beside(&effects)?;
+    let all: Vec<usize> = (0..effects.candidates.len()).collect();
+    let mut setup = other.setup(&all);
+    let walks = walk(&mut setup, &other);
+    let estimation = Estimation::new(&setup, &other.recordings)?;
+    let start = begun(bench, base, &estimation, &walks)?;
+    let own = all.into_iter();
+    let own: Vec<usize> = own
+        .filter(|&one| !effects.candidates[one].is_measured())
+        .collect();
+    let mut free = other.free(&own, &setup);
+    free.extend(walks.iter().map(|walk| walk.free));
+    let fit = other.fit_free(&estimation, &start, &free)?;
+    let by_inputs = for_kicks(&other.input_innovations, other.weight, (&estimation, &fit))?;
+    Ok(Evidence::of(&other, &own, &fit, by_inputs).log() - base.evidence.log())
+}
+
+/// The rate of a force that walks, and the index of its state.
+struct Walk {
+    free: Free,
+    state: usize,
+}
+
+/// Lets the measured forces of a model walk at random, with rates in the ranges of the white process noise.
+fn walk(setup: &mut Setup<'_>, bench: &Bench<'_>) -> Vec<Walk> {
+    let info = setup.model.info();
+    let lags = setup.channels.iter().filter(|channel| channel.lags).count();
+    let first = info.state_len() + setup.lagging.len() + lags;
+    let candidates = bench.effects.candidates.iter();
+    let forces = candidates.filter(|one| one.is_measured());
+    let places: Vec<usize> = forces
+        .flat_map(|one| bench.own(one))
+        .map(|(place, _)| place)
+        .collect();
+    let range = |equation: usize| {
+        let mut levels = bench.problem.levels.iter();
+        let level = levels.find(|level| level.unknown == Unknown::Disturbance(equation));
+        level.map_or([0.0, f64::INFINITY], |level| level.range)
+    };
+    let mut walks = Vec::new();
+    for (index, place) in places.into_iter().enumerate() {
+        let [low, high] = range(index);
+        let level = Unknown::Disturbance(setup.disturbances.len());
+        setup.drifting.push(place);
+        setup.disturbances.push(Disturbance::Rate(first + index));
+        walks.push(Walk {
+            free: Free::of(level).within(low, high),
+            state: first + index,
+        });
+    }
+    walks
+}
+
+/// The values of a hypothesis, with the most likely of some rates of the forces.
+fn begun(
+    bench: &Bench<'_>,
+    base: &Fitted,
+    estimation: &Estimation<'_>,
+    walks: &[Walk],
+) -> Result<Vec<f64>, DiagnoseError> {
+    let layout = estimation.layout();
+    let start = bench.carried_by_name(base, estimation);
+    let mut best: Option<(f64, Vec<f64>)> = None;
+    for rate in RATES {
+        let mut values = start.clone();
+        for walk in walks {
+            let level = rate * walk.free.range[1] / LARGEST;
+            values[layout.place(walk.free.unknown)?] = level;
+            for run in 0..estimation.recordings().len() {
+                let state = walk.state;
+                values[layout.place(Unknown::Initial { run, state })?] = 0.0;
+                // What it walks in a second.
+                values[layout.place(Unknown::Spread { run, state })?] = level;
+            }
+        }
+        let Ok(likelihood) = estimation.log_likelihood(&values) else {
+            continue;
+        };
+        if best.as_ref().is_none_or(|(most, _)| likelihood > *most) {
+            best = Some((likelihood, values));
+        }
+    }
+    Ok(best.map_or(start, |(_, values)| values))
+}

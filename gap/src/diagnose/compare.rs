@@ -93,6 +93,12 @@ impl Comparison {
     /// Sets the probability that no effect of the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
         self.left = leftover(bench, self.best())?;
+        self.weigh_left(bench);
+        Ok(())
+    }
+
+    /// The same by the laws that are known for the residual.
+    fn weigh_left(&mut self, bench: &Bench<'_>) {
         let members = self.best().members.len();
         let odds = match (bench.is_over_windows(), members) {
             (true, 0) => MUCH,
@@ -114,7 +120,6 @@ impl Comparison {
             .filter(|(own, _)| own.members.len() == members);
         let weight = odds * alike.map(|(_, probability)| probability).sum::<f64>();
         self.unknown = weight / (1.0 + weight);
-        Ok(())
     }
 
     /// Whether a law alone is decisively more probable than several effects that may imitate it; if so, it is taken.
@@ -175,10 +180,19 @@ impl Comparison {
         Self::found(bench, search)
     }
 
-    /// The same after changes of the evidence of some hypotheses.
+    /// The same after increases of the evidence of some hypotheses by another process noise.
     pub(super) fn again(self, bench: &Bench<'_>) -> Result<Self, DiagnoseError> {
+        let best = self.best().members.clone();
+        let (unknown, stays, left) = (self.unknown, self.stays, self.left.clone());
         let mut again = self.with(bench, Vec::new())?;
-        again.weigh_unknown(bench)?;
+        again.stays = stays;
+        if again.best().members == best {
+            again.left = left;
+            again.weigh_left(bench);
+            again.unknown = again.unknown.min(unknown);
+        } else {
+            again.weigh_unknown(bench)?;
+        }
         Ok(again)
     }
 

@@ -1,31 +1,31 @@
-//! Where a model falls short of recordings, which effect it lacks, and how far the effect closes the
+//! Where a model deviates from recordings, which effect is missing, and how far the effect closes the
 //! gap.
 //!
 //! ```text
-//!          --split--> runs to fit | runs held out, which the last step alone can read
-//!          --effects--> candidates: every effect at every place, derived at once with sizes of zero
+//!          --split--> training runs | held-out runs, which only the last step reads
+//!          --effects--> candidates: every effect at every site, derived at once with sizes of zero
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
-//!          --sets--> what every set of candidates promises, to first order
-//!          --search, compare--> the best ones fitted; evidence on equal terms
-//!          --screen--> what each candidate would gain alone: sizes that would show, what windows miss
-//!          (robots: --by_forces--> the same by forces of recorded motions, and the report)
-//!          --horizon--> whether simulations over windows agree; if not, they decide instead
+//!          --sets--> expected gain of every set of candidates, to first order
+//!          --search, compare--> the most promising sets fitted; their evidence
+//!          --screen--> score test of each candidate alone: gain, detectable size
+//!          (robots: --by_forces--> the same by inverse dynamics of recorded motions, and the report)
+//!          --horizon--> validation by simulations over windows; if it fails, these rank the hypotheses
 //!          --alternative--> other specs, fitted to the same recordings
-//!          --unknown--> what no candidate explains, and what it depends on
+//!          --unknown--> nonparametric laws for the residual of the best hypothesis
 //!          --localise, windows, outside--> equations, windows of time, regions, events that no hypothesis predicts
-//!          --assembly--> hypotheses with their values and ties, in the words of the report
-//!          --law--> what is left, measured as a force that depends on something
-//!          --held_out, prediction--> errors of predictions: nominal, re-fitted, with the effect, noise
-//!          --budget--> the part of the gap that is each effect's, and what stays
-//!          --force_history, traces, force_law--> what people look at
-//!          --experiment--> the input that tells tied hypotheses apart
-//!          --changes--> what each hypothesis changes in the spec
+//!          --assembly--> hypotheses with their values and ties, as in the report
+//!          --law--> the residual, measured as a force law
+//!          --held_out, prediction--> prediction errors: nominal, re-fitted, with the effect, noise
+//!          --budget--> the share of each effect in the gap, and the remainder
+//!          --force_history, traces, force_law--> data of the plots
+//!          --experiment--> an input that discriminates between tied hypotheses
+//!          --changes--> the changes of the spec under each hypothesis
 //! ```
 //!
-//! Decisions rest on the likelihood of the innovations of an extended Kalman filter whose levels of
-//! disturbance are found anew under every hypothesis. On a real rig, where no law is exact, that disturbance
-//! may follow what ruins a simulation. So what is found has to hold where nothing follows: over windows of half a
-//! swing. Where it does not, hypotheses are ranked by these windows, and small differences do not count.
+//! Decisions rest on the likelihood of the innovations of an extended Kalman filter whose process and measurement
+//! noise are estimated under every hypothesis. On a real rig no law is exact, and process noise may absorb errors that
+//! would ruin a simulation. Results are therefore validated by free-running predictions, without process noise, over
+//! windows of half a typical period. If they fail, these windows rank the hypotheses, and small differences do not count.
 
 mod against;
 mod alternative;
@@ -97,11 +97,11 @@ use imperfection::Imperfection;
 use imperfections::{immaterial, known};
 use screen::Screen;
 
-/// Version of the engine. Every change that moves a number of some report raises it, so that scores and
-/// calibration tell which engine they are of.
+/// Version of the engine. Every change that affects a number of some report increments it, so that scores and
+/// calibration can state the version to which they belong.
 pub const ENGINE: u32 = 10;
 
-/// Rows that are fitted, and values in them: with so many, sizes are known far better than laws are right.
+/// Largest number of rows and of measured values in a fit: with more, statistical errors are far below modelling errors.
 const MOST_ROWS: usize = 4000;
 const MOST_VALUES: usize = 20_000;
 
@@ -115,7 +115,7 @@ pub fn diagnose(
     diagnosed((set, None), effects, options, &mut stage)
 }
 
-/// The same; predictions of recordings before, which nothing is fitted to, are told beside those of held-out runs.
+/// The same; prediction errors on earlier recordings, which are not fitted, are reported in addition.
 fn diagnosed(
     (set, before): (&DataSet, Option<&DataSet>),
     effects: &[Effect],
@@ -145,7 +145,7 @@ fn diagnosed(
     by_filter((set, before), (&whole, &fitted), &model, options, stage)
 }
 
-/// The same by the innovations of a filter, and by simulations.
+/// The diagnosis by the innovations of a filter and by simulations.
 fn by_filter(
     (set, before): (&DataSet, Option<&DataSet>),
     (whole, fitted): (&DataSet, &DataSet),
@@ -169,9 +169,9 @@ fn by_filter(
         screen,
         mut comparison,
     } = first;
-    stage("measuring what is left");
+    stage("measuring the residual force");
     let test = set.only(Part::Test);
-    // A law that cannot be written is a row, not the end.
+    // A law that cannot be written is listed as failed; the diagnosis continues.
     let (laws, unwritten) = match law::lawful(&bench, &comparison) {
         Ok(laws) => (laws, None),
         Err(reason) => (Vec::new(), Some(Err(reason))),
@@ -189,14 +189,14 @@ fn by_filter(
     report.rows = [fitted.rows(), whole.rows()];
     report.hints = assembly::hints(&bench, &comparison)?;
     report.tolerances = assumptions::tolerances(comparison.best());
-    // A filter that loses the other reading says nothing of it.
+    // Without a result if the filter diverges with the other interpolation.
     report.interpolated =
         assumptions::interpolated(&bench, comparison.best(), fitted).unwrap_or_default();
     let held_out = HeldOut::of(&test, &bench)?;
     let before = before.map(|set| HeldOut::of(&set.all(Part::Test), &bench));
     let before = before.transpose()?;
     let measured = report.measured(measured)?;
-    stage("predicting the runs that were held out");
+    stage("predicting the held-out runs");
     let leading = rivals
         .iter()
         .find(|rival| report.which[0].effects == [rival.name.clone()]);
@@ -262,13 +262,13 @@ fn by_filter(
     })
 }
 
-/// Rows that are fitted.
+/// Largest number of rows in a fit.
 fn most_rows(set: &DataSet) -> usize {
     let measured = set.channels.iter().filter(|channel| channel.is_measured());
     MOST_ROWS.min(MOST_VALUES / measured.count().max(1))
 }
 
-/// What people look at.
+/// Data of the plots.
 fn pictures(
     held_out: &HeldOut,
     (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
@@ -284,8 +284,8 @@ fn pictures(
     })
 }
 
-/// The hypotheses, judged by what they say of the runs to fit; once more beside what channels lack, where that changes
-/// no prediction.
+/// The hypotheses ranked on the training runs; again with imperfections of channels as nuisance parameters, if there
+/// are some without effect on predictions.
 fn judged<'m>(
     (whole, fitted): (&DataSet, &DataSet),
     model: &'m EffectModel,
@@ -298,7 +298,7 @@ fn judged<'m>(
         if more.is_empty() {
             return Ok(judged);
         }
-        stage("fitting imperfections of channels beside every hypothesis");
+        stage("fitting imperfections of channels in every hypothesis");
         let imperfections = [judged.bench.imperfections.clone(), more].concat();
         let beside = (imperfections.as_slice(), Some(&judged));
         match judged_beside(beside, (&whole, fitted), model, stage) {
@@ -308,7 +308,7 @@ fn judged<'m>(
     }
 }
 
-/// The same beside some imperfections of channels; `before` is what was found without them.
+/// The same with given imperfections of channels; `before` is the result without them.
 fn judged_beside<'m>(
     (imperfections, before): (&[Imperfection], Option<&Judged<'m>>),
     (whole, fitted): (&DataSet, &DataSet),
@@ -321,7 +321,7 @@ fn judged_beside<'m>(
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");
     let screen = Screen::of(&bench, &nominal)?;
-    stage("fitting the effects that remain");
+    stage("fitting the remaining effects");
     let windows = horizon::windows(whole)?;
     let levels = bench.levels(&nominal)?;
     let over = Bench::over(&windows, (&bench, &levels))?;

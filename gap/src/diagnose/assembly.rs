@@ -1,4 +1,4 @@
-//! The report of a comparison: which hypotheses there are, with their values and ties, and what they leave.
+//! The report of a comparison: the hypotheses with their estimates and ties, and the residual of the best one.
 
 use super::DiagnoseError;
 use super::alternative::Rival;
@@ -18,16 +18,16 @@ use super::unknown;
 use crate::effects::{Acts, Candidate, EffectModel, Part};
 use appell_estimate::{Along, Unknown};
 
-/// Sizes in their standard deviations that are found with near certainty.
+/// Size in its standard deviations that is detected with near certainty.
 pub(super) const DETECTABLE: f64 = 5.0;
-/// Fewer hypotheses than this are never cut from the report.
+/// Number of hypotheses that are reported even if improbable.
 const TOLD: usize = 10;
-/// Odds beyond this are certainty, and no number any more.
+/// Limit of log odds, to avoid overflow.
 const MOST_LOG_ODDS: f64 = 600.0;
 
 impl Report {
-    /// Takes a measured law: what nothing in the library explains has it to write into the spec. A law whose fit
-    /// failed is a row.
+    /// Adds a measured law: it is the change of the spec under `unknown`. A law that could not be fitted is listed
+    /// under `failed`.
     pub(super) fn measured<'l>(
         &mut self,
         measured: Option<Result<FittedLaw<'l>, DiagnoseError>>,
@@ -49,7 +49,7 @@ impl Report {
     }
 }
 
-/// The report but for what runs that were held out say.
+/// The report without the results on held-out runs.
 pub(super) fn assemble(
     bench: &Bench<'_>,
     screen: &Screen,
@@ -114,7 +114,7 @@ pub(super) fn assemble(
     })
 }
 
-/// The result by the most probable hypothesis and those that are tied.
+/// The verdict, from the most probable hypothesis and those that are tied.
 pub(super) fn verdict(top: &Hypothesis, tied: &[Vec<Vec<String>>]) -> GapVerdict {
     match top.effects.first().map(String::as_str) {
         None => GapVerdict::NoGap,
@@ -124,7 +124,7 @@ pub(super) fn verdict(top: &Hypothesis, tied: &[Vec<Vec<String>>]) -> GapVerdict
     }
 }
 
-/// The hypotheses without those that have no probability; nothing where all count.
+/// The hypotheses without those of negligible probability; `None` if these have some together.
 pub(super) fn shortened(which: &[Hypothesis]) -> Option<Vec<Hypothesis>> {
     let cut = which.len().min(TOLD);
     let rest: f64 = which[cut..].iter().map(|h| h.probability).sum();
@@ -135,9 +135,9 @@ pub(super) fn shortened(which: &[Hypothesis]) -> Option<Vec<Hypothesis>> {
     (rest < 1e-6).then(|| told.map(|(_, h)| h.clone()).collect())
 }
 
-/// The hypotheses of the library, and that it has none.
+/// The hypotheses of the library, and `unknown`.
 fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, DiagnoseError> {
-    // What cannot be compared is no twin.
+    // If the comparison fails, no hypothesis counts as equivalent.
     let twins = twins::of_best(bench, comparison).unwrap_or_default();
     let base = comparison.nominal().evidence.log();
     let known = 1.0 - comparison.unknown;
@@ -152,7 +152,7 @@ fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, 
         let is_twin = twins.contains(&place);
         if is_twin {
             which[0].probability += probability * known;
-            // A mixture of two that say the same.
+            // The first is a mixture of this and an equivalent one.
             if effects.len() > which[0].effects.len() {
                 continue;
             }
@@ -191,7 +191,7 @@ pub(super) fn found(model: &EffectModel, members: &[usize]) -> Vec<Found> {
     found
 }
 
-/// Alternatives beside the hypotheses of the library, each as probable beforehand as one effect.
+/// Adds alternatives to the hypotheses of the library, each with the prior probability of one effect.
 fn join(
     which: &mut Vec<Hypothesis>,
     rivals: &[Rival<'_>],
@@ -199,7 +199,7 @@ fn join(
     comparison: &Comparison,
 ) -> Result<(), DiagnoseError> {
     let (best, probability) = &comparison.fits[0];
-    // Beside certainty nothing is left of 1 − p: what is left of the library speaks for itself.
+    // If `unknown` is certain, 1 − p underflows: the evidence of the residual law bounds it.
     let left = comparison.left.as_ref();
     let left = left.map_or(0.0, |left| left.beside_fitted.max(0.0)) * comparison.independent;
     let known = probability.ln() + (1.0 - comparison.unknown).ln().max(-left);
@@ -224,7 +224,7 @@ fn join(
     Ok(())
 }
 
-/// Puts hypotheses that say the same next to each other.
+/// Sorts equivalent hypotheses next to each other.
 fn beside_their_twins(which: &mut Vec<Hypothesis>) {
     let (twins, mut others): (Vec<Hypothesis>, Vec<Hypothesis>) =
         (which.drain(..)).partition(|one| one.same_as.is_some());
@@ -239,7 +239,7 @@ fn beside_their_twins(which: &mut Vec<Hypothesis>) {
     *which = others;
 }
 
-/// The leading hypothesis with those that cannot be told from it.
+/// The leading hypothesis with those that cannot be distinguished from it.
 pub(super) fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
     let is_named = |other: &&Hypothesis| !other.is_unknown();
     let Some(first) = which.iter().find(is_named) else {
@@ -255,7 +255,7 @@ pub(super) fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
                 || (first.probability / other.probability).ln() < TIED)
     };
     let group: Vec<&Hypothesis> = which.iter().filter(is_near).collect();
-    // Names of one thing share its probability: none of them leads, but all of them together.
+    // Equivalent hypotheses share one probability: they lead together, not individually.
     let all: f64 = group.iter().map(|one| one.probability).sum();
     if group.len() > 1 && all >= which[0].probability {
         vec![group.into_iter().map(|one| one.effects.clone()).collect()]
@@ -272,7 +272,7 @@ fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
         .collect()
 }
 
-/// Values of what is fitted beside every hypothesis.
+/// Estimates of the nuisance parameters of channels.
 fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
     let candidates = bench.imperfect_candidates();
     candidates
@@ -343,7 +343,7 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
     };
     let unit = &channel.unit;
     let si = appell_spec::units::Unit::si(unit.dimension).text;
-    // An angle has no dimension, but people know it by its name.
+    // An angle has no dimension, but a customary unit.
     match si.as_str() {
         "1" if unit.has_angle() => "rad".to_owned(),
         "1/s" if unit.has_angle() => "rad/s".to_owned(),
@@ -351,7 +351,7 @@ fn channel_unit(bench: &Bench<'_>, channel: usize) -> String {
     }
 }
 
-/// What the gap of the nominal model depends on beside the quantities of the model.
+/// Channels outside the model on which the gap of the nominal model depends.
 pub(super) fn hints(
     bench: &Bench<'_>,
     comparison: &Comparison,
@@ -407,7 +407,7 @@ fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(Stri
         .collect()
 }
 
-/// What each effect would need to be seen.
+/// The smallest detectable size of each effect.
 fn detectable(bench: &Bench<'_>, screen: &Screen) -> Vec<Detectable> {
     let info = bench.effects.info();
     let mut told: Vec<Detectable> = Vec::new();

@@ -1,5 +1,5 @@
-//! Statements of the data set, examined under the best hypothesis: tolerances of parameters, and how inputs run
-//! between rows.
+//! Validation of statements of the data set under the best hypothesis: tolerances of parameters, and the interpolation
+//! of inputs between rows.
 
 use appell_estimate::Estimation;
 use appell_recordings::{Channel, DataSet, FindingKind};
@@ -14,13 +14,13 @@ use super::report::{Interpolated, Tolerances};
 
 /// Factors on all tolerances that are tried.
 const FACTORS: [f64; 6] = [1.5, 2.0, 2.5, 3.0, 5.0, 10.0];
-/// Parameters of which a common factor can be determined.
+/// Smallest number of parameters that determine a common factor.
 const FEWEST: usize = 2;
 
-/// The factor on all tolerances that the re-fitted parameters speak for, if they speak against the stated ones.
+/// The most probable factor on all tolerances, if the re-fitted parameters contradict the stated ones.
 ///
-/// In units of its tolerance a parameter is normal beforehand with the variance s². With the information H of the
-/// recordings and their estimate m under s = 1, the marginal likelihood of s is that of a Gaussian (C. M. Bishop,
+/// In units of its tolerance a parameter has a normal prior of variance s². With the information H of the
+/// recordings and the estimate m under s = 1, the marginal likelihood of s is that of a Gaussian (C. M. Bishop,
 /// *Pattern Recognition and Machine Learning*, 2006, section 3.5).
 pub(super) fn tolerances(fitted: &Fitted) -> Option<Tolerances> {
     let fit = &fitted.fit;
@@ -65,8 +65,8 @@ pub(super) fn tolerances(fitted: &Fitted) -> Option<Tolerances> {
     })
 }
 
-/// Smooth inputs of which nothing is said between rows, and that predict better one step ahead under the best
-/// hypothesis when lines join their rows of `set`.
+/// Smooth inputs without a stated interpolation for which linear interpolation between the rows of `set` improves the
+/// one-step predictions of the best hypothesis.
 pub(super) fn interpolated(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -100,7 +100,7 @@ pub(super) fn interpolated(
     Ok(found)
 }
 
-/// Log-likelihood of a hypothesis one step ahead after a fit to these recordings.
+/// Log likelihood of the one-step predictions of a hypothesis after a fit to these recordings.
 fn log_likelihood(bench: &Bench<'_>, fitted: &Fitted, set: &DataSet) -> Result<f64, DiagnoseError> {
     let stepwise = Bench::new(set, bench.effects, &bench.imperfections)?;
     let setup = stepwise.setup(&fitted.members);

@@ -41,11 +41,11 @@ const BEST: usize = 2;
 const PROMISING: f64 = 0.5;
 
 /// The candidates with a positive gain at some size. A feedback input biases the innovations after its reversals in
-/// any case: the gain that it explains, at most `told_by_inputs`, is subtracted. `best` is the largest gain of the
+/// any case: the gain that it explains, at most `by_inputs`, is subtracted. `best` is the largest gain of the
 /// other candidates.
 pub(super) fn screened(
     (bench, fitted): (&Bench<'_>, &Fitted),
-    told_by_inputs: f64,
+    by_inputs: f64,
     best: f64,
 ) -> Result<Vec<Screened>, DiagnoseError> {
     let effects = bench.effects;
@@ -99,7 +99,7 @@ pub(super) fn screened(
             return Ok(None);
         }
         let grid = Grid::of(bench, fitted, index, sample.as_ref(), least(best));
-        Ok(best_size(&grid)?.map(|one| one.told(told_by_inputs)))
+        Ok(best_size(&grid)?.map(|one| one.beyond_inputs(by_inputs)))
     });
     let list: Result<Vec<_>, DiagnoseError> = list.into_iter().collect();
     Ok(list?.into_iter().flatten().collect())

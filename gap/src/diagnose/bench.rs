@@ -1,5 +1,5 @@
-//! Everything that hypotheses are fitted with: recordings, the model with all candidates, what is
-//! free under each hypothesis, and from where a search starts.
+//! The estimation problem common to all hypotheses: recordings, the model with all candidates, the free
+//! parameters of each hypothesis, and the initial values of a search.
 
 use appell_estimate::{
     Coordinate, Effort, EstimateError, Estimation, Fit, Free, Layout, Measured, Recording, Setup,
@@ -18,78 +18,78 @@ use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
 use appell_recordings::{DataSet, Part, Run};
 
-/// Delays of inputs and channels are this long in s at most, or so many steps.
+/// Largest delay of inputs and channels: the larger of a time in s and a number of steps.
 const LONGEST_DELAY: f64 = 0.1;
 const DELAY_STEPS: f64 = 5.0;
 /// Shortest and longest lag, in steps.
 const LAG: [f64; 2] = [0.003, 500.0];
-/// The same of a channel: a shorter one is a delay.
+/// The same for a channel: a shorter one is modelled as a delay.
 const LAG_OF_CHANNEL: [f64; 2] = [0.2, 500.0];
-/// Fits end where a further step promises less than this in log-likelihood, far less than what tells two
-/// hypotheses apart. Searches may begin far away, where parameters are stated, and valleys are narrow.
+/// Fits end when the expected gain of a further step is below this, far below the difference of log likelihood that
+/// separates hypotheses. The initial values may be far from the optimum, and valleys are narrow.
 const EFFORT: Effort = Effort {
     gain: 0.05,
     steps: 60,
 };
-/// The same over windows, where errors count by their tolerance.
+/// The same over windows, whose likelihood is coarsened.
 const COARSE: Effort = Effort {
     gain: 0.3,
     steps: 20,
 };
-/// The same for shares of a gap, of which hundredths matter.
+/// The same for shares of a gap, which are needed to a hundredth.
 const SHARES: Effort = Effort {
     gain: 0.5,
     steps: 12,
 };
-/// The same for levels that are found anew right after.
+/// The same for noise levels that are re-estimated in the next step.
 const ROUGHLY: Effort = Effort {
     gain: 10.0,
     steps: 30,
 };
-/// Times that disturbances are raised tenfold where the filter loses a run.
+/// Largest number of tenfold increases of the process noise if the filter diverges.
 const LOST: usize = 4;
-/// Standard deviation of the logarithm of a shape.
+/// Prior standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
-/// Standard deviation of a parameter that may be wrong, as a part of its value.
+/// Relative prior standard deviation of a parameter whose error is a hypothesis.
 pub(super) const WRONG: f64 = 0.5;
 
-/// A way to an optimum.
+/// An optimisation method.
 type Search = fn(&Estimation<'_>, &[f64], &[Free], Effort) -> Result<Fit, EstimateError>;
 
-/// What hypotheses are fitted with.
+/// The estimation problem common to all hypotheses.
 pub(super) struct Bench<'a> {
-    /// The runs to fit, bound to the mechanism with all candidates.
+    /// The training runs, bound to the mechanism with all candidates.
     pub(super) set: DataSet,
-    /// The runs that they are parts of.
+    /// The whole runs of which they are segments.
     pub(super) whole: Vec<Run>,
     pub(super) effects: &'a EffectModel,
     pub(super) recordings: Vec<Recording>,
     pub(super) measured: Vec<Measured>,
     pub(super) problem: Problem,
-    /// Places of its start.
+    /// Indices of the values in its start.
     pub(super) layout: Layout,
     /// Typical sizes of the states that are not measured.
     pub(super) sizes: Vec<f64>,
-    /// What inputs know beyond the recordings.
+    /// Innovations of feedback inputs.
     pub(super) input_innovations: InputInnovations,
-    /// What was recorded and the model does not know.
+    /// Recorded channels that are not in the model.
     pub(super) unmodelled: Vec<UnmodelledChannel>,
     /// Shortest step between rows.
     pub(super) step: f64,
-    /// Weight of a row: 1 where every row tells something of its own.
+    /// Likelihood weight of a row: 1 if all rows count as independent.
     pub(super) weight: f64,
-    /// Levels with which the filter finds the state from which it predicts.
+    /// Noise levels of the filter that estimates the state before a prediction.
     pub(super) predicting: Vec<(Unknown, f64)>,
-    /// How much all rows tell together; infinite where every row tells something of its own.
+    /// Effective sample size; infinite if all rows count as independent.
     pub(super) told: f64,
-    /// How probable sizes are beforehand.
+    /// Prior of the sizes of effects.
     pub(super) hardware: Hardware,
-    /// What is fitted beside every hypothesis.
+    /// Nuisance parameters of channels, fitted in every hypothesis.
     pub(super) imperfections: Vec<Imperfection>,
 }
 
 impl<'a> Bench<'a> {
-    /// For runs to fit in which disturbances follow what the model lacks.
+    /// For one-step predictions of the training runs, with process noise.
     pub(super) fn new(
         set: &DataSet,
         effects: &'a EffectModel,
@@ -151,7 +151,7 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// The same recordings for other equations, with the levels that are here.
+    /// The same problem for other equations, with the noise levels of this one.
     pub(super) fn beside<'o>(&self, effects: &'o EffectModel) -> Result<Bench<'o>, DiagnoseError> {
         let levels = |_: &Estimation<'_>, problem: &mut Problem| {
             problem.levels.clone_from(&self.problem.levels);
@@ -174,7 +174,7 @@ impl<'a> Bench<'a> {
         longest_delay(self.step)
     }
 
-    /// Whether a channel measures what a candidate has one show in its place.
+    /// Whether a channel measures a state that a candidate replaces by an output.
     pub(super) fn is_shown(&self, candidate: &Candidate) -> bool {
         let info = self.effects.info();
         let mut states = candidate
@@ -187,44 +187,44 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// Members without those that bring a coordinate.
+    /// Members without those that add a coordinate.
     pub(super) fn locked(&self, members: &[usize]) -> Vec<usize> {
         let own = members.iter().copied();
         own.filter(|&member| self.candidate(member).brings.is_none())
             .collect()
     }
 
-    /// Where a state of the mechanism stands in a model that may have more.
+    /// Index of a state of the mechanism in a model that may have more states.
     pub(super) fn place(&self, state: usize, of: &dyn Model) -> usize {
         let own = self.effects.info().speeds;
         let coordinate = state.checked_sub(own);
         coordinate.map_or(state, |coordinate| of.info().speeds + coordinate)
     }
 
-    /// States of the mechanism, or their rates, out of those of a model that may have more.
+    /// States of the mechanism, or their rates, among those of a model that may have more.
     pub(super) fn own_states(&self, states: &[f64], of: &dyn Model) -> Vec<f64> {
         let own = 0..self.effects.info().state_len();
         own.map(|state| states[self.place(state, of)]).collect()
     }
 
-    /// The filter of a hypothesis: lags, delays.
+    /// The filter of a hypothesis, with its lags and delays.
     pub(super) fn setup(&self, members: &[usize]) -> Setup<'_> {
         self.setup_of(self.effects.with(members), members)
     }
 
-    /// The filter of a hypothesis on the equations that have all candidates beside it.
+    /// The filter of a hypothesis on the equations with all compatible candidates.
     pub(super) fn whole_setup(&self, members: &[usize]) -> Setup<'_> {
         self.setup_of(self.effects.beside(members), members)
     }
 
-    /// What the channels measure in a model that may have more coordinates: they move the others to other places.
+    /// The quantities that the channels measure, with their indices in a model that may have more coordinates.
     pub(super) fn measured_by(&self, model: &dyn Model) -> Vec<Measured> {
         let measured = self.set.measured(model.info());
         measured.iter().map(|(_, shown)| *shown).collect()
     }
 
     fn setup_of<'s>(&'s self, model: &'s dyn Model, members: &[usize]) -> Setup<'s> {
-        // Nothing disturbs a coordinate that a member brings, nor one that is hidden.
+        // Additional and hidden coordinates have no process noise.
         let mut measured = self.measured_by(model);
         for candidate in members.iter().map(|&member| self.candidate(member)) {
             show(candidate, model, &mut measured);
@@ -249,8 +249,8 @@ impl<'a> Bench<'a> {
         setup
     }
 
-    /// What a hypothesis with late channels gains over another one. Such channels lose their first rows: both are held
-    /// to those that its delays leave.
+    /// The gain of a hypothesis with delayed channels over another one. The first rows of such channels are lost: both
+    /// are compared on the rows that remain.
     pub(super) fn gain_of_late(&self, from: &Fitted, to: &Fitted) -> Result<f64, DiagnoseError> {
         let (mut before, mut after) = (self.setup(&from.members), self.setup(&to.members));
         let channels = before.channels.iter_mut().zip(&mut after.channels);
@@ -268,7 +268,7 @@ impl<'a> Bench<'a> {
         Ok(self.weight * (of(&after, to)? - of(&before, from)?))
     }
 
-    /// Places of the parameters of a candidate, with what each is.
+    /// Indices of the parameters of a candidate, with their roles.
     pub(super) fn own(&self, candidate: &Candidate) -> Vec<(usize, Role)> {
         self.effects.own(candidate)
     }
@@ -284,8 +284,8 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// What is looked for under a hypothesis: parameters of the mechanism, then what the members
-    /// bring, then levels.
+    /// The free values of a hypothesis: parameters of the mechanism, parameters of the members, imperfections of
+    /// channels, noise levels.
     pub(super) fn free(&self, members: &[usize], setup: &Setup<'_>) -> Vec<Free> {
         let mut free: Vec<Free> = Vec::new();
         for one in &self.problem.wanted {
@@ -304,7 +304,7 @@ impl<'a> Bench<'a> {
         free
     }
 
-    /// What a member brings.
+    /// The free parameters of a member.
     pub(super) fn brought(&self, member: usize, setup: &Setup<'_>) -> Vec<Free> {
         let candidate = self.candidate(member);
         if candidate.acts != Acts::Items {
@@ -330,7 +330,7 @@ impl<'a> Bench<'a> {
             .collect()
     }
 
-    /// What is free of the imperfections.
+    /// The free parameters of the imperfections.
     fn imperfect(&self, setup: &Setup<'_>) -> Vec<Free> {
         let free = self.imperfections.iter().filter_map(|one| {
             let free = self.of_signal(one.acts, setup)?;
@@ -339,7 +339,7 @@ impl<'a> Bench<'a> {
         free.collect()
     }
 
-    /// The effects that the imperfections are.
+    /// The candidates that correspond to the imperfections.
     pub(super) fn imperfect_candidates(&self) -> impl Iterator<Item = &Candidate> {
         let of = |one: &Imperfection| {
             let mut candidates = self.effects.candidates.iter();
@@ -348,7 +348,7 @@ impl<'a> Bench<'a> {
         self.imperfections.iter().filter_map(of)
     }
 
-    /// Makes the channels of a fit perfect, but for what its members do.
+    /// Sets the imperfections of a fit to those of perfect channels; effects of its members remain.
     pub(super) fn perfected(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
         for free in self.imperfect(&self.setup(&fitted.members)) {
             let place = fitted.layout.place(free.unknown)?;
@@ -357,7 +357,7 @@ impl<'a> Bench<'a> {
         Ok(())
     }
 
-    /// What an effect on an input or a channel sets free; nothing for others.
+    /// The free parameter of an effect on an input or a channel; `None` for others.
     pub(super) fn of_signal(&self, acts: Acts, setup: &Setup<'_>) -> Option<Free> {
         let at = |list: &[usize], input: usize| list.iter().position(|own| *own == input);
         match acts {
@@ -385,14 +385,14 @@ impl<'a> Bench<'a> {
         }
     }
 
-    /// Whether a lag of a channel is so short that it is a delay.
+    /// Whether a lag of a channel is so short that it is equivalent to a delay.
     pub(super) fn is_too_short(&self, candidate: usize, sizes: &[f64]) -> bool {
         let shortest = LAG_OF_CHANNEL[0] * self.step;
         matches!(self.candidate(candidate).acts, Acts::Slow(_))
             && sizes.iter().all(|size| *size < shortest)
     }
 
-    /// How many sizes and shapes members bring.
+    /// Number of sizes and shapes of some members.
     pub(super) fn sizes_of(&self, members: &[usize]) -> usize {
         let own = |candidate: &Candidate| {
             let roles = candidate.parameters.iter().map(|(_, role)| *role);
@@ -402,9 +402,9 @@ impl<'a> Bench<'a> {
         members.map(own).sum()
     }
 
-    /// The nominal model, its parameters within their tolerances. Levels go first: with levels that are
-    /// far too small parameters would leave their tolerances for what is noise.
-    /// A filter that trusts a wrong model loses a mechanism that falls over: then disturbances begin larger.
+    /// The nominal model, its parameters within their tolerances. Noise levels are fitted first: with levels that are
+    /// far too small the parameters would leave their tolerances to fit noise. If the filter diverges, as with a wrong
+    /// model of an unstable mechanism, the search is repeated with larger initial process noise.
     pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
         let setup = self.setup(&[]);
         let estimation = Estimation::new(&setup, &self.recordings)?;
@@ -434,12 +434,12 @@ impl<'a> Bench<'a> {
         if fitted.fit.is_optimum() || self.is_over_windows() {
             return Ok(fitted);
         }
-        // Far from an optimum the observed curvature leads on where the expected one does not.
+        // Far from an optimum Newton's method may progress where Fisher scoring does not.
         let further = self.fit_by((Fit::of, self.effort()), &[], estimation, &levels);
         Ok(further.unwrap_or(fitted))
     }
 
-    /// The parameters of a fit without what its members do.
+    /// The parameters of a fit with the sizes of its members set to zero.
     pub(super) fn without(&self, fitted: &Fitted) -> Vec<f64> {
         let info = self.effects.with(&fitted.members).info();
         let mut plain = fitted.fit.values[..info.parameter_len()].to_vec();
@@ -459,7 +459,7 @@ impl<'a> Bench<'a> {
         plain
     }
 
-    /// Fits a hypothesis from a start.
+    /// Fits a hypothesis from initial values.
     pub(super) fn fit(
         &self,
         members: &[usize],
@@ -479,7 +479,7 @@ impl<'a> Bench<'a> {
         self.weighed(estimation, start, free, (Fit::quick, self.effort()))
     }
 
-    /// Fits the levels alone.
+    /// Fits the noise levels alone.
     pub(super) fn levelled(
         &self,
         estimation: &Estimation<'_>,
@@ -488,7 +488,7 @@ impl<'a> Bench<'a> {
         self.fit_free(estimation, start, &self.problem.levels)
     }
 
-    /// The same as well as shares of a gap need it.
+    /// Fits a hypothesis with the accuracy that shares of a gap need.
     pub(super) fn fit_roughly(
         &self,
         members: &[usize],
@@ -528,7 +528,7 @@ impl<'a> Bench<'a> {
 }
 
 impl Bench<'_> {
-    /// A fit in which each row has its weight: likelihood and what is known beforehand differ by a factor only.
+    /// A fit with weighted rows: the objective is divided by the weight, so that the prior is scaled instead.
     fn weighed(
         &self,
         estimation: &Estimation<'_>,
@@ -557,7 +557,7 @@ impl Bench<'_> {
     }
 }
 
-/// Lets channels show what a member has them show.
+/// Replaces measured states by the outputs of a member.
 fn show(member: &Candidate, model: &dyn Model, measured: &mut [Measured]) {
     let info = model.info();
     for (state, output) in &member.shows {
@@ -572,7 +572,7 @@ fn show(member: &Candidate, model: &dyn Model, measured: &mut [Measured]) {
     }
 }
 
-/// Lets an effect on an input or a channel act, where rows are a `step` apart.
+/// Adds an effect on an input or a channel to a filter, with rows a `step` apart.
 fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
     match acts {
         Acts::Lag(input) => {
@@ -590,8 +590,8 @@ fn longest_delay(step: f64) -> f64 {
     LONGEST_DELAY.max(DELAY_STEPS * step)
 }
 
-/// Moves the levels of disturbance one by one by powers of ten to where the recordings are most
-/// likely: forces of one equation say little of those of another.
+/// Maximises the likelihood over the process noise of each equation in turn, by powers of ten: the levels of different
+/// equations are nearly independent.
 fn level(estimation: &Estimation<'_>, problem: &mut Problem) -> Result<(), DiagnoseError> {
     let layout = estimation.layout();
     let mut best = estimation.log_likelihood(&problem.start)?;
@@ -625,7 +625,7 @@ fn level(estimation: &Estimation<'_>, problem: &mut Problem) -> Result<(), Diagn
     Ok(())
 }
 
-/// Spreads with which the runs begin: sizes of what is not measured.
+/// Initial standard deviations of the states: typical sizes of unmeasured ones.
 fn sizes(estimation: &Estimation<'_>, problem: &Problem) -> Result<Vec<f64>, DiagnoseError> {
     let layout = estimation.layout();
     let states = 0..estimation.setup().model.info().state_len();

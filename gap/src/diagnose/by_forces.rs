@@ -11,14 +11,14 @@
 //! | `motions.rs` | residual forces of recorded motions, and their derivatives by the sizes |
 //! | `hypothesis.rs` | some candidates fitted, with their evidence |
 //! | `search.rs` | the most probable hypotheses |
-//! | `told.rs` | the report |
+//! | `report.rs` | the report |
 //! | `pictures.rs` | forces over time and over their variables |
 
 mod hypothesis;
 mod motions;
 mod pictures;
+mod report;
 mod search;
-mod told;
 
 use appell_recordings::{DataSet, Measured, Part as OfSet, Role};
 use appell_spec::mechanism::ParameterId;
@@ -28,8 +28,8 @@ use super::{DiagnoseError, Options};
 use crate::base::BaseError;
 use crate::effects::{Acts, Candidate, EffectModel, Part, driven};
 use motions::Motions;
+use report::HeldOut;
 use search::Search;
-use told::HeldOut;
 
 /// Whether the recordings determine the residual force of every equation.
 pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
@@ -99,7 +99,7 @@ pub(super) fn diagnose(
         test: test.as_ref(),
         before: before.as_ref(),
     };
-    told::report(model, &fit, &found, &training, held_out, options)
+    report::report(model, &fit, &found, &training, &held_out, options)
 }
 
 /// Whether a candidate is a parameter or adds forces that are linear in its sizes.

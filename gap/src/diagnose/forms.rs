@@ -44,7 +44,7 @@ pub(super) fn forms(
     law: &Unnamed,
 ) -> Result<Vec<Form>, DiagnoseError> {
     let (terms, tried) = trials(bench, dependence);
-    let mut forms = scored(bench, base, dependence, law, terms, tried)?;
+    let mut forms = scored(bench, base, dependence, law, &terms, tried)?;
     // The frequencies of harmonics are a grid: the best one is refined between its neighbours.
     let best = forms.iter().find_map(|(rate, _)| *rate);
     if let Some(rate) = best {
@@ -55,7 +55,7 @@ pub(super) fn forms(
         });
         let finer: Vec<f64> = finer.filter(|rate| *rate > 0.0).collect();
         let (terms, tried) = waves(bench, dependence, &finer);
-        let finer = scored(bench, base, dependence, law, terms, tried)?;
+        let finer = scored(bench, base, dependence, law, &terms, tried)?;
         let place = forms.iter().position(|(own, _)| *own == best);
         let better = finer.into_iter().next().zip(place);
         if let Some((better, place)) = better {
@@ -74,7 +74,7 @@ fn scored(
     base: &Fitted,
     dependence: Dependence<'_>,
     law: &Unnamed,
-    terms: Vec<Term>,
+    terms: &[Term],
     trials: Vec<Trial>,
 ) -> Result<Vec<(Option<f64>, Form)>, DiagnoseError> {
     let setup = bench.setup(&base.members);
@@ -82,7 +82,7 @@ fn scored(
     let write = |run: usize, at: At<'_>, values: &mut [f64]| {
         let x = dependence.variable(bench, setup.model, run, at);
         let factor = dependence.factor(bench, setup.model, at);
-        for (value, term) in values.iter_mut().zip(&terms) {
+        for (value, term) in values.iter_mut().zip(terms) {
             *value = if x.is_nan() {
                 0.0
             } else {

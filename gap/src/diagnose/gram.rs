@@ -11,7 +11,7 @@ const LEFT: f64 = 1e-4;
 /// Relative regularisation for undetermined nuisance parameters.
 const RIDGE: f64 = 1e-10;
 
-/// Normal equations of the columns of a tangent: SᵀS, Sᵀr and rᵀr with the whitened innovations r, and priors.
+/// Normal equations of the columns of a tangent: `SᵀS`, `Sᵀr` and `rᵀr` with the whitened innovations r, and priors.
 pub(super) struct Normal {
     pub(super) squares: DMatrix<f64>,
     pub(super) scores: DVector<f64>,

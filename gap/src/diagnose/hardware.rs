@@ -1,7 +1,8 @@
-//! What hardware is like: how probable sizes are beforehand, by what is there.
+//! Priors of sizes relative to the hardware.
 //!
-//! Student's t with three degrees of freedom: sizes of what is there are likely, some times that are believed where
-//! recordings leave nothing else, and tens of times hardly ever. So one absurd number does not beat several true ones.
+//! Student's t with three degrees of freedom: sizes up to the scale of the hardware are probable, a few times that
+//! possible, and tens of times very improbable. One implausible size is therefore less probable than several plausible
+//! ones.
 
 use std::collections::BTreeMap;
 
@@ -11,23 +12,24 @@ use nalgebra::DMatrix;
 
 use crate::effects::EffectModel;
 
-/// ln 1000, the range of the logarithm of d′: effects as large as whole motions come to some thousand.
-/// Calibrated with these two digits.
+/// ln 1000, the range of the logarithm of d′: the d′ of an effect that dominates the motion is about a thousand.
+/// Rounded to two digits, as in the calibration.
 pub(super) const LN_1000: f64 = 6.9;
 const DEGREES: f64 = 3.0;
 /// Density of Student's t at zero.
 const MOST: f64 = 0.367_552_596_947_861_3;
-/// What is there of a pure number, such as the relative error of a gain or of a scale.
+/// Scale of a dimensionless size, such as the relative error of a gain or of the scale of a channel.
 const PURE: f64 = 0.5;
-/// A parameter is no error within so many stated standard deviations.
+/// Number of stated standard deviations within which a parameter is not in error.
 const WITHIN: f64 = 2.0;
-/// Size by which masses are varied to see what they add, in SI.
+/// Step of the numerical derivative of the mass matrix, in SI.
 const SMALL: f64 = 1e-6;
 
-/// Sizes that are there.
+/// Scales of sizes.
 #[derive(Debug, Clone)]
 pub(super) struct Hardware {
-    /// By parameter: the size of an effect that is as large as what it adds to, infinite where nothing is alike.
+    /// Scale by parameter: for an added mass or inertia, the one that doubles the mass matrix in some direction; infinite
+    /// without a scale.
     alike: Vec<f64>,
     /// Stated standard deviations by parameter.
     tolerances: BTreeMap<usize, f64>,
@@ -62,7 +64,7 @@ impl Hardware {
             };
             Some((index, deviation * stretch))
         };
-        // What recordings before tell says nothing of how much may change.
+        // The uncertainty of earlier estimates is no prior for changes.
         let stated = wanted.iter().filter(|_| !effects.is_of_changes);
         Self {
             alike,
@@ -70,8 +72,8 @@ impl Hardware {
         }
     }
 
-    /// Logarithm of the density of a size, of which the recordings say so much: its logarithm is uniform over a range,
-    /// but for what is beyond what is there.
+    /// Log prior density of a size with this estimate and deviation: log-uniform, times Student's t relative to its
+    /// scale.
     pub(super) fn of_size(
         &self,
         unknown: Unknown,
@@ -87,8 +89,8 @@ impl Hardware {
         -(size.abs().max(deviation) * sides * LN_1000).ln() + beyond(size / alike)
     }
 
-    /// The same of how far a parameter is off its stated value, and how many times that is what counts as within its
-    /// tolerance; nothing where no tolerance is stated.
+    /// Log prior density of the error of a parameter, and that error relative to the threshold of an error;
+    /// `None` without a stated tolerance.
     pub(super) fn of_error(&self, unknown: Unknown, error: f64) -> Option<(f64, f64)> {
         let Unknown::Parameter(index) = unknown else {
             return None;
@@ -102,12 +104,12 @@ impl Hardware {
     }
 }
 
-/// Logarithm of the density of Student's t as a part of that at zero.
+/// Logarithm of the density of Student's t relative to that at zero.
 fn beyond(times: f64) -> f64 {
     -0.5 * (DEGREES + 1.0) * (times * times / DEGREES).ln_1p()
 }
 
-/// By what part the mass matrix grows at most for a unit of a parameter.
+/// Largest relative increase of the mass matrix per unit of a parameter.
 fn growth(model: &dyn Model, index: usize) -> Option<f64> {
     let info = model.info();
     let s = info.speeds;
@@ -178,7 +180,7 @@ omega = { value = "dot(phi)", unit = "rad/s" }
         let added = of("added_inertia@phi");
         assert!((added - 0.04).abs() < 1e-6, "{added}");
         assert!(of("viscous_friction@phi").is_infinite());
-        // 35 rotors cost twelve units of the logarithm, half of one next to nothing.
+        // A size of 35 scales reduces the log density by twelve, half a scale hardly at all.
         assert!((beyond(35.0) + 12.0).abs() < 0.1 && beyond(0.5) > -0.2);
     }
 }

@@ -1,7 +1,7 @@
-//! How far the gap closes: errors of predictions on the runs that were held out.
+//! How far the gap closes: prediction errors on the held-out runs.
 //!
-//! Nothing before this step can see these runs: they are taken from the data set here, and no
-//! function of this file hands them on.
+//! No earlier step has access to these runs: they are taken from the data set here, and no
+//! function of this file passes them on.
 
 use appell_estimate::Recording;
 
@@ -21,19 +21,19 @@ use appell_recordings::{DataSet, Part};
 const HORIZON: f64 = 1.0;
 const STEPS: f64 = 10.0;
 const PART: f64 = 0.5;
-/// Part of the horizon where a mechanism falls over so soon that the best hypothesis expects larger errors than
-/// the channels vary.
+/// Factor on the horizon for an unstable mechanism, for which the best hypothesis expects errors larger than the
+/// variation of the channels.
 const SHORTER: f64 = 0.1;
-/// Most rows of a run from which predictions start.
+/// Largest number of rows of a run from which predictions start.
 pub(super) const ORIGINS: usize = 75;
 
-/// The runs that were held out.
+/// The held-out runs.
 pub(super) struct HeldOut {
     pub(super) names: Vec<String>,
     pub(super) recordings: Vec<Recording>,
 }
 
-/// The hypothesis that leads, with the runs that were held out as its model takes them.
+/// The leading hypothesis, with the held-out runs bound to its model.
 pub(super) struct Leader<'l> {
     pub(super) bench: &'l Bench<'l>,
     pub(super) fitted: &'l Fitted,
@@ -42,7 +42,7 @@ pub(super) struct Leader<'l> {
     pub(super) noise: Vec<f64>,
     /// Its name, where it is another model.
     pub(super) alternative: Option<&'l str>,
-    /// What was measured of the rest.
+    /// The measured law of its residual.
     pub(super) law: Option<&'l FittedLaw<'l>>,
 }
 
@@ -59,7 +59,7 @@ impl Leader<'_> {
 }
 
 impl HeldOut {
-    /// Of a data set that has nothing else.
+    /// All runs of a data set of held-out runs.
     pub(super) fn of(set: &DataSet, bench: &Bench<'_>) -> Result<Self, DiagnoseError> {
         let set = set.bound_to(&bench.effects.mechanism);
         let recordings = set.recordings(Part::Test, bench.effects.info())?;
@@ -69,8 +69,8 @@ impl HeldOut {
         })
     }
 
-    /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and how the gap divides;
-    /// those of the nominal model on other runs, in the same units.
+    /// The errors of the nominal model, the re-fitted one and the leading hypothesis, and the shares of the gap;
+    /// with the errors of the nominal model on `others`, in the same units.
     pub(super) fn how_far(
         &self,
         (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
@@ -104,7 +104,7 @@ impl HeldOut {
             let own_floor =
                 |runs: &Self| prediction::floor(&runs.recordings, bench, &stated, &noise, horizon);
             let errors = others.errors(bench, &stated, &noise, horizon)?;
-            // Wilder motions have larger errors.
+            // Expected errors depend on the motion.
             Ok::<f64, DiagnoseError>(errors.mean().sqrt() * own_floor(self)? / own_floor(others)?)
         });
         let stated = errors(&stated)?;
@@ -124,7 +124,7 @@ impl HeldOut {
             let effects = errors(best)?;
             let ends = Ends {
                 stated: &stated,
-                // Parameters that were fitted may predict worse than stated ones: then they are no base.
+                // If the fitted parameters predict worse than the stated ones, these are the base.
                 base: if means[1] < means[0] { &refit } else { &stated },
                 effects: &effects,
                 law: law.as_ref(),
@@ -155,7 +155,7 @@ impl HeldOut {
 }
 
 impl HowFar {
-    /// By the errors of the stated model, the re-fitted one and the leading hypothesis.
+    /// From the errors of the stated model, the re-fitted one and the leading hypothesis.
     pub(super) fn of(
         paired: &Paired,
         (horizon_s, floor): (f64, f64),
@@ -195,7 +195,7 @@ pub(super) fn horizon(recordings: &[Recording]) -> f64 {
     HORIZON.max(STEPS * step).min(PART * longest)
 }
 
-/// How much channels vary, in units of the noise: root of the mean square.
+/// Variation of the channels, in units of the noise: root of the mean square.
 pub(super) fn spread(recordings: &[Recording], noise: &[f64]) -> f64 {
     let (mut squares, mut count) = (0.0, 0.0_f64);
     let compared = noise.iter().enumerate();

@@ -1,9 +1,9 @@
-//! Windows of the recordings over which a model has to predict by itself.
+//! Validation by free-running predictions over windows of the recordings.
 //!
-//! One step ahead a disturbance that is free to follow swallows what ruins a simulation. Over a window
-//! nothing follows: the state at its begin is estimated, the rest is the model. No law is exact, so that errors
-//! have causes that no hypothesis has, whatever the number of rows: their likelihood is weighed so that only
-//! differences beyond a tolerance count (J. W. Miller and D. B. Dunson, *Robust Bayesian inference via
+//! One step ahead, process noise may absorb errors that would ruin a simulation. Over a window there is no process
+//! noise: the initial state is estimated, the rest is the model. As no law is exact, a part of the errors is
+//! unmodelled whatever the number of rows: the likelihood is tempered so that only differences
+//! beyond a tolerance count (J. W. Miller and D. B. Dunson, *Robust Bayesian inference via
 //! coarsening*, Journal of the American Statistical Association 114, 2019).
 
 use std::collections::BTreeMap;
@@ -24,32 +24,32 @@ use appell_recordings::DataSet;
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;
-/// Rows of a window: errors that grow over it are seen by far fewer.
+/// Number of rows of a window: enough to resolve an error that grows over it.
 const ROWS: usize = 40;
-/// Rows that a window has at least.
+/// Smallest number of rows of a window.
 const FEWEST_ROWS: usize = 20;
-/// A window is no longer than this part of the longest run.
+/// Ratio of the longest run to the longest window.
 const PARTS: f64 = 4.0;
-/// What windows may gain by other values, or by one more effect, where a hypothesis holds: odds of some hundred.
+/// Gain over windows, by other values or by one more effect, at which a hypothesis is rejected: odds of some hundred.
 const REFUTED: f64 = 2.0 * TIED;
-/// The same for a hypothesis that others may join: what it lacks pulls at its values.
+/// The same for a hypothesis to which others may be added: missing effects bias its values.
 const REFUTED_ALONE: f64 = 5.0 * TIED;
-/// The same, by one more effect, for a hypothesis that hardly predicts better than the nominal model: it gains no
-/// more than this part of it.
+/// The same, by one more effect, for a hypothesis that hardly improves on the nominal model: its gain is below this
+/// part of the gain by that effect.
 const IDLE: f64 = 0.2;
 const REFUTED_IDLE: f64 = 3.0 * TIED;
 
-/// How much longer windows become, with their number and most rows.
+/// Longer windows: factor on their length, their number, and their largest number of rows.
 const LONGER: [(f64, usize, usize); 2] = [(4.0, 16, 80), (16.0, 8, 160)];
-/// Part of the longest run that a longer window may be.
+/// Largest length of a longer window relative to the longest run.
 const LONGEST: f64 = 0.7;
-/// Hypotheses that longer windows compare.
+/// Number of hypotheses that are compared over longer windows.
 const COMPARED: usize = 8;
 
-/// Probability that the library has no name for a gap that shows in a few windows only.
+/// Probability of `unknown` for a gap that shows in a few windows only.
 const EVENTS: f64 = 0.95;
 
-/// The hypotheses, with the bench that ranks them.
+/// The hypotheses, with the estimation problem by which they are ranked.
 pub(super) struct Judged<'a> {
     pub(super) bench: Bench<'a>,
     pub(super) screen: Screen,
@@ -57,8 +57,8 @@ pub(super) struct Judged<'a> {
 }
 
 impl Judged<'_> {
-    /// Of recordings without the windows that no hypothesis predicts: what acted there is no effect of the library,
-    /// even where there is no gap elsewhere.
+    /// The result for recordings without the windows that no hypothesis predicts: without a gap elsewhere, the cause in
+    /// these windows is still outside the library.
     pub(super) fn without_events(mut self) -> Self {
         if self.comparison.best().members.is_empty() {
             self.comparison.unknown = self.comparison.unknown.max(EVENTS);
@@ -67,8 +67,8 @@ impl Judged<'_> {
     }
 }
 
-/// What one-step predictions say, as long as simulations over windows bear it out; else what these say. Beside
-/// the nominal model other hypotheses may be known.
+/// The ranking by one-step predictions if it is validated by simulations over windows, otherwise that by these.
+/// Other hypotheses than the nominal model may be known.
 pub(super) fn judged<'a>(
     (bench, (nominal, known), screen): (Bench<'a>, (Fitted, Vec<Fitted>), Screen),
     over: Bench<'a>,
@@ -90,13 +90,13 @@ pub(super) fn judged<'a>(
         simulated(&over, seen.comparable()).ok()
     };
     let none = |comparison: &Comparison| comparison.best().members.is_empty();
-    // What neither finds is not there.
+    // Without an effect in either ranking there is no gap.
     let of_windows = of_windows.filter(|(_, windows)| {
         !(none(windows) && stepwise.as_ref().is_some_and(|(own, _)| none(own)))
     });
     let mut stepwise = stepwise.map(|(stepwise, _)| stepwise);
     if let Some((of_windows, mut comparison)) = of_windows {
-        stage("looking for what no effect explains");
+        stage("testing laws outside the library");
         comparison.weigh_unknown(&over)?;
         let whole = if comparison.leads_unknown() && !none(&comparison) {
             let again = bench.fitted_again(&over, comparison.best());
@@ -113,7 +113,7 @@ pub(super) fn judged<'a>(
             });
         }
         if none(&comparison) {
-            // One step ahead more is seen of what is left.
+            // One-step predictions resolve smaller remainders.
             comparison.left = leftover(&bench, &nominal)?;
         }
         return Ok(Judged {
@@ -122,13 +122,13 @@ pub(super) fn judged<'a>(
             comparison,
         });
     }
-    // One step has to do too where no simulation follows the recordings.
+    // One-step predictions decide also if no simulation reproduces the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
         None => Comparison::of(&bench, (nominal, known), |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
-    stage("looking for what no effect explains");
+    stage("testing laws outside the library");
     comparison.weigh_unknown(&bench)?;
     let names_none = comparison.leads_unknown() && !none(&comparison);
     if let Some(again) = again.filter(|_| names_none) {
@@ -141,9 +141,9 @@ pub(super) fn judged<'a>(
     })
 }
 
-/// What longer windows say where nothing in the library explains what is seen one step ahead: whether an effect leaves
-/// hardly anything of the gap there. What acts slowly, as friction that a swing hardly shows, ruins predictions over
-/// many swings.
+/// The ranking over longer windows, if no effect of the library explains the one-step predictions but one nearly closes
+/// the gap there. Slow effects, such as friction that is hardly visible over one period, dominate the errors over many
+/// periods.
 pub(super) fn lengthened<'a>(
     judged: Judged<'a>,
     (levels, whole): (&[(Unknown, f64)], &DataSet),
@@ -186,8 +186,8 @@ pub(super) fn lengthened<'a>(
     Ok(judged)
 }
 
-/// One-step predictions where they explain everything: a mechanism that falls over is lost in windows of any length.
-/// Some hypotheses are `known` from elsewhere.
+/// The ranking by one-step predictions, if they leave no significant remainder: an unstable mechanism cannot be predicted
+/// over windows of any length. Some hypotheses may be `known`.
 fn nothing_left(
     (bench, nominal): (&Bench<'_>, &Fitted),
     known: Vec<Fitted>,
@@ -206,7 +206,7 @@ fn nothing_left(
     Ok(explains.then_some(comparison))
 }
 
-/// The hypotheses by simulations, some of which are known.
+/// The ranking by simulations, with some known hypotheses.
 fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison), DiagnoseError> {
     let nominal = over.nominal()?;
     let screen = Screen::of(over, &nominal)?;
@@ -214,19 +214,19 @@ fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
-/// Hypotheses of one-step predictions, as windows see them.
+/// Validation of hypotheses of one-step predictions over windows.
 struct Seen<'s, 'a> {
     over: &'s Bench<'a>,
     bench: &'s Bench<'a>,
     again: BTreeMap<Vec<usize>, Option<Again>>,
 }
 
-/// A hypothesis with values that are fitted to the windows.
+/// A hypothesis refitted to the windows.
 struct Again {
     fitted: Fitted,
-    /// What these values gain.
+    /// Gain by the refitted values.
     gain: f64,
-    /// What one more effect would gain, and which.
+    /// Expected gain by one more effect, and its candidate.
     by_others: f64,
     other: Option<usize>,
 }
@@ -238,8 +238,8 @@ impl Again {
 }
 
 impl Seen<'_, '_> {
-    /// The hypotheses by one-step predictions, nothing where the windows refute them early on; and whether the windows
-    /// bear them out. They do not where the disturbance follows what the model lacks.
+    /// The ranking by one-step predictions, `None` if the windows reject it early; and whether the windows confirm it.
+    /// They do not if process noise absorbs a missing effect.
     fn one_step(
         &mut self,
         (nominal, known): (&Fitted, &[Fitted]),
@@ -261,7 +261,7 @@ impl Seen<'_, '_> {
         Ok(Some((comparison, holds)))
     }
 
-    /// What the windows can compare with hypotheses of their own: a late channel has other samples.
+    /// Refitted hypotheses that are comparable with those of the windows: a delayed channel has other samples.
     fn comparable(&self) -> Vec<Fitted> {
         let fits = self.again.values().flatten().map(|again| &again.fitted);
         let is_late = |&member: &usize| {
@@ -273,7 +273,7 @@ impl Seen<'_, '_> {
             .collect()
     }
 
-    /// Nothing where the windows lose a hypothesis: then they say nothing against it.
+    /// A refitted hypothesis; `None` if the fit over windows fails, which does not reject it.
     fn again(&mut self, fitted: &Fitted) -> Option<&Again> {
         let again = self.again.entry(fitted.members.clone());
         let fit = || {
@@ -290,8 +290,8 @@ impl Seen<'_, '_> {
         again.or_insert_with(fit).as_ref()
     }
 
-    /// What windows say of a hypothesis before others join it. One effect alone may lack others; but not one that
-    /// shows only one step ahead, beside others that predict.
+    /// Validates a hypothesis before others are added to it. A single effect may need another one; but it is rejected
+    /// if it shows only one step ahead, together with others that predict.
     fn look(&mut self, fitted: &Fitted, nominal: &Fitted) -> Look {
         let of_nominal = self.again(nominal).map(Again::log_likelihood);
         let Some(again) = self.again(fitted) else {
@@ -311,14 +311,14 @@ impl Seen<'_, '_> {
     }
 }
 
-/// The runs, cut into windows as long as a typical swing: long enough that forces show in the motion, short
-/// enough that errors do not decide by themselves where it goes.
+/// The runs, cut into windows of half a typical period: long enough that forces affect the motion, short
+/// enough that errors do not dominate it.
 pub(super) fn windows(set: &DataSet) -> Result<DataSet, DiagnoseError> {
     Ok(set.windows(length(set), (WINDOWS, ROWS))?)
 }
 
-/// Half of a typical period in s: that of a harmonic motion with the channels' ratio of deviation to rate, the
-/// median of the channels.
+/// Half of a typical period in s: that of a harmonic motion with the ratio of deviation to rate of a channel, the
+/// shortest one of all channels.
 fn length(set: &DataSet) -> f64 {
     let measured = (0..set.channels.len()).filter(|&column| set.channels[column].is_measured());
     let half = |column: usize| {

@@ -1,8 +1,7 @@
-//! Where the gap lies: which equations feel what the best hypothesis adds.
+//! Localisation of the gap: the equations in which the best hypothesis acts.
 //!
-//! What a member adds to Appell's equation of a pseudo-velocity is the force M Δω̇ that its sizes make
-//! along the recordings. Weighed by the disturbance that the equation has anyway, and squared, it is
-//! the part of the gap in that equation.
+//! The members add the force M Δω̇ to Appell's equation of a pseudo-velocity along the recordings. Its mean square,
+//! relative to the process noise of the equation, is the share of that equation in the gap.
 
 use appell_estimate::{Estimation, Unknown, chi_squared_probability};
 use appell_runtime::model::At;
@@ -16,7 +15,7 @@ use super::compare::Comparison;
 use super::report::{ShareOf, Where};
 use crate::effects::Acts;
 
-/// Places along the recordings.
+/// Number of points along the recordings.
 const PLACES: usize = 400;
 
 /// The equations of the best hypothesis.
@@ -29,7 +28,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let setup = bench.setup(&best.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
     let (augmented, layout) = (estimation.setup().model, estimation.layout());
-    // What a member brings is locked where the member is not.
+    // Without the member, its additional coordinate is locked.
     let model = bench.effects.with(&bench.locked(&best.members));
     let info = model.info();
     let (n, s, k) = (info.state_len(), info.speeds, info.parameter_len());
@@ -107,7 +106,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     })
 }
 
-/// SI unit of the force beside a pseudo-velocity: a watt for each of its units.
+/// SI unit of the force along a pseudo-velocity: a watt divided by its unit.
 pub(super) fn force_unit(mechanism: &Mechanism, equation: usize) -> String {
     let speed = &mechanism.pseudo_velocities[SpeedId::new(equation)]
         .label

@@ -1,9 +1,9 @@
 //! Windows in which the best hypothesis fails by far more than elsewhere: an external force, a contact, a fault of
 //! the log.
 //!
-//! Errors of predictions over a fraction of a second add up a force that acts throughout and average out jitter. Their
-//! scale is that of the ordinary rows: the quantile of 90 % as of a normal distribution, which one row in ten cannot
-//! move (P. J. Rousseeuw and C. Croux, *Alternatives to the median absolute deviation*, Journal of the American
+//! Prediction errors over a fraction of a second accumulate a persistent force and average out jitter. Their scale is
+//! a robust one, the 90 % quantile relative to that of a normal distribution, which outliers in less than one row in ten
+//! do not affect (P. J. Rousseeuw and C. Croux, *Alternatives to the median absolute deviation*, Journal of the American
 //! Statistical Association 88, 1993, on scales by quantiles).
 
 use appell_estimate::{Estimation, Recording};
@@ -19,20 +19,20 @@ use super::report::Window;
 use super::windows;
 use crate::held_out::origins;
 
-/// Origins of predictions in a horizon, and in a run at most.
+/// Number of prediction origins per horizon, and the largest one per run.
 const EACH: f64 = 5.0;
 const MOST: usize = 1000;
-/// Quantile of the ordinary errors, and that of the standard normal distribution's modulus.
+/// Probability of the quantile that gives the scale, and that quantile of the modulus of a standard normal variable.
 const ORDINARY: f64 = 0.9;
 const QUANTILE: f64 = 1.645;
-/// An error is outside of the ordinary ones by so many scales.
+/// Smallest outlying error, in scales.
 const OUTSIDE: f64 = 8.0;
-/// Part of the predictions that may be outside: what fails more often belongs to the mechanism.
+/// Largest part of outlying predictions: more frequent ones have a cause in the mechanism.
 const RARE: f64 = 0.1;
-/// Windows that are reported at most.
+/// Largest number of reported windows.
 const MOST_WINDOWS: usize = 20;
 
-/// An error of a prediction in units of its channel's scale.
+/// A prediction error in units of the scale of its channel.
 struct Error {
     run: usize,
     from: f64,
@@ -81,8 +81,8 @@ pub(super) fn windows(
     Ok(found)
 }
 
-/// Training runs without the windows that the best hypothesis does not predict; nothing where there is none, or no
-/// gap either.
+/// Training runs without the windows that the best hypothesis does not predict; `None` without such windows, or without
+/// a gap.
 pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSet>, DiagnoseError> {
     let comparison = &judged.comparison;
     if comparison.best().members.is_empty() && !comparison.leads_unknown() {
@@ -98,7 +98,7 @@ pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSe
     Ok((!cut.is_empty()).then(|| whole.without(&cut)))
 }
 
-/// Moduli of the errors of predictions.
+/// Moduli of the prediction errors.
 fn errors(
     (bench, fitted): (&Bench<'_>, &Fitted),
     recordings: &[Recording],
@@ -111,7 +111,7 @@ fn errors(
     for (run, recording) in recordings.iter().enumerate() {
         let times = recording.times();
         let duration = times[times.len() - 1] - times[0];
-        // As many as asked for.
+        // A count of origins.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let most = (EACH * duration / horizon).ceil() as usize;
         let origins = origins(recording, most.clamp(1, MOST));
@@ -130,15 +130,15 @@ fn errors(
 /// The scale of ordinary errors.
 fn scale(mut sizes: Vec<f64>) -> f64 {
     sizes.sort_by(f64::total_cmp);
-    // A place in a list.
+    // An index in a list.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let place = (ORDINARY * sizes.len() as f64) as usize;
     let ordinary = sizes.get(place).copied().unwrap_or(f64::INFINITY);
     (ordinary / QUANTILE).max(f64::MIN_POSITIVE)
 }
 
-/// Errors of overlapping predictions are one event. It begins where the first of them ends, and is over when the filter
-/// has found the state again.
+/// Merges errors of overlapping predictions into events. An event begins where the first of them ends, and ends when the
+/// filter has converged again.
 fn together(mut errors: Vec<Error>) -> Vec<Error> {
     errors.sort_by(|a, b| a.run.cmp(&b.run).then(a.from.total_cmp(&b.from)));
     let mut events: Vec<(Error, [f64; 2])> = Vec::new();

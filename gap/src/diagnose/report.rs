@@ -1,4 +1,4 @@
-//! The gap report: what was found, in the words of the contract.
+//! The gap report, with the names of its format.
 
 use nalgebra::DMatrix;
 
@@ -11,28 +11,28 @@ pub(super) const UNKNOWN: &str = "unknown";
 pub(super) const REFIT: &str = "refit";
 /// The measured law in the budget.
 pub(super) const LAW: &str = "law";
-/// What nothing explains.
+/// The unexplained remainder in the budget.
 pub(super) const REST: &str = "unexplained";
 
 /// The result in one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum GapVerdict {
-    /// Nothing beyond noise and disturbance.
+    /// No gap beyond measurement and process noise.
     NoGap,
     /// One hypothesis wins.
     Explained,
-    /// A gap whose explanations cannot be told apart.
+    /// A gap with several explanations that cannot be distinguished.
     Ambiguous,
-    /// A gap that nothing in the library explains.
+    /// A gap that no effect of the library explains.
     Unexplained,
 }
 
-/// Part of a gap that stays, beyond which it is not explained.
+/// Largest unexplained part of an explained gap.
 const MOST: f64 = 0.5;
 
 impl GapVerdict {
-    /// After predictions of the runs that were held out: what does not better them explains nothing, nor does what
-    /// leaves most of the gap where simulations rank the hypotheses.
+    /// The verdict after predictions of the held-out runs: an effect that does not improve them explains nothing, nor
+    /// do effects that leave most of the gap if simulations rank the hypotheses.
     pub(super) fn after(
         self,
         which: &[Hypothesis],
@@ -44,7 +44,7 @@ impl GapVerdict {
             && which.iter().any(|one| !one.parameters.is_empty());
         let stays = far.budget.iter().find(|part| part.is_rest());
         let most_stays = stays.is_some_and(|part| part.closed > MOST);
-        // What closes nothing is no explanation, however clearly it shows.
+        // An effect that closes nothing is no explanation, however significant it is.
         let closes = far
             .budget
             .iter()
@@ -59,7 +59,7 @@ impl GapVerdict {
         }
     }
 
-    /// Its word for programs.
+    /// Its keyword.
     pub const fn word(self) -> &'static str {
         match self {
             Self::NoGap => "no_gap",
@@ -70,14 +70,14 @@ impl GapVerdict {
     }
 }
 
-/// A value that was found.
+/// An estimate.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Value {
     /// Effect and parameter.
     pub name: String,
     /// Most likely value.
     pub value: f64,
-    /// Standard deviation; NaN where nothing is known of it, as at a limit.
+    /// Standard deviation; NaN if it is undefined, as at a limit.
     pub std: f64,
     /// Unit.
     pub unit: String,
@@ -88,20 +88,20 @@ pub struct Value {
 pub struct Hypothesis {
     /// Names of its effects; none for the nominal model, `unknown` for none of the library.
     pub effects: Vec<String>,
-    /// Probability; nothing is left for one that says the same as another.
+    /// Probability; zero for one that is equivalent to another.
     pub probability: f64,
-    /// The hypothesis that says the same of every motion and has its probability.
+    /// The equivalent hypothesis, which includes its probability.
     pub same_as: Option<Vec<String>>,
     /// Logarithm of the Bayes factor against the nominal model.
     pub log_bayes_factor: Option<f64>,
-    /// Values that its effects have.
+    /// Estimates of its effects.
     pub parameters: Vec<Value>,
-    /// What it changes in the spec; for `unknown` the law that was measured, if there is one.
+    /// Its changes of the spec; for `unknown` the measured law, if there is one.
     pub changes: Option<Changes>,
 }
 
 impl Hypothesis {
-    /// Whether it is that nothing in the library explains the gap.
+    /// Whether it is the hypothesis that no effect of the library explains the gap.
     pub fn is_unknown(&self) -> bool {
         self.effects == [UNKNOWN]
     }
@@ -131,11 +131,11 @@ pub struct Window {
     pub from: f64,
     /// End in s.
     pub to: f64,
-    /// Pseudo-velocity; empty where predictions of a channel fail.
+    /// Pseudo-velocity; empty for a channel whose predictions fail.
     pub equation: String,
     /// Size in standard deviations.
     pub z: f64,
-    /// The channel whose predictions fail there under the best hypothesis as well; nothing where it explains the gap.
+    /// The channel whose predictions also fail there under the best hypothesis; `None` if that explains the gap.
     pub unexplained: Option<String>,
 }
 
@@ -180,12 +180,12 @@ impl Where {
 pub struct Share {
     /// `refit`, an effect, `law` for a force that was measured, or `unexplained`.
     pub name: String,
-    /// Part of the gap of the nominal model, on the runs that were held out.
+    /// Part of the gap of the nominal model, on the held-out runs.
     pub closed: f64,
     /// Its interval of 95 %, over blocks of time.
     pub interval: [f64; 2],
-    /// Whether it is large enough to name a cause: beyond the tolerance, as a part of what re-fitted
-    /// parameters leave.
+    /// Whether it is large enough to name a cause: above the tolerance, relative to the gap of the re-fitted
+    /// model.
     pub is_material: bool,
 }
 
@@ -205,13 +205,13 @@ impl Share {
         !(self.is_refit() || self.is_law() || self.is_rest())
     }
 
-    /// Whether it is what nothing explains.
+    /// Whether it is the unexplained remainder.
     pub fn is_rest(&self) -> bool {
         self.name == REST
     }
 }
 
-/// Errors of predictions on runs that were held out, in units of the noise.
+/// Prediction errors on held-out runs, in units of the noise.
 #[derive(Debug, Clone, PartialEq)]
 #[expect(missing_docs, reason = "the words of the contract")]
 pub struct HowFar {
@@ -223,19 +223,19 @@ pub struct HowFar {
     pub closed: f64,
     pub closed_ci95: [f64; 2],
     pub closed_vs_refitted: f64,
-    /// How the gap divides.
+    /// The shares of the gap.
     pub budget: Vec<Share>,
-    /// Error of the nominal model on recordings before, in proportion to what it expects there and here.
+    /// Error of the nominal model on earlier recordings, scaled by the ratio of its expected errors.
     pub before: Option<f64>,
-    /// Part of the mean square error of the nominal model that the leading hypothesis takes away, and of the
+    /// Relative reduction of the mean square error of the nominal model by the leading hypothesis, and of that of the
     /// re-fitted one, between quantiles of 2.5 and 97.5 %.
     pub bettered_ci95: [[f64; 2]; 2],
-    /// Whether the leading hypothesis predicts worse than the re-fitted model, beyond chance.
+    /// Whether the leading hypothesis predicts significantly worse than the re-fitted model.
     pub is_worse: bool,
     pub runs: Vec<String>,
 }
 
-/// The smallest size of an effect that these recordings would show.
+/// The smallest detectable size of an effect.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Detectable {
     /// Effect.
@@ -255,29 +255,29 @@ pub struct Ahead {
     pub nominal: f64,
     pub refitted: f64,
     pub with_effect: f64,
-    /// What the filter expects; nothing for the free run.
+    /// Expected by the filter; `None` for the free run.
     pub noise_floor: Option<f64>,
 }
 
-/// What the best hypothesis leaves: a force or an error that nobody has named.
+/// The residual of the best hypothesis as a nonparametric law: a force or an error of a channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Left {
-    /// Pseudo-velocity of the equation that has the force, or channel that has the error.
+    /// Pseudo-velocity of the equation with the force, or channel with the error.
     pub place: String,
-    /// What it depends on.
+    /// Its variable.
     pub variable: String,
     /// Both in words.
     pub about: String,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
-    /// What it gains in log-likelihood.
+    /// Its gain in log likelihood.
     pub gain: f64,
-    /// What the best hypothesis gains over the nominal model.
+    /// Gain of the best hypothesis over the nominal model.
     pub explained: f64,
 }
 
 impl Left {
-    /// Whether the recordings speak for it with odds of twenty and more.
+    /// Whether its odds are twenty or more.
     pub fn is_there(&self) -> bool {
         self.log_bayes_factor > TIED
     }
@@ -288,78 +288,78 @@ impl Left {
 pub struct Law {
     /// The pseudo-velocity whose equation has the force.
     pub equation: String,
-    /// Unit of the force, or of what the factor multiplies.
+    /// Unit of the force, or of the curve that the factor multiplies.
     pub unit: String,
-    /// On what it depends, in words.
+    /// Its variable and factor, in words.
     pub depends_on: String,
     /// The variable of the curve.
     pub variable: String,
     /// Its unit.
     pub variable_unit: String,
-    /// What it is multiplied with, in the language of a spec, if with anything.
+    /// Its factor, in the language of a spec, if any.
     pub factor: Option<String>,
     /// The variable, the force, its standard deviation.
     pub curve: Vec<[f64; 3]>,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
-    /// Forms that come near to it, the most probable first.
+    /// Closed forms close to it, the most probable first.
     pub forms: Vec<Form>,
 }
 
 /// A form with its evidence.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Form {
-    /// In the letters of the spec, up to factors: `omega*abs(omega)`.
+    /// With the names of the spec, up to factors: `omega*abs(omega)`.
     pub text: String,
-    /// Part of what the law gains.
+    /// Its gain relative to that of the law.
     pub share: f64,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
 }
 
-/// A channel that the model does not know and on which the gap of the nominal model depends.
+/// A channel outside the model on which the gap of the nominal model depends.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Hint {
     /// The channel, or its rate.
     pub variable: String,
     /// Pseudo-velocity of the equation whose missing force depends on it most.
     pub equation: String,
-    /// What such a force would gain in log-likelihood.
+    /// Gain of such a force in log likelihood.
     pub gain: f64,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
 }
 
-/// Stated tolerances that the re-fitted parameters speak against.
+/// Stated tolerances that the re-fitted parameters contradict.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Tolerances {
-    /// The factor on all of them that is most probable.
+    /// The most probable factor on all of them.
     pub factor: f64,
     /// Logarithm of the Bayes factor for it.
     pub log_bayes_factor: f64,
 }
 
-/// An input that was held between rows and fits better along lines.
+/// A held input for which linear interpolation between rows fits better.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Interpolated {
     /// Channel.
     pub input: String,
-    /// Increase of the log-likelihood under the best hypothesis.
+    /// Increase of the log likelihood under the best hypothesis.
     pub log_likelihood: f64,
 }
 
-/// What differs from the recordings before.
+/// Changes since the earlier recordings.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Change {
-    /// Whether anything differs that matters.
+    /// Whether there is a material change.
     pub is_changed: bool,
-    /// What the model lacked already: the verdict, and effects that were taken over.
+    /// The earlier diagnosis: its verdict, and the effects that were added to the spec.
     pub before: (GapVerdict, Vec<String>),
-    /// Parameters as the recordings before tell them.
+    /// Estimates of the parameters from the earlier recordings.
     pub parameters: Vec<Before>,
 }
 
-/// A parameter before.
+/// An earlier estimate of a parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Before {
     /// Name.
@@ -368,11 +368,11 @@ pub struct Before {
     pub value: f64,
     /// Its standard deviation in SI.
     pub std: f64,
-    /// Standard deviation from run to run in SI, beyond that.
+    /// Standard deviation from run to run in SI, in excess of that.
     pub spread: f64,
 }
 
-/// A limit that a person states, in SI: a column with its smallest and largest value.
+/// A limit stated by the user, in SI: a column with its smallest and largest value.
 pub type Limit = (String, [f64; 2]);
 
 /// An input that separates two hypotheses.
@@ -380,11 +380,11 @@ pub type Limit = (String, [f64; 2]);
 pub struct Experiment {
     /// The effects of both.
     pub separates: [Vec<String>; 2],
-    /// What the input is, in words.
+    /// The input, in words.
     pub about: String,
-    /// How far the recordings set them apart, in standard deviations.
+    /// Their separation by the present recordings, in standard deviations.
     pub separation_now: f64,
-    /// How far they are apart with the recordings of this experiment.
+    /// Their separation by a recording of this experiment.
     pub separation_then: f64,
     /// Times in s.
     pub times: Vec<f64>,
@@ -399,7 +399,7 @@ pub struct Found {
     pub effect: String,
     /// Sentence.
     pub about: String,
-    /// Its places in the mechanism.
+    /// Its sites in the mechanism.
     pub sites: Vec<String>,
 }
 
@@ -410,57 +410,57 @@ pub struct Report {
     pub mechanism: String,
     /// The result in one word.
     pub verdict: GapVerdict,
-    /// Whether simulations over windows rank the hypotheses: one-step predictions did not agree with them.
+    /// Whether simulations over windows rank the hypotheses, as they did not confirm the one-step predictions.
     pub is_by_simulation: bool,
-    /// Whether forces of the recorded motions rank them; then errors are those of forces, at no horizon, and
-    /// disturbances what is left of them.
+    /// Whether forces of the recorded motions rank them; then errors are those of forces, without a horizon, and
+    /// disturbances are residual forces.
     pub is_by_forces: bool,
-    /// Rows of the runs to fit: those that were fitted, and all.
+    /// Rows of the training runs: those that were fitted, and all.
     pub rows: [usize; 2],
     /// Where the gap lies.
     pub place: Where,
     /// Hypotheses, the most probable first.
     pub which: Vec<Hypothesis>,
-    /// Hypotheses that cannot be told apart, each a list of effects.
+    /// Hypotheses that cannot be distinguished, each a list of effects.
     pub tied: Vec<Vec<Vec<String>>>,
-    /// How far the gap closes; nothing where no run was held out.
+    /// How far the gap closes; `None` without held-out runs.
     pub how_far: Option<HowFar>,
-    /// What these recordings would show.
+    /// The smallest detectable sizes.
     pub detectable: Vec<Detectable>,
     /// Hypotheses whose fit failed or ended before an optimum, with the reason.
     pub failed: Vec<(Vec<String>, String)>,
-    /// Imperfections of channels that change no prediction and are fitted beside every hypothesis, as the best one has
-    /// them.
+    /// Imperfections of channels without effect on predictions, nuisance parameters of every hypothesis: their values
+    /// under the best one.
     pub imperfections: Vec<Value>,
-    /// Disturbances before and after: name, level under the nominal model and under the best one.
+    /// Process noise: name, level under the nominal model and under the best one.
     pub disturbances: Vec<(String, f64, f64)>,
-    /// What the best hypothesis leaves; nothing where no law holds on runs that it was not found in.
+    /// The residual of the best hypothesis; `None` if no law generalises to other runs.
     pub left: Option<Left>,
-    /// Part of the samples that tell something of their own; less than one where the innovations of
-    /// the best hypothesis follow each other.
+    /// Effective sample size relative to the number of samples; less than one if the innovations of
+    /// the best hypothesis are autocorrelated.
     pub independent: f64,
-    /// What was measured of that; nothing where it is no force that depends on what the model knows.
+    /// The measured law of that residual; `None` if it is no force that depends on quantities of the model.
     pub law: Option<Law>,
-    /// What changed; nothing where there are no recordings before.
+    /// Changes; `None` without earlier recordings.
     pub change: Option<Change>,
-    /// Channels that the model does not know and that the gap depends on, the surest first.
+    /// Channels outside the model on which the gap depends, the most probable first.
     pub hints: Vec<Hint>,
     /// Tolerances that are too small, under the best hypothesis.
     pub tolerances: Option<Tolerances>,
-    /// Inputs that fit better along lines, under the best hypothesis.
+    /// Inputs for which linear interpolation fits better, under the best hypothesis.
     pub interpolated: Vec<Interpolated>,
     /// Effects of the best hypothesis in words.
     pub found: Vec<Found>,
-    /// Errors over horizons; empty where no run was held out.
+    /// Errors over horizons; empty without held-out runs.
     pub horizons: Vec<Ahead>,
-    /// What people look at, where they asked for it.
+    /// Data of the plots, if requested.
     pub pictures: Option<Pictures>,
-    /// What would tell the first two tied hypotheses apart.
+    /// An experiment that separates the first two tied hypotheses.
     pub experiment: Option<Experiment>,
 }
 
 impl Report {
-    /// The tied hypotheses that say different things, the most probable first.
+    /// The tied hypotheses that are not equivalent, the most probable first.
     pub(super) fn rivals(&self) -> Vec<&[String]> {
         let says_its_own = |effects: &&Vec<String>| {
             let mut which = self.which.iter();
@@ -471,14 +471,14 @@ impl Report {
     }
 }
 
-/// What people look at.
+/// Data of the plots.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pictures {
     /// The missing force of each equation.
     pub force_history: ForceHistory,
-    /// Channels of the first run that was held out.
+    /// Channels of the first held-out run.
     pub traces: Vec<Trace>,
-    /// The missing force; nothing without a gap in the equations.
+    /// The missing force; `None` without a gap in the equations.
     pub force_law: Option<ForceLaw>,
 }
 
@@ -504,7 +504,7 @@ pub struct MissingForce {
     pub medians: Vec<f64>,
 }
 
-/// A channel of a run beside predictions of it, [`AHEAD`](super::AHEAD) before, in the unit of the channel.
+/// A channel of a run with its predictions, [`AHEAD`](super::AHEAD) seconds ahead, in the unit of the channel.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trace {
     /// File of the run.
@@ -515,15 +515,15 @@ pub struct Trace {
     pub unit: String,
     /// Times in s.
     pub times: Vec<f64>,
-    /// What was measured.
+    /// Measured values.
     pub measured: Vec<f64>,
-    /// What the model predicts with the parameters that the data set states.
+    /// Prediction with the parameters stated by the data set.
     pub nominal: Vec<f64>,
-    /// What it predicts with its parameters fitted.
+    /// Prediction with fitted parameters.
     pub refitted: Vec<f64>,
-    /// What the best hypothesis predicts.
+    /// Prediction of the best hypothesis.
     pub with_effect: Vec<f64>,
-    /// Standard deviation that the errors have if the best hypothesis is right.
+    /// Expected standard deviation of the errors of the best hypothesis.
     pub deviation: f64,
 }
 
@@ -538,18 +538,18 @@ pub struct ForceLaw {
     pub variable: String,
     /// Its unit.
     pub variable_unit: String,
-    /// Places along the recordings: variable, force.
+    /// Points along the recordings: variable, force.
     pub points: Vec<[f64; 2]>,
     /// Median of the force in each part of the variable.
     pub medians: Vec<[f64; 2]>,
-    /// The law of the best hypothesis; empty where none acts in the equations.
+    /// The law of the best hypothesis; empty if none acts in the equations.
     pub law: Vec<[f64; 2]>,
 }
 
-/// What recordings tell of parameters.
+/// Estimates of parameters.
 pub(super) struct Told {
     pub(super) parameters: Vec<Before>,
-    /// Of their errors, and of what they differ by from run to run.
+    /// Covariance of their errors, plus the variance from run to run.
     pub(super) covariance: DMatrix<f64>,
 }
 

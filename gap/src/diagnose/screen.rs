@@ -56,7 +56,7 @@ impl Screened {
     }
 
     /// The same, without the part of its gain that feedback inputs explain.
-    pub(super) fn told(self, by_inputs: f64) -> Self {
+    pub(super) fn beyond_inputs(self, by_inputs: f64) -> Self {
         let gain = (self.gain - by_inputs).max(0.0);
         Self { gain, ..self }
     }
@@ -121,8 +121,8 @@ impl Screen {
             let one = screened(&gram, candidate, &columns, &positive)?;
             let beyond = screened(&beyond, candidate, &columns, &positive);
             let beyond = beyond.map_or(0.0, |beyond| beyond.gain);
-            let told = (one.gain - beyond).clamp(0.0, for_kicks);
-            Some(one.told(told))
+            let by_inputs = (one.gain - beyond).clamp(0.0, for_kicks);
+            Some(one.beyond_inputs(by_inputs))
         });
         let mut list: Vec<Screened> = all.into_iter().flatten().collect();
         list.sort_by(|a, b| b.gain.total_cmp(&a.gain));

@@ -1,7 +1,7 @@
-//! The sets of effects that promise most, fitted.
+//! Search for the most probable set of effects.
 //!
-//! About the nominal model all sets are valued to first order, the best of them fitted; then again about the best fit,
-//! where slopes are others, until nothing better comes. Every set has the same effort.
+//! All sets are evaluated to first order about the nominal model, and the best of them fitted; then again about the best
+//! fit, where sensitivities differ, until no better set is found. The fits of all sets have the same stopping rule.
 
 use std::collections::BTreeSet;
 
@@ -16,45 +16,45 @@ use super::screen::quieten;
 use super::sets::{Set, Sets, is_fixed};
 use crate::effects::{Acts, Part};
 
-/// Sets that are fitted before slopes are taken about the best of them, and rivals of what stays the best.
+/// Number of sets that are fitted before the next linearisation, and of rivals that are fitted about the best one.
 const LEADING: usize = 2;
 const RIVALS: usize = 6;
-/// Single effects about which sets are valued besides.
+/// Number of single effects about which sets are also evaluated.
 const SINGLES: usize = 6;
-/// Fits about which sets are valued.
+/// Largest number of linearisations.
 const ROUNDS: usize = 4;
-/// By how much a set may promise less than the best one and yet be as probable, beyond this part of what that gains:
-/// slopes are those far from where large sizes end.
+/// Sets are fitted if their expected log posterior is below the best one by at most this, plus a part of the gain of
+/// that one: the linearisation is inaccurate for large sizes.
 const WORTH: f64 = 1.5 * TIED;
 const BY_SLOPES: f64 = 0.5;
-/// Part of the longest delay at which a search begins at most.
+/// Largest initial delay relative to the longest one.
 const BELOW: f64 = 0.9;
 /// Why a fit does not count.
-const NO_EVIDENCE: &str = "its parameters cannot be told from each other";
+const NO_EVIDENCE: &str = "its parameters are not identifiable";
 
-/// What is seen elsewhere of a hypothesis.
+/// Validation of a hypothesis by other predictions.
 pub(super) enum Look {
-    /// It holds, as far as it goes.
+    /// It is valid.
     Holds,
-    /// It lacks a candidate to hold.
+    /// It is valid only together with this candidate.
     Lacks(usize),
-    /// It does not hold.
+    /// It is rejected.
     Refuted,
 }
 
 /// A search for hypotheses.
 pub(super) struct Search<'b, 'a> {
     bench: &'b Bench<'a>,
-    /// What was fitted, the nominal model first.
+    /// The fitted hypotheses, the nominal model first.
     pub(super) fits: Vec<Fitted>,
     /// Hypotheses whose fit failed, with the reason.
     pub(super) failed: Vec<(Vec<usize>, String)>,
-    /// What needs no other fit.
+    /// Sets that need no further fit.
     settled: BTreeSet<Vec<usize>>,
 }
 
 impl<'b, 'a> Search<'b, 'a> {
-    /// From the nominal model and what else is known.
+    /// From the nominal model and other known fits.
     pub(super) fn new(
         bench: &'b Bench<'a>,
         (nominal, known): (Fitted, impl IntoIterator<Item = Fitted>),
@@ -71,8 +71,8 @@ impl<'b, 'a> Search<'b, 'a> {
         search
     }
 
-    /// Fits sets about the nominal model, then about the best fits. `look` is asked about the best hypothesis of each
-    /// round; whether none of them was refuted.
+    /// Fits sets about the nominal model, then about the best fits. `look` validates the best hypothesis of each
+    /// round; returns whether none of them was rejected.
     pub(super) fn run(
         &mut self,
         mut look: impl FnMut(&Fitted) -> Look,
@@ -80,7 +80,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut first: Vec<Set> = Vec::new();
         let mut referred: BTreeSet<Vec<usize>> = BTreeSet::new();
         for round in 0..ROUNDS {
-            // The nominal model first, whatever is known from elsewhere.
+            // The first linearisation is about the nominal model, even with other known fits.
             let next = if round == 0 {
                 0
             } else {
@@ -95,7 +95,7 @@ impl<'b, 'a> Search<'b, 'a> {
             };
             let mut leading = self.worth_a_fit(&sets, LEADING, None);
             if round == 0 {
-                // To first order neither need lead.
+                // The best single effects and pairs too: to first order they may not be among the best sets.
                 for effects in [1, 2] {
                     leading.extend(self.worth_a_fit(&sets, LEADING, Some(effects)));
                 }
@@ -103,7 +103,7 @@ impl<'b, 'a> Search<'b, 'a> {
             for set in leading {
                 self.take(next, set);
             }
-            // Slopes far from where the best set ends say little of its rivals.
+            // Rivals are compared by a linearisation about the best set.
             if is_best(self) || round + 1 == ROUNDS {
                 for set in self.worth_a_fit(&sets, RIVALS, None) {
                     self.take(next, set);
@@ -133,7 +133,7 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(true)
     }
 
-    /// Adds what promises most about the best hypothesis, as long as that betters it, and the rivals of what stays.
+    /// Adds the most promising effects to the best hypothesis while that improves it, and fits the rivals of the result.
     pub(super) fn better(&mut self) -> Result<(), DiagnoseError> {
         for _ in 0..ROUNDS {
             let best = self.best().unwrap_or(0);
@@ -154,8 +154,8 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(())
     }
 
-    /// Slopes about one wrong effect hide what others do together: sets about the best single effects as well. Whether
-    /// they lead to a better hypothesis.
+    /// Evaluates sets about the best single effects as well: a linearisation about a wrong effect may mask a set of
+    /// others. Returns whether they lead to a better hypothesis.
     fn led_on_by_singles(
         &mut self,
         referred: &mut BTreeSet<Vec<usize>>,
@@ -191,7 +191,7 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(self.best() != Some(best))
     }
 
-    /// The sets that promise most and are not fitted yet, all or those of so many effects.
+    /// The most promising sets that are not fitted yet, of any or of a given number of effects.
     fn worth_a_fit<'s>(&self, sets: &'s [Set], most: usize, size: Option<usize>) -> Vec<&'s Set> {
         let log = |fit: usize| self.log_posterior(&self.fits[fit]);
         let fitted = self.best().map_or(f64::NEG_INFINITY, log);
@@ -204,7 +204,7 @@ impl<'b, 'a> Search<'b, 'a> {
             let is_fitted = self.fits.iter().any(|own| own.members == set.members);
             let is_of_size =
                 size.is_none_or(|size| names(self.bench.effects, &set.members).len() == size);
-            // What needs more sizes than the best set and betters nothing is no rival of it.
+            // A set with more sizes than the best one and a lower posterior is no rival.
             let is_idle = set.log_posterior < fitted
                 && !leading.is_empty()
                 && self.bench.sizes_of(&set.members) > self.bench.sizes_of(leading);
@@ -217,7 +217,7 @@ impl<'b, 'a> Search<'b, 'a> {
         sets.iter().filter(is_new).take(most).collect()
     }
 
-    /// Whether the best hypothesis holds, or does with what it lacks.
+    /// Whether the best hypothesis is valid, if necessary with the candidate that it lacks.
     fn goes_on(
         &mut self,
         best: usize,
@@ -242,7 +242,7 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(both(self).is_some_and(|both| matches!(look(&self.fits[both]), Look::Holds)))
     }
 
-    /// Fits a set, from where another hypothesis ended.
+    /// Fits a set from the optimum of another hypothesis.
     fn take(&mut self, from: usize, set: &Set) {
         let members = set.members.clone();
         if self.settled.contains(&members) {
@@ -263,8 +263,8 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// Of two fits of a hypothesis the better one counts. What a search reached that ended before an
-    /// optimum speaks for its hypothesis whatever the optimum would add.
+    /// Keeps the better of two fits of a hypothesis. A search that ended before an optimum gives a lower bound of its
+    /// evidence.
     fn keep(&mut self, fitted: Fitted) {
         let mut fits = self.fits.iter_mut();
         match fits.find(|own| own.members == fitted.members) {
@@ -295,7 +295,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 &mut start,
             )?;
             if from.members.contains(candidate) {
-                // Its shape is known by now.
+                // Its shape has been estimated already.
                 for (index, part) in bench.own(bench.candidate(*candidate)) {
                     if part.is_shape() {
                         start[index] = carried[index];
@@ -319,7 +319,7 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(fitted)
     }
 
-    /// Values without what a member of a fit has done to them.
+    /// Resets the values of a member of a fit.
     fn take_away(
         &self,
         member: usize,
@@ -338,7 +338,7 @@ impl<'b, 'a> Search<'b, 'a> {
             values[index] = bench.set.parameters[index].value;
         }
         for free in bench.brought(member, &bench.setup(&whole.members)) {
-            // What the other filter does not have has no place there.
+            // Values that the other filter does not have are skipped.
             places.extend(estimation.layout().place(free.unknown));
         }
         for place in places {
@@ -346,7 +346,7 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// A late channel loses rows, so that likelihoods compare by what is gained over the nominal model on the others.
+    /// A delayed channel loses rows: its likelihood is that of the nominal model plus the gain on the remaining rows.
     fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
         let bench = self.bench;
         let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
@@ -358,8 +358,8 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(())
     }
 
-    /// Members may have led to others beside which they are not needed: the best hypothesis without each of them, from
-    /// where it ended.
+    /// Removes each member of the best hypothesis in turn and refits from the optimum: a member may have been needed
+    /// only to find the others.
     fn drop_idle(&mut self) {
         while let Some(best) = self
             .best()
@@ -377,8 +377,8 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// To first order a lag of a channel is a delay. The best hypotheses with a delay are fitted with a lag in its
-    /// place.
+    /// To first order a lag of a channel is a delay. The best hypotheses with a delay are also fitted with a lag
+    /// instead.
     fn try_lags(&mut self) {
         let Some(best) = self.best() else {
             return;
@@ -395,8 +395,8 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// A hypothesis with a lag in place of a member that is the delay of a channel; nothing for other members, and
-    /// where the lag would be too short to be told.
+    /// A hypothesis in which a lag replaces the delay of a channel; `None` for other members, and
+    /// if the lag would be too short to be distinguished.
     fn fitted_with_lag(
         &self,
         whole: &Fitted,
@@ -428,7 +428,7 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(Some(fitted))
     }
 
-    /// A hypothesis without a member, from where it ended with it.
+    /// A hypothesis without a member, from the optimum with it.
     fn fitted_without(&self, whole: &Fitted, idle: usize) -> Result<Fitted, DiagnoseError> {
         let bench = self.bench;
         let mut members = whole.members.clone();
@@ -455,7 +455,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 }
 
-/// The fit with the greatest evidence; why the last one failed if none is left.
+/// The fit with the greatest evidence, or the last error if all failed.
 fn best_fit(
     fits: impl Iterator<Item = Result<Fitted, DiagnoseError>>,
 ) -> Result<Fitted, DiagnoseError> {
@@ -478,7 +478,7 @@ fn best_fit(
     }
 }
 
-/// Puts the best sizes into the values: none starts at its bound.
+/// Writes the best sizes as initial values, none of them at a bound.
 fn place(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,

@@ -1,13 +1,13 @@
-//! Sets of effects, all of them at once and to first order.
+//! First-order evaluation of all sets of effects.
 //!
-//! One pass of the filter gives the slopes of its innovations by every candidate. With what the nominal parameters do
-//! within their tolerances taken off, the squares and scores of these slopes value each single effect, each pair and
-//! each three by a system of a few equations. So effects that show only together are found, and no order of joining
-//! decides. Disturbances that are fitted follow what the model lacks: the same is done with smaller ones, and a set
-//! counts where it is most probable.
+//! One pass of the filter gives the sensitivities of its innovations to every candidate. Projected on the complement of
+//! the sensitivities to the nominal parameters with their priors, their Gram matrix and scores give the expected gain of
+//! each single effect, each pair and each triple from a few linear equations. Effects that are significant only together
+//! are therefore found, whatever the order. As fitted process noise absorbs missing effects, this is repeated with
+//! less of it, and a set counts at its most probable level.
 //!
-//! About a fit that has members, slopes are those there, and the innovations are extended to sizes of zero, so that
-//! every set keeps its value, also those without the members.
+//! About a fit with members, the innovations are extrapolated linearly to sizes of zero, so that sets without
+//! these members are evaluated too.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -23,75 +23,75 @@ use super::prior::{counts, of_components, of_count, prior};
 use super::screen::{Screened, directions, positive, quieten, shapes};
 use crate::effects::Acts;
 
-/// Disturbances as parts of those that were fitted.
+/// Process noise relative to the fitted one.
 const LEVELS: [f64; 3] = [1.0, 0.1, 0.01];
-/// Most effects of a set whose members are all tried together.
+/// Largest number of effects of a set.
 const TOGETHER: usize = 3;
-/// Slopes promise no smaller spread than this part: they end before.
+/// Smallest expected ratio of the residual deviations, the limit of the linearisation.
 const LEAST_SPREAD: f64 = 0.1;
-/// Choices of which all threes are tried: those that gain most alone or in a pair.
+/// Number of choices of which all triples are evaluated: the best ones alone or in a pair.
 const MOST_CHOICES: usize = 60;
-/// Components of a vector that are tried together with others.
+/// Largest number of components of a vector whose subsets are evaluated.
 const MOST_COMPONENTS: usize = 6;
 
-/// A set of candidates with what it promises.
+/// A set of candidates with its expected posterior.
 #[derive(Debug, Clone)]
 pub(super) struct Set {
     pub(super) members: Vec<usize>,
-    /// The best sizes of those that have slopes, from zero, with their deviations.
+    /// The best sizes of the candidates with sensitivities, and their standard deviations.
     pub(super) sizes: Vec<(usize, Vec<f64>, Vec<f64>)>,
-    /// Logarithm of its probability as the fit about which it is valued has it.
+    /// Expected log posterior, comparable with that of fits.
     pub(super) log_posterior: f64,
-    /// By what disturbances are multiplied where its fit begins.
+    /// Factor on the process noise at the start of its fit.
     pub(super) levels: f64,
-    /// What else its fit begins with, one list for each start.
+    /// Further initial values of its fit, one list for each start.
     pub(super) starts: Vec<Vec<(usize, f64)>>,
 }
 
 /// A candidate, or some components of one vector, as one effect.
 struct Choice {
     name: String,
-    /// As how many effects it counts.
+    /// Number of effects as which it counts.
     counts: usize,
-    /// Logarithm of its part of the probability that the effect has beforehand.
+    /// Logarithm of its share in the prior probability of the effect.
     log_prior: f64,
     candidates: Vec<usize>,
     columns: Vec<usize>,
 }
 
-/// A column of the slopes.
+/// A column of the sensitivities.
 struct Column {
     candidate: usize,
-    /// Place among the directions of its candidate.
+    /// Index among the directions of its candidate.
     direction: usize,
     is_positive: bool,
-    /// What it is a slope by, where that is a value.
+    /// The value to which it is the sensitivity, if it is one.
     unknown: Option<Unknown>,
-    /// Standard deviation of its size, where that is known beforehand.
+    /// Prior standard deviation of its size, if any.
     known: Option<f64>,
-    /// Its size in the fit about which the slopes are.
+    /// Its size in the fit of the linearisation.
     size: f64,
 }
 
-/// What is free in every set, with what is known of it.
+/// A free direction of every set, with its prior.
 struct Nuisance {
     direction: Direction,
-    /// How far it is off what is expected, and the slope of that, in deviations.
+    /// Deviation from its prior mean, in prior standard deviations, and the derivative of that.
     known: Option<[f64; 2]>,
 }
 
-/// Squares and scores of the columns with one scale of the disturbances.
+/// Gram matrix and scores of the columns for one level of process noise.
 struct Level {
     scale: f64,
-    /// Beyond what is free in every set, and what inputs that follow the motion may tell.
+    /// With the nuisance directions and the impulses of feedback inputs eliminated.
     gram: Gram,
-    /// How much all values tell, and what their spreads add to the log-likelihood, where noise is what is left.
+    /// Effective sample size, and the log likelihood of zero residuals, if the noise variance is that of the residuals.
     free_noise: Option<[f64; 2]>,
 }
 
 impl Level {
-    /// Log-likelihood with a gain, and the spread of what is left as a part of that before. Over windows noise is what
-    /// a hypothesis leaves, found anew for each: half the squares are worth as much wherever one begins.
+    /// Log likelihood with a gain, and the ratio of the residual deviations after and before. Over windows the noise
+    /// variance of each hypothesis is that of its residuals, so that the likelihood depends on the ratio of squares.
     fn with_gain(&self, gain: f64) -> (f64, f64) {
         let before = self.gram.log_likelihood;
         let Some([told, of_spreads]) = self.free_noise else {
@@ -103,19 +103,19 @@ impl Level {
     }
 }
 
-/// Everything that values sets about a fit.
+/// The evaluation of sets about a fit.
 pub(super) struct Sets<'b, 'a> {
     bench: &'b Bench<'a>,
     columns: Vec<Column>,
     levels: Vec<Level>,
     /// Members of the fit.
     members: Vec<usize>,
-    /// Those that every set has: nothing is known of what would be without them.
+    /// Members of every set, as the linearisation does not apply without them.
     fixed: Vec<usize>,
     choices: Vec<Choice>,
-    /// Logarithms of the probabilities beforehand, by the number of choices.
+    /// Log prior probabilities, by the number of choices.
     prior: Vec<f64>,
-    /// What a value lacks to be the logarithm of a probability as fits have it.
+    /// Difference between the log posterior of the fit and its first-order value.
     offset: f64,
 }
 
@@ -162,7 +162,7 @@ impl<'b, 'a> Sets<'b, 'a> {
                 .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
             Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, (&nuisances, &columns)))
         });
-        // A filter that trusts the model more may lose a run.
+        // With less process noise the filter may diverge.
         let mut found = Vec::new();
         let mut failure = None;
         for level in levels {
@@ -204,7 +204,7 @@ impl<'b, 'a> Sets<'b, 'a> {
         Ok(sets)
     }
 
-    /// Candidates that leave anything of their own; of a vector any of its components.
+    /// Candidates that are not linearly dependent on the nuisance directions; for a vector all subsets of components.
     fn choices(&self) -> Vec<Choice> {
         let mut by_candidate: BTreeMap<usize, Vec<usize>> = BTreeMap::new();
         for (place, column) in self.columns.iter().enumerate() {
@@ -256,7 +256,7 @@ impl<'b, 'a> Sets<'b, 'a> {
         choices
     }
 
-    /// All sets of at most three choices that have sizes on their side.
+    /// All sets of at most three choices whose one-sided sizes have the right sign.
     fn all(&self) -> Vec<Set> {
         let mut sets: Vec<Set> = Vec::new();
         let mut best = vec![f64::NEG_INFINITY; self.choices.len()];
@@ -294,7 +294,7 @@ impl<'b, 'a> Sets<'b, 'a> {
         sets
     }
 
-    /// A set of choices with different names, at the level where it is most probable.
+    /// A set of choices with different names, at its most probable level of process noise.
     fn set(&self, choices: &[usize]) -> Option<Set> {
         let choices: Vec<&Choice> = choices.iter().map(|&place| &self.choices[place]).collect();
         let of_fixed = |choice: &&Choice| {
@@ -307,7 +307,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             return None;
         }
         let columns: Vec<usize> = choices.iter().flat_map(|own| own.columns.clone()).collect();
-        // A parameter scales what members do: where one is missing, its slope is another.
+        // The sensitivity to a parameter depends on the members: it does not apply to sets without one of them.
         let lacks = |member: &usize| {
             let mut own = choices.iter();
             !self.fixed.contains(member) && !own.any(|own| own.candidates.contains(member))
@@ -319,7 +319,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             return None;
         }
         let counts = choices.iter().map(|choice| choice.counts).sum::<usize>();
-        // What counts as several stands for these: as many of them would be told as such.
+        // An effect that counts as several is not combined beyond the largest number of effects.
         if choices.len() > 1 && counts > TOGETHER {
             return None;
         }
@@ -358,8 +358,8 @@ impl<'b, 'a> Sets<'b, 'a> {
         })
     }
 
-    /// Logarithm of the probability of some columns up to a constant, and their best sizes;
-    /// nothing where a size is on the wrong side, or none at all.
+    /// Log posterior of some columns up to a constant, and their best sizes;
+    /// `None` if a one-sided size has the wrong sign, or if the columns are linearly dependent.
     fn value(&self, level: &Level, columns: &[usize], log_prior: f64) -> Option<(f64, Solved)> {
         let mut solved = level.gram.solved(columns)?;
         let is_wrong = |(place, &column): (usize, &usize)| {
@@ -379,7 +379,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             } = self.columns[column];
             let (size, deviation) = (solved.sizes[place], solved.deviations[place]);
             let hardware = &self.bench.hardware;
-            // What has no value to be a slope by has no scale of hardware.
+            // Directions that are no values have no further prior.
             let unknown = self.columns[column]
                 .unknown
                 .unwrap_or(Unknown::Disturbance(0));
@@ -392,7 +392,7 @@ impl<'b, 'a> Sets<'b, 'a> {
         Some((value + log_prior, solved))
     }
 
-    /// The fit with one candidate more that brings a coordinate: such have no slopes.
+    /// Adds one candidate with an additional coordinate to the fit: these have no sensitivities.
     fn with_coordinates(
         &self,
         fitted: &Fitted,
@@ -429,13 +429,13 @@ fn most_counts(bench: &Bench<'_>) -> usize {
     counts.max().unwrap_or(1)
 }
 
-/// Whether nothing can be said of a fit without a member by its slopes alone.
+/// Whether the linearisation does not apply to a fit without this member.
 pub(super) fn is_fixed(bench: &Bench<'_>, member: usize) -> bool {
     let candidate = bench.candidate(member);
     candidate.brings.is_some() || matches!(candidate.acts, Acts::Slow(_))
 }
 
-/// The columns of all candidates that have slopes, with their directions.
+/// The columns of all candidates with sensitivities, with their directions.
 fn columns(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -493,7 +493,7 @@ fn columns(
     Ok((list, of_columns))
 }
 
-/// What is free in every set: what the nominal model has, and what fixed members and the shapes of others have.
+/// The nuisance directions: parameters of the nominal model, of fixed members, and shapes of other members.
 fn nuisances(
     bench: &Bench<'_>,
     fitted: &Fitted,
@@ -517,7 +517,7 @@ fn nuisances(
             });
             continue;
         }
-        // A parameter that is wrong in this fit stands within its tolerance in sets that do not have it.
+        // A parameter whose error is a member is within its tolerance in sets without that member.
         let mut wanted = bench.problem.wanted.iter();
         if let Some(own) = wanted.find(|own| own.unknown == free.unknown) {
             let expected = own.prior.map_or(0.0, |[value, _]| own.to_coordinate(value));
@@ -548,7 +548,7 @@ impl Level {
         }
         let priors: Vec<_> = nuisances.iter().map(|nuisance| nuisance.known).collect();
         let mut normal = Normal::of(tangent, &rest, bench.weight, &priors);
-        // What a command knows of the motion is no more than what the filter does not.
+        // The impulses of feedback inputs are bounded by the error of the filter.
         for (place, own) in (free + own..).zip(&tangent.added_squares) {
             normal.squares[(place, place)] += own;
         }

@@ -301,8 +301,8 @@ pub(super) fn term_scores(
 ) -> Result<Vec<Vec<(usize, TermScores)>>, DiagnoseError> {
     let (free, setup) = (moving(&fitted.fit), estimation.setup());
     let (along, count) = (shapes.along, shapes.count);
-    // The command of a controller depends on the error of the filter: impulses in proportion to its innovation are
-    // nuisances of every law.
+    // The command of a controller is correlated with the error of the filter: impulses in proportion to its innovation
+    // are nuisance directions of every law.
     let kicks = match along {
         Along::Disturbances => bench.input_innovations.kick_count(),
         Along::Channels => 0,

@@ -1,5 +1,5 @@
-//! A bench of windows: nothing follows what the model lacks, noise is what it leaves, and small differences do not
-//! count.
+//! The estimation problem of free-running predictions over windows: there is no process noise, the noise variance is
+//! that of the prediction errors, and small differences do not count.
 
 use appell_estimate::{Estimation, Free, Unknown};
 
@@ -10,19 +10,20 @@ use super::scales::deviation;
 use crate::identify::Problem;
 use appell_recordings::{DataSet, Run};
 
-/// Noise from which a search over windows begins, by these factors larger than that of the sensors: the likeliest.
+/// Factors on the sensor noise, of which the most likely one is the initial noise of a search over windows.
 const LARGER: [f64; 3] = [30.0, 6.0, 1.0];
-/// The same for the largest one: errors of a model over a window may be any.
+/// Factor on its upper limit: errors of a model over a window may be large.
 const MOST_LARGER: f64 = 1e4;
-/// A model predicts as long as its errors are smaller than this part of the motion.
+/// Largest error of a model that predicts, relative to the motion.
 const PREDICTS: f64 = 0.3;
-/// How much a window tells of each pseudo-velocity at most: what disturbs it is one history, however many rows it has.
+/// Largest effective sample size of a window for each pseudo-velocity: its disturbance is a single history, whatever
+/// the number of rows.
 const EACH: f64 = 4.0;
-/// Part of the mean squared error over windows that is one unit of log-likelihood: smaller differences do not count.
+/// Part of the mean square error over windows that is one unit of log likelihood: smaller differences do not count.
 pub(super) const TOLERANCE: f64 = 0.05;
 
 impl Bench<'_> {
-    /// The levels of the rig as a hypothesis has them.
+    /// The noise levels of a hypothesis.
     pub(super) fn levels(&self, fitted: &Fitted) -> Result<Vec<(Unknown, f64)>, DiagnoseError> {
         let levels = self.problem.levels.iter().map(|free| {
             let value = fitted.fit.values[fitted.layout.place(free.unknown)?];
@@ -31,8 +32,8 @@ impl Bench<'_> {
         levels.collect()
     }
 
-    /// For windows of the recordings of another bench. With the levels of the rig the filter finds the state from
-    /// which the model predicts.
+    /// For windows of the recordings of another problem. With these noise levels the filter estimates the state before
+    /// a prediction.
     pub(super) fn over(
         windows: &DataSet,
         (from, levels): (&Self, &[(Unknown, f64)]),
@@ -73,18 +74,18 @@ impl Bench<'_> {
         Ok(bench)
     }
 
-    /// The same with rows that count as those of another bench do.
+    /// The same with the likelihood weight and the effective sample size of another problem.
     pub(super) fn with_weight_of(mut self, other: &Bench<'_>) -> Self {
         (self.weight, self.told) = (other.weight, other.told);
         self
     }
 
-    /// Whether nothing follows what the model lacks.
+    /// Whether there is no process noise.
     pub(super) fn is_over_windows(&self) -> bool {
         self.told.is_finite()
     }
 
-    /// Noise of the channels where levels of noise hold what the model lacks; nothing where they are the noise.
+    /// Noise of the sensors, if the noise levels are those of prediction errors; otherwise `None`.
     pub(super) fn noise_of_sensors(&self) -> Option<Vec<f64>> {
         let noise = self
             .predicting
@@ -110,13 +111,13 @@ impl Bench<'_> {
         Ok(true)
     }
 
-    /// Part of the energy of errors that is left after a gain in log-likelihood: levels of noise that are free grow
-    /// with what is not explained.
+    /// Ratio of the mean square errors after and before a gain in log likelihood, as the noise levels are those of the
+    /// errors.
     pub(super) fn left(&self, gain: f64) -> f64 {
         (-2.0 * gain / self.told).exp()
     }
 
-    /// What another bench found, on the rows of this one, with the levels that are here.
+    /// A fit of another problem on the rows and with the noise levels of this one.
     pub(super) fn taken(&self, from: &Self, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
         let setup = self.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
@@ -145,7 +146,7 @@ impl Bench<'_> {
 }
 
 impl Bench<'_> {
-    /// Raises the noise from that of the sensors towards what the model leaves over windows, to begin a search.
+    /// Increases the initial noise of a search from that of the sensors towards the errors of the model over windows.
     pub(super) fn loosen(
         &self,
         estimation: &Estimation<'_>,
@@ -174,8 +175,7 @@ impl Bench<'_> {
         Ok(())
     }
 
-    /// What other values would gain over these windows, of a hypothesis that another bench found; and the hypothesis
-    /// with them.
+    /// Refits a hypothesis of another problem to these windows; returns the gain and the fit.
     pub(super) fn fitted_again(
         &self,
         from: &Self,
@@ -190,7 +190,7 @@ impl Bench<'_> {
     }
 }
 
-/// Number of windows that have no rows in common.
+/// Number of windows without common rows.
 fn independent(windows: &DataSet, whole: &[Run]) -> f64 {
     let duration = |run: &Run| run.times[run.times.len() - 1] - run.times[0];
     let longest = windows.runs.iter().map(duration).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! When and in which states the gap shows: where the best hypothesis makes the innovations more likely
-//! than the nominal model does.
+//! The gap in time and in the state space: where the innovations are more likely under the best hypothesis
+//! than under the nominal model.
 
 use std::collections::BTreeMap;
 
@@ -11,20 +11,20 @@ use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::report::{Region, Where, Window};
 
-/// Length of a window in s, and in steps, at least.
+/// Smallest length of a window in s, and in steps.
 const WINDOW_S: f64 = 0.5;
 const STEPS: f64 = 10.0;
 /// False discovery rate of the reported windows (Y. Benjamini and D. Yekutieli, *The control of the
 /// false discovery rate in multiple testing under dependency*, 2001).
 const FALSE_DISCOVERY_RATE: f64 = 0.05;
-/// Most windows that are reported.
+/// Largest number of reported windows.
 const MOST_WINDOWS: usize = 20;
-/// Cells of a variable, with as many samples each.
+/// Number of cells of a variable, with equally many samples.
 const CELLS: usize = 12;
-/// A cell stands out by so many standard deviations.
+/// Significance of the gain of a cell in standard deviations.
 const STANDS_OUT: f64 = 4.0;
 
-/// What a row gains in log-likelihood by the best hypothesis.
+/// The gain in log likelihood of a row by the best hypothesis.
 struct Sample {
     run: usize,
     row: usize,
@@ -32,7 +32,7 @@ struct Sample {
     gain: f64,
 }
 
-/// Tells the windows and the region of a gap whose equations are known.
+/// Adds the windows and the region to a gap whose equations are known.
 pub(super) fn tell(
     bench: &Bench<'_>,
     comparison: &Comparison,
@@ -80,13 +80,13 @@ pub(super) fn length(bench: &Bench<'_>) -> f64 {
     WINDOW_S.max(STEPS * bench.step)
 }
 
-/// Windows that gain more than chance gives, the largest first.
+/// Windows with a significant gain, the largest first.
 fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
     let mut sums: BTreeMap<(usize, u64), f64> = BTreeMap::new();
     let start = |run: usize| bench.recordings[run].times()[0];
     let length = length(bench);
     for one in gains {
-        // Windows are counted from zero and are few.
+        // The index of a window is small and not negative.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
         let index = ((one.t - start(one.run)) / length).max(0.0) as u64;
         *sums.entry((one.run, index)).or_default() += one.gain;
@@ -126,7 +126,7 @@ fn windows(bench: &Bench<'_>, gains: &[Sample], equation: &str) -> Vec<Window> {
         .collect()
 }
 
-/// The cell of a state or input whose gain stands out most.
+/// The cell of a state or input with the most significant gain.
 fn region(
     bench: &Bench<'_>,
     best: &Fitted,

@@ -5,8 +5,8 @@ use super::super::force_law::{Step, over_its_variable};
 use super::super::localise::force_unit;
 use super::super::report::{ForceHistory, MissingForce, Pictures, Trace, Where};
 use super::motions::{Motion, Motions};
+use super::report::added;
 use super::search::Findings;
-use super::told::added;
 use crate::effects::EffectModel;
 
 /// Largest number of intervals over all runs, the resolution of the plot.

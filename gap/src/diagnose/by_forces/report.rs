@@ -37,7 +37,7 @@ pub(super) fn report(
     set: &DataSet,
     found: &Findings,
     training: &Motions,
-    held_out: HeldOut<'_>,
+    held_out: &HeldOut<'_>,
     options: &Options,
 ) -> Result<Report, DiagnoseError> {
     let test = held_out.test;

@@ -153,22 +153,15 @@ fn by_filter(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    let mut first = judged((whole, fitted), model, &mut stage)?;
+    let first = judged((whole, fitted), model, &mut stage)?;
     let training = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
-    let rest = outside::rest(&first, whole)?;
-    let rest = rest.map(|rest| (rest.stretches(most_rows(&rest)), rest));
-    if let Some((fitted, rest)) = &rest {
-        stage("fitting without the windows that no hypothesis predicts");
-        if let Ok(again) = judged((rest, fitted), model, &mut stage) {
-            first = again.without_events();
-        }
-    }
+    let (judged, rest) = without_events(first, whole, model, &mut stage)?;
     let (fitted, rest) = (rest.as_ref()).map_or((fitted, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
         bench,
         screen,
         mut comparison,
-    } = first;
+    } = judged;
     stage("measuring the residual force");
     let test = set.only(Part::Test);
     // A law that cannot be written is listed as failed; the diagnosis continues.
@@ -259,6 +252,25 @@ fn by_filter(
         pictures,
         experiment,
         ..report
+    })
+}
+
+/// The hypotheses fitted without the windows that none of them predicts, with the segments and the runs of that fit;
+/// unchanged if there are no such windows or if that fit fails.
+fn without_events<'m>(
+    first: Judged<'m>,
+    whole: &DataSet,
+    model: &'m EffectModel,
+    stage: &mut impl FnMut(&'static str),
+) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
+    let Some(rest) = outside::rest(&first, whole)? else {
+        return Ok((first, None));
+    };
+    let fitted = rest.stretches(most_rows(&rest));
+    stage("fitting without the windows that no hypothesis predicts");
+    Ok(match judged((&rest, &fitted), model, stage) {
+        Ok(again) => (again.without_events(), Some((fitted, rest))),
+        Err(_) => (first, None),
     })
 }
 

@@ -244,6 +244,13 @@ impl Effect {
             let mut known = [EVERYWHERE, &site.words().concat()].concat();
             known.extend(variants.iter().flatten().map(|(word, _)| word.as_str()));
             unknown_words(&mut fields, table, text, &known);
+            if let Some(coordinates) = table.get("coordinates")
+                && !site.bears_coordinate()
+            {
+                let message =
+                    "an effect adds a coordinate only at a `driven_slider` or `driven_hinge`";
+                fields.tell(Code::NotAllowedHere, message, coordinates.span(), "");
+            }
         }
         let (Some(family), Some(site), Some((about, _)), false) =
             (family, site, about, fields.is_wrong())
@@ -438,6 +445,11 @@ mod tests {
             "mine/own.toml:3:8",
         );
         lacks("[effect]\nfamly = 'force'", "did you mean `family`?", "2:1");
+        lacks(
+            "[effect]\nfamily = 'actuator'\nsite = 'input'\nabout = 'slew rate of {site}'\n[coordinates]\nz = { unit = 'm' }",
+            "an effect adds a coordinate only at a `driven_slider`",
+            "mine/own.toml:5:",
+        );
     }
 
     #[test]

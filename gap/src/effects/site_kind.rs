@@ -110,6 +110,11 @@ impl SiteKind {
         self.row().map_or("", |(.., about)| about)
     }
 
+    /// Whether an effect there may add a coordinate.
+    pub(super) const fn bears_coordinate(self) -> bool {
+        matches!(self, Self::DrivenSlider | Self::DrivenHinge)
+    }
+
     fn row(self) -> Option<&'static (&'static str, Self, &'static str)> {
         WORDS.iter().find(|(_, kind, _)| *kind == self)
     }

@@ -87,7 +87,11 @@ fn a_payload_and_a_stop_are_found_and_written_as_the_text_says() {
     let again = folder.json("again.json");
     let floor = number(&again, "how_far/noise_floor");
     assert!(nominal(&again) < 0.1 * nominal(&report), "{}", told[3]);
-    assert!(nominal(&again) < 1.5 * floor, "{}", told[3]);
+    let predicted = number(&again, "how_far/refitted");
+    assert!(predicted < 1.5 * floor, "{}", told[3]);
+    // What the first diagnosis left open of the stop is a matter of tolerances, and no gap.
+    assert_eq!(again["verdict"], "no_gap", "{}", told[3]);
+    assert_eq!(again["which"][0]["effects"], serde_json::json!([]));
 }
 
 #[test]

@@ -4,6 +4,7 @@
 #[path = "../../recordings/tests/common/mod.rs"]
 mod common;
 
+mod again;
 mod base;
 mod by_forces;
 mod decay;

@@ -39,18 +39,36 @@ pub enum EditError {
 ///
 /// A value that the text already states is left as it is written.
 pub fn set_parameters(text: &str, values: &[(&str, f64)]) -> Result<String, EditError> {
+    set_numbers(text, "value", values)
+}
+
+/// Writes the standard deviations of parameters in the same way, also of those that have none yet.
+pub fn set_deviations(text: &str, deviations: &[(&str, f64)]) -> Result<String, EditError> {
+    set_numbers(text, STD, deviations)
+}
+
+/// The key of a standard deviation.
+const STD: &str = "std";
+
+/// Writes numbers, given in SI, under a key of parameters.
+fn set_numbers(text: &str, key: &str, numbers: &[(&str, f64)]) -> Result<String, EditError> {
     let mut document: DocumentMut =
         text.parse()
             .map_err(|e: toml_edit::TomlError| EditError::Syntax {
                 message: e.message().to_owned(),
             })?;
-    for (name, value) in values {
-        set_parameter(&mut document, name, *value)?;
+    for (name, number) in numbers {
+        set_number(&mut document, name, key, *number)?;
     }
     Ok(document.to_string())
 }
 
-fn set_parameter(document: &mut DocumentMut, name: &str, value: f64) -> Result<(), EditError> {
+fn set_number(
+    document: &mut DocumentMut,
+    name: &str,
+    key: &str,
+    value: f64,
+) -> Result<(), EditError> {
     if !value.is_finite() {
         return Err(EditError::NotFinite {
             name: name.to_owned(),
@@ -73,8 +91,12 @@ fn set_parameter(document: &mut DocumentMut, name: &str, value: f64) -> Result<(
         .and_then(Item::as_str)
         .and_then(|text| units::parse(text).ok())
         .ok_or_else(unreadable)?;
+    if key == STD && !table.contains_key(key) {
+        append(parameter, key, shortest(&unit, value));
+        return Ok(());
+    }
     let old = table
-        .get_mut("value")
+        .get_mut(key)
         .and_then(Item::as_value_mut)
         .ok_or_else(unreadable)?;
     let stated = match old {
@@ -89,6 +111,22 @@ fn set_parameter(document: &mut DocumentMut, name: &str, value: f64) -> Result<(
     *old = Value::from(shortest(&unit, value));
     *old.decor_mut() = decor;
     Ok(())
+}
+
+/// Adds a key to a table; the space before the brace of an inline one stays there.
+fn append(table: &mut Item, key: &str, number: f64) {
+    let mut number = Value::from(number);
+    number.decor_mut().set_prefix(" ");
+    if let Some(inline) = table.as_inline_table_mut()
+        && let Some((_, last)) = inline.iter_mut().last()
+    {
+        let space = last.decor().suffix().cloned();
+        last.decor_mut().set_suffix("");
+        number.decor_mut().set_suffix(space.unwrap_or_default());
+    }
+    if let Some(table) = table.as_table_like_mut() {
+        table.insert(key, Item::Value(number));
+    }
 }
 
 /// The number with the fewest digits that means `value` when it is read in `unit`.
@@ -125,6 +163,17 @@ unit  = "N/m"
             .replace("35, ", "35.2, ")
             .replace("1_000", "1250.0");
         assert_eq!(edited, Ok(expected));
+    }
+
+    #[test]
+    fn deviations_are_written_where_there_were_none_and_replaced_where_there_were() {
+        let edited = set_deviations(SPEC, &[("m", 0.25), ("k", 12.0)]).unwrap();
+        let expected = SPEC
+            .replace("\"mass\" }", "\"mass\", std = 0.25 }")
+            .replace("\"N/m\"\n", "\"N/m\"\nstd = 12.0\n");
+        assert_eq!(edited, expected);
+        let again = set_deviations(&edited, &[("m", 0.5)]);
+        assert_eq!(again, Ok(expected.replace("0.25", "0.5")));
     }
 
     #[test]

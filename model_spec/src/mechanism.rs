@@ -88,6 +88,8 @@ pub struct Parameter {
     pub at_least: Option<f64>,
     /// Largest admissible value in SI.
     pub at_most: Option<f64>,
+    /// Standard deviation to which the value is known, in SI; zero if it is known exactly.
+    pub std: Option<f64>,
 }
 
 /// A generalised coordinate.

@@ -85,12 +85,8 @@ fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
     }
     let runs = stretches::uninterrupted(runs, &channels, &mut findings);
     let own = mechanism.parameters.iter();
-    let parameters = own.map(|parameter| Parameter {
-        value: parameter.value,
-        std: None,
-    });
     let mut set = DataSet {
-        parameters: parameters.collect(),
+        parameters: own.map(Parameter::stated).collect(),
         spec,
         mechanism,
         description: String::new(),

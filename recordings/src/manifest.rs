@@ -153,12 +153,7 @@ fn parameters(
     mechanism: &Mechanism,
 ) -> Vec<Parameter> {
     let own = mechanism.parameters.iter();
-    let mut parameters: Vec<Parameter> = own
-        .map(|parameter| Parameter {
-            value: parameter.value,
-            std: None,
-        })
-        .collect();
+    let mut parameters: Vec<Parameter> = own.map(Parameter::stated).collect();
     let Some(table) = fields.section(table, "parameters") else {
         return parameters;
     };

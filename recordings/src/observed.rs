@@ -33,11 +33,8 @@ impl DataSet {
         let own = |parameter: &mechanism::Parameter| {
             let mut names = self.mechanism.parameters.iter().map(|p| &p.label.name);
             let known = names.position(|name| *name == parameter.label.name);
-            known.map_or(
-                Parameter {
-                    value: parameter.value,
-                    std: None,
-                },
+            known.map_or_else(
+                || Parameter::stated(parameter),
                 |index| self.parameters[index],
             )
         };

@@ -1,6 +1,6 @@
 //! A data set: a mechanism, the parameters of a rig, channels and runs.
 
-use appell_spec::Mechanism;
+use appell_spec::{Mechanism, mechanism};
 
 use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
@@ -42,6 +42,16 @@ pub struct Parameter {
     /// Tolerance in SI, one standard deviation; zero if the value is known exactly, `None` if not
     /// stated.
     pub std: Option<f64>,
+}
+
+impl Parameter {
+    /// As the spec states it.
+    pub(crate) fn stated(parameter: &mechanism::Parameter) -> Self {
+        Self {
+            value: parameter.value,
+            std: parameter.std,
+        }
+    }
 }
 
 /// Role of a run.

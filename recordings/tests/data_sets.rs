@@ -53,6 +53,36 @@ fn a_data_set_is_what_its_description_says() {
 }
 
 #[test]
+fn a_tolerance_of_the_spec_counts_where_the_description_states_none() {
+    let folder = Folder::new();
+    let shipped = library().iter().find(|(name, _)| *name == "pendulum");
+    let (_, spec) = shipped.unwrap();
+    let text = spec
+        .text
+        .replace("about = \"mass of the rod\"", "std = 0.3")
+        .replace(
+            "value = 0.5,  unit = \"m\"",
+            "value = 500, unit = \"mm\", std = 2",
+        );
+    folder.write("own.toml", text);
+    let description = pendulum(SWING, &["a.csv"], &[]).replace("\"pendulum\"", "\"own.toml\"");
+    folder.write("recording.toml", description);
+    folder.write("a.csv", swing(200, 1, 1e-3));
+    let set = folder.read().unwrap();
+    let names = set.mechanism.parameters.iter().map(|p| &*p.label.name);
+    let stds: Vec<_> = names
+        .zip(set.parameters.iter().map(|own| own.std))
+        .collect();
+    let stated = [
+        ("m", Some(0.1)),
+        ("l", Some(0.002)),
+        ("I", None),
+        ("g", None),
+    ];
+    assert_eq!(stds, stated);
+}
+
+#[test]
 fn values_are_in_si_whatever_the_unit_of_the_file() {
     let folder = Folder::new();
     let channels = "theta = { measures = \"theta\", unit = \"deg\", noise_std = 0.1 }\n\

@@ -193,6 +193,7 @@ fn unknown(name: String) -> Parameter {
         value: 1.0,
         at_least: None,
         at_most: None,
+        std: None,
     }
 }
 

@@ -78,6 +78,9 @@ pub fn against(
         };
         let Some(own) = told.parameters.iter().position(|one| one.name == *name) else {
             set.parameters[place].value = known.parameters[place].value + moved;
+            if changes.brought.iter().any(|one| one.name == *name) {
+                set.parameters[place].std = None;
+            }
             continue;
         };
         known.parameters[place].value = told.parameters[own].value;

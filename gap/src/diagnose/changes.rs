@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use appell_estimate::{Coordinate, Measured, Unknown};
 use appell_spec::compose::Composition;
-use appell_spec::edit::{EditError, set_parameters};
+use appell_spec::edit::{EditError, set_deviations, set_parameters};
 use appell_spec::mechanism::{Parameter, ParameterId};
-use appell_spec::units;
+use appell_spec::units::{self, Unit};
 use toml_edit::{DocumentMut, Item};
 
 use super::bench::Bench;
@@ -182,26 +182,30 @@ fn parameter_names(text: &str) -> Result<Vec<String>, EditError> {
 }
 
 impl Equations<'_> {
-    /// The items of the members, with the fitted sizes and shapes.
+    /// The items of the members, with the fitted sizes and shapes, each with its standard deviation as tolerance.
     fn items(&self) -> Result<String, DiagnoseError> {
         let members: Vec<Candidate> = self.members.iter().copied().cloned().collect();
         let text = with_candidates("", &members).map_err(ModelError::from)?;
         let info = self.effects.info();
-        let mut values: Vec<(&str, f64)> = Vec::new();
+        let [mut values, mut deviations]: [Vec<(&str, f64)>; 2] = [Vec::new(), Vec::new()];
         for candidate in &members {
             for (index, part) in self.effects.own(candidate) {
                 let parameter = &info.parameters[index];
+                let own = &self.effects.mechanism.parameters[ParameterId::new(index)];
                 let value = match part {
                     Part::Switch => 1.0,
                     Part::Size | Part::Shape(_) | Part::Term(_) => {
-                        let parameter = &self.effects.mechanism.parameters[ParameterId::new(index)];
-                        rounded(self.values[index], self.deviations[index], parameter)
+                        rounded(self.values[index], self.deviations[index], own)
                     }
                 };
                 values.push((&parameter.name, value));
+                if let Some(std) = self.deviations[index].filter(|std| std.is_finite()) {
+                    deviations.push((&parameter.name, to_digits(std, 2, &own.label.unit)));
+                }
             }
         }
-        Ok(set_parameters(&text, &values).map_err(ModelError::from)?)
+        let text = set_parameters(&text, &values).map_err(ModelError::from)?;
+        Ok(set_deviations(&text, &deviations).map_err(ModelError::from)?)
     }
 
     /// Sizes and shapes of the members.
@@ -268,12 +272,16 @@ fn deviation(fitted: &Fitted, index: usize) -> Option<f64> {
     })
 }
 
+/// A value in SI, rounded in its unit to so many digits after the first.
+fn to_digits(value: f64, digits: usize, unit: &Unit) -> f64 {
+    let text = format!("{:.digits$e}", unit.from_si(value));
+    unit.read(&text).unwrap_or(value)
+}
+
 /// A value in SI, rounded to the significant digits in its unit and two more; within the limits.
 fn rounded(value: f64, deviation: Option<f64>, parameter: &Parameter) -> f64 {
     /// Number of digits without a standard deviation.
     const DIGITS: usize = 6;
-    let unit = &parameter.label.unit;
-    let number = unit.from_si(value);
     let digits = deviation
         .map(|std| (value / std).abs())
         .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
@@ -284,8 +292,7 @@ fn rounded(value: f64, deviation: Option<f64>, parameter: &Parameter) -> f64 {
             let digits = digits as usize;
             digits + 2
         });
-    let text = format!("{number:.digits$e}");
-    let number = unit.read(&text).unwrap_or(value);
+    let number = to_digits(value, digits, &parameter.label.unit);
     let number = parameter.at_least.map_or(number, |limit| number.max(limit));
     parameter.at_most.map_or(number, |limit| number.min(limit))
 }
@@ -310,6 +317,7 @@ mod tests {
             value: 0.1,
             at_least: Some(0.053_232),
             at_most: Some(0.9994),
+            std: None,
         };
         let rounded = |value| rounded(value, Some(0.05), &parameter);
         assert!((rounded(0.5) - 0.5).abs() < 1e-12);

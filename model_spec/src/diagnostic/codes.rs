@@ -152,7 +152,7 @@ codes! {
         "`inf`, `nan` and numbers beyond double precision are not allowed."
     ValueOutsideLimits Spec "value-outside-limits"
         "A value is outside its own limits"
-        "A parameter lies between `at_least` and `at_most`; an initial value lies inside the range of its coordinate."
+        "A parameter lies between `at_least` and `at_most`, and its `std` is not negative; an initial value lies inside the range of its coordinate."
     EmptyRange Spec "empty-range"
         "An empty range"
         "The lower limit must be below the upper limit."

@@ -72,6 +72,12 @@ pub static SECTIONS: &[Section] = &[
                     Need::Optional,
                     "Largest admissible value.",
                 ),
+                key(
+                    "std",
+                    Form::Number,
+                    Need::Optional,
+                    "Standard deviation to which the value is known: the tolerance of recordings that state none.",
+                ),
             ],
             None,
         ),

@@ -72,11 +72,21 @@ impl<'a> Resolver<'a> {
                 self.outside(&label.name, words, place.span, limit.map(|l| l.span));
             }
         }
+        let std = self.number_under(item, "std", &label.unit);
+        if let (Some(std), Some(place)) = (std, item.number("std"))
+            && std < 0.0
+        {
+            let message = "`std` is a standard deviation, which is not negative";
+            self.tell(
+                Diagnostic::error(Code::ValueOutsideLimits, message).at(place.span, "this value"),
+            );
+        }
         Parameter {
             label,
             value: value.unwrap_or(0.0),
             at_least,
             at_most,
+            std,
         }
     }
 

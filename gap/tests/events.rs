@@ -5,7 +5,7 @@
 use std::fmt::Write as _;
 
 use crate::common::Folder;
-use appell_gap::diagnose::{Options, Report, diagnose};
+use appell_gap::diagnose::{GapVerdict, Options, Report, diagnose};
 use appell_test_kit::Random;
 
 const SPEC: &str = r#"
@@ -54,6 +54,10 @@ struct Rig {
     push: (f64, [f64; 2]),
     /// Rows for which a command is held; or it runs on smoothly.
     held: Option<usize>,
+    /// Standard deviation in N of a gust with a correlation time of half a second.
+    gust: f64,
+    /// Whether a digital controller commands the force by the recorded positions.
+    is_controlled: bool,
 }
 
 const RIGHT: Rig = Rig {
@@ -63,6 +67,8 @@ const RIGHT: Rig = Rig {
     friction: 0.0,
     push: (0.0, [0.0; 2]),
     held: Some(20),
+    gust: 0.0,
+    is_controlled: false,
 };
 
 fn run(rig: &Rig, seed: u64) -> String {
@@ -75,20 +81,34 @@ fn run(rig: &Rig, seed: u64) -> String {
         2.0 * waves.sum::<f64>()
     };
     let mut text = "t,y,u\n".to_owned();
-    let (mut y, mut v, mut level) = (0.0, 0.0, 0.0);
+    let (mut y, mut v, mut level, mut gust) = (0.0, 0.0, 0.0, 0.0);
+    let (mut before, mut rate, mut goal) = (0.0, 0.0, 0.0);
     let h = STEP / f64::from(PARTS);
     for row in 0..(SECONDS / STEP) as usize {
         let t = row as f64 * STEP;
+        let noise: f64 = (0..3).map(|_| dice.between(-1.0, 1.0)).sum();
+        let reading = y + NOISE * noise;
         match rig.held {
+            _ if rig.is_controlled => {
+                if row % 100 == 0 {
+                    goal = dice.between(-0.3, 0.3);
+                }
+                rate += 0.3 * ((reading - before) / STEP - rate);
+                before = reading;
+                level = 60.0 * (goal - reading) - 8.0 * rate;
+            }
             Some(rows) if row % rows == 0 => level = dice.between(-6.0, 6.0),
             Some(_) => {}
             None => level = smooth(t),
         }
-        let noise: f64 = (0..3).map(|_| dice.between(-1.0, 1.0)).sum();
-        writeln!(text, "{t:.3},{:.7},{level:.6}", y + NOISE * noise).unwrap();
+        let kick: f64 = (0..3).map(|_| dice.between(-1.0, 1.0)).sum();
+        let keeps = (-STEP / 0.5_f64).exp();
+        gust = keeps * gust + rig.gust * (1.0 - keeps * keeps).sqrt() * kick;
+        writeln!(text, "{t:.3},{reading:.7},{level:.6}").unwrap();
         for part in 0..PARTS {
             let t = t + (f64::from(part) + 0.5) * h;
-            let force = if rig.held.is_some() { level } else { smooth(t) };
+            let is_held = rig.is_controlled || rig.held.is_some();
+            let force = gust + if is_held { level } else { smooth(t) };
             let (push, [from, to]) = rig.push;
             let push = if (from..to).contains(&t) { push } else { 0.0 };
             let dry = rig.friction * (v / 1e-3_f64).tanh();
@@ -192,4 +212,17 @@ fn a_smooth_command_that_is_read_as_held_fits_better_along_lines() {
         panic!("{:?}", report.interpolated);
     };
     assert_eq!(found.input, "u");
+}
+
+/// A controller answers a gust that lasts: its command is correlated with the force that lacks, and seems to act too
+/// weakly, too late or on something else.
+#[test]
+fn gusts_in_a_closed_loop_are_process_noise() {
+    let rig = Rig {
+        gust: 0.5,
+        is_controlled: true,
+        ..RIGHT
+    };
+    let report = diagnosed(&rig, &rig, [0.01, 0.2, 0.05]);
+    assert_eq!(report.verdict, GapVerdict::NoGap, "{:?}", report.which);
 }

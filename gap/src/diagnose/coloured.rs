@@ -2,8 +2,7 @@
 //!
 //! A gust lasts for many rows, and a controller answers it: with white process noise its command seems to act too
 //! weakly, too late, or on another coordinate (L. Ljung, *System Identification*, 2nd edition, 1999, section 13.4, on
-//! the bias of closed loops with a wrong noise model). Where innovations are correlated, the most probable hypotheses
-//! are therefore fitted once more with a force along every pseudo-velocity that walks at random.
+//! the bias of closed loops with a wrong noise model). The most probable hypotheses are therefore fitted once more with a force along every pseudo-velocity that walks at random.
 
 use appell_estimate::{Disturbance, Estimation, Free, Setup, Unknown};
 
@@ -17,8 +16,6 @@ use crate::effects::Candidate;
 
 /// Number of hypotheses that are fitted again, in addition to the nominal model.
 const COMPARED: usize = 2;
-/// Part of the samples that is independent above which process noise is white.
-const WHITE: f64 = 0.9;
 /// Initial rates of the forces that are tried, relative to the forces of the mechanism over one second.
 const RATES: [f64; 3] = [0.01, 0.1, 1.0];
 /// The largest rate relative to these forces; the range of a level ends there.
@@ -30,7 +27,7 @@ pub(super) fn weighed(
     mut comparison: Comparison,
 ) -> Result<Comparison, DiagnoseError> {
     let is_null = comparison.best().members.is_empty() && !comparison.leads_unknown();
-    if bench.is_over_windows() || is_null || comparison.independent > WHITE {
+    if bench.is_over_windows() || is_null {
         return Ok(comparison);
     }
     let mut compared: Vec<usize> = (0..comparison.fits.len().min(COMPARED)).collect();

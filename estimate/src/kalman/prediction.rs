@@ -61,14 +61,14 @@ impl Estimation<'_> {
 
 impl Estimation<'_> {
     /// Variances in SI of the errors of [`Estimation::predictions`] if the model and its levels are
-    /// correct, each with its channel.
+    /// correct, each with its origin and its channel.
     pub fn expected_errors(
         &self,
         values: &[f64],
         run: usize,
         horizon: f64,
         origins: &[usize],
-    ) -> Result<Vec<(usize, f64)>, EstimateError> {
+    ) -> Result<Vec<(usize, usize, f64)>, EstimateError> {
         self.check(values)?;
         self.layout().place(Unknown::Initial { run, state: 0 })?;
         let recording = &self.recordings()[run];
@@ -104,7 +104,7 @@ impl Estimation<'_> {
                 if ahead.act(recording, action).is_ok() {
                     for innovation in ahead.samples.iter().map(|sample| sample.innovation) {
                         if std::mem::take(&mut open[innovation.channel]) {
-                            expected.push((innovation.channel, innovation.variance));
+                            expected.push((row, innovation.channel, innovation.variance));
                         }
                     }
                 }

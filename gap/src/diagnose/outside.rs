@@ -6,6 +6,8 @@
 //! do not affect (P. J. Rousseeuw and C. Croux, *Alternatives to the median absolute deviation*, Journal of the American
 //! Statistical Association 88, 1993, on scales by quantiles).
 
+use std::collections::BTreeMap;
+
 use appell_estimate::{Estimation, Recording};
 use appell_recordings::{DataSet, Part};
 
@@ -98,7 +100,7 @@ pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSe
     Ok((!cut.is_empty()).then(|| whole.without(&cut)))
 }
 
-/// Moduli of the prediction errors.
+/// Moduli of the prediction errors, in expected standard deviations.
 fn errors(
     (bench, fitted): (&Bench<'_>, &Fitted),
     recordings: &[Recording],
@@ -116,12 +118,21 @@ fn errors(
         let most = (EACH * duration / horizon).ceil() as usize;
         let origins = origins(recording, most.clamp(1, MOST));
         let predicted = estimation.predictions(&values, run, horizon, &origins)?;
-        errors.extend(predicted.into_iter().map(|one| Error {
-            run,
-            from: times[one.origin],
-            to: times[one.row],
-            times: one.residual.abs(),
-            channel: one.channel,
+        // Near an unstable equilibrium small errors grow.
+        let expected = estimation.expected_errors(&values, run, horizon, &origins)?;
+        let expected: BTreeMap<(usize, usize), f64> = expected
+            .into_iter()
+            .map(|(origin, channel, variance)| ((origin, channel), variance.sqrt()))
+            .collect();
+        errors.extend(predicted.into_iter().filter_map(|one| {
+            let deviation = expected.get(&(one.origin, one.channel))?;
+            Some(Error {
+                run,
+                from: times[one.origin],
+                to: times[one.row],
+                times: one.residual.abs() / deviation,
+                channel: one.channel,
+            })
         }));
     }
     Ok(errors)

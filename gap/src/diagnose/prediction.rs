@@ -177,7 +177,7 @@ pub(super) fn floor(
     let (mut squares, mut count) = (0.0, 0.0_f64);
     for (run, recording) in recordings.iter().enumerate() {
         let origins = origins(recording, EXPECTED_FROM);
-        for (channel, variance) in estimation.expected_errors(&values, run, horizon, &origins)? {
+        for (_, channel, variance) in estimation.expected_errors(&values, run, horizon, &origins)? {
             if noise[channel].is_finite() {
                 squares += variance / noise[channel].powi(2);
                 count += 1.0;

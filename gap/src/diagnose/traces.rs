@@ -123,7 +123,7 @@ impl HeldOut {
         let values = taken_over(bench, fitted, &estimation)?;
         let origins = origins(&self.recordings[0], EXPECTED_FROM);
         let mut sums = vec![(0.0, 0.0); bench.measured.len()];
-        for (channel, variance) in estimation.expected_errors(&values, 0, AHEAD, &origins)? {
+        for (_, channel, variance) in estimation.expected_errors(&values, 0, AHEAD, &origins)? {
             sums[channel].0 += variance;
             sums[channel].1 += 1.0;
         }

@@ -264,13 +264,16 @@ fn without_events<'m>(
     stage: &mut impl FnMut(&'static str),
 ) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
     let Some(rest) = outside::rest(&first, whole)? else {
-        return Ok((first, None));
+        return Ok((first.with_coloured_noise()?, None));
     };
     let fitted = rest.stretches(most_rows(&rest));
     stage("fitting without the windows that no hypothesis predicts");
     Ok(match judged((&rest, &fitted), model, stage) {
-        Ok(again) => (again.without_events(), Some((fitted, rest))),
-        Err(_) => (first, None),
+        Ok(again) => {
+            let again = again.with_coloured_noise()?;
+            (again.without_events(), Some((fitted, rest)))
+        }
+        Err(_) => (first.with_coloured_noise()?, None),
     })
 }
 
@@ -340,7 +343,5 @@ fn judged_beside<'m>(
     let known = before.and_then(|before| known(&bench, before).ok());
     let hypotheses = (nominal, known.into_iter().collect());
     let judged = horizon::judged((bench, hypotheses, screen), over, stage)?;
-    let mut judged = horizon::lengthened(judged, (&levels, whole), stage)?;
-    judged.comparison = coloured::weighed(&judged.bench, judged.comparison)?;
-    Ok(judged)
+    horizon::lengthened(judged, (&levels, whole), stage)
 }

@@ -9,12 +9,12 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
-engine 10
+engine 11
+viscous_friction@theta+spring@theta 15.1
+spring@theta 9.5
 unknown NaN
-spring@theta 78.1
-viscous_friction@theta+spring@theta 80.1
-coulomb_friction@theta+spring@theta 79.7
  0.0
+coulomb_friction@theta+spring@theta -40.3
 ";
 
 #[test]

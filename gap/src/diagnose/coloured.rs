@@ -2,7 +2,8 @@
 //!
 //! A gust lasts for many rows, and a controller answers it: with white process noise its command seems to act too
 //! weakly, too late, or on another coordinate (L. Ljung, *System Identification*, 2nd edition, 1999, section 13.4, on
-//! the bias of closed loops with a wrong noise model). The most probable hypotheses are therefore fitted once more with a force along every pseudo-velocity that walks at random.
+//! the bias of closed loops with a wrong noise model). The most probable hypotheses are therefore fitted once more with
+//! a force along every pseudo-velocity that walks at random.
 
 use appell_estimate::{Disturbance, Estimation, Free, Setup, Unknown};
 
@@ -11,6 +12,7 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::evidence::{Evidence, Fitted};
 use super::feedback::for_kicks;
+use super::horizon::Judged;
 use super::localise::force_unit;
 use crate::effects::Candidate;
 
@@ -21,33 +23,40 @@ const RATES: [f64; 3] = [0.01, 0.1, 1.0];
 /// The largest rate relative to these forces; the range of a level ends there.
 const LARGEST: f64 = 1e3;
 
-/// The comparison with the better of both kinds of process noise for each of these hypotheses.
-pub(super) fn weighed(
-    bench: &Bench<'_>,
-    mut comparison: Comparison,
-) -> Result<Comparison, DiagnoseError> {
-    let is_null = comparison.best().members.is_empty() && !comparison.leads_unknown();
-    if bench.is_over_windows() || is_null {
-        return Ok(comparison);
+impl Judged<'_> {
+    /// One-step predictions that find a gap, with coloured process noise as well. Over windows there is no process
+    /// noise.
+    pub(super) fn with_coloured_noise(mut self) -> Result<Self, DiagnoseError> {
+        if !self.bench.is_over_windows() && !self.comparison.is_null() {
+            self.comparison = weighed(&self.bench, self.comparison)?;
+        }
+        Ok(self)
     }
+}
+
+/// The comparison with the better of both kinds of process noise for each of these hypotheses.
+fn weighed(bench: &Bench<'_>, mut comparison: Comparison) -> Result<Comparison, DiagnoseError> {
     let mut compared: Vec<usize> = (0..comparison.fits.len().min(COMPARED)).collect();
     if !compared.contains(&comparison.nominal) {
         compared.push(comparison.nominal);
     }
-    let mut is_better = false;
-    for place in compared {
+    let mut gains = Vec::new();
+    for &place in &compared {
+        // Where the filter of one of them diverges, this noise compares nothing.
+        let Ok(gain) = gain(bench, &comparison.fits[place].0) else {
+            return Ok(comparison);
+        };
+        gains.push(gain.max(0.0));
+    }
+    if gains.iter().all(|gain| *gain <= 0.0) {
+        return Ok(comparison);
+    }
+    for (place, gain) in compared.into_iter().zip(gains) {
         let fitted = &mut comparison.fits[place].0;
-        // A filter that loses the recordings says nothing for this noise.
-        let gain = gain(bench, fitted).unwrap_or(0.0);
-        is_better |= gain > 0.0;
-        fitted.coloured = gain.max(0.0);
-        fitted.evidence.log_likelihood += fitted.coloured;
+        fitted.coloured = gain;
+        fitted.evidence.log_likelihood += gain;
     }
-    if is_better {
-        comparison.again(bench)
-    } else {
-        Ok(comparison)
-    }
+    comparison.again(bench)
 }
 
 /// The gain in log evidence of a hypothesis by coloured process noise.
@@ -143,7 +152,7 @@ fn begun(
             for run in 0..estimation.recordings().len() {
                 let state = walk.state;
                 values[layout.place(Unknown::Initial { run, state })?] = 0.0;
-                // What it walks in a second.
+                // The standard deviation of its change in one second.
                 values[layout.place(Unknown::Spread { run, state })?] = level;
             }
         }

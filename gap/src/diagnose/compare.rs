@@ -52,6 +52,11 @@ impl Comparison {
         &self.fits[0].0
     }
 
+    /// Whether there is no gap.
+    pub(super) fn is_null(&self) -> bool {
+        self.best().members.is_empty() && !self.leads_unknown()
+    }
+
     /// Gain of the most probable hypothesis over the nominal model: in likelihood or in evidence, whichever is larger,
     /// as the nominal parameters may imitate the effect at the expense of their prior.
     pub(super) fn explained(&self) -> f64 {

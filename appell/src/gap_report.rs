@@ -2,7 +2,10 @@
 
 use std::path::Path;
 
-use appell_gap::diagnose::{Ahead, Change, Changes, ENGINE, Law, Refitted, Report, SignalEffect};
+use appell_gap::diagnose::{
+    Ahead, Change, Changes, ENGINE, Interpolated, Law, Refitted, Report, SignalEffect, Tolerances,
+    Window,
+};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -16,13 +19,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
     let equations = report.place.equations.iter().map(|e| {
         json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
     });
-    let windows = report.place.windows.iter().map(|w| {
-        let mut window = json!({ "run": w.run, "from_s": w.from, "to_s": w.to, "equation": w.equation, "z": w.z });
-        if let Some(channel) = &w.unexplained {
-            window["unexplained"] = json!(channel);
-        }
-        window
-    });
+    let windows = report.place.windows.iter().map(window);
     let region = report
         .place
         .region
@@ -83,12 +80,8 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "gain": hint.gain,
             "log_bayes_factor": hint.log_bayes_factor,
         })).collect::<Vec<_>>(),
-        "tolerances": report.tolerances.map(|found| json!({
-            "factor": found.factor, "log_bayes_factor": found.log_bayes_factor,
-        })),
-        "interpolated": report.interpolated.iter().map(|found| json!({
-            "input": found.input, "log_likelihood": found.log_likelihood,
-        })).collect::<Vec<_>>(),
+        "tolerances": report.tolerances.map(tolerances),
+        "interpolated": report.interpolated.iter().map(interpolated).collect::<Vec<_>>(),
         "by_simulation": report.is_by_simulation,
         "by_forces": report.is_by_forces,
         "rows": { "fitted": report.rows[0], "all": report.rows[1] },
@@ -360,4 +353,22 @@ impl Hypothesis {
             signal_effects: signal_effects.collect(),
         }
     }
+}
+
+fn window(window: &Window) -> Value {
+    let mut fields = json!({
+        "run": window.run, "from_s": window.from, "to_s": window.to, "equation": window.equation, "z": window.z,
+    });
+    if let Some(channel) = &window.unexplained {
+        fields["unexplained"] = json!(channel);
+    }
+    fields
+}
+
+fn tolerances(found: Tolerances) -> Value {
+    json!({ "factor": found.factor, "log_bayes_factor": found.log_bayes_factor })
+}
+
+fn interpolated(found: &Interpolated) -> Value {
+    json!({ "input": found.input, "log_likelihood": found.log_likelihood })
 }

@@ -83,6 +83,8 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
         law: None,
         change: None,
         hints: Vec::new(),
+        tolerances: None,
+        interpolated: Vec::new(),
         found: Vec::new(),
         horizons: Vec::new(),
         pictures: None,

@@ -264,16 +264,13 @@ fn without_events<'m>(
     stage: &mut impl FnMut(&'static str),
 ) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
     let Some(rest) = outside::rest(&first, whole)? else {
-        return Ok((first.with_coloured_noise()?, None));
+        return Ok((first, None));
     };
     let fitted = rest.stretches(most_rows(&rest));
     stage("fitting without the windows that no hypothesis predicts");
     Ok(match judged((&rest, &fitted), model, stage) {
-        Ok(again) => {
-            let again = again.with_coloured_noise()?;
-            (again.without_events(), Some((fitted, rest)))
-        }
-        Err(_) => (first.with_coloured_noise()?, None),
+        Ok(again) => (again.without_events(), Some((fitted, rest))),
+        Err(_) => (first, None),
     })
 }
 
@@ -343,5 +340,10 @@ fn judged_beside<'m>(
     let known = before.and_then(|before| known(&bench, before).ok());
     let hypotheses = (nominal, known.into_iter().collect());
     let judged = horizon::judged((bench, hypotheses, screen), over, stage)?;
-    horizon::lengthened(judged, (&levels, whole), stage)
+    let judged = horizon::lengthened(judged, (&levels, whole), stage)?;
+    // An event is no process noise.
+    if outside::rest(&judged, whole)?.is_some() {
+        return Ok(judged);
+    }
+    judged.with_coloured_noise()
 }

@@ -49,6 +49,9 @@ pub(super) fn windows(
     set: &DataSet,
     recordings: &[Recording],
 ) -> Result<Vec<Window>, DiagnoseError> {
+    if recordings.is_empty() {
+        return Ok(Vec::new());
+    }
     let mut errors = errors((bench, fitted), recordings)?;
     let mut channels = 0;
     for error in &errors {

@@ -164,27 +164,6 @@ fn a_payload_is_found_with_its_mass_and_place() {
 }
 
 #[test]
-fn an_actuator_that_is_weaker_one_way_is_found_with_both_gains() {
-    let spec = shipped("pendulum");
-    let with = |gains: &str| {
-        driven(&spec).with(&format!(
-            "[loads.more]\nkind = \"generalized\"\ncoordinate = \"theta\"\nforce = \"{gains}\"\n"
-        ))
-    };
-    let both = [("forward", 0.08), ("backward", -0.15)];
-    let folder = with("-0.035*tau + 0.115*abs(tau)");
-    assert_found(&folder, "directional_gain@tau", &both);
-    // The same both ways is a plain gain, or masses that are as much smaller.
-    let (top, report) = leading(&with("0.1*tau"));
-    assert_eq!(
-        top["effects"],
-        json!(["actuator_gain@tau"]),
-        "{:#}",
-        report["which"]
-    );
-}
-
-#[test]
 fn a_servo_that_is_limited_is_found_with_its_limit() {
     let servo = |force: &str| {
         shipped("pendulum")

@@ -186,7 +186,7 @@ fn assert_counted_apart(book: &Value) {
 }
 
 /// Effects of the plane that no ride has; others take long beside a model that falls over.
-const WITHOUT: [&str; 26] = [
+const WITHOUT: [&str; 25] = [
     "directional_friction",
     "stop",
     "coupling",
@@ -212,7 +212,6 @@ const WITHOUT: [&str; 26] = [
     "actuator_saturation",
     "actuator_dead_zone",
     "actuator_gain",
-    "directional_gain",
 ];
 
 /// The planar model beside rides that are planar, and beside an eight.

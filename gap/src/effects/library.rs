@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which the library is listed.
-const FILES: [(&str, &str); 34] = files![
+const FILES: [(&str, &str); 33] = files![
     "viscous_friction",
     "coulomb_friction",
     "directional_friction",
@@ -29,7 +29,6 @@ const FILES: [(&str, &str); 34] = files![
     "added_inertia_sliding",
     "added_inertia_turning",
     "actuator_gain",
-    "directional_gain",
     "actuator_bias",
     "actuator_lag",
     "actuator_delay",

@@ -10,9 +10,12 @@
 //!          --screen--> score test of each candidate alone: gain, detectable size
 //!          (robots: --by_forces--> the same by inverse dynamics of recorded motions, and the report)
 //!          --horizon--> validation by simulations over windows; if it fails, these rank the hypotheses
+//!          --outside--> windows that no hypothesis predicts are cut, and the steps above repeated
+//!          --coloured--> one-step predictions with process noise that has memory
 //!          --alternative--> other specs, fitted to the same recordings
 //!          --unknown--> nonparametric laws for the residual of the best hypothesis
 //!          --localise, windows, outside--> equations, windows of time, regions, events that no hypothesis predicts
+//!          --assumptions--> stated tolerances and interpolation of inputs
 //!          --assembly--> hypotheses with their values and ties, as in the report
 //!          --law--> the residual, measured as a force law
 //!          --held_out, prediction--> prediction errors: nominal, re-fitted, with the effect, noise

@@ -40,6 +40,14 @@ fn weighed(bench: &Bench<'_>, mut comparison: Comparison) -> Result<Comparison, 
     if !compared.contains(&comparison.nominal) {
         compared.push(comparison.nominal);
     }
+    // The model of an additional coordinate has no other forces: then the others would gain alone.
+    let brings = |&place: &usize| {
+        let mut members = comparison.fits[place].0.members.iter();
+        members.any(|&member| bench.candidate(member).brings.is_some())
+    };
+    if compared.iter().any(brings) {
+        return Ok(comparison);
+    }
     let mut gains = Vec::new();
     for &place in &compared {
         // Where the filter of one of them diverges, this noise compares nothing.
@@ -61,13 +69,6 @@ fn weighed(bench: &Bench<'_>, mut comparison: Comparison) -> Result<Comparison, 
 
 /// The gain in log evidence of a hypothesis by coloured process noise.
 fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
-    if base
-        .members
-        .iter()
-        .any(|&member| bench.candidate(member).brings.is_some())
-    {
-        return Ok(0.0);
-    }
     let mechanism = &bench.effects.mechanism;
     let walking = bench.effects.info().states[..bench.effects.info().speeds]
         .iter()

@@ -90,7 +90,7 @@ pub(super) fn windows(
 /// a gap.
 pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSet>, DiagnoseError> {
     let comparison = &judged.comparison;
-    if comparison.best().members.is_empty() && !comparison.leads_unknown() {
+    if comparison.is_null() {
         return Ok(None);
     }
     let bench = &judged.bench;

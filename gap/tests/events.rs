@@ -5,38 +5,9 @@
 use std::fmt::Write as _;
 
 use crate::common::Folder;
+use crate::signs::SPEC;
 use appell_gap::diagnose::{GapVerdict, Options, Report, diagnose};
 use appell_test_kit::Random;
-
-const SPEC: &str = r#"
-[mechanism]
-name = "slider"
-title = "mass on a spring"
-
-[parameters]
-m = { value = 1, unit = "kg" }
-k = { value = 20, unit = "N/m" }
-c = { value = 0.5, unit = "N*s/m" }
-
-[coordinates]
-y = { unit = "m" }
-
-[inputs]
-u = { unit = "N" }
-
-[points]
-P = { from = "O", in = "ground", at = ["y", 0, 0] }
-
-[bodies]
-mass = { centre = "P", mass = "m" }
-
-[pseudo_velocities]
-v = { value = "dot(y)", unit = "m/s" }
-
-[loads]
-drive  = { kind = "generalized", coordinate = "y", force = "u" }
-spring = { kind = "generalized", coordinate = "y", force = "-k*y - c*v" }
-"#;
 
 const STEP: f64 = 0.01;
 const ROWS: u32 = 800;
@@ -127,12 +98,12 @@ fn diagnosed(first: &Rig, others: &Rig, stds: [f64; 3]) -> Report {
 /// The same with random numbers from a seed on.
 fn diagnosed_from(seed: u64, first: &Rig, others: &Rig, stds: [f64; 3]) -> Report {
     let folder = Folder::new();
-    folder.write("slider.toml", SPEC);
+    folder.write("oscillator.toml", SPEC);
     let [m, k, c] = stds;
     folder.write(
         "recording.toml",
         format!(
-            "mechanism = \"slider.toml\"\n[parameters]\nm = {{ value = 1, unit = \"kg\", std = {m} }}\n\
+            "mechanism = \"oscillator.toml\"\n[parameters]\nm = {{ value = 1, unit = \"kg\", std = {m} }}\n\
              k = {{ value = 20, unit = \"N/m\", std = {k} }}\nc = {{ value = 0.5, unit = \"N*s/m\", std = {c} }}\n\
              [channels]\ny = {{ measures = \"y\", unit = \"m\", noise_std = {NOISE} }}\n\
              u = {{ input = \"u\", unit = \"N\" }}\n[runs]\nfit = [\"a.csv\", \"b.csv\"]\ntest = [\"c.csv\"]\n"

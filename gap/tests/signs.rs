@@ -9,7 +9,8 @@ use appell_gap::effects::EffectModel;
 use appell_gap::units::doubts;
 use appell_test_kit::Random;
 
-const SPEC: &str = r#"
+/// A mass on a spring.
+pub(crate) const SPEC: &str = r#"
 [mechanism]
 name = "oscillator"
 title = "mass on a spring"

@@ -19,14 +19,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     specs.sort();
-    let mut build = Build::new().specs(specs);
-    if std::env::var_os("CARGO_FEATURE_LANES").is_some() {
-        build = build.lanes();
-    }
-    if std::env::var_os("CARGO_FEATURE_SERIES").is_some() {
-        build = build.series();
-    }
-    let generated = build.run();
+    let generated = Build::new().specs(specs).run();
     let out_dir = PathBuf::from(std::env::var("OUT_DIR")?);
     write(&out_dir.join("registry.rs"), &registry(&generated)?)?;
     Ok(())

@@ -1,14 +1,11 @@
 //! Many motions that differ in their initial states, eight at a time.
 
-use appell_runtime::integrate::{
-    BlockSolver, BlockTaylor, Dop853, Dopri5, ExpandedTogether, Places,
-};
+use appell_runtime::integrate::{BlockSolver, Dop853, Dopri5, Places};
 use appell_runtime::lanes::{AtLanes, LANES};
-use appell_runtime::series::Cubic;
 use appell_runtime::simulate::{Method, Prepared, Sampling, run_together};
 use appell_runtime::{Trajectory, simulate::SimulationError};
 
-use crate::inputs::closed_loop::{ClosedLoop, Equations, Kind};
+use crate::inputs::closed_loop::ClosedLoop;
 use crate::inputs::controller::Controller;
 use crate::motion::{MOST_ROWS, Motion, Ready, Simulated};
 use crate::{Error, Field, Model, ModelInputs};
@@ -53,21 +50,16 @@ impl Model {
             // Fixed steps are not integrated together.
             for start in starts.iter().take_while(|_| go_on()) {
                 ready.initial.clone_from(start);
-                let rates = || self.rates();
                 #[expect(
                     clippy::redundant_closure_for_method_calls,
                     reason = "the method is that of one lifetime"
                 )]
-                let run = motion.simulate(self.equations(), rates, &ready, |s| s.run())?;
+                let run = motion.simulate(self.equations(), &ready, |s| s.run())?;
                 all.push(run);
             }
         } else {
-            let kind = match motion.method {
-                Method::Taylor => Kind::Series,
-                _ => Kind::Rates,
-            };
             let info = self.info();
-            let closed = ready.wiring.closed_loop(self.rates()?, info, &[], kind)?;
+            let closed = ready.wiring.closed_loop(self.rates()?, info, &[])?;
             for starts in starts.chunks(TOGETHER).take_while(|_| go_on()) {
                 all.extend(self.together(motion, &ready, &closed, starts)?);
             }
@@ -122,21 +114,6 @@ fn integrate<'w>(
 ) -> Vec<Result<Trajectory, SimulationError>> {
     let (p, options) = (&ready.parameters, &ready.options);
     let (sampling, extras) = (Sampling::Every(ready.interval), motion.extras);
-    let function = match &closed.equations {
-        Equations::Rates(function) => function,
-        Equations::Series(series) => {
-            let inputs = |motion: usize, t: f64, x: &[f64], u: &mut [Cubic]| {
-                controllers[motion].polynomials_with(p, t, x, u);
-            };
-            let together = ExpandedTogether {
-                series: series.as_ref(),
-                inputs: closed.is_driven().then_some(&inputs),
-            };
-            return run_together(prepared, sampling, extras, |motions| {
-                BlockTaylor::new().integrate(&together, motions, options)
-            });
-        }
-    };
     let mut outside = vec![[0.0; LANES]; closed.inputs()];
     let (mut state, mut one) = (Vec::new(), vec![0.0; closed.inputs()]);
     let mut rates = |which: &[usize; LANES], at: Places<'_>, rates: &mut [[f64; LANES]]| {
@@ -157,7 +134,7 @@ fn integrate<'w>(
             u: &outside,
             p: of_lanes,
         };
-        function.call(at, [rates]);
+        closed.rates.call(at, [rates]);
     };
     run_together(prepared, sampling, extras, |motions| match motion.method {
         Method::Dopri5 => BlockSolver::<Dopri5>::new().integrate(&mut rates, motions, options),

@@ -9,8 +9,7 @@ use appell_codegen::symbolic::{Derivatives, Expr, Graph};
 use appell_runtime::Signal;
 use appell_runtime::model::{Along, At, ModelInfo};
 use appell_runtime::real::{Enclosure, Real};
-use appell_runtime::series::{Cubic, differentiated, enclosed};
-use appell_runtime::signal::SignalError;
+use appell_runtime::signal::{SignalError, differentiated, enclosed};
 use appell_spec::Mechanism;
 use appell_spec::expr::Expr as SpecExpr;
 
@@ -167,7 +166,7 @@ impl StateFunction {
         })
     }
 
-    /// Its operations. Their inputs are the declared ones, then those of [`Self::polynomials`].
+    /// Its operations. Their inputs are the declared ones, then those of [`Self::fill_signals`].
     pub(crate) fn schedule(&self) -> &Schedule {
         &self.schedule
     }
@@ -180,13 +179,6 @@ impl StateFunction {
     /// How many inputs its operations have.
     pub(crate) fn inputs(&self) -> usize {
         self.declared + self.derivatives.len() + self.signals.len()
-    }
-
-    /// The inputs after the declared ones as polynomials of the time since `t` in s.
-    pub(crate) fn polynomials(&self, t: f64, u: &mut [Cubic]) {
-        for (u, (signal, order)) in u.iter_mut().zip(self.tabulated()) {
-            *u = differentiated(signal.polynomial(t), order);
-        }
     }
 
     /// Whether there are inputs after the declared ones.

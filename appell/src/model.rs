@@ -126,7 +126,7 @@ impl Model {
         compute(engine::Equations::for_estimation(&self.source)?.model())
     }
 
-    /// The operations of the rates, which Taylor series and closed loops are made from.
+    /// The operations of the rates, which closed loops are made from.
     pub(crate) fn rates(&self) -> Result<&Operations, Error> {
         if let Some(rates) = self.rates.get() {
             return Ok(rates);
@@ -188,7 +188,7 @@ impl Model {
             .run()
         };
         let ready = motion.ready(self.equations(), self.setup()?, self.name())?;
-        motion.simulate(self.equations(), || self.rates(), &ready, run)
+        motion.simulate(self.equations(), &ready, run)
     }
 
     /// Integrates the equations of motion as long as `go_on`, which is asked several times in each step.
@@ -223,7 +223,7 @@ impl Model {
             .run()
         };
         let ready = motion.ready(self.equations(), self.setup()?, self.name())?;
-        motion.simulate(self.equations(), || self.rates(), &ready, run)
+        motion.simulate(self.equations(), &ready, run)
     }
 
     /// A page that animates a motion; `ending` is the reason of an early end.

@@ -4,11 +4,10 @@ use std::fmt;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use appell_codegen::schedule::Schedule;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::integrate::{Ending, Options};
-use appell_runtime::model::{Interpolation, Model};
-use appell_runtime::series::Cubic;
+use appell_runtime::model::{Along, Interpolation, Model};
+use appell_runtime::real::{Enclosure, Real};
 use appell_runtime::simulate::{Method, Response, Sampling, SimulationError, Validity};
 use appell_runtime::trajectory::{Extras, NotFinite};
 use appell_runtime::{Simulation, Trajectory};
@@ -222,8 +221,17 @@ impl Motion {
         let undriven = plan.is_empty();
         let mut options = self.options;
         let is_opaque = |driven: &Driven| {
-            let mut u = vec![Cubic::default(); model.info().declared_inputs];
-            !driven.source.polynomials(0.0, &setup.initial, &mut u)
+            let x: Vec<Enclosure> = setup.initial.iter().map(|&x| Real::constant(x)).collect();
+            let mut u = vec![Enclosure::UNKNOWN; model.info().declared_inputs];
+            let at_start = Along {
+                start: 0.0,
+                t: Enclosure::time(0.0, 0.0),
+                x: &x,
+                u: &[],
+                p: &setup.parameters,
+            };
+            driven.source.bounds(&at_start, &mut u);
+            u.contains(&Enclosure::UNKNOWN)
         };
         if self.driven.iter().any(is_opaque) {
             // Nothing tells what a program computes between two rows: no step is longer than these are apart.
@@ -268,21 +276,16 @@ impl Motion {
         }
     }
 
-    /// Integrates the equations of motion with `run`; `rates` gives the operations to be expanded if the method needs
-    /// them.
-    pub(crate) fn simulate<'r>(
+    /// Integrates the equations of motion with `run`.
+    pub(crate) fn simulate(
         &self,
         model: &dyn Model,
-        rates: impl FnOnce() -> Result<&'r Schedule, Error>,
         ready: &Ready,
         run: impl FnOnce(Simulation<'_>) -> Result<Trajectory, SimulationError>,
     ) -> Result<Simulated, Error> {
-        let mut controller = ready
+        let controller = ready
             .wiring
             .controller(model, ready.parameters.clone(), self.t_end);
-        if self.method == Method::Taylor {
-            controller.expand(rates()?, model.info());
-        }
         let simulation = self.simulation(ready, model, &controller, ready.initial.clone());
         ready.simulated(run(simulation))
     }

@@ -13,5 +13,4 @@ mod spinning;
 mod steady;
 mod studies;
 mod switching;
-mod taylor;
 mod turning;

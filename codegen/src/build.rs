@@ -155,21 +155,6 @@ impl Build {
         self
     }
 
-    /// Emits code for blocks of eight places, which `Model::rates_lanes` and its like run; without it they go place by
-    /// place. It takes seconds to compile.
-    #[must_use]
-    pub fn lanes(mut self) -> Self {
-        self.options.lanes = true;
-        self
-    }
-
-    /// Emits the recurrences of Taylor coefficients, which `Method::Taylor` integrates by.
-    #[must_use]
-    pub fn series(mut self) -> Self {
-        self.options.series = true;
-        self
-    }
-
     /// Writes the equations as C99 too: `NAME.h` and `NAME.c`, where `NAME` is that of the mechanism in C.
     #[must_use]
     pub fn c(mut self, options: c::Options) -> Self {

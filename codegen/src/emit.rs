@@ -2,20 +2,17 @@
 //!
 //! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`statements`] turns the
 //! steps of a schedule into statements, [`body`] adds arguments and results, [`model`] implements the run-time trait,
-//! [`lanes`] its part for blocks of places, [`series`] its Taylor series, [`equations`] writes what a function computes as
-//! a person does, [`picture`] draws small matrices, [`layout`] places comments and blank lines, [`markdown`] writes the
-//! page about the model, and [`syntax`] holds short constructors.
+//! [`equations`] writes what a function computes as a person does, [`picture`] draws small matrices, [`layout`] places
+//! comments and blank lines, [`markdown`] writes the page about the model, and [`syntax`] holds short constructors.
 
 mod body;
 mod equations;
 mod error;
 mod function;
-mod lanes;
 mod layout;
 mod markdown;
 mod model;
 mod picture;
-mod series;
 mod statements;
 mod switching;
 mod syntax;
@@ -41,10 +38,6 @@ pub struct Options {
     pub model_impl: bool,
     /// What the schedules are made for.
     pub tuning: Tuning,
-    /// Whether the model has code of its own for blocks of eight places.
-    pub lanes: bool,
-    /// Whether the model has the recurrences of its Taylor coefficients.
-    pub series: bool,
     /// Text of the spec, kept in the constant `SPEC`.
     pub spec: Option<String>,
 }
@@ -56,8 +49,6 @@ impl Default for Options {
             runtime: "::appell_runtime".to_owned(),
             model_impl: true,
             tuning: Tuning::default(),
-            lanes: false,
-            series: false,
             spec: None,
         }
     }
@@ -110,19 +101,10 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
         solves |= cost.solves > 0;
         results.extend(types.results_struct(function));
         items.push(syn::Item::Fn(function::function(
-            &types,
-            function,
-            &schedule,
-            &cost,
-            options.lanes,
+            &types, function, &schedule, &cost,
         )?));
         costs.push((function.kind, cost));
     }
-
-    let series = (options.model_impl && options.series)
-        .then(|| series::emitted(program, &runtime, options.tuning))
-        .flatten();
-    solves |= series.as_ref().is_some_and(|series| series.solves);
 
     let lu = solves.then(|| quote!(use #runtime::dense::{lu_factor, lu_solve};));
     let model = options.model_impl.then(|| quote!(use #runtime::model;));
@@ -137,16 +119,8 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut file: syn::File = parse(head)?;
     file.items.extend(items);
     if options.model_impl {
-        file.items.extend(
-            parse(model::implementation(
-                &types,
-                &runtime,
-                &costs,
-                options.lanes,
-                series,
-            )?)?
-            .items,
-        );
+        let implementation = model::implementation(&types, &runtime)?;
+        file.items.extend(parse(implementation)?.items);
         file.items.extend(parse(model::info(&program.info))?.items);
     }
     let conversions = types.conversions(&functions, options.model_impl, &runtime);

@@ -8,12 +8,10 @@ use std::sync::OnceLock;
 use appell_runtime::differences;
 use appell_runtime::model::{Along, At, Energies, Gradient, Model, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
-use appell_runtime::series::Series;
 use appell_runtime::switching::Counts;
 
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{Schedule, enclose, enclose_along, interpret_weighted, schedule};
-use crate::taylor::{InterpretedSeries, Lengths, expand};
 
 /// A model that interprets its schedules. Functions that the program lacks give NaN.
 #[derive(Debug)]
@@ -21,19 +19,13 @@ pub struct InterpretedModel {
     program: Program,
     /// By function of the program; made at the first use.
     schedules: Vec<OnceLock<Schedule>>,
-    /// Made at the first use.
-    series: OnceLock<InterpretedSeries>,
 }
 
 impl InterpretedModel {
     /// Takes a program.
     pub fn new(program: Program) -> Self {
         let schedules = program.functions.iter().map(|_| OnceLock::new()).collect();
-        Self {
-            program,
-            schedules,
-            series: OnceLock::new(),
-        }
+        Self { program, schedules }
     }
 
     /// The schedule of a function, if the program has it.
@@ -209,12 +201,6 @@ impl Model for InterpretedModel {
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
         let wanted = &mut [("residual", residual), ("jacobian", jacobian)];
         self.evaluate(FunctionKind::PositionConstraints, at, wanted);
-    }
-
-    fn series(&self) -> Option<&dyn Series> {
-        let rates = self.schedule(FunctionKind::Rates)?;
-        let expanded = || InterpretedSeries(expand(rates, Lengths::from(&self.program.info)));
-        Some(self.series.get_or_init(expanded))
     }
 
     fn switching(&self) -> Option<&dyn Switching> {

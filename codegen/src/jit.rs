@@ -25,7 +25,6 @@ mod memory;
 mod model;
 mod native;
 mod on_demand;
-mod series;
 mod translate;
 mod vector;
 
@@ -34,5 +33,4 @@ pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
-pub use series::{JitSeries, JitSeriesInLanes};
 pub use vector::{Instructions, Target, VectorFunction};

@@ -18,7 +18,6 @@ pub mod program;
 pub mod python;
 pub mod schedule;
 pub mod symbolic;
-pub mod taylor;
 
 pub use build::build;
 pub use compile::{Derived, audited, compile, derived};

@@ -8,10 +8,8 @@ use appell_codegen::emit::{Error, Options, emit, emit_functions};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::{interpret, schedule};
-use appell_codegen::taylor::{InterpretedSeries, Lengths, expand};
 use appell_runtime::Dual;
 use appell_runtime::model::{At, Gradient, Model};
-use appell_runtime::series::{OrderNumber, Series, Start, Started, Sweep, Swept};
 
 use crate::emit_support::{self, Numbers, SPEC, golden_options, mixture, quantity};
 
@@ -264,72 +262,6 @@ fn the_emitted_model_has_the_info_of_the_program() {
         unicycle::Parameters::default().R.to_bits(),
         0.3_f64.to_bits()
     );
-}
-
-/// What a series writes at order zero and at some order, as bits.
-fn series(series: &dyn Series, numbers: &mut Numbers) -> Vec<Vec<u64>> {
-    let shape = series.shape();
-    let (x, p) = (numbers.list(shape.states), numbers.list(shape.parameters));
-    let u = numbers.list(shape.inputs + OrderNumber::COUNT);
-    let empty = |len: usize| vec![0.0; len];
-    let (mut next, mut kept, mut guards) = (
-        empty(shape.states),
-        empty(shape.kept),
-        empty(shape.guards.len()),
-    );
-    let from = Start {
-        t: numbers.next(),
-        x: &x,
-        u: &u[..shape.inputs],
-        p: &p,
-    };
-    series.start(
-        from,
-        Started {
-            next: &mut next,
-            kept: &mut kept,
-            guards: &mut guards,
-        },
-    );
-    let mut all: Vec<_> = [&next, &kept, &guards].map(|list| bits(list)).into();
-    let (mut left, mut right) = (empty(shape.products), empty(shape.products));
-    let sums = numbers.list(shape.products);
-    let from = Sweep {
-        k: 3.0,
-        x: &x,
-        u: &u,
-        kept: &kept,
-        sums: &sums,
-    };
-    series.sweep(
-        from,
-        Swept {
-            next: &mut next,
-            left: &mut left,
-            right: &mut right,
-            guards: &mut guards,
-        },
-    );
-    all.extend([&next, &left, &right, &guards].map(|list| bits(list)));
-    all
-}
-
-#[test]
-fn emitted_series_and_their_schedules_agree_bit_for_bit() {
-    for (program, emitted) in [
-        (emit_support::unicycle(), &unicycle::Unicycle as &dyn Model),
-        (emit_support::with_adjoints(), &with_adjoints::Pendulum),
-        (emit_support::block(), &block::Block),
-    ] {
-        let rates = schedule(&program, program.function(FunctionKind::Rates).unwrap());
-        let expanded = InterpretedSeries(expand(&rates, Lengths::from(&program.info)));
-        let emitted = emitted.series().unwrap();
-        assert_eq!(emitted.shape(), expanded.shape());
-        for seed in 0..20 {
-            let of = |which: &dyn Series| series(which, &mut Numbers::new(seed));
-            assert_eq!(of(emitted), of(&expanded), "{}", program.info.name);
-        }
-    }
 }
 
 #[test]

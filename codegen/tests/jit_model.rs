@@ -6,11 +6,10 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::Arc;
 use std::thread;
 
-use appell_codegen::jit::{Instructions, JitError, JitModel, Target};
+use appell_codegen::jit::{JitError, JitModel};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
 use appell_codegen::schedule::{interpret, schedule};
 use appell_codegen::symbolic::{Expr, Graph};
-use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Model, ModelInfo, Quantity};
 
 /// A driven pendulum ẇ = (u - g l sin θ - c w |w|) / l², θ̇ = w. Its derivatives are written out.
@@ -336,68 +335,6 @@ fn functions_that_cannot_be_compiled_are_interpreted() {
     assert!(matches!(reason, JitError::TooManyRows { rows: 65, .. }));
     let wrong = AssertUnwindSafe(|| model.outputs(AT, &mut []));
     assert!(catch_unwind(wrong).is_err());
-    let mut lanes = [[9.0; LANES]];
-    model.outputs_lanes(everywhere().at(), &mut lanes);
-    assert_eq!(lanes, [[outputs[0]; LANES]]);
-}
-
-/// [`AT`] in all lanes.
-struct Everywhere {
-    t: [f64; LANES],
-    x: [[f64; LANES]; 2],
-    u: [[f64; LANES]; 1],
-    p: [[f64; LANES]; 2],
-}
-
-fn everywhere() -> Everywhere {
-    let block = |number: f64| [number; LANES];
-    Everywhere {
-        t: block(AT.t),
-        x: [AT.x[0], AT.x[1]].map(block),
-        u: [AT.u[0]].map(block),
-        p: [AT.p[0], AT.p[1]].map(block),
-    }
-}
-
-impl Everywhere {
-    fn at(&self) -> AtLanes<'_> {
-        AtLanes {
-            t: &self.t,
-            x: &self.x,
-            u: &self.u,
-            p: &self.p,
-        }
-    }
-}
-
-#[test]
-fn lanes_agree_with_places() {
-    let program = pendulum();
-    for instructions in [
-        Instructions::Avx512,
-        Instructions::Avx2,
-        Instructions::Scalar,
-    ] {
-        let target = Target {
-            instructions,
-            ..Target::default()
-        };
-        let model = JitModel::new(&program).unwrap().with_lanes_for(target);
-        let place = everywhere();
-        let (mut rates, mut a, mut b) = ([[9.0; LANES]; 2], [[9.0; LANES]; 4], [[9.0; LANES]; 2]);
-        model.rates_lanes(place.at(), &mut rates);
-        let (mut x, mut xa, mut xb) = ([9.0; 2], [9.0; 4], [9.0; 2]);
-        model.rates(AT, &mut x);
-        assert_eq!(rates, x.map(|rate| [rate; LANES]));
-        // The derivatives come with rates that may be rounded in another order.
-        model.jacobians(AT, &mut x, &mut xa, &mut xb);
-        model.jacobians_lanes(place.at(), &mut rates, &mut a, &mut b);
-        assert_eq!(rates, x.map(|rate| [rate; LANES]));
-        assert_eq!(a, xa.map(|slope| [slope; LANES]));
-        assert_eq!(b, xb.map(|slope| [slope; LANES]));
-        let wrong = AssertUnwindSafe(|| model.rates_lanes(place.at(), &mut []));
-        assert!(catch_unwind(wrong).is_err());
-    }
 }
 
 #[test]

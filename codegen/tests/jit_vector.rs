@@ -15,8 +15,8 @@ use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
 use crate::jit_support::{
-    Point, SIZES, agrees, agrees_in_lanes, around, binary, function, in_lanes, lane, number, same,
-    schedule, set, state, system, targets, value,
+    Point, SIZES, agrees, agrees_in_lanes, around, binary, evaluated, function, in_lanes,
+    interpreted, lane, number, same, schedule, set, state, system, targets, value,
 };
 
 /// A point with these first states.
@@ -330,6 +330,19 @@ fn what_a_processor_lacks_is_done_place_by_place() {
         function.is_vector(),
         Instructions::best() != Instructions::Scalar
     );
+}
+
+#[test]
+fn what_cannot_be_compiled_is_interpreted_in_every_lane() {
+    // More unknowns than machine code takes.
+    let (schedule, points) = (system(65), around(&Point::SOME));
+    let target = Target::default();
+    let function = VectorFunction::compile_or_interpret(&schedule, SIZES, target).unwrap();
+    assert!(!function.is_vector());
+    let found = evaluated(&function, &points, 2 * 65);
+    for (l, point) in points.iter().enumerate() {
+        assert!(same(&lane(&found, l), &interpreted(&schedule, point)));
+    }
 }
 
 /// A function of the first two states and what computes it elsewhere.

@@ -38,9 +38,3 @@ mod symbolic_forms;
 mod symbolic_identity;
 mod symbolic_laws;
 mod symbolic_print;
-#[cfg(feature = "jit")]
-mod taylor;
-#[cfg(feature = "jit")]
-mod taylor_block;
-#[cfg(feature = "jit")]
-mod taylor_motions;

@@ -157,9 +157,8 @@ pub(crate) fn simulate(
         ("dopri5", _) => Method::Dopri5,
         ("rk4", Some(step)) => Method::Rk4 { step },
         ("rk4", None) => return Err(PyValueError::new_err("method `rk4` needs a step in s")),
-        ("taylor", _) => Method::Taylor,
         (other, _) => {
-            let message = format!("method is one of dop853, dopri5, rk4, taylor, not `{other}`");
+            let message = format!("method is one of dop853, dopri5, rk4, not `{other}`");
             return Err(PyValueError::new_err(message));
         }
     };

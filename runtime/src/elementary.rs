@@ -29,10 +29,9 @@ mod logarithm;
 mod power;
 mod trigonometric;
 
-pub use arithmetic::square_root;
 pub use exponential::exp;
 pub use hyperbolic::{cosh, sinh, tanh};
 pub use inverse::{acos, asin, atan, atan2};
 pub use logarithm::ln;
 pub use power::powf;
-pub use trigonometric::{ORDINARY_ANGLE, cos, ordinary_sin_cos, ordinary_tan, sin, sin_cos, tan};
+pub use trigonometric::{ORDINARY_ANGLE, cos, ordinary_sin_cos, sin, sin_cos, tan};

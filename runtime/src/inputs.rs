@@ -2,8 +2,7 @@
 
 use crate::model::{Along, Interpolation, ModelInfo, SignalTable, Switching};
 use crate::real::{Enclosure, Real};
-use crate::series::{Cubic, Series, differentiated, enclosed};
-use crate::signal::{Signal, SignalError};
+use crate::signal::{Signal, SignalError, differentiated, enclosed};
 
 /// The declared inputs of a model as functions of time and state.
 ///
@@ -18,13 +17,6 @@ pub trait InputSource {
         Vec::new()
     }
 
-    /// The declared inputs as polynomials of the time since `t` in s, up to the next switching time; false where
-    /// they are none, as far as is known. `x` is the state at `t`.
-    fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
-        let _ = (t, x, u);
-        false
-    }
-
     /// Bounds on the declared inputs along a stretch of a motion, whose inputs do not matter.
     fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
         let _ = along;
@@ -33,12 +25,6 @@ pub trait InputSource {
 
     /// What switches the inputs at times that are not known in advance, where anything does.
     fn switching(&self) -> Option<&dyn Switching> {
-        None
-    }
-
-    /// The equations of motion with the inputs that depend on the state put in, where this source has them.
-    /// [`InputSource::polynomials`] then gives the inputs of these, signals included.
-    fn series(&self) -> Option<&dyn Series> {
         None
     }
 }
@@ -57,11 +43,6 @@ pub struct ZeroInputs;
 impl InputSource for ZeroInputs {
     fn inputs(&self, _: f64, _: &[f64], u: &mut [f64]) {
         u.fill(0.0);
-    }
-
-    fn polynomials(&self, _: f64, _: &[f64], u: &mut [Cubic]) -> bool {
-        u.fill(Cubic::default());
-        true
     }
 
     fn bounds(&self, _: &Along<'_>, u: &mut [Enclosure]) {
@@ -128,14 +109,6 @@ impl InputSource for TabulatedInputs {
         }
     }
 
-    fn polynomials(&self, t: f64, _: &[f64], u: &mut [Cubic]) -> bool {
-        u.fill(Cubic::default());
-        for (u, signal) in u.iter_mut().zip(&self.signals) {
-            *u = signal.polynomial(t);
-        }
-        true
-    }
-
     fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
         let since = along.t - Enclosure::constant(along.start);
         u.fill(Enclosure::constant(0.0));
@@ -193,20 +166,6 @@ impl<'a> ModelInputs<'a> {
                 .get(signal)
                 .map_or(f64::NAN, |signal| signal.derivative(t, order));
         }
-    }
-
-    /// All inputs of the model, or of the equations of its source, as polynomials of the time since `t` in s; false
-    /// where they are none.
-    pub fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
-        if self.source.series().is_some() {
-            return self.source.polynomials(t, x, u);
-        }
-        let (declared, signals) = u.split_at_mut(self.declared.min(u.len()));
-        for (u, &(signal, order)) in signals.iter_mut().zip(self.signal_inputs) {
-            let polynomial = self.signals.get(signal).map(|signal| signal.polynomial(t));
-            *u = differentiated(polynomial.unwrap_or([f64::NAN; 4]), order);
-        }
-        self.source.polynomials(t, x, declared)
     }
 
     /// Bounds on all inputs of the model along a stretch of a motion.

@@ -41,7 +41,6 @@ mod step_size;
 mod stops;
 mod switches;
 mod tableau;
-mod taylor;
 mod watch;
 
 pub use block::BlockSolver;
@@ -60,5 +59,4 @@ pub use solver::Solver;
 pub use switches::{
     BoundFunction, CrossingFunction, Stretch, StretchFunction, SwitchFunction, Switches,
 };
-pub use taylor::{BlockTaylor, Expanded, ExpandedTogether, InputPolynomials, MotionInputs, Taylor};
 pub use watch::{NoObserver, Observer, Projection, ProjectionFunction, Step, Watch};

@@ -6,6 +6,7 @@
 //! - [`signal`]: tabulated functions of time;
 //! - [`inputs`]: what drives a model;
 //! - [`integrate`]: initial value problems, events, typed failures;
+//! - [`lanes`]: blocks of eight places;
 //! - [`interval`]: bounds that prove that no jump of the equations is missed; [`switching`]: how many there may be;
 //! - [`linearise`]: A and B in the independent states;
 //! - [`positions`]: states consistent with position constraints;
@@ -16,7 +17,7 @@
 //! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`], dual
 //! numbers that implement it, small dense systems in [`dense`], and the arithmetic of structs in
 //! [`vector!`]. With the feature `libm`, `f32`, `f64` and lanes are scalars too, with the functions of
-//! [`elementary`], and [`lanes`] evaluates blocks of places. Both are checked by
+//! [`elementary`]. Both are checked by
 //!
 //! ```text
 //! cargo check -p appell-runtime --no-default-features
@@ -40,6 +41,7 @@ pub mod inputs;
 pub mod integrate;
 #[cfg(feature = "std")]
 pub mod interval;
+#[cfg(feature = "std")]
 pub mod lanes;
 #[cfg(feature = "std")]
 pub mod linearise;
@@ -48,8 +50,6 @@ pub mod model;
 #[cfg(feature = "std")]
 pub mod positions;
 pub mod real;
-#[cfg(feature = "std")]
-pub mod series;
 #[cfg(feature = "std")]
 pub mod signal;
 #[cfg(feature = "std")]

@@ -1,7 +1,7 @@
 //! Tabulated functions of time and their derivatives.
 
 use crate::model::{Interpolation, SignalTable};
-use crate::series::Cubic;
+use crate::real::{Enclosure, Real};
 
 /// Why a table is not a function of time.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -42,6 +42,20 @@ pub enum SignalError {
         /// Its value.
         value: f64,
     },
+}
+
+/// A polynomial of the time since some moment, up to the third power.
+pub type Cubic = [f64; 4];
+
+/// Bounds on a polynomial over an interval of the time since its moment.
+pub fn enclosed(cubic: Cubic, since: Enclosure) -> Enclosure {
+    let [a, b, c, d] = cubic.map(Enclosure::constant);
+    a + since * (b + since * (c + since * d))
+}
+
+/// The derivative of a polynomial of some order.
+pub fn differentiated(polynomial: Cubic, order: u8) -> Cubic {
+    (0..order).fold(polynomial, |[_, b, c, d], _| [b, 2.0 * c, 3.0 * d, 0.0])
 }
 
 /// A table ready to be evaluated.

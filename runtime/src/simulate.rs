@@ -8,12 +8,11 @@ mod validity;
 
 use crate::inputs::{InputSource, ModelInputs, ZeroInputs};
 use crate::integrate::{
-    BlockMotion, Cause, Dop853, Dopri5, Ending, Event, EventHit, Expanded, Failure,
-    IntegrationError, Observer, Options, Outcome, Rk4, Solver, Statistics, Taylor, Watch,
+    BlockMotion, Cause, Dop853, Dopri5, Ending, Event, EventHit, Failure, IntegrationError,
+    Observer, Options, Outcome, Rk4, Solver, Statistics, Watch,
 };
 use crate::model::{At, Model};
 use crate::positions::Inconsistent;
-use crate::series::{Cubic, Series};
 use crate::signal::SignalError;
 use crate::trajectory::{Extras, Trajectory};
 pub use describe::describe;
@@ -34,9 +33,6 @@ pub enum Method {
         /// The step in s.
         step: f64,
     },
-    /// Taylor series of an order that follows from the tolerances, with step-size control. For models and inputs
-    /// that have series.
-    Taylor,
 }
 
 /// A simulation to be run. The fields are public: set what differs from [`Simulation::new`].
@@ -139,14 +135,6 @@ pub enum SimulationError {
     Sampling {
         /// The interval in s.
         interval: f64,
-    },
-    /// The equations or the inputs have no Taylor series.
-    #[error("{what} no Taylor series: {remedy}")]
-    NoSeries {
-        /// What has none.
-        what: &'static str,
-        /// What to do.
-        remedy: &'static str,
     },
     /// The interval, the tolerances or the step have no answer.
     #[error("{what} cannot be {value}")]
@@ -280,7 +268,6 @@ impl<'a> Simulation<'a> {
         let events = std::mem::take(&mut self.events);
         let own = events.len();
         let prepared = Prepared::new(&self, inputs)?;
-        let series = self.series(inputs)?;
         let (model, p, span) = (self.model, prepared.p, prepared.span());
         let mut x = prepared.start().to_vec();
         let mut observer = observer(span, &x);
@@ -290,50 +277,9 @@ impl<'a> Simulation<'a> {
             inputs.fill(t, x, &mut u);
             model.rates(At { t, x, u: &u, p }, rates);
         };
-        let result = match series {
-            Some(series) => {
-                let equations = Expanded {
-                    series,
-                    parameters: p,
-                    inputs: Box::new(|t, x, u| {
-                        inputs.polynomials(t, x, u);
-                    }),
-                };
-                let options = &self.options;
-                Taylor::new().integrate(
-                    &equations,
-                    span,
-                    &mut x,
-                    options,
-                    &mut watch,
-                    &mut observer,
-                )
-            }
-            None => self.integrate(rates, span, &mut x, &mut watch, &mut observer),
-        };
+        let result = self.integrate(rates, span, &mut x, &mut watch, &mut observer);
         drop(watch);
         Ok((prepared.observed(x, result, own)?, observer))
-    }
-
-    /// The equations to be expanded, if the method asks for them.
-    fn series(&self, inputs: &ModelInputs<'_>) -> Result<Option<&'a dyn Series>, SimulationError> {
-        if self.method != Method::Taylor {
-            return Ok(None);
-        }
-        let Some(series) = self.inputs.series().or_else(|| self.model.series()) else {
-            return Err(SimulationError::NoSeries {
-                what: "these equations have",
-                remedy: "compile or interpret the model in this process, or choose another method",
-            });
-        };
-        let mut u = vec![Cubic::default(); series.shape().inputs];
-        if inputs.polynomials(self.span[0], &self.initial_state, &mut u) {
-            return Ok(Some(series));
-        }
-        Err(SimulationError::NoSeries {
-            what: "inputs that a program computes have",
-            remedy: "give them as expressions, laws or tables, or choose another method",
-        })
     }
 
     /// Runs the integrator of choice; `x` goes from the first to the last state.
@@ -354,11 +300,6 @@ impl<'a> Simulation<'a> {
                 Solver::<Dopri5>::new().integrate(rates, span, x, options, watch, observer)
             }
             Method::Rk4 { step } => Rk4::new().integrate(rates, span, x, step, watch, observer),
-            // Without series, which `run` looks for.
-            Method::Taylor => Err(IntegrationError::InvalidArgument {
-                what: "number of series",
-                value: 0.0,
-            }),
         }
     }
 

@@ -1,4 +1,4 @@
-//! Equations in blocks of eight places and one by one, and motions by every integrator, for specs of any mechanism.
+//! Equations in blocks of eight places and one by one, and motions, for specs of any mechanism.
 //!
 //! `cargo bench -p appell-tests --bench lanes -- [SPEC…]` prints nanoseconds a place and microseconds a motion, the
 //! fastest of many rounds in which all rows take turns: compare rows of one run. Without specs, those of the shipped
@@ -9,13 +9,15 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use appell_codegen::compile;
-use appell_codegen::jit::{Elementary, JitModel, Target};
-use appell_codegen::program::FunctionKind;
+use appell_codegen::jit::{
+    Elementary, Instructions, JitModel, NativeFunction, Sizes, Target, VectorFunction,
+};
+use appell_codegen::program::{FunctionKind, Program};
+use appell_codegen::schedule::schedule;
 use appell_runtime::Simulation;
 use appell_runtime::integrate::{NoObserver, Options};
-use appell_runtime::lanes::{AtLanes, LANES, Level};
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Model};
-use appell_runtime::simulate::Method;
 use appell_test_kit::Random;
 use serde_json::{Value, json};
 
@@ -35,6 +37,29 @@ const SECONDS: f64 = 1.0;
 const SPREAD: f64 = 0.05;
 
 type Blocks = Vec<[f64; LANES]>;
+
+/// Equations of a mechanism in vector code, with the functions of the runtime.
+struct Equations {
+    rates: VectorFunction,
+    jacobians: VectorFunction,
+}
+
+impl Equations {
+    fn of(program: &Program) -> Self {
+        let target = Target {
+            elementary: Elementary::Own,
+            ..Target::default()
+        };
+        let sizes = Sizes::from(&program.info);
+        let [rates, jacobians] = [FunctionKind::Rates, FunctionKind::Jacobians].map(|kind| {
+            let function = program.function(kind).expect("a function of every model");
+            let schedule = schedule(program, function);
+            VectorFunction::compile_for(&schedule, sizes, target)
+                .expect("a processor with a compiler")
+        });
+        Self { rates, jacobians }
+    }
+}
 
 /// Places with room for what is computed there. A block has all its numbers side by side.
 struct Places {
@@ -82,11 +107,11 @@ impl Places {
 }
 
 /// What is measured, at a block.
-type Task = fn(&dyn Model, &mut Places, usize);
+type Task = fn(&Equations, &mut Places, usize);
 
 const ZERO: [f64; LANES] = [0.0; LANES];
 
-fn rates_in_lanes(model: &dyn Model, places: &mut Places, i: usize) {
+fn rates_in_lanes(equations: &Equations, places: &mut Places, i: usize) {
     let [n, m, _] = places.sizes;
     let at = AtLanes {
         t: &ZERO,
@@ -94,10 +119,10 @@ fn rates_in_lanes(model: &dyn Model, places: &mut Places, i: usize) {
         u: &places.u[i * m..][..m],
         p: &places.p,
     };
-    model.rates_lanes(at, &mut places.rates[i * n..][..n]);
+    equations.rates.call(at, [&mut places.rates[i * n..][..n]]);
 }
 
-fn jacobians_in_lanes(model: &dyn Model, places: &mut Places, i: usize) {
+fn jacobians_in_lanes(equations: &Equations, places: &mut Places, i: usize) {
     let [n, m, _] = places.sizes;
     let at = AtLanes {
         t: &ZERO,
@@ -109,19 +134,20 @@ fn jacobians_in_lanes(model: &dyn Model, places: &mut Places, i: usize) {
         &mut places.a[i * n * n..][..n * n],
         &mut places.b[i * n * m..][..n * m],
     );
-    model.jacobians_lanes(at, &mut places.rates[i * n..][..n], a, b);
+    let rates = &mut places.rates[i * n..][..n];
+    equations.jacobians.call(at, [rates, a, b]);
 }
 
 /// The same bytes without a computation: what memory allows.
-fn copy(_: &dyn Model, places: &mut Places, i: usize) {
+fn copy(_: &Equations, places: &mut Places, i: usize) {
     let n = places.sizes[0];
     places.rates[i * n..][..n].copy_from_slice(&places.x[i * n..][..n]);
 }
 
 /// What is computed at the places of a block, for comparison with more digits.
-fn samples(model: &dyn Model) -> Vec<Value> {
+fn samples(model: &dyn Model, equations: &Equations) -> Vec<Value> {
     let mut places = Places::new(model, 1, true);
-    jacobians_in_lanes(model, &mut places, 0);
+    jacobians_in_lanes(equations, &mut places, 0);
     let (a, b, rates) = (places.a.clone(), places.b.clone(), places.rates.clone());
     let of = |all: &[[f64; LANES]], lane: usize| -> Vec<f64> {
         all.iter().map(|number| number[lane]).collect()
@@ -137,7 +163,7 @@ fn samples(model: &dyn Model) -> Vec<Value> {
 }
 
 /// Nanoseconds a place, in caches and from memory.
-fn places(model: &dyn Model, told: &mut Vec<Value>) {
+fn places(model: &dyn Model, equations: &Equations, told: &mut Vec<Value>) {
     for (place, blocks) in SIZES {
         let in_cache = blocks < BLOCKS;
         let mut rows: Vec<(&str, Task)> = vec![("rates", rates_in_lanes), ("copy", copy)];
@@ -153,7 +179,7 @@ fn places(model: &dyn Model, told: &mut Vec<Value>) {
                 let start = Instant::now();
                 for _ in 0..repetitions {
                     for i in 0..blocks {
-                        task(model, &mut places, i);
+                        task(equations, &mut places, i);
                     }
                     black_box(&mut places.rates);
                 }
@@ -168,23 +194,24 @@ fn places(model: &dyn Model, told: &mut Vec<Value>) {
 }
 
 /// Nanoseconds for one place, independent places one after the other.
-fn one_place(model: &dyn Model, told: &mut Vec<Value>) {
+fn one_place(model: &dyn Model, program: &Program, told: &mut Vec<Value>) {
     let places = Places::new(model, 16, false);
+    let function = program.function(FunctionKind::Rates).expect("rates");
+    let schedule = schedule(program, function);
+    let natives = [Elementary::Standard, Elementary::Own].map(|elementary| {
+        NativeFunction::compile_with(&schedule, Sizes::from(&program.info), elementary)
+            .expect("a processor with a compiler")
+    });
     let all: Vec<[Vec<f64>; 3]> = (0..16 * LANES)
         .map(|i| places.place(i / LANES, i % LANES))
         .collect();
     let mut rates = vec![0.0; places.sizes[0]];
     let mut fastest = [f64::INFINITY; 2];
     for _ in 0..ROUNDS {
-        for (own, fastest) in [false, true].into_iter().zip(&mut fastest) {
+        for (native, fastest) in natives.iter().zip(&mut fastest) {
             let start = Instant::now();
             for [x, u, p] in &all {
-                let at = At { t: 0.0, x, u, p };
-                if own {
-                    model.rates_own(at, &mut rates);
-                } else {
-                    model.rates(at, &mut rates);
-                }
+                native.call(At { t: 0.0, x, u, p }, [&mut rates]);
                 black_box(&mut rates);
             }
             let count = all.len() as f64;
@@ -202,50 +229,38 @@ fn start(model: &dyn Model) -> Vec<f64> {
     x
 }
 
-/// Microseconds and errors of one motion, by method and tolerance.
+/// Microseconds and errors of one motion, by tolerance.
 fn motions(model: &dyn Model, seconds: f64, told: &mut Vec<Value>) {
     let start = start(model);
-    let end = |method: Method, tolerance: f64| {
+    let end = |tolerance: f64| {
         let simulation = Simulation {
             initial_state: start.clone(),
             span: [0.0, seconds],
-            method,
             options: Options::with_tolerances(tolerance, tolerance),
             ..Simulation::new(model)
         };
         simulation.observe(|_, _| NoObserver)
     };
-    // By another method than the one that is measured.
-    let exact = |method: Method| {
-        let other = if method == Method::Taylor {
-            Method::Dop853
-        } else {
-            Method::Taylor
-        };
-        end(other, 1e-14)
+    let Ok((exact, _)) = end(1e-14) else {
+        return;
     };
-    for method in [Method::Taylor, Method::Dop853] {
-        let Ok((exact, _)) = exact(method) else {
+    for tolerance in TOLERANCES {
+        let Ok((found, _)) = end(tolerance) else {
             continue;
         };
-        for tolerance in TOLERANCES {
-            let Ok((found, _)) = end(method, tolerance) else {
-                continue;
-            };
-            let off = found.state.iter().zip(&exact.state);
-            let error = off.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
-            let mut fastest = f64::INFINITY;
-            for _ in 0..MOTIONS {
-                let start = Instant::now();
-                let moved = end(method, tolerance);
-                black_box(&moved.is_ok());
-                fastest = fastest.min(start.elapsed().as_secs_f64() * 1e6);
-            }
-            told.push(json!({
-                "row": format!("motion, {method:?}"), "seconds": seconds, "tolerance": tolerance, "us": fastest,
-                "error": error, "steps": found.statistics.steps,
-            }));
+        let off = found.state.iter().zip(&exact.state);
+        let error = off.fold(0.0_f64, |worst, (a, b)| worst.max((a - b).abs()));
+        let mut fastest = f64::INFINITY;
+        for _ in 0..MOTIONS {
+            let start = Instant::now();
+            let moved = end(tolerance);
+            black_box(&moved.is_ok());
+            fastest = fastest.min(start.elapsed().as_secs_f64() * 1e6);
         }
+        told.push(json!({
+            "row": "motion", "seconds": seconds, "tolerance": tolerance, "us": fastest, "error": error,
+            "steps": found.statistics.steps,
+        }));
     }
 }
 
@@ -274,42 +289,30 @@ fn main() {
     if specs.is_empty() {
         specs.extend(shipped);
     }
-    let own = Target {
-        elementary: Elementary::Own,
-        ..Target::default()
-    };
     let mut all = Vec::new();
     for spec in specs {
         let text = std::fs::read_to_string(&spec).expect("a spec");
         let name = spec.to_string_lossy().into_owned();
         let program = compile(&name, &text, &FunctionKind::STANDARD)
             .unwrap_or_else(|report| panic!("{}", report.plain()));
-        let model = JitModel::new(&program)
-            .expect("a processor with a compiler")
-            .with_lanes_for(own);
+        let model = JitModel::new(&program).expect("a processor with a compiler");
+        let equations = Equations::of(&program);
         let mut told = Vec::new();
-        places(&model, &mut told);
-        one_place(&model, &mut told);
+        places(&model, &equations, &mut told);
+        one_place(&model, &program, &mut told);
         motions(&model, seconds, &mut told);
         if !as_json {
             print(&program.info.name, &told);
-            if let Some(series) = model.series() {
-                let shape = series.shape();
-                println!(
-                    "  series: {} products, {} kept values",
-                    shape.products, shape.kept
-                );
-            }
         }
         all.push(json!({
-            "mechanism": program.info.name, "spec": name, "rows": told, "samples": samples(&model),
+            "mechanism": program.info.name, "spec": name, "rows": told, "samples": samples(&model, &equations),
             "start": start(&model),
         }));
     }
     if as_json {
         println!(
             "{}",
-            json!({ "level": format!("{:?}", Level::best()), "mechanisms": all })
+            json!({ "level": format!("{:?}", Instructions::best()), "mechanisms": all })
         );
     }
 }
@@ -317,7 +320,7 @@ fn main() {
 fn print(name: &str, told: &[Value]) {
     println!(
         "{name}; widest vectors of this processor: {:?}",
-        Level::best()
+        Instructions::best()
     );
     for row in told {
         let what = row["row"].as_str().unwrap_or_default();

@@ -465,11 +465,10 @@ const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
     ("audit", &["mechanics", "symbolic"]),
     ("formulations", &["mechanics", "symbolic"]),
     ("schedule", &["program", "symbolic"]),
-    ("emit", &["program", "schedule", "symbolic", "taylor"]),
+    ("emit", &["program", "schedule", "symbolic"]),
     ("operations", &["schedule", "symbolic"]),
-    ("taylor", &["operations", "schedule", "symbolic"]),
-    ("jit", &["program", "schedule", "symbolic", "taylor"]),
-    ("interpreted", &["program", "schedule", "taylor"]),
+    ("jit", &["program", "schedule", "symbolic"]),
+    ("interpreted", &["program", "schedule"]),
 ];
 
 /// What the three formulations share with the derivation: the graph, the reading of expressions,

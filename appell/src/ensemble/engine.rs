@@ -9,13 +9,11 @@ use appell_ensemble::study::{Kept, Method};
 use appell_runtime::Simulation;
 use appell_runtime::inputs::ModelInputs;
 use appell_runtime::integrate::{
-    BlockSolver, BlockTaylor, Cause, Direction, Dop853, Dopri5, Ending, Event, ExpandedTogether,
-    Options, Places,
+    BlockSolver, Cause, Direction, Dop853, Dopri5, Ending, Event, Options, Places,
 };
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::ModelInfo;
 use appell_runtime::real::Enclosure;
-use appell_runtime::series::Cubic;
 use appell_runtime::simulate::{
     Observed, Prepared, Response, SimulationError, Validity, Viewer, observe_together,
 };
@@ -26,7 +24,7 @@ use super::observer::{Gauge, Keeper};
 use super::spec::Quantity;
 use super::variant::Variant;
 use super::{Ensemble, Task};
-use crate::inputs::closed_loop::{ClosedLoop, Equations};
+use crate::inputs::closed_loop::ClosedLoop;
 
 /// Cases that are set up together, from which blocks of the same spec and law are made: fewer where each of them has a
 /// long list of times at which noise switches, but a block.
@@ -72,7 +70,6 @@ impl Engine for Ensemble {
 struct Solvers {
     dop853: BlockSolver<Dop853>,
     dopri5: BlockSolver<Dopri5>,
-    taylor: BlockTaylor,
 }
 
 /// What came of a case.
@@ -342,30 +339,15 @@ impl Ensemble {
             max_steps: max_steps.unwrap_or(options.max_steps),
             ..options
         };
-        let function = match &closed.equations {
-            Equations::Rates(function) => function,
-            Equations::Series(series) => {
-                let inputs = |motion: usize, t: f64, x: &[f64], u: &mut [Cubic]| {
-                    sources[motion].fill_polynomials(t, x, u);
-                };
-                let together = ExpandedTogether {
-                    series: series.as_ref(),
-                    inputs: closed.is_driven().then_some(&inputs),
-                };
-                return observe_together(prepared, viewers, |motions| {
-                    solvers.taylor.integrate(&together, motions, &options)
-                });
-            }
-        };
         let mut outside = OutsideInputs::new(closed, sources, self.states());
         let rates = |which: &[usize; LANES], at: Places<'_>, rates: &mut [Block]| {
             let u = outside.at(which, at);
             let Places { t, x, p } = at;
-            function.call(AtLanes { t, x, u, p }, [rates]);
+            closed.rates.call(AtLanes { t, x, u, p }, [rates]);
         };
         observe_together(prepared, viewers, |motions| match motion.method {
             Method::Dopri5 => solvers.dopri5.integrate(rates, motions, &options),
-            Method::Dop853 | Method::Taylor => solvers.dop853.integrate(rates, motions, &options),
+            Method::Dop853 => solvers.dop853.integrate(rates, motions, &options),
         })
     }
 
@@ -536,9 +518,6 @@ fn reason(observed: &Observed, info: &ModelInfo) -> String {
     match *cause {
         Cause::NonFinite { component } => {
             format!("`{}` or its rate is not finite", name(component))
-        }
-        Cause::NotAnalytic { component } => {
-            format!("`{}` has no Taylor series", name(component))
         }
         Cause::OutOfRange { component, .. } => format!("`{}` leaves its range", name(component)),
         Cause::StepTooSmall { .. } => "the step shrank to nothing".to_owned(),

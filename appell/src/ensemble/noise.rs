@@ -8,7 +8,6 @@ use appell_ensemble::random::Stream;
 use appell_runtime::inputs::InputSource;
 use appell_runtime::model::{Along, Switching};
 use appell_runtime::real::Enclosure;
-use appell_runtime::series::Cubic;
 
 use crate::inputs::closed_loop::Onto;
 use crate::inputs::controller::Controller;
@@ -136,20 +135,6 @@ impl Noisy<'_> {
         self.with_seen(t, x, |p, x| self.controller.fill_outside(p, t, x, outside));
         for (noise, (_, value)) in noises.iter_mut().zip(self.values(t)) {
             *noise = value;
-        }
-    }
-}
-
-impl Noisy<'_> {
-    /// The same as polynomials of the time since `t`.
-    pub(super) fn fill_polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) {
-        let (outside, noises) = u.split_at_mut(u.len() - self.noises.len());
-        self.with_seen(t, x, |p, x| {
-            // Whatever a study can name is a polynomial.
-            self.controller.polynomials_with(p, t, x, outside);
-        });
-        for (noise, (_, value)) in noises.iter_mut().zip(self.values(t)) {
-            *noise = [value, 0.0, 0.0, 0.0];
         }
     }
 }

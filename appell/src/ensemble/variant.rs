@@ -4,7 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use appell_ensemble::limits::MAX_HELD;
-use appell_ensemble::study::{Entry, Method, Text};
+use appell_ensemble::study::{Entry, Text};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::{InputId, ParameterId};
 use appell_spec::{Code, Scope, did_you_mean};
@@ -14,7 +14,7 @@ use super::noise::Noise;
 use super::reading::Reading;
 use super::spec::{Extended, Quantity};
 use crate::formula::{StateFunction, Workbench};
-use crate::inputs::closed_loop::{ClosedLoop, Kind, Onto};
+use crate::inputs::closed_loop::{ClosedLoop, Onto};
 use crate::inputs::controller::{Plan, Wiring};
 use crate::inputs::feedback;
 use crate::setup::Setup;
@@ -175,15 +175,11 @@ pub(super) fn variant(
     let Some(wiring) = wiring.filter(|_| reading.findings.is_empty()) else {
         return Ok(None);
     };
-    let kind = match study.motion.method {
-        Method::Taylor => Kind::Series,
-        Method::Dop853 | Method::Dopri5 => Kind::Rates,
-    };
     let seen: Vec<Onto> = noises.iter().map(|noise| noise.onto).collect();
     Ok(Some(Variant {
         model: Arc::clone(model),
         limits: limits.collect(),
-        closed: wiring.closed_loop(model.rates()?, setup.info, &seen, kind)?,
+        closed: wiring.closed_loop(model.rates()?, setup.info, &seen)?,
         wiring,
         set,
         start,

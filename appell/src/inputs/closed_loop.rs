@@ -1,9 +1,8 @@
 //! Equations of motion with their inputs put in, for eight motions at once.
 
-use appell_codegen::jit::{Elementary, JitError, JitSeriesInLanes, Sizes, Target, VectorFunction};
+use appell_codegen::jit::{Elementary, JitError, Sizes, Target, VectorFunction};
 use appell_codegen::operations::{Seen, closed_loop};
 use appell_codegen::schedule::Schedule;
-use appell_codegen::taylor::{Lengths, expand_under};
 
 /// What a disturbance of the law's view acts on.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -23,27 +22,12 @@ pub(super) struct Outside {
     pub(super) is_there: bool,
 }
 
-/// What is made of the equations.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Rates.
-    Rates,
-    /// Taylor series.
-    Series,
-}
-
 /// The equations under expressions and laws. They call the elementary functions of the runtime, so that they have the
 /// same bits on every machine.
 pub(crate) struct ClosedLoop {
-    pub(crate) equations: Equations,
+    pub(crate) rates: VectorFunction,
     inputs: usize,
     is_driven: bool,
-}
-
-/// Equations for eight motions at once.
-pub(crate) enum Equations {
-    Rates(VectorFunction),
-    Series(Box<JitSeriesInLanes>),
 }
 
 impl ClosedLoop {
@@ -52,7 +36,6 @@ impl ClosedLoop {
         rates: &Schedule,
         sizes: Sizes,
         (outside, seen): (Outside, &[Onto]),
-        kind: Kind,
     ) -> Result<Self, JitError> {
         let views = seen.iter().zip(outside.inputs..);
         let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();
@@ -64,23 +47,9 @@ impl ClosedLoop {
             elementary: Elementary::Own,
             ..Target::default()
         };
-        let equations = match kind {
-            Kind::Rates => {
-                let rates = closed_loop(law, rates, &views);
-                Equations::Rates(VectorFunction::compile_or_interpret(&rates, sizes, target)?)
-            }
-            Kind::Series => {
-                let lengths = Lengths {
-                    states: sizes.states,
-                    inputs: sizes.inputs,
-                    parameters: sizes.parameters,
-                };
-                let series = expand_under(law, rates, &views, lengths);
-                Equations::Series(Box::new(JitSeriesInLanes::new(series, target)?))
-            }
-        };
+        let rates = closed_loop(law, rates, &views);
         Ok(Self {
-            equations,
+            rates: VectorFunction::compile_or_interpret(&rates, sizes, target)?,
             inputs: sizes.inputs,
             is_driven: outside.is_there || !seen.is_empty(),
         })

@@ -7,14 +7,12 @@ use std::sync::Arc;
 
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
-use appell_codegen::jit::{JitSeries, Sizes};
+use appell_codegen::jit::Sizes;
 use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
-use appell_codegen::taylor::{Lengths, expand_under};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_runtime::model::{Along, At, Model, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
-use appell_runtime::series::{Cubic, Series};
 use appell_spec::expr::Expr;
 use appell_spec::mechanism::InputId;
 use appell_spec::{Scope, Snippet, formula};
@@ -22,7 +20,7 @@ use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench};
 use crate::inputs::by_model::ModelLaw;
-use crate::inputs::closed_loop::{ClosedLoop, Kind, Onto, Outside};
+use crate::inputs::closed_loop::{ClosedLoop, Onto, Outside};
 use crate::inputs::feedback::{self, Aim, Feedback, Gains, Sampled};
 use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
 use crate::inputs::switching::InputSwitches;
@@ -43,8 +41,6 @@ pub struct Controller<'w> {
     switching_times: Vec<f64>,
     /// Values of the function, kept to be written anew.
     values: Cell<Vec<f64>>,
-    /// The equations of motion with expressions and laws put in.
-    series: Option<JitSeries>,
 }
 
 /// What all motions under the same expressions, laws and recordings share.
@@ -337,7 +333,6 @@ impl Wiring {
             model_samplers,
             switching_times: times,
             values: Cell::default(),
-            series: None,
         }
     }
 
@@ -353,25 +348,14 @@ impl Wiring {
         rates: &Schedule,
         info: &ModelInfo,
         seen: &[Onto],
-        kind: Kind,
     ) -> Result<ClosedLoop, Error> {
-        if kind == Kind::Series && !self.by_model.is_empty() {
-            let message = "laws that compute inputs from the equations of motion have no Taylor series; choose dop853";
-            return Err(Error::request(Field::Feedback, message));
-        }
         let given = self.recorded.is_some() || !self.driven.is_empty() || !self.by_model.is_empty();
         let outside = Outside {
             inputs: self.function.inputs(),
             is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
         };
-        ClosedLoop::new(
-            &self.law(info),
-            rates,
-            Sizes::from(info),
-            (outside, seen),
-            kind,
-        )
-        .map_err(Error::computation)
+        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), (outside, seen))
+            .map_err(Error::computation)
     }
 
     /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
@@ -388,16 +372,6 @@ impl Wiring {
 }
 
 impl Controller<'_> {
-    /// Prepares Taylor series of the motion under these inputs; `rates` are the model's.
-    pub fn expand(&mut self, rates: &Schedule, info: &ModelInfo) {
-        let lengths = Lengths {
-            inputs: self.wiring.function.inputs(),
-            ..Lengths::from(info)
-        };
-        let law = self.wiring.law(info);
-        self.series = Some(JitSeries::new(expand_under(&law, rates, &[], lengths)));
-    }
-
     /// Adds what discrete-time laws hold between samples to `count` inputs.
     fn add_held(
         &self,
@@ -541,53 +515,6 @@ impl InputSource for Controller<'_> {
     fn switching(&self) -> Option<&dyn Switching> {
         let switches = self.wiring.switches.as_ref();
         switches.map(|switches| switches as &dyn Switching)
-    }
-
-    fn series(&self) -> Option<&dyn Series> {
-        self.series.as_ref().map(|series| series as &dyn Series)
-    }
-
-    fn polynomials(&self, t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
-        self.polynomials_with(&self.parameters, t, x, u)
-    }
-}
-
-impl Controller<'_> {
-    /// The inputs of the closed loop from outside as polynomials of the time since `t`, with the parameters and the
-    /// state that laws see; false where they are none.
-    pub(crate) fn polynomials_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [Cubic]) -> bool {
-        let wiring = self.wiring;
-        if !wiring.by_model.is_empty() {
-            return false;
-        }
-        let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
-        wiring.function.polynomials(t, signals);
-        match &wiring.recorded {
-            Some(recorded) => {
-                recorded.polynomials(t, x, declared);
-            }
-            None => declared.fill(Cubic::default()),
-        }
-        for (inputs, source) in &wiring.driven {
-            let mut own = vec![Cubic::default(); declared.len()];
-            if !source.polynomials(t, x, &mut own) {
-                return false;
-            }
-            for &input in inputs {
-                for (sum, own) in declared[input].iter_mut().zip(own[input]) {
-                    *sum += own;
-                }
-            }
-        }
-        if !wiring.sampled.is_empty() {
-            let mut values = vec![0.0; wiring.slots.len()];
-            wiring.function.values(t, x, p, &mut values);
-            let count = declared.len();
-            self.add_held(t, x, &values, count, |input, held| {
-                declared[input][0] += held;
-            });
-        }
-        true
     }
 }
 

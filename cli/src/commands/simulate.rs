@@ -119,8 +119,6 @@ enum Integrator {
     Dopri5,
     /// Order 4, fixed steps of the output interval
     Rk4,
-    /// Taylor series, order and step by the tolerances: the fastest for smooth motions
-    Taylor,
 }
 
 /// Inputs between the rows of a table.
@@ -167,7 +165,6 @@ impl Simulate {
                 Integrator::Rk4 => Method::Rk4 {
                     step: whole.row_interval(),
                 },
-                Integrator::Taylor => Method::Taylor,
             },
             options: Options {
                 max_steps: self.max_steps,

@@ -3,7 +3,7 @@
 use syn::{Attribute, Expr, Stmt};
 
 use super::layout;
-use super::statements::{Places, Statements};
+use super::statements::Statements;
 use super::syntax as s;
 use super::types::{Types, result_struct};
 use crate::program::{Array, Function, Layout, Space};
@@ -18,7 +18,7 @@ pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) 
     let mut body = Body {
         types,
         schedule,
-        statements: Statements::new(Places::Locals(&types.names), schedule),
+        statements: Statements::new(&types.names, schedule),
     };
     body.arguments();
     body.own(function);

@@ -6,7 +6,6 @@ use syn::ItemFn;
 
 use super::body::body;
 use super::error::Error;
-use super::lanes::in_lanes;
 use super::layout::{blank_tokens, code, docs};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
@@ -57,7 +56,6 @@ pub(super) fn function(
     function: &Function,
     schedule: &Schedule,
     cost: &OperationCount,
-    lanes: bool,
 ) -> Result<ItemFn, Error> {
     for array in &function.results {
         let expected = types.len(array.layout);
@@ -123,17 +121,11 @@ pub(super) fn function(
     let [parameters_type, state_type, inputs_type] =
         [Space::Parameters, Space::State, Space::Inputs]
             .map(|space| types.vector(space, &quote!(T)));
-    // What is not inlined into a loop over lanes has no lanes.
-    let inline = if lanes && in_lanes(function.kind) {
-        quote!(#[inline(always)])
-    } else {
-        quote!(#[inline])
-    };
     let tokens = quote! {
         #blank
         #about
         #[must_use]
-        #inline
+        #[inline]
         pub fn #name<T: Real>(
             #time
             #parameters: &#parameters_type,

@@ -5,14 +5,11 @@ use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::error::Error;
-use super::lanes;
 use super::layout::{blank_tokens, docs, escaped};
-use super::series;
 use super::switching;
 use super::syntax::{ident, known, number, path};
 use super::types::Types;
 use crate::program::{FunctionKind, Layout, Program, Space};
-use crate::schedule::OperationCount;
 
 /// Types of the emitted text beside the results of functions, which the model's own type must not
 /// collide with.
@@ -46,12 +43,6 @@ const TYPES: &[&str] = &[
     "Model",
     "ModelInfo",
     "At",
-    "AtLanes",
-    "Equations",
-    "RatesInLanes",
-    "JacobiansInLanes",
-    "OutputsInLanes",
-    "TaylorSeries",
     "String",
     "Send",
     "Sync",
@@ -250,13 +241,7 @@ fn signals(info: &ModelInfo) -> TokenStream {
 }
 
 /// The unit struct and its `impl Model`.
-pub(super) fn implementation(
-    types: &Types<'_>,
-    runtime: &syn::Path,
-    costs: &[(FunctionKind, OperationCount)],
-    lanes: bool,
-    series: Option<series::Emitted>,
-) -> Result<TokenStream, Error> {
+pub(super) fn implementation(types: &Types<'_>, runtime: &syn::Path) -> Result<TokenStream, Error> {
     let name = path(&type_name(types));
     let title = escaped(&types.program.info.title);
     let stop = if title.ends_with(['.', '!', '?']) {
@@ -290,14 +275,6 @@ pub(super) fn implementation(
         provided(types, FunctionKind::OutputJacobians, &["outputs", "c", "d"])?,
         gradient_method(types, FunctionKind::OutputAdjoint)?,
     ];
-    let [mut uses, mut equations, mut in_lanes] = [(); 3].map(|()| TokenStream::new());
-    if lanes {
-        uses = quote!(use #runtime::lanes::{AtLanes, Equations, LANES};);
-        equations = lanes::equations(types, runtime);
-        in_lanes = lanes::methods(types, costs);
-    }
-    let series = series.map(|series| (series.uses, series.items, series.method));
-    let (uses_of_series, series, series_method) = series.unwrap_or_default();
     let named = named(types, &name);
     let blank = blank_tokens();
     Ok(quote! {
@@ -308,11 +285,7 @@ pub(super) fn implementation(
 
         #blank
         const _: () = {
-            #uses
-            #uses_of_series
             #helpers
-            #equations
-            #series
 
             #blank
             impl model::Model for #name {
@@ -320,8 +293,6 @@ pub(super) fn implementation(
                     &INFO
                 }
                 #(#bodies)*
-                #in_lanes
-                #series_method
             }
             #switching
             #named

@@ -6,30 +6,15 @@ use syn::{Attribute, BinOp, Expr, Stmt, token};
 
 use super::layout;
 use super::syntax as s;
-use crate::schedule::names::{ArgumentNames, number_in_words};
+use crate::schedule::names::ArgumentNames;
 use crate::schedule::pi::parts_of_pi;
 use crate::schedule::piece::method;
-use crate::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
+use crate::schedule::{Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Rational, Relation};
-
-/// The array of all values.
-pub(super) const ARRAY: &str = "v";
-
-/// How a function holds what it computes with.
-pub(super) enum Places<'a> {
-    /// Arguments and values are locals.
-    Locals(&'a ArgumentNames),
-    /// Values are entries of the array `v`: compilers cannot take thousands of locals, each in the scope of the one
-    /// before. Arguments are read where they are used.
-    Array {
-        /// An argument.
-        argument: &'a dyn Fn(Argument) -> Expr,
-    },
-}
 
 /// The statements of a function on their way.
 pub(super) struct Statements<'a> {
-    places: Places<'a>,
+    names: &'a ArgumentNames,
     schedule: &'a Schedule,
     pub(super) all: Vec<Stmt>,
     /// Comments and blank lines before the next statement.
@@ -37,9 +22,9 @@ pub(super) struct Statements<'a> {
 }
 
 impl<'a> Statements<'a> {
-    pub(super) fn new(places: Places<'a>, schedule: &'a Schedule) -> Self {
+    pub(super) fn new(names: &'a ArgumentNames, schedule: &'a Schedule) -> Self {
         Self {
-            places,
+            names,
             schedule,
             all: Vec::new(),
             attributes: Vec::new(),
@@ -63,7 +48,7 @@ impl<'a> Statements<'a> {
             collect_constants(tree, &mut constants);
         }
         for value in constants {
-            let name = self.constant(&value);
+            let name = self.names.constant(&value);
             self.push(
                 s::binding(&name),
                 s::associated("constant", vec![constant(&value)]),
@@ -75,33 +60,6 @@ impl<'a> Statements<'a> {
         &self.schedule.names[value.0 as usize]
     }
 
-    /// Name of a number.
-    fn constant(&self, value: &Rational) -> String {
-        match self.places {
-            Places::Locals(names) => names.constant(value),
-            Places::Array { .. } => number_in_words(value),
-        }
-    }
-
-    /// A value, to be read or written.
-    fn place(&self, Value(value): Value) -> Expr {
-        match self.places {
-            Places::Locals(_) => s::name(self.value(Value(value))),
-            Places::Array { .. } => s::entry(s::name(ARRAY), &[value as usize]),
-        }
-    }
-
-    /// Values are told; those that nothing uses are left out.
-    fn define(&mut self, pattern: syn::Pat, places: Expr, tree: Expr) {
-        match self.places {
-            Places::Locals(_) => self.push(pattern, tree),
-            Places::Array { .. } => {
-                self.attributes.clear();
-                self.all.push(s::assigned(places, tree));
-            }
-        }
-    }
-
     /// All steps.
     pub(super) fn steps(&mut self) {
         for step in &self.schedule.steps {
@@ -111,15 +69,10 @@ impl<'a> Statements<'a> {
 
     fn step(&mut self, step: &Step) {
         match step {
-            Step::Let { value, tree } => {
-                let pattern = s::binding(self.value(*value));
-                self.define(pattern, self.place(*value), self.tree(tree));
-            }
+            Step::Let { value, tree } => self.push(s::binding(self.value(*value)), self.tree(tree)),
             Step::SinCos { sin, cos, angle } => {
                 let pattern = s::tuple_pattern(&[self.value(*sin), self.value(*cos)]);
-                let places = s::tuple(vec![self.place(*sin), self.place(*cos)]);
-                let both = s::method(self.tree(angle), "sin_cos", Vec::new());
-                self.define(pattern, places, both);
+                self.push(pattern, s::method(self.tree(angle), "sin_cos", Vec::new()));
             }
             Step::Factor {
                 factorisation,
@@ -146,9 +99,7 @@ impl<'a> Statements<'a> {
                 let factors = s::borrowed(s::name(&self.factors(*factorisation)));
                 let right = s::array(self.trees(right));
                 let solved = s::call("lu_solve", vec![factors, right]);
-                let pattern = s::array_pattern(&names);
-                let places = s::array(values.iter().map(|&value| self.place(value)).collect());
-                self.define(pattern, places, solved);
+                self.push(s::array_pattern(&names), solved);
             }
             Step::Paragraph { title } => {
                 self.attributes.push(layout::blank());
@@ -163,11 +114,7 @@ impl<'a> Statements<'a> {
     fn factors(&self, factorisation: u32) -> String {
         let mut name = format!("lu_{}", factorisation + 1);
         let taken = |name: &String| {
-            let of_argument = match self.places {
-                Places::Locals(names) => names.iter().any(|other| other == name),
-                Places::Array { .. } => false,
-            };
-            of_argument || self.schedule.names.contains(name)
+            self.schedule.names.contains(name) || self.names.iter().any(|other| other == name)
         };
         while taken(&name) {
             name.push('_');
@@ -200,15 +147,12 @@ impl<'a> Statements<'a> {
     // Trees are at most one printed line deep.
     pub(super) fn tree(&self, tree: &Tree) -> Expr {
         match tree {
-            Tree::Value(value) => self.place(*value),
-            Tree::Argument(argument) => match self.places {
-                Places::Locals(names) => s::name(names.get(*argument)),
-                Places::Array { argument: of } => of(*argument),
-            },
+            Tree::Value(value) => s::name(self.value(*value)),
+            Tree::Argument(argument) => s::name(self.names.get(*argument)),
             Tree::Constant(value) if value.is_negative() => {
-                s::negated(s::name(&self.constant(&value.abs())))
+                s::negated(s::name(&self.names.constant(&value.abs())))
             }
-            Tree::Constant(value) => s::name(&self.constant(value)),
+            Tree::Constant(value) => s::name(&self.names.constant(value)),
             Tree::Negate(a) => s::negated(self.tree(a)),
             Tree::Binary(operation, a, b) => {
                 let operator = match operation {

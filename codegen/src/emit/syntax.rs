@@ -37,7 +37,6 @@ const STATICS: &[&str] = &[
     "CONSTRAINT_ROWS",
     "REACTIONS",
     "CONTACTS",
-    "SHAPE",
 ];
 
 /// An identifier. Whatever the text is, the result is one identifier and nothing else. What Rust or
@@ -115,26 +114,6 @@ pub(super) fn method(receiver: Expr, method: &'static str, arguments: Vec<Expr>)
         turbofish: None,
         paren_token: token::Paren::default(),
         args: arguments.into_iter().collect(),
-    })
-}
-
-/// `place = value;`
-pub(super) fn assigned(place: Expr, value: Expr) -> Stmt {
-    let assign = Expr::Assign(syn::ExprAssign {
-        attrs: Vec::new(),
-        left: Box::new(place),
-        eq_token: token::Eq::default(),
-        right: Box::new(value),
-    });
-    Stmt::Expr(assign, Some(token::Semi::default()))
-}
-
-/// `(a, b)`
-pub(super) fn tuple(elements: Vec<Expr>) -> Expr {
-    Expr::Tuple(syn::ExprTuple {
-        attrs: Vec::new(),
-        paren_token: token::Paren::default(),
-        elems: elements.into_iter().collect(),
     })
 }
 

@@ -2,23 +2,19 @@
 
 use std::fmt;
 use std::slice::from_mut;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 
 use appell_runtime::differences;
-use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{Along, At, Energies, Gradient, Model, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
-use appell_runtime::series::Series;
 use appell_runtime::switching::Counts;
 
 use super::host::Use;
 use super::on_demand::OnDemand;
-use super::series::JitSeries;
-use super::{JitError, Sizes, Target};
+use super::{JitError, Sizes};
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{Schedule, Tree, enclose, enclose_along};
 use crate::symbolic::Rational;
-use crate::taylor::{Lengths, expand};
 
 /// A model compiled in this process.
 ///
@@ -28,19 +24,12 @@ use crate::taylor::{Lengths, expand};
 /// compiled, because it is too long, is interpreted with the same results; [`Self::interpreted`]
 /// lists these.
 ///
-/// Eight places at once have code of their own, with the same bits in every lane; see
-/// [`VectorFunction`](super::VectorFunction).
-///
 /// [`Self::without`] makes a shorter one for parameters that are zero.
 pub struct JitModel {
     program: Arc<Program>,
     sizes: Sizes,
-    /// What lanes are compiled for.
-    target: Target,
     /// By [`FunctionKind`], in the order of its variants.
     parts: Vec<OnDemand>,
-    /// Made when they are first asked for.
-    series: OnceLock<JitSeries>,
     /// What it is a part of.
     whole: Option<Whole>,
 }
@@ -167,9 +156,7 @@ impl JitModel {
         let model = Self {
             program: Arc::new(program.clone()),
             sizes,
-            target: Target::default(),
             parts,
-            series: OnceLock::new(),
             whole: None,
         };
         // A processor without a compiler shows here and not in the middle of a simulation.
@@ -192,9 +179,7 @@ impl JitModel {
         Ok(Self {
             program: self.program.clone(),
             sizes: self.sizes,
-            target: self.target,
             parts,
-            series: OnceLock::new(),
             whole: Some(Whole {
                 model: self.clone(),
                 zeros,
@@ -202,14 +187,7 @@ impl JitModel {
         })
     }
 
-    /// The same with other vector instructions or elementary functions for lanes, and for the methods
-    /// that agree with lanes at one place.
-    #[must_use]
-    pub fn with_lanes_for(self, target: Target) -> Self {
-        Self { target, ..self }
-    }
-
-    /// Compiles all functions of one place now instead of at their first use.
+    /// Compiles all functions now instead of at their first use.
     pub fn compile_all(&self) {
         for part in &self.parts {
             part.prepare(&self.program, self.sizes);
@@ -253,32 +231,6 @@ impl JitModel {
     ) {
         let part = self.at(at.p).part(kind);
         part.call(&self.program, self.sizes, at, weights, results);
-    }
-
-    fn evaluate_lanes<const N: usize>(
-        &self,
-        kind: FunctionKind,
-        at: AtLanes<'_>,
-        results: [&mut [[f64; LANES]]; N],
-    ) {
-        let is_zero = |&index: &usize| at.p[index].iter().all(|p| *p == 0.0);
-        if let Some(whole) = &self.whole
-            && !whole.zeros.iter().all(is_zero)
-        {
-            return whole.model.evaluate_lanes(kind, at, results);
-        }
-        let part = self.part(kind);
-        part.call_lanes(&self.program, self.sizes, self.target, at, results);
-    }
-
-    fn evaluate_own<const N: usize>(
-        &self,
-        kind: FunctionKind,
-        at: At<'_>,
-        results: [&mut [f64]; N],
-    ) {
-        let part = self.at(at.p).part(kind);
-        part.call_own(&self.program, self.sizes, self.target, at, results);
     }
 }
 
@@ -347,36 +299,6 @@ impl Model for JitModel {
         enclose_along(part.schedule(&self.program), along, outputs);
     }
 
-    fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
-        self.evaluate_lanes(FunctionKind::Rates, at, [rates]);
-    }
-
-    fn jacobians_lanes(
-        &self,
-        at: AtLanes<'_>,
-        rates: &mut [[f64; LANES]],
-        a: &mut [[f64; LANES]],
-        b: &mut [[f64; LANES]],
-    ) {
-        self.evaluate_lanes(FunctionKind::Jacobians, at, [rates, a, b]);
-    }
-
-    fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
-        self.evaluate_lanes(FunctionKind::Outputs, at, [outputs]);
-    }
-
-    fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
-        self.evaluate_own(FunctionKind::Rates, at, [rates]);
-    }
-
-    fn jacobians_own(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]) {
-        self.evaluate_own(FunctionKind::Jacobians, at, [rates, a, b]);
-    }
-
-    fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
-        self.evaluate_own(FunctionKind::Outputs, at, [outputs]);
-    }
-
     fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
         let kind = FunctionKind::InverseDynamics;
         match self.program.function(kind) {
@@ -438,17 +360,6 @@ impl Model for JitModel {
 
     fn position_constraints(&self, at: At<'_>, residual: &mut [f64], jacobian: &mut [f64]) {
         self.evaluate(FunctionKind::PositionConstraints, at, [residual, jacobian]);
-    }
-
-    fn series(&self) -> Option<&dyn Series> {
-        if let Some(whole) = &self.whole {
-            return whole.model.series();
-        }
-        let series = self.series.get_or_init(|| {
-            let rates = self.part(FunctionKind::Rates).schedule(&self.program);
-            JitSeries::new(expand(rates, Lengths::from(&self.program.info)))
-        });
-        Some(series)
     }
 
     fn switching(&self) -> Option<&dyn Switching> {

@@ -2,13 +2,12 @@
 
 use std::sync::OnceLock;
 
-use appell_runtime::lanes::{AtLanes, LANES, place_by_place};
 use appell_runtime::model::At;
 
 use super::check::lengths;
 use super::host::Use;
 use super::native::check_lengths;
-use super::{Elementary, JitError, NativeFunction, Sizes, Target, VectorFunction};
+use super::{Elementary, JitError, NativeFunction, Sizes};
 use crate::program::{Function, FunctionKind, Program};
 use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
 
@@ -22,10 +21,6 @@ pub(super) struct OnDemand {
     of: Use,
     schedule: OnceLock<Schedule>,
     ready: OnceLock<Ready>,
-    /// For eight places at once; `None` where that cannot be made.
-    lanes: OnceLock<Option<VectorFunction>>,
-    /// With the elementary functions of lanes; `None` where that cannot be made.
-    own: OnceLock<Option<NativeFunction>>,
 }
 
 /// A function that can be evaluated.
@@ -77,8 +72,6 @@ impl OnDemand {
             of,
             schedule: OnceLock::new(),
             ready: OnceLock::new(),
-            lanes: OnceLock::new(),
-            own: OnceLock::new(),
         })
     }
 
@@ -107,74 +100,10 @@ impl OnDemand {
         self.ready(program, sizes).call(at, weights, out);
     }
 
-    /// Evaluates the function at eight places; see [`VectorFunction::call`].
-    #[inline]
-    pub(super) fn call_lanes<const N: usize>(
-        &self,
-        program: &Program,
-        sizes: Sizes,
-        target: Target,
-        at: AtLanes<'_>,
-        out: [&mut [[f64; LANES]]; N],
-    ) {
-        match self.lanes(program, sizes, target) {
-            Some(vector) => vector.call(at, out),
-            None => place_by_place(at, out, |t, [x, u, p], out| {
-                self.call_own(program, sizes, target, At { t, x, u, p }, out);
-            }),
-        }
-    }
-
-    /// Evaluates the function at one place with the bits that [`Self::call_lanes`] has there.
-    #[inline]
-    pub(super) fn call_own<const N: usize>(
-        &self,
-        program: &Program,
-        sizes: Sizes,
-        target: Target,
-        at: At<'_>,
-        out: [&mut [f64]; N],
-    ) {
-        if let Some(native) = self.own(program, sizes, target) {
-            native.call(at, out);
-        } else if let Some(vector) = self.lanes(program, sizes, target) {
-            in_all_lanes(at, out, |at, out| vector.call(at, out));
-        } else {
-            self.call(program, sizes, at, &[], out);
-        }
-    }
-
     /// The function, made when it is first asked for.
     #[inline]
     fn ready(&self, program: &Program, sizes: Sizes) -> &Ready {
         self.ready.get_or_init(|| self.make(program, sizes))
-    }
-
-    #[inline]
-    fn lanes(&self, program: &Program, sizes: Sizes, target: Target) -> Option<&VectorFunction> {
-        let make = || {
-            let schedule = self.schedule(program);
-            match target.elementary {
-                // Scalar code has the same bits.
-                Elementary::Standard => VectorFunction::all_at_once(schedule, sizes, target),
-                Elementary::Own => VectorFunction::compile_for(schedule, sizes, target).map(Some),
-            }
-        };
-        // What cannot be compiled tells its reason where it is interpreted.
-        let lanes = self.lanes.get_or_init(|| make().ok().flatten());
-        lanes.as_ref()
-    }
-
-    #[inline]
-    fn own(&self, program: &Program, sizes: Sizes, target: Target) -> Option<&NativeFunction> {
-        if target.elementary == Elementary::Standard {
-            return None;
-        }
-        let make = || {
-            let schedule = self.schedule(program);
-            NativeFunction::compile_with(schedule, sizes, Elementary::Own).ok()
-        };
-        self.own.get_or_init(make).as_ref()
     }
 
     /// Why the function is interpreted, if it is.
@@ -231,10 +160,6 @@ impl OnDemand {
 
 impl Ready {
     /// Compiles a schedule if that is possible.
-    pub(super) fn new(schedule: Schedule, sizes: Sizes) -> Self {
-        Self::of(schedule, sizes, Use::Lasting)
-    }
-
     fn of(schedule: Schedule, sizes: Sizes, of: Use) -> Self {
         match NativeFunction::compile_for(&schedule, sizes, (Elementary::Standard, of)) {
             Ok(native) => Self::Native(native),
@@ -273,28 +198,4 @@ fn find(program: &Program, kind: FunctionKind) -> Option<&Function> {
         .functions
         .iter()
         .find(|function| function.kind == kind)
-}
-
-/// A function of eight places at one.
-fn in_all_lanes<const N: usize>(
-    at: At<'_>,
-    results: [&mut [f64]; N],
-    evaluate: impl FnOnce(AtLanes<'_>, [&mut [[f64; LANES]]; N]),
-) {
-    let block = |&number: &f64| [number; LANES];
-    let [x, u, p] =
-        [at.x, at.u, at.p].map(|numbers| -> Vec<_> { numbers.iter().map(block).collect() });
-    let (t, x, u, p) = (&block(&at.t), &x, &u, &p);
-    let mut blocks = results
-        .each_ref()
-        .map(|result| vec![[0.0; LANES]; result.len()]);
-    evaluate(
-        AtLanes { t, x, u, p },
-        blocks.each_mut().map(Vec::as_mut_slice),
-    );
-    for (result, blocks) in results.into_iter().zip(blocks) {
-        for (number, block) in result.iter_mut().zip(blocks) {
-            *number = block[0];
-        }
-    }
 }

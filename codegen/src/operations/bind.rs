@@ -37,7 +37,7 @@ pub(crate) fn bind(graph: &Graph, results: Vec<(&str, Vec<Id>)>) -> Schedule {
 }
 
 /// Which nodes some others need.
-pub(crate) fn live<'a>(graph: &Graph, needed: impl Iterator<Item = &'a Id>) -> Vec<bool> {
+fn live<'a>(graph: &Graph, needed: impl Iterator<Item = &'a Id>) -> Vec<bool> {
     let mut live = vec![false; graph.len()];
     let mut open: Vec<Id> = needed.copied().collect();
     while let Some(id) = open.pop() {

@@ -34,7 +34,7 @@ pub fn closed_loop(law: &Schedule, rates: &Schedule, seen: &[Seen]) -> Schedule 
 }
 
 /// The results of a law.
-pub(crate) fn under(law: &Schedule, graph: &mut Graph, seen: &[Seen]) -> Vec<Id> {
+fn under(law: &Schedule, graph: &mut Graph, seen: &[Seen]) -> Vec<Id> {
     let argument = |graph: &mut Graph, argument| {
         let mut id = graph.argument(argument);
         for seen in seen {
@@ -55,7 +55,7 @@ pub(crate) fn under(law: &Schedule, graph: &mut Graph, seen: &[Seen]) -> Vec<Id>
 }
 
 /// Rates, the first result of a schedule, with inputs put in.
-pub(crate) fn in_loop(rates: &Schedule, graph: &mut Graph, inputs: &[Id]) -> Vec<Id> {
+fn in_loop(rates: &Schedule, graph: &mut Graph, inputs: &[Id]) -> Vec<Id> {
     let given = |graph: &mut Graph, argument| match argument {
         Argument::Input(input) => inputs[input as usize],
         other => graph.argument(other),

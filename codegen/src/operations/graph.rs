@@ -156,31 +156,6 @@ impl Graph {
         self.intern(Node::Argument(argument))
     }
 
-    /// A whole number.
-    pub(crate) fn number(&mut self, number: i64) -> Id {
-        self.intern(Node::Constant(Rational::new(number, 1)))
-    }
-
-    /// The value of a node that is a number.
-    pub(crate) fn constant(&self, id: Id) -> Option<&Rational> {
-        match self.node(id) {
-            Node::Constant(number) => Some(number),
-            _ => None,
-        }
-    }
-
-    /// `-a`
-    pub(crate) fn negate(&mut self, a: Id) -> Id {
-        match self.node(a) {
-            Node::Negate(a) => *a,
-            Node::Binary(Operation::Subtract, left, right) => {
-                let (left, right) = (*left, *right);
-                self.intern(Node::Binary(Operation::Subtract, right, left))
-            }
-            _ => self.intern(Node::Negate(a)),
-        }
-    }
-
     /// `a + b`
     pub(crate) fn add(&mut self, a: Id, b: Id) -> Id {
         if let Node::Negate(b) = *self.node(b) {
@@ -198,38 +173,6 @@ impl Graph {
             return self.add(a, b);
         }
         self.intern(Node::Binary(Operation::Subtract, a, b))
-    }
-
-    /// `a * b`
-    pub(crate) fn multiply(&mut self, a: Id, b: Id) -> Id {
-        for (number, other) in [(a, b), (b, a)] {
-            if let Some(number) = self.constant(number) {
-                if number.is_one() {
-                    return other;
-                }
-                if number.abs().is_one() {
-                    return self.negate(other);
-                }
-            }
-        }
-        match (self.node(a), self.node(b)) {
-            (&Node::Negate(a), &Node::Negate(b)) => self.multiply(a, b),
-            (&Node::Negate(a), _) => {
-                let product = self.multiply(a, b);
-                self.negate(product)
-            }
-            (_, &Node::Negate(b)) => {
-                let product = self.multiply(a, b);
-                self.negate(product)
-            }
-            _ => self.intern(Node::Binary(Operation::Multiply, a.min(b), a.max(b))),
-        }
-    }
-
-    /// `1 / a`
-    pub(crate) fn reciprocal(&mut self, a: Id) -> Id {
-        let one = self.number(1);
-        self.intern(Node::Binary(Operation::Divide, one, a))
     }
 
     /// A function of one argument.

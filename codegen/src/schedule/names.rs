@@ -148,7 +148,7 @@ impl ArgumentNames {
 }
 
 /// `two`, `half`, `minus_three_quarters`, `c_17_over_35`.
-pub(crate) fn number_in_words(value: &Rational) -> String {
+fn number_in_words(value: &Rational) -> String {
     const WHOLE: [&str; 20] = [
         "zero",
         "one",

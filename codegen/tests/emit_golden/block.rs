@@ -409,7 +409,7 @@ pub fn generalized_forces<T: Real>(
 /// From `block.toml`.
 /// Operations: 15 (4 +, 9 ×, 2 ÷), sine or cosine of 1 angle, 1 function.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -447,7 +447,7 @@ pub fn rates<T: Real>(
 /// From `block.toml`.
 /// Operations: 27 (6 +, 18 ×, 2 ÷, 1 sign), sine or cosine of 1 angle, 1 function.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn jacobians<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -677,7 +677,7 @@ pub fn constraint_forces<T: Real>(
 /// From `block.toml`.
 /// Operations: 16 (4 +, 9 ×, 2 ÷, 1 sign), sine or cosine of 1 angle, 1 function.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn outputs<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -1107,8 +1107,6 @@ pub fn output_adjoint<T: Real>(
 pub struct Block;
 
 const _: () = {
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
-    use ::appell_runtime::series;
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -1130,113 +1128,6 @@ const _: () = {
 
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
-    }
-
-    ::appell_runtime::in_lanes! {
-        RatesInLanes = rates(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v, s },
-        Inputs[1] { F }) => [2] (whole[v_dot, s_dot]) [0] () [0] ()
-    }
-
-    ::appell_runtime::in_lanes! {
-        JacobiansInLanes = jacobians(Parameters[6] { m, beta, mu, eps, g, k }, State[2] {
-        v, s }, Inputs[1] { F }) => [2] (rates[v_dot, s_dot]) [4] (a[v_dot, s_dot] [v,
-        s]) [2] (b[v_dot, s_dot] [F])
-    }
-
-    ::appell_runtime::in_lanes! {
-        OutputsInLanes = outputs(Parameters[6] { m, beta, mu, eps, g, k }, State[2] { v,
-        s }, Inputs[1] { F }) => [6] (whole[n, across, rubbing, pulling, pushing, a]) [0]
-        () [0] ()
-    }
-
-    /// The equations with the recurrences of their Taylor coefficients.
-    struct TaylorSeries;
-
-    static SHAPE: series::Shape = series::Shape {
-        states: 2,
-        inputs: 1,
-        parameters: 6,
-        kept: 10,
-        products: 3,
-        guards: model::List::Borrowed(&[]),
-    };
-
-    impl series::Series for TaylorSeries {
-        fn shape(&self) -> &series::Shape {
-            &SHAPE
-        }
-
-        fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
-            type T = f64;
-            let mut v = [0.0; 22];
-            let one = T::constant(1.0);
-            let two = T::constant(2.0);
-            (v[0], v[1]) = from.p[1].sin_cos();
-            v[2] = one / from.p[0];
-            v[3] = from.p[0] * from.p[4];
-            v[4] = v[0] * from.u[0];
-            v[5] = v[1] * v[3];
-            v[6] = v[4] + v[5];
-            v[7] = v[1] * from.u[0];
-            v[8] = from.p[2] * v[6];
-            v[9] = from.x[0] / from.p[3];
-            v[10] = v[9].tanh();
-            v[11] = v[8] * v[10];
-            v[12] = v[7] - v[11];
-            v[13] = from.p[5] * from.x[1];
-            v[14] = v[12] - v[13];
-            v[15] = v[0] * v[3];
-            v[16] = v[14] - v[15];
-            v[17] = v[2] * v[16];
-            v[18] = one / from.p[3];
-            v[19] = v[10] * v[10];
-            v[20] = one - v[19];
-            v[21] = v[10] * two;
-            to.next.copy_from_slice(&[v[17], from.x[0]]);
-            to.kept
-                .copy_from_slice(
-                    &[
-                        v[0],
-                        v[1],
-                        from.p[2],
-                        v[18],
-                        v[20],
-                        v[8],
-                        v[10],
-                        from.p[5],
-                        v[2],
-                        v[21],
-                    ],
-                );
-        }
-
-        fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
-            let mut v = [0.0; 21];
-            v[0] = from.u[0] * from.kept[0];
-            v[1] = from.u[0] * from.kept[1];
-            v[2] = v[0] * from.kept[2];
-            v[3] = from.x[0] * from.kept[3];
-            v[4] = v[3] * from.kept[4];
-            v[5] = from.sums[0] * from.u[2];
-            v[6] = v[4] + v[5];
-            v[7] = v[6] * from.kept[5];
-            v[8] = v[2] * from.kept[6];
-            v[9] = v[7] + v[8];
-            v[10] = v[9] + from.sums[1];
-            v[11] = v[1] - v[10];
-            v[12] = from.x[1] * from.kept[7];
-            v[13] = v[11] - v[12];
-            v[14] = v[13] * from.kept[8];
-            v[15] = v[3] * from.k;
-            v[16] = v[6] * from.kept[9];
-            v[17] = v[16] + from.sums[2];
-            v[18] = -v[17];
-            v[19] = v[14] * from.u[3];
-            v[20] = from.x[0] * from.u[3];
-            to.next.copy_from_slice(&[v[19], v[20]]);
-            to.left.copy_from_slice(&[v[15], v[2], v[6]]);
-            to.right.copy_from_slice(&[v[18], v[6], v[6]]);
-        }
     }
 
     impl model::Model for Block {
@@ -1427,46 +1318,6 @@ const _: () = {
             write(by.x, &all.x.to_array());
             write(by.u, &all.u.to_array());
             write(by.p, &all.p.to_array());
-        }
-
-        fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
-            RatesInLanes::block(at, [rates, &mut [], &mut []]);
-        }
-
-        fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
-            RatesInLanes::place(at, [rates, &mut [], &mut []]);
-        }
-
-        fn jacobians_lanes(
-            &self,
-            at: AtLanes<'_>,
-            rates: &mut [[f64; LANES]],
-            a: &mut [[f64; LANES]],
-            b: &mut [[f64; LANES]],
-        ) {
-            JacobiansInLanes::block(at, [rates, a, b]);
-        }
-
-        fn jacobians_own(
-            &self,
-            at: At<'_>,
-            rates: &mut [f64],
-            a: &mut [f64],
-            b: &mut [f64],
-        ) {
-            JacobiansInLanes::place(at, [rates, a, b]);
-        }
-
-        fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
-            OutputsInLanes::block(at, [outputs, &mut [], &mut []]);
-        }
-
-        fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
-            OutputsInLanes::place(at, [outputs, &mut [], &mut []]);
-        }
-
-        fn series(&self) -> Option<&dyn series::Series> {
-            Some(&TaylorSeries)
         }
     }
     use ::appell_runtime::Enclosure;

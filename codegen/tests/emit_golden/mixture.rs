@@ -121,7 +121,7 @@ pub struct Jacobians<T> {
 /// From `mechanisms/type.toml`.
 /// Operations: 25 (16 +, 8 ×, 1 ÷), sine or cosine of 1 angle, 13 functions, 2 choices, 2 linear systems.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn rates<T: Real>(
     t: T,
     parameters: &Parameters<T>,
@@ -175,7 +175,7 @@ pub fn rates<T: Real>(
 /// From `mechanisms/type.toml`.
 /// Operations: 61 (32 +, 18 ×, 5 ÷, 6 sign), sine or cosine of 1 angle, 14 functions, 7 choices, 7 linear systems.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn jacobians<T: Real>(
     t: T,
     parameters: &Parameters<T>,
@@ -369,7 +369,7 @@ pub fn parameter_jacobian<T: Real>(
 /// From `mechanisms/type.toml`.
 /// Operations: 1 (1 +), 2 functions, 1 choice.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn outputs<T: Real>(
     t: T,
     parameters: &Parameters<T>,

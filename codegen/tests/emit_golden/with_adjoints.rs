@@ -388,7 +388,7 @@ pub fn generalized_forces<T: Real>(
 /// From `pendulum.toml`.
 /// Operations: 8 (2 +, 5 ×, 1 ÷), sine or cosine of 1 angle.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn rates<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -426,7 +426,7 @@ pub fn rates<T: Real>(
 /// From `pendulum.toml`.
 /// Operations: 11 (2 +, 7 ×, 1 ÷, 1 sign), sine or cosine of 1 angle.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn jacobians<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -615,7 +615,7 @@ pub fn constraint_forces<T: Real>(
 /// From `pendulum.toml`.
 /// Operations: 13 (3 +, 9 ×, 1 sign), sine or cosine of 1 angle.
 #[must_use]
-#[inline(always)]
+#[inline]
 pub fn outputs<T: Real>(
     parameters: &Parameters<T>,
     state: &State<T>,
@@ -911,8 +911,6 @@ pub fn output_adjoint<T: Real>(
 pub struct Pendulum;
 
 const _: () = {
-    use ::appell_runtime::lanes::{AtLanes, Equations, LANES};
-    use ::appell_runtime::series;
     use model::At;
 
     /// The first numbers of a slice that holds at least as many.
@@ -934,77 +932,6 @@ const _: () = {
 
     fn write(to: &mut [f64], from: &[f64]) {
         to.copy_from_slice(from);
-    }
-
-    ::appell_runtime::in_lanes! {
-        RatesInLanes = rates(Parameters[4] { m, l, I, g }, State[2] { omega, theta },
-        Inputs[1] { tau }) => [2] (whole[omega_dot, theta_dot]) [0] () [0] ()
-    }
-
-    ::appell_runtime::in_lanes! {
-        JacobiansInLanes = jacobians(Parameters[4] { m, l, I, g }, State[2] { omega,
-        theta }, Inputs[1] { tau }) => [2] (rates[omega_dot, theta_dot]) [4]
-        (a[omega_dot, theta_dot] [omega, theta]) [2] (b[omega_dot, theta_dot] [tau])
-    }
-
-    ::appell_runtime::in_lanes! {
-        OutputsInLanes = outputs(Parameters[4] { m, l, I, g }, State[2] { omega, theta },
-        Inputs[1] { tau }) => [3] (whole[x_G, z_G, energy]) [0] () [0] ()
-    }
-
-    /// The equations with the recurrences of their Taylor coefficients.
-    struct TaylorSeries;
-
-    static SHAPE: series::Shape = series::Shape {
-        states: 2,
-        inputs: 1,
-        parameters: 4,
-        kept: 4,
-        products: 2,
-        guards: model::List::Borrowed(&[]),
-    };
-
-    impl series::Series for TaylorSeries {
-        fn shape(&self) -> &series::Shape {
-            &SHAPE
-        }
-
-        fn start(&self, from: series::Start<'_>, to: series::Started<'_>) {
-            type T = f64;
-            let mut v = [0.0; 10];
-            let one = T::constant(1.0);
-            v[0] = from.p[0] * from.p[1];
-            v[1] = from.p[1] * v[0];
-            v[2] = v[1] + from.p[2];
-            v[3] = one / v[2];
-            v[4] = from.p[3] * v[0];
-            (v[5], v[6]) = from.x[1].sin_cos();
-            v[7] = v[4] * v[5];
-            v[8] = from.u[0] - v[7];
-            v[9] = v[3] * v[8];
-            to.next.copy_from_slice(&[v[9], from.x[0]]);
-            to.kept.copy_from_slice(&[v[6], v[4], v[3], v[5]]);
-        }
-
-        fn sweep(&self, from: series::Sweep<'_>, to: series::Swept<'_>) {
-            let mut v = [0.0; 13];
-            v[0] = from.x[1] * from.kept[0];
-            v[1] = from.sums[0] * from.u[2];
-            v[2] = v[0] + v[1];
-            v[3] = v[2] * from.kept[1];
-            v[4] = from.u[0] - v[3];
-            v[5] = v[4] * from.kept[2];
-            v[6] = from.x[1] * from.k;
-            v[7] = from.x[1] * from.kept[3];
-            v[8] = from.u[2] * from.sums[1];
-            v[9] = v[7] + v[8];
-            v[10] = -v[9];
-            v[11] = v[5] * from.u[3];
-            v[12] = from.x[0] * from.u[3];
-            to.next.copy_from_slice(&[v[11], v[12]]);
-            to.left.copy_from_slice(&[v[6], v[6]]);
-            to.right.copy_from_slice(&[v[10], v[2]]);
-        }
     }
 
     impl model::Model for Pendulum {
@@ -1178,46 +1105,6 @@ const _: () = {
             write(by.x, &all.x.to_array());
             write(by.u, &all.u.to_array());
             write(by.p, &all.p.to_array());
-        }
-
-        fn rates_lanes(&self, at: AtLanes<'_>, rates: &mut [[f64; LANES]]) {
-            RatesInLanes::block(at, [rates, &mut [], &mut []]);
-        }
-
-        fn rates_own(&self, at: At<'_>, rates: &mut [f64]) {
-            RatesInLanes::place(at, [rates, &mut [], &mut []]);
-        }
-
-        fn jacobians_lanes(
-            &self,
-            at: AtLanes<'_>,
-            rates: &mut [[f64; LANES]],
-            a: &mut [[f64; LANES]],
-            b: &mut [[f64; LANES]],
-        ) {
-            JacobiansInLanes::block(at, [rates, a, b]);
-        }
-
-        fn jacobians_own(
-            &self,
-            at: At<'_>,
-            rates: &mut [f64],
-            a: &mut [f64],
-            b: &mut [f64],
-        ) {
-            JacobiansInLanes::place(at, [rates, a, b]);
-        }
-
-        fn outputs_lanes(&self, at: AtLanes<'_>, outputs: &mut [[f64; LANES]]) {
-            OutputsInLanes::block(at, [outputs, &mut [], &mut []]);
-        }
-
-        fn outputs_own(&self, at: At<'_>, outputs: &mut [f64]) {
-            OutputsInLanes::place(at, [outputs, &mut [], &mut []]);
-        }
-
-        fn series(&self) -> Option<&dyn series::Series> {
-            Some(&TaylorSeries)
         }
     }
 

@@ -21,8 +21,6 @@ pub(crate) fn golden_options(model_impl: bool) -> Options {
     Options {
         model_impl,
         spec: model_impl.then(|| SPEC.to_owned()),
-        lanes: true,
-        series: true,
         ..Options::default()
     }
 }

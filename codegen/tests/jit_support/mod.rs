@@ -177,6 +177,15 @@ pub(crate) fn in_lanes(
         target.instructions != Instructions::Scalar,
         "{target:?}"
     );
+    evaluated(&function, points, schedule.results[0].entries.len())
+}
+
+/// The result of a function, of so many numbers, at eight points.
+pub(crate) fn evaluated(
+    function: &VectorFunction,
+    points: &[Point; LANES],
+    count: usize,
+) -> Vec<[f64; LANES]> {
     let block = |number: &dyn Fn(&Point) -> f64| points.each_ref().map(number);
     let blocks = |numbers: &dyn Fn(&Point) -> Vec<f64>| -> Vec<[f64; LANES]> {
         let len = numbers(&points[0]).len();
@@ -190,7 +199,7 @@ pub(crate) fn in_lanes(
         u: &blocks(&|point| point.u.to_vec()),
         p: &blocks(&|point| point.p.to_vec()),
     };
-    let mut result = vec![[1.0e300; LANES]; schedule.results[0].entries.len()];
+    let mut result = vec![[1.0e300; LANES]; count];
     function.call(at, [&mut result]);
     result
 }

@@ -14,8 +14,6 @@ pub enum Method {
     Dop853,
     /// Order 5 with step-size control.
     Dopri5,
-    /// Taylor series of an order that follows from the tolerances.
-    Taylor,
 }
 
 /// The motion of a case.
@@ -93,11 +91,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Option<Motion>
     let t_end = t_end.map_or(default.t_end, |t_end| t_end.value);
     let interval = read.positive(section, "dt_s", f64::MAX);
     let method = read.text(section, "method").and_then(|word| {
-        let words = [
-            ("dop853", Method::Dop853),
-            ("dopri5", Method::Dopri5),
-            ("taylor", Method::Taylor),
-        ];
+        let words = [("dop853", Method::Dop853), ("dopri5", Method::Dopri5)];
         read.word(&word, &words)
     });
     let feedback = match section.get("feedback") {

@@ -283,8 +283,8 @@ class Model(_appell.Model):
         paths of feedback files. `recorded` is a table of inputs, or a run of a data set such as
         `rig/recording.toml:run1.csv`. Rows of tables are held until the next, as a drive does with a command;
         `interpolation="linear"` joins them by lines, `"cubic"` by a spline, right for samples of a continuous signal. `record` adds columns: `reactions`, `contacts`, `conditions`, `residuals`.
-        A function sees the state before a step is accepted too, and should be smooth. `method` is `dop853`, `dopri5`,
-        `rk4` with its `step`, or `taylor`, the fastest for smooth motions, whose inputs cannot be functions.
+        A function sees the state before a step is accepted too, and should be smooth. `method` is `dop853`,
+        `dopri5`, or `rk4` with its `step`.
 
         >>> import appell, math
         >>> m = appell.load("cart_pole")

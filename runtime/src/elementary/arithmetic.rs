@@ -23,7 +23,7 @@ pub(super) fn fused(a: f64, b: f64, c: f64) -> f64 {
 /// The square root, rounded once.
 #[inline(always)]
 #[must_use]
-pub fn square_root(x: f64) -> f64 {
+pub(super) fn square_root(x: f64) -> f64 {
     #[cfg(feature = "std")]
     return x.sqrt();
     #[cfg(not(feature = "std"))]

@@ -96,7 +96,7 @@ pub fn ordinary_sin_cos(x: f64) -> (f64, f64) {
 /// Tangent of an angle up to [`ORDINARY_ANGLE`]; without meaning beyond.
 #[inline(always)]
 #[must_use]
-pub fn ordinary_tan(x: f64) -> f64 {
+fn ordinary_tan(x: f64) -> f64 {
     let angle = reduced(x);
     let square = angle.high * angle.high;
     let sin = sum_of_ordered(angle.high, -off_sine(&angle, square));

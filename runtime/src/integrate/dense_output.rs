@@ -20,13 +20,11 @@ pub(super) const HERMITE: usize = 4;
 ///
 /// In θ, the part of the step that has passed, and with θ̄ = 1 − θ, it reads c₀ + θ (c₁ + θ̄ (c₂ + θ (c₃ + θ̄ (…
 /// (Hairer, Nørsett and Wanner, section II.6). Four coefficients are the cubic Hermite
-/// polynomial, five belong to order 5 and eight to order 8(5,3). A Taylor polynomial has the time since
-/// the start of the step in the place of both θ and θ̄.
+/// polynomial, five belong to order 5 and eight to order 8(5,3).
 #[derive(Debug, Clone, Default)]
 pub struct DenseOutput {
     t_old: f64,
     h: f64,
-    is_taylor: bool,
     n: usize,
     /// Coefficients one after the other, `n` numbers each, lowest first.
     coefficients: Vec<f64>,
@@ -66,11 +64,7 @@ impl DenseOutput {
     /// Component `i` of the state at `t` and its derivative.
     pub(super) fn component_and_slope(&self, t: f64, i: usize) -> (f64, f64) {
         let factors = self.factors(t);
-        let factor_slopes = if self.is_taylor {
-            [1.0, 1.0]
-        } else {
-            [1.0 / self.h, -1.0 / self.h]
-        };
+        let factor_slopes = [1.0 / self.h, -1.0 / self.h];
         let highest = self.coefficients.len() / self.n - 1;
         let (mut value, mut slope) = (self.coefficients[highest * self.n + i], 0.0);
         for c in (0..highest).rev() {
@@ -82,9 +76,6 @@ impl DenseOutput {
 
     /// What multiplies everything after coefficients 0, 2, … and after 1, 3, …: θ and θ̄.
     fn factors(&self, t: f64) -> [f64; 2] {
-        if self.is_taylor {
-            return [t - self.t_old; 2];
-        }
         let theta = (t - self.t_old) / self.h;
         [theta, 1.0 - theta]
     }
@@ -98,11 +89,7 @@ impl DenseOutput {
     pub fn within(&self, [from, to]: [f64; 2], x: &mut Vec<Enclosure>) {
         let half = 0.5 * (to - from);
         let factors = self.factors(from + half);
-        let turns = if self.is_taylor {
-            [half; 2]
-        } else {
-            [half / self.h, -half / self.h]
-        };
+        let turns = [half / self.h, -half / self.h];
         let orders = self.coefficients.len() / self.n.max(1);
         // In the departure from the middle, in halves of the time.
         let mut polynomial = vec![0.0; orders];
@@ -121,24 +108,6 @@ impl DenseOutput {
             }
             x.push(Enclosure::polynomial(&polynomial, half));
         }
-    }
-
-    /// The derivative of a Taylor polynomial at `t`, written to `slopes`.
-    pub(super) fn taylor_slopes(&self, t: f64, slopes: &mut [f64]) {
-        let since = t - self.t_old;
-        slopes.fill(0.0);
-        let orders = self.coefficients.chunks_exact(self.n.max(1)).enumerate();
-        for (order, terms) in orders.skip(1).rev() {
-            for (slope, term) in slopes.iter_mut().zip(terms) {
-                *slope = order as f64 * term + since * *slope;
-            }
-        }
-    }
-
-    /// Makes it a Taylor polynomial about `t_old` and shows all coefficients.
-    pub(super) fn taylor(&mut self, t_old: f64) -> &mut [f64] {
-        (self.t_old, self.is_taylor) = (t_old, true);
-        &mut self.coefficients
     }
 
     /// Sizes the polynomial for `n` states and `count` coefficients.
@@ -162,11 +131,6 @@ impl DenseOutput {
             self.coefficients[2 * n + i] = bend;
             self.coefficients[3 * n + i] = difference - self.h * rates[1][i] - bend;
         }
-    }
-
-    /// The coefficients of an order, one number per state.
-    pub(super) fn all_of_order(&self, order: usize) -> &[f64] {
-        &self.coefficients[order * self.n..][..self.n]
     }
 
     /// Coefficient `c`, one number per state.

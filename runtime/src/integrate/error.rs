@@ -45,15 +45,6 @@ pub enum Cause {
         /// The first state whose rate, or whose value, is infinite or not a number.
         component: usize,
     },
-    /// The rates are numbers, and yet the motion has no Taylor series.
-    #[error(
-        "state {component} has no Taylor series here, where a root or a power of zero bends without bound; \
-         choose a Runge-Kutta method"
-    )]
-    NotAnalytic {
-        /// The first state with a coefficient that is infinite or not a number.
-        component: usize,
-    },
     /// The tolerances ask for a step that no longer changes the time.
     #[error(
         "the step shrank to {h} s; the motion is singular here, or stiffer than this method can follow"

@@ -81,7 +81,7 @@ pub(super) fn powers<const N: usize>(control: Control, errors: &[f64; N]) -> [f6
 }
 
 /// Powers of some numbers, the same bits for any number of them, on every machine.
-pub(super) fn power_of_all<const N: usize>(numbers: &[f64; N], exponent: f64) -> [f64; N] {
+fn power_of_all<const N: usize>(numbers: &[f64; N], exponent: f64) -> [f64; N] {
     let mut powers = [0.0; N];
     dispatch(
         #[inline(always)]

@@ -51,19 +51,12 @@ impl Stride {
             lands: false,
         }
     }
-
-    /// The time from its start `t` to the last time before a stop: what changes at the stop does so after the step.
-    pub(super) fn up_to_stop(&self, t: f64) -> f64 {
-        if self.lands { self.last - t } else { self.h }
-    }
 }
 
 /// So many switches by time within this part of the motion are one place that it does not leave.
 const MANY_CHANGES: usize = 1000;
 const AT_ONE_PLACE: f64 = 1e-6;
 
-/// Part of the way to a switch that a series does not show.
-const BEFORE: f64 = 0.9;
 /// A step that is hardly one, in parts of the time.
 const SLIVER: f64 = 1e-9;
 
@@ -79,8 +72,6 @@ pub(super) struct Stops<'w, 'a> {
     end: f64,
     switches: Option<(&'w mut Switches<'a>, SwitchSearch)>,
     crossings: CrossingSearch,
-    /// Whether switches by the state are sought in series.
-    of_series: bool,
     /// Where the state switches the equations soon, in s.
     expected: f64,
     start: f64,
@@ -106,7 +97,6 @@ impl<'w, 'a> Stops<'w, 'a> {
             .map_or(Counts::default(), |switches| switches.counts);
         Self {
             crossings: CrossingSearch::new(counts),
-            of_series: false,
             expected: f64::NEG_INFINITY,
             start,
             changes: 0,
@@ -194,7 +184,7 @@ impl<'w, 'a> Stops<'w, 'a> {
 
     /// Whether the state switches the equations.
     pub(super) fn has_crossings(&self) -> bool {
-        !self.of_series && self.crossings.has_crossings()
+        self.crossings.has_crossings()
     }
 
     /// The first time within a step at which the state switches the equations, with the state there.
@@ -205,33 +195,6 @@ impl<'w, 'a> Stops<'w, 'a> {
     ) -> Option<(f64, &[f64])> {
         let (switches, _) = self.switches.as_mut()?;
         self.crossings.first(switches, ends, dense)
-    }
-
-    /// Whether anything switches the equations.
-    pub(super) fn has_switches(&self) -> bool {
-        self.switches.is_some()
-    }
-
-    /// Leaves switches by the state to whoever finds them in series.
-    pub(super) fn leave_crossings(&mut self) {
-        self.of_series = true;
-    }
-
-    /// The length of the step to be tried instead of one whose series shows nothing of what the state does along its
-    /// polynomial.
-    pub(super) fn shorter_series(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
-        let (switches, _) = self.switches.as_mut()?;
-        let [t, until] = ends.t;
-        let crossing = self.crossings.first(switches, ends, dense).map(|(s, _)| s);
-        let near = sliver(t);
-        let to = match crossing {
-            Some(s) if s - t > near && until - s > near => t + BEFORE * (s - t),
-            // So near to it the series shows it.
-            Some(s) if until - s > 2.0 * near => s + near,
-            _ => until,
-        };
-        let longest = self.crossings.longest(switches, [t, to], dense);
-        (to < until || longest < BEFORE * (to - t)).then_some(longest)
     }
 
     /// The longest step that passes over nothing that the state does along an interpolant.

@@ -10,8 +10,7 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 ///
 /// Every operation acts lane by lane. With [`Standard`] elementary functions lanes give bit for bit
 /// what `f64` gives; with [`Own`] ones they give the same bits on every machine, and `Lanes<1, Own>`
-/// is the scalar that computes with them. Whole blocks of places are evaluated faster by
-/// [`crate::lanes`].
+/// is the scalar that computes with them.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lanes<const N: usize, E = Standard>(pub [f64; N], PhantomData<E>);
 
@@ -128,16 +127,5 @@ impl<const N: usize, E: Functions> Real for Lanes<N, E> {
             }
         })
         .into()
-    }
-}
-
-impl<E: Functions> crate::lanes::Lane for Lanes<1, E> {
-    #[inline]
-    fn of(value: f64) -> Self {
-        [value].into()
-    }
-    #[inline]
-    fn value(self) -> f64 {
-        self.0[0]
     }
 }

@@ -16,11 +16,6 @@ pub fn describe(failure: &Failure, info: &ModelInfo) -> String {
         Cause::NonFinite { component } => {
             format!("`{}` or its rate is not finite", name(component))
         }
-        Cause::NotAnalytic { component } => format!(
-            "`{}` has no Taylor series, as where a root or a power of zero bends without bound: choose a \
-             Runge-Kutta method",
-            name(component)
-        ),
         Cause::StepTooSmall { h } => format!(
             "the step shrank to {h:.1e} s: the motion is singular here, or too stiff for the method"
         ),

@@ -149,8 +149,8 @@ pub struct Viewer<'w, O> {
     pub observer: O,
 }
 
-/// Integrates many simulations of one model together, as [`BlockSolver`](crate::integrate::BlockSolver) or
-/// [`BlockTaylor`](crate::integrate::BlockTaylor) do: `integrate` has their motions, in their order.
+/// Integrates many simulations of one model together, as [`BlockSolver`](crate::integrate::BlockSolver)
+/// does: `integrate` has their motions, in their order.
 ///
 /// # Panics
 ///

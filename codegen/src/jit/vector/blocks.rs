@@ -3,7 +3,7 @@
 use std::array::from_fn;
 
 use appell_runtime::elementary::{self, ORDINARY_ANGLE};
-use appell_runtime::lanes::Level;
+use appell_runtime::lanes::dispatch;
 use appell_runtime::real::{Functions, Own, Standard};
 
 /// Elementary functions of `N` numbers: each gets the bits of the scalar function.
@@ -63,7 +63,7 @@ macro_rules! at_once {
     ($($name:ident($($x:ident),+)),+) => {
         $(
             fn $name<const N: usize>($($x: &[f64; N],)+ to: &mut [f64; N]) {
-                Level::Avx512.run(
+                dispatch(
                     #[inline(always)]
                     || {
                         // Copies cannot overlap, which a loop over lanes has to know.
@@ -83,7 +83,7 @@ macro_rules! at_once {
 impl Blocks for Own {
     fn sin_cos<const N: usize>(x: &[f64; N], to: &mut [[f64; N]; 2]) {
         let mut some_large = false;
-        Level::Avx512.run(
+        dispatch(
             #[inline(always)]
             || {
                 let (x, mut sin, mut cos, mut large) = (*x, [0.0; N], [0.0; N], false);

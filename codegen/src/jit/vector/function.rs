@@ -1,6 +1,6 @@
 //! A schedule at eight places at once.
 
-use appell_runtime::lanes::{self, AtLanes, LANES};
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
 use super::super::check::{Checked, check, lengths};
@@ -77,7 +77,7 @@ impl VectorFunction {
     }
 
     /// [`Self::compile_for`], but nothing where places would be evaluated one by one.
-    pub(in crate::jit) fn all_at_once(
+    fn all_at_once(
         schedule: &Schedule,
         sizes: Sizes,
         target: Target,
@@ -168,16 +168,30 @@ impl VectorFunction {
     }
 }
 
+/// Calls a function for every place of a block: with the place, its weights, and slices for its results.
 fn place_by_place<const N: usize>(
     at: AtLanes<'_>,
     weights: &[[f64; LANES]],
-    results: [&mut [[f64; LANES]]; N],
+    mut results: [&mut [[f64; LANES]]; N],
     call: impl Fn(At<'_>, &[f64], [&mut [f64]; N]),
 ) {
-    let mut places = 0..;
-    lanes::place_by_place(at, results, |t, [x, u, p], results| {
-        let place = places.next().unwrap_or(0);
-        let weights: Vec<f64> = weights.iter().map(|block| block[place]).collect();
-        call(At { t, x, u, p }, &weights, results);
-    });
+    let of_lane = |numbers: &[[f64; LANES]], lane: usize| -> Vec<f64> {
+        numbers.iter().map(|number| number[lane]).collect()
+    };
+    let mut found = results.each_ref().map(|result| vec![0.0; result.len()]);
+    for lane in 0..LANES {
+        let [x, u, p, weights] = [at.x, at.u, at.p, weights].map(|of| of_lane(of, lane));
+        let place = At {
+            t: at.t[lane],
+            x: &x,
+            u: &u,
+            p: &p,
+        };
+        call(place, &weights, found.each_mut().map(Vec::as_mut_slice));
+        for (result, found) in results.iter_mut().zip(&found) {
+            for (number, found) in result.iter_mut().zip(found) {
+                number[lane] = *found;
+            }
+        }
+    }
 }

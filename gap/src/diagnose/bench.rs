@@ -21,8 +21,9 @@ use appell_recordings::{DataSet, Part, Run};
 /// Largest delay of inputs and channels: the larger of a time in s and a number of steps.
 const LONGEST_DELAY: f64 = 0.1;
 const DELAY_STEPS: f64 = 5.0;
-/// Shortest and longest lag, in steps.
-const LAG: [f64; 2] = [0.003, 500.0];
+/// Shortest and longest lag, in steps. A shorter lag is a delay that no recording resolves, and the integration has to
+/// take steps as short.
+const LAG: [f64; 2] = [0.05, 500.0];
 /// The same for a channel: a shorter one is modelled as a delay.
 const LAG_OF_CHANNEL: [f64; 2] = [0.2, 500.0];
 /// Fits end when the expected gain of a further step is below this, far below the difference of log likelihood that

@@ -160,7 +160,7 @@ impl<'a> Branches<'a> {
     ) -> Result<Branch, BranchError> {
         let start = match direction {
             Some(direction) => {
-                // Beside the crossing, where the curve is isolated.
+                // Start off the branch point, where the curve is isolated.
                 let step = self.options.longest_step * 0.1 * (1.0 + z.norm());
                 let beside = correct(equations, &(z + direction * step), direction);
                 beside.and_then(|(z, _)| OnCurve::new(equations, z, direction))

@@ -117,7 +117,7 @@ pub enum SteadyError {
         .outside.join(", ")
     )]
     OutOfRange {
-        /// What is outside of which range.
+        /// Quantities outside of their ranges, with the ranges.
         outside: Vec<String>,
     },
     /// The conditions determine a family of motions.
@@ -133,7 +133,7 @@ pub enum SteadyError {
     },
 }
 
-/// What may be the matter where attitudes are quaternions.
+/// Hint for models whose attitudes are quaternions.
 const PERIODIC: &str = "; pseudo-velocities along a body that spins while its axis goes around are periodic, not \
                         steady: take them along a frame that does not spin, with an angle for the spin";
 
@@ -190,7 +190,7 @@ impl<'a> SteadyProblem<'a> {
         &self.base
     }
 
-    /// The conditions on states, rates and outputs, and on what was freed before.
+    /// The conditions on states, rates, outputs and freed quantities.
     pub fn conditions(&self) -> &[Condition] {
         &self.conditions
     }
@@ -477,7 +477,7 @@ impl<'a> SteadyProblem<'a> {
         }
     }
 
-    /// Brings essential angles into one turn where the equations are the same after each turn.
+    /// Reduces essential angles to one turn where the equations are periodic in them.
     fn fold(&self, point: &mut Point) {
         /// Rates that differ by less, relative to the largest, are the same.
         const SAME_RATES: f64 = 1e-9;

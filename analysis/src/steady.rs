@@ -519,8 +519,8 @@ impl<'a> SteadyProblem<'a> {
         Err(SteadyError::Family { dimension, open })
     }
 
-    /// Dimension of the family of a motion where it is least, and what varies there: families meet in motions
-    /// such as rest, and the tangents of all of them count there.
+    /// Generic dimension of the family of a motion, and the quantities that vary within it. At singular motions such
+    /// as rest several families intersect, and the tangent space contains the tangents of all of them.
     fn generic_family(&self, motion: &SteadyMotion, starts: usize) -> (usize, Vec<Term>) {
         let equations = self.equations();
         let mut spread = Spread::new(equations.unknowns.len());

@@ -7,7 +7,7 @@ use crate::matrix::pieces;
 use crate::motion::timeline::Advance;
 use crate::motion::transition::{Stages, stages_len};
 
-/// What the filter did, in order.
+/// An action of the filter.
 #[derive(Debug, Clone)]
 pub(crate) enum Record {
     /// A step; its numbers start at `tape`.

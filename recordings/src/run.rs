@@ -10,7 +10,7 @@ use crate::finding::{Finding, FindingKind, counted};
 use crate::set::{Part, Run};
 use crate::table::Table;
 
-/// Rows without an input beyond which nobody knows what it was.
+/// Largest number of successive rows without an input; over a longer dropout the input is unknown.
 const LOST: usize = 5;
 /// Range in turns beyond which an angle is not wrapped.
 const MOST_TURNS: f64 = 3.0;

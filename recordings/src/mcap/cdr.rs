@@ -61,8 +61,8 @@ impl Definitions {
         Self { types }
     }
 
-    /// Tells every number of a message with the path that leads to it; nothing where the bytes do not
-    /// fit.
+    /// Passes every number of a message, with its path, to `tell`; `None` if the bytes do not fit the
+    /// definitions.
     pub(super) fn read(
         &self,
         bytes: &[u8],
@@ -98,7 +98,7 @@ impl Definitions {
 }
 
 impl Field {
-    /// `float64[3] position`; nothing for constants, lines between messages and what is no field.
+    /// `float64[3] position`; `None` for constants, separators of messages and other lines.
     fn of(line: &str) -> Option<Self> {
         let (kind, rest) = line.split_once(char::is_whitespace)?;
         let name = rest.split_whitespace().next()?;

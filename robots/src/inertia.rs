@@ -182,7 +182,7 @@ impl Inertia {
         large > small + middle
     }
 
-    /// What rounding leaves of moments beside those of the mass about the origin of the frame is zero.
+    /// Sets the moments of inertia to zero if they are rounding errors relative to m·|c|².
     pub(crate) fn without_rounding(&self) -> Self {
         let about = self.mass.abs() * dot(self.centre, self.centre);
         let vanishes = |entry: &f64| entry.abs() <= ROUNDING * about;
@@ -194,7 +194,7 @@ impl Inertia {
         Self { tensor, ..*self }
     }
 
-    /// What no body has, in words; `None` if there can be such a body.
+    /// The property that is physically impossible, in words; `None` for a valid inertia.
     pub(crate) fn impossible(&self) -> Option<String> {
         let [small, middle, large] = sorted(principal(self.tensor).0);
         let number = |x: f64| plain(format!("{x:.3e}").parse().unwrap_or(x));

@@ -36,7 +36,7 @@ impl Letters {
     }
 }
 
-/// What a number is, which decides whether it becomes a letter.
+/// Kind of a number, which decides whether it becomes a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Of a mass, a centre of mass or an inertia.
@@ -104,7 +104,7 @@ impl<'a> Numbers<'a> {
                     .filter(|one| names_of.contains(&one.as_str()))
                     .collect();
                 self.used.extend(of_it.iter().map(|one| (*one).clone()));
-                // A name alone means what is there; a letter means this number, whatever its value.
+                // A link or joint selects its inertias and nonzero numbers; a parameter name selects any value.
                 of_it.iter().any(|one| *one == number.letter)
                     || (!of_it.is_empty() && (number.kind == Kind::Inertial || number.value != 0.0))
             }

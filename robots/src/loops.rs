@@ -1,6 +1,6 @@
-//! Equations between coordinates: closed loops, where what connects two links of the tree demands that points of both
-//! meet, and couplings. Some may say the same, as that across the plane of a four-bar; these are left out. Each of the
-//! others gets the coordinate that follows from it, chosen by pivoting where the motion begins and the equations hold.
+//! Constraint equations between coordinates: loop closures, where points of two links of the tree coincide, and
+//! couplings. Redundant equations, such as those normal to the plane of a four-bar, are dropped. Each remaining one
+//! determines a dependent coordinate, chosen by pivoting at the assembled initial configuration.
 
 use appell_spec::Code;
 
@@ -13,16 +13,16 @@ use crate::rotation::{Pose, Rotation, Vector, add, dot, minus};
 use crate::tree::Tree;
 use crate::xml::Findings;
 
-/// What a driven joint counts less where one is chosen to follow.
+/// Weight of a driven joint in the choice of dependent coordinates.
 const DRIVEN: f64 = 1e-2;
-/// How far places lie at which ranks are taken, as shares of [`anywhere`]: the next one where none is found.
+/// Displacements at which ranks are determined, as fractions of [`anywhere`]; the first that can be assembled is used.
 const BESIDE: [f64; 3] = [1.0, 0.1, 0.01];
-/// Deviations that rounded numbers of a file leave.
+/// Largest constraint residual due to rounded numbers in the file.
 const CLOSED: f64 = 1e-4;
 /// Most entries of the equations' matrix.
 const MOST_ENTRIES: usize = 1 << 18;
 
-/// A point of each of two bodies that shall meet.
+/// A pair of points, one of each body, that must coincide.
 #[derive(Debug)]
 pub(crate) struct Meeting {
     /// Bodies, and the points from the bodies' points, in their frames; no body is the ground.
@@ -175,7 +175,7 @@ impl<'a> Places<'a> {
         places
     }
 
-    /// Finds where the motion can begin; the result is a place beside it.
+    /// Finds an initial configuration; the result is a generic configuration near it.
     fn start_and_beside(&mut self) -> Option<Configuration> {
         let (at, linear) = self.nearest(&self.begun);
         if linear.size() <= CLOSED {
@@ -187,7 +187,7 @@ impl<'a> Places<'a> {
         self.start.clone()
     }
 
-    /// The nearest place where all equations hold.
+    /// The nearest configuration that satisfies all equations.
     fn assembled(&self, from: &Configuration) -> Option<Configuration> {
         let (at, linear) = self.nearest(from);
         (linear.size() <= CLOSED).then_some(at)
@@ -199,7 +199,7 @@ impl<'a> Places<'a> {
             .assembled(links, &self.freedoms, &|at| self.linear(at))
     }
 
-    /// A place beside the start where no link is in line with another by chance, and all equations hold.
+    /// A configuration near the start that satisfies all equations and is generic: no links are aligned by chance.
     fn beside(&self) -> Option<Configuration> {
         let each = BESIDE.into_iter();
         each.map(|share| self.displaced(share))
@@ -215,7 +215,7 @@ impl<'a> Places<'a> {
         displaced
     }
 
-    /// Refuses what cannot hold.
+    /// Refuses constraints that cannot be satisfied.
     fn refuse_what_stays_open(&self, rows: &[Row], findings: &Findings) {
         if self.start.is_some() {
             return;
@@ -396,7 +396,7 @@ impl<'a> Places<'a> {
         } else {
             anywhere
         };
-        // Only followers move, until what is kept holds.
+        // Only dependent coordinates are changed, until the retained equations are satisfied.
         let follow = |at: &Configuration| {
             let all = self.linear(at);
             let mut linear = Linear::default();
@@ -420,7 +420,7 @@ impl<'a> Places<'a> {
         (kept, start)
     }
 
-    /// How gladly a freedom follows.
+    /// Weight of a freedom as a dependent coordinate.
     fn weight(&self, freedom: usize) -> f64 {
         let joint = self.robot.links[self.freedoms[freedom].link].joint.as_ref();
         match joint {
@@ -430,7 +430,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether a way to move is a turn of what has no angle.
+    /// Whether a freedom is a rotation that has no angle as its coordinate.
     fn turns(&self, freedom: usize) -> bool {
         let Freedom { link, component } = self.freedoms[freedom];
         match self.robot.links[link]
@@ -457,11 +457,11 @@ impl<'a> Places<'a> {
                 "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
                 connection.name
             ),
-            "connect by a point what a ball joint or a free joint turns, or use hinges",
+            "connect a body on a ball joint or a free joint by a point only, or use hinges",
         );
     }
 
-    /// A joint along which nothing has inertia, whatever follows it, has no equation of motion.
+    /// Refuses a joint without inertia along it, dependent coordinates included, as it has no equation of motion.
     fn refuse_what_has_no_mass(&self, kept: &[(usize, usize)], findings: &Findings) {
         let links = &self.robot.links;
         if findings.has_errors() || self.freedoms.len() > mass::MOST_FREEDOMS {
@@ -486,7 +486,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The last link that carries both; none is the ground.
+    /// The last common ancestor of both links; `None` is the ground.
     fn carrier_of_both(&self, ends: [Option<usize>; 2]) -> Option<usize> {
         let way = |end: Option<usize>| -> Vec<usize> {
             std::iter::successors(end, |&link| self.robot.links[link].parent).collect()
@@ -501,7 +501,7 @@ impl<'a> Places<'a> {
         poses[moved.link].rotation.then(moved.own)
     }
 
-    /// A point of a link as its body has it.
+    /// A point of a link, in the frame of its body.
     fn on_body(&self, link: Option<usize>, at: Vector) -> (Option<usize>, Vector) {
         let at = place((link, at), &self.drawn);
         let Some(body) = link.and_then(|link| self.tree.body_of[link]) else {

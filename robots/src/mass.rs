@@ -178,7 +178,7 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     for joint in links.iter_mut().filter_map(|link| link.joint.as_mut()) {
         let next = first + joint.motion.freedoms();
         if let Some([time, ratio]) = joint.settles {
-            // As MuJoCo 4.0 has it: while all other joints are free.
+            // As in MuJoCo 4.0: with all other joints free.
             let sum: f64 = (first..next).map(|row| mobility[row][row]).sum();
             let inertia = (next - first) as f64 / sum;
             let inertia = if inertia.is_finite() { inertia } else { 0.0 };
@@ -190,16 +190,15 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     true
 }
 
-/// The first freedom, from the ends of the tree inwards, along which nothing has inertia.
+/// The first freedom without inertia along it, from the leaves of the tree inwards.
 ///
-/// The freedoms are reduced to the independent ones: `rows` are equations between them, each reduced so that it alone has
-/// its pivot, whose entry is 1.
+/// The freedoms are reduced to the independent ones: `rows` are the equations between them in reduced echelon form.
 pub(crate) fn without_inertia(mass: &Mass, rows: &[(usize, Vec<f64>)]) -> Option<usize> {
     let m = &mass.entries;
     let count = m.len();
     let follows = |column: usize| rows.iter().any(|(pivot, _)| *pivot == column);
     let free: Vec<usize> = (0..count).rev().filter(|&c| !follows(c)).collect();
-    // How all freedoms move with an independent one.
+    // Partial velocities of all freedoms with respect to an independent one.
     let moves = |column: usize| {
         let mut all = vec![0.0; count];
         all[column] = 1.0;

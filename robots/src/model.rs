@@ -16,25 +16,25 @@ pub(crate) struct Robot {
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) tendons: Vec<Tendon>,
     pub(crate) connections: Vec<Connection>,
-    /// Joints that something drives.
+    /// Actuated joints.
     pub(crate) driven: BTreeSet<String>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-/// A link, or a step on the way to one that has several joints.
+/// A link, or an intermediate massless link of one with several joints.
 #[derive(Debug)]
 pub(crate) struct Link {
     pub(crate) name: String,
-    /// The ground, where there is none.
+    /// `None` is the ground.
     pub(crate) parent: Option<usize>,
-    /// Where its frame is in that of the parent while the joint is at zero.
+    /// Pose of its frame in that of the parent at joint position zero.
     pub(crate) pose: Pose,
-    /// Fixed to the parent, where there is none.
+    /// `None` if fixed to the parent.
     pub(crate) joint: Option<Joint>,
     pub(crate) inertia: Inertia,
-    /// The share of its weight that something carries.
+    /// The fraction of its weight that is compensated.
     pub(crate) carried: f64,
-    /// Whether the file has such a link: a step on the way to one is not.
+    /// Whether the file defines this link; intermediate links are not in the file.
     pub(crate) written: bool,
     pub(crate) place: Span,
 }
@@ -201,7 +201,8 @@ impl Sum {
     }
 }
 
-/// An equation between coordinates: what follows, less its value as drawn, is a polynomial of another sum less its own.
+/// A constraint between coordinates: the deviation of the dependent sum from its value as drawn is a polynomial of the
+/// deviation of the other sum.
 #[derive(Debug)]
 pub(crate) struct Coupling {
     pub(crate) name: String,
@@ -214,7 +215,7 @@ pub(crate) struct Coupling {
     pub(crate) place: Span,
 }
 
-/// A length that is a sum of coordinates, and what resists it.
+/// A length that is a sum of coordinates, with its spring, damping and friction.
 #[derive(Debug)]
 pub(crate) struct Tendon {
     pub(crate) name: String,
@@ -228,7 +229,7 @@ pub(crate) struct Tendon {
     pub(crate) place: Span,
 }
 
-/// Two links that meet, and close a loop of the tree.
+/// A connection of two links that closes a loop of the tree.
 #[derive(Debug)]
 pub(crate) struct Connection {
     pub(crate) name: String,

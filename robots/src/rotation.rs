@@ -269,11 +269,11 @@ impl Rotation {
         best.map(|(_, turns)| turns).unwrap_or_default()
     }
 
-    /// Angles of three successive turns about given axes. Each is taken from what the turns before leave, so
-    /// that their product is this rotation to rounding even where two of the axes nearly meet.
+    /// Angles of three successive turns about given axes. Each is computed from the remaining rotation after the
+    /// previous turns, so that the product is exact to rounding even close to gimbal lock.
     fn angles(self, [i, j, k]: [usize; 3], half: bool) -> Vector {
         let column = |rotation: Self, axis: usize| rotation.0.map(|row| row[axis]);
-        // The first turn brings the last axis into the plane across the second.
+        // The first turn rotates the last axis into the plane normal to the second.
         let u = column(self, k);
         let other = 3 - i - j;
         let handed = if (i + 1) % 3 == j { 1.0 } else { -1.0 };

@@ -61,7 +61,7 @@ pub(crate) struct Writer<'a> {
     outputs: Section,
 }
 
-/// A spec, and what was chosen in vain.
+/// A spec, and the selected names that matched no number.
 pub(crate) struct Written {
     pub(crate) text: String,
     /// Where lines begin, and where in the file of the robot they come from.

@@ -1,4 +1,4 @@
-//! URDF: links, and joints that name their parent and child.
+//! URDF: links, and joints with a parent and a child.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,14 +13,14 @@ use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
-/// A joint with what it connects.
+/// A joint with the links that it connects.
 struct Connection<'x> {
     element: Element<'x>,
     name: &'x str,
     parent: usize,
     child: usize,
     pose: Pose,
-    /// One after the other; fixed where there is none.
+    /// In series; empty if fixed.
     joints: Vec<Joint>,
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings, options: &Options) ->
     }
 }
 
-/// What is read of a joint: with several coordinates it is not known to which one `dynamics`, `limit` or `mimic` belong.
+/// Elements of a joint that are read; with several coordinates `dynamics`, `limit` and `mimic` would be ambiguous.
 fn known_of(joint: Element<'_>) -> &'static [&'static str] {
     const ALL: &[&str] = &[
         "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",
@@ -138,7 +138,7 @@ fn unknown<'x>(
     })
 }
 
-/// A number of an attribute, and what it is if the file does not say.
+/// A number from an attribute, with a default.
 fn number(element: Option<Element<'_>>, key: &str, default: f64, findings: &Findings) -> f64 {
     let attribute = element.and_then(|element| element.attribute_node(key));
     let read =

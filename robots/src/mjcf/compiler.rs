@@ -1,4 +1,4 @@
-//! `<compiler>`: how the file is to be read, and what is done to masses and inertias.
+//! `<compiler>`: settings of the reader, and adjustments of masses and inertias.
 
 use appell_spec::{Code, did_you_mean};
 
@@ -10,7 +10,7 @@ use super::orientation::Angles;
 /// Groups of geoms.
 const GROUPS: [f64; 2] = [0.0, 5.0];
 
-/// How the file is to be read.
+/// Settings of the reader.
 pub(crate) struct Compiler {
     pub(super) angles: Angles,
     /// Whether a range makes a limit.

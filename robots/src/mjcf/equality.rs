@@ -102,7 +102,7 @@ fn connection<'x>(
         None => [0.0; 3],
     };
     let drawn = drawn(&reader.links, [first, second]);
-    // What a weld says of the pose of the second in the first, at the anchor in the second.
+    // The relative pose of a weld: the second body in the first, at the anchor in the second.
     let relative = match element.attribute_node("relpose").filter(|_| weld) {
         Some(given) => {
             let [x, y, z, q @ ..]: [f64; 7] = exactly(
@@ -140,10 +140,10 @@ fn shifted(from: Vector, to: Vector) -> Pose {
     }
 }
 
-/// There is no body of a name, which is told.
+/// A body does not exist, which has been reported.
 struct Unknown;
 
-/// The link of a body that is named; none is the world, which is meant where no body is named.
+/// The link of a named body; `None` is the world, also if no body is named.
 fn body(
     element: Element<'_>,
     key: &str,

@@ -1,5 +1,5 @@
-//! `<replicate>`: copies of what it holds, each placed from the one before, in its place in the text. Names get the number
-//! of the copy behind them, and what names them elsewhere is copied as well.
+//! `<replicate>`: replaced by copies of its children, each posed relative to the previous one. The number of the copy is
+//! appended to names, and elements of other sections that refer to them are copied as well.
 
 use std::collections::BTreeSet;
 
@@ -12,11 +12,11 @@ use crate::xml::{Element, Findings, Span, elements, exactly, inside, parse, tag}
 
 use super::compiler::Compiler;
 
-/// Most elements `replicate`.
+/// Largest number of `replicate` elements.
 const MOST: usize = 256;
-/// Most copies.
+/// Largest number of copies.
 const MOST_COPIES: f64 = 65_536.0;
-/// Sections that name what is copied.
+/// Sections that can refer to copied elements.
 const SECTIONS: [&str; 4] = ["equality", "tendon", "actuator", "contact"];
 
 /// The text with all copies written out, from the innermost `replicate` outwards.

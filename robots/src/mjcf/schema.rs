@@ -1,5 +1,5 @@
-//! What MJCF has, as of `MuJoCo` 4.0, and what becomes of it: read, without effect on the motion, or left out, with a
-//! sentence on how the motion differs. What is not in this table is no MJCF and refused.
+//! The elements and attributes of MJCF, as of `MuJoCo` 4.0, and their treatment: read, without effect on the motion, or
+//! left out, with a sentence on how the motion differs. Anything else is refused as invalid.
 
 use appell_spec::{Code, did_you_mean};
 
@@ -9,15 +9,15 @@ use crate::xml::{Element, Findings, elements, tag};
 /// An element, within some others.
 struct Row {
     element: &'static str,
-    /// Elements that hold it; `body` stands for all that holds bodies.
+    /// Possible parents; `body` stands for all elements that can contain bodies.
     within: &'static str,
     /// Attributes that are read.
     read: &'static str,
     /// Attributes without effect on the motion: of pictures, names, sensors, solvers and contacts.
     idle: &'static str,
-    /// Attributes that would change the motion, the value at which they do not, and how.
+    /// Attributes that would change the motion: name, neutral value, effect.
     left_out: &'static [(&'static str, &'static str, &'static str)],
-    /// Whether what it holds is looked at.
+    /// Whether its attributes and children are checked.
     open: bool,
     /// How the motion differs where the whole element is left out.
     effect: Option<&'static str>,
@@ -37,7 +37,7 @@ impl Row {
         }
     }
 
-    /// Elements without effect on the motion, whatever they hold.
+    /// Elements without effect on the motion, with all their contents.
     const fn idle_element(element: &'static str, within: &'static str) -> Self {
         let row = Self::read(element, within, "");
         Self { open: false, ..row }
@@ -279,7 +279,7 @@ pub(super) fn effect(element: Element<'_>) -> Option<&'static str> {
     }
 }
 
-/// Refuses what is no MJCF, and lists attributes that are left out.
+/// Refuses elements and attributes that MJCF does not have, and lists attributes that are left out.
 pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<LeftOut>) {
     let mut open = vec![root];
     while let Some(element) = open.pop() {
@@ -338,14 +338,14 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
     }
 }
 
-/// Whether a value is one at which an attribute does nothing: one of several words, or zeros.
+/// Whether a value of an attribute is neutral: one of several words, or zeros.
 fn changes_nothing(value: &str, idle: &str) -> bool {
     let zero = |word: &str| word.parse::<f64>().is_ok_and(|number| number == 0.0);
     let mut words = value.split_ascii_whitespace();
     idle.split('|').any(|word| word == value) || (idle == "0" && words.all(zero))
 }
 
-/// Whether a flag of `option` disables what it names.
+/// Whether a feature is disabled by its flag in `option`.
 pub(super) fn disabled(root: Element<'_>, flag: &str) -> bool {
     let options = elements(root).filter(|section| section.has_tag_name("option"));
     let flags = options.flat_map(|option| elements(option).filter(|one| one.has_tag_name("flag")));

@@ -1,4 +1,4 @@
-//! Tendons that are sums of coordinates, and what drives add to joints and tendons.
+//! Tendons that are sums of coordinates, and properties of joints and tendons that actuators add.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::xml::{Element, children, elements, exactly, numbers, tag};
 use super::schema::{ACTUATORS, effect};
 use super::{Equality, Reader};
 
-/// What an attribute says that stands for the length where all springs are relaxed.
+/// Value of an attribute that means the length at which all springs are relaxed.
 const BY_JOINTS: f64 = -1.0;
 
 impl<'x> Reader<'x, '_> {

@@ -138,7 +138,8 @@ impl Writer<'_> {
         self.called.frames.push(called);
     }
 
-    /// The frame of a body that turns about every axis, on one that stands still beside it if it is turned there.
+    /// The frame of a body with a ball joint or a free joint. If it is mounted at an angle, its parent is a frame fixed
+    /// at that angle.
     fn quaternion_frame(&mut self, index: usize, called: &str, parent: &str) {
         let turns = self.constant_turns(index, parent);
         let mut parent = parent.to_owned();
@@ -156,7 +157,7 @@ impl Writer<'_> {
         self.called.frames.push(called.to_owned());
     }
 
-    /// Turns of a body's frame that do not change, each an axis and an angle.
+    /// The constant turns of a body's frame, each an axis and an angle.
     fn constant_turns(&mut self, index: usize, parent: &str) -> Vec<(String, String)> {
         let body = self.at(index);
         let link = self.links[body.link].name.clone();

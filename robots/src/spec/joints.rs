@@ -93,8 +93,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Their speeds: those of the place in the ground, and the angular velocity from what carries the joint, in the
-    /// frame of the body.
+    /// Their pseudo-velocities: the velocity components in the ground frame, and the angular velocity relative to the
+    /// parent, in the frame of the body.
     pub(super) fn several_speeds(&mut self, index: usize, followers: &[usize]) {
         let body = &self.tree.bodies[index];
         let q = self.called.coordinates[index].clone();

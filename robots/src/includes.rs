@@ -193,7 +193,7 @@ impl<'f> Whole<'f> {
         self.named(self.origin(place).0, within, name)
     }
 
-    /// Reads a file that another includes; the result is its place.
+    /// Reads an included file; the result is its index.
     fn found(&mut self, by: usize, include: &Include, depth: usize) -> Result<usize, Diagnostic> {
         let Some((named, place)) = &include.named else {
             let error = Diagnostic::error(Code::MissingKey, "`include` names no file");
@@ -244,7 +244,7 @@ impl<'f> Whole<'f> {
         Ok(self.add(path, &text))
     }
 
-    /// Keeps a file; the result is its index.
+    /// Adds a file; the result is its index.
     fn add(&mut self, name: String, text: &str) -> usize {
         let text = begun(text);
         let ends = text.match_indices('\n').map(|(at, _)| at + 1);
@@ -253,7 +253,7 @@ impl<'f> Whole<'f> {
         self.files.len() - 1
     }
 
-    /// File and place of a place in the text of all.
+    /// File and position for a position in the combined text.
     fn origin(&self, place: &Span) -> (usize, Span) {
         let next = self
             .pieces
@@ -267,7 +267,7 @@ impl<'f> Whole<'f> {
         (piece.file, at(place.start)..at(place.end))
     }
 
-    /// Name of the file of a place in the text of all, and the line.
+    /// Name of the file and line for a position in the combined text.
     pub(crate) fn line(&self, place: &Span) -> (&str, usize) {
         let (file, place) = self.origin(place);
         let line = self.lines[file].partition_point(|start| *start <= place.start);

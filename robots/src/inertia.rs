@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia: turned, shifted, put together.
+//! Mass, centre of mass and inertia: rotated, shifted, combined.
 
 use crate::letters::plain;
 use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
@@ -6,7 +6,7 @@ use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
 /// A symmetric tensor: xx, yy, zz, xy, xz, yz.
 pub(crate) type Tensor = [f64; 6];
 
-/// What rounding leaves of the entries that vanish, against the largest one.
+/// Rounding error of vanishing entries, relative to the largest one.
 const ROUNDING: f64 = 1e-15;
 /// How far the largest moment may exceed the sum of the others by the rounding of a file.
 const WRITTEN: f64 = 1e-4;
@@ -123,7 +123,7 @@ impl Inertia {
         rows(self.tensor)
     }
 
-    /// Whether all of it are numbers.
+    /// Whether all entries are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let numbers = [self.mass]
             .into_iter()
@@ -141,7 +141,7 @@ impl Inertia {
         }
     }
 
-    /// Two bodies as one.
+    /// The combined inertia of two bodies.
     pub(crate) fn with(&self, other: &Self) -> Self {
         if self.is_nothing() {
             return *other;

@@ -73,7 +73,7 @@ pub struct Imported {
     pub bodies: usize,
     /// Warnings, by the file that they are about.
     pub warnings: Vec<Report>,
-    /// What has no counterpart in the spec.
+    /// Parts of the file without a counterpart in the spec.
     pub left_out: Vec<LeftOut>,
     /// Orientations and axes that are nearly along the axes of their parents.
     pub nearly_right: usize,
@@ -88,22 +88,22 @@ pub struct LeftOut {
     pub file: String,
     /// Their lines, from 1.
     pub lines: Vec<usize>,
-    /// How the motion differs without them; none where it does not.
+    /// How the motion differs without them; `None` if it does not.
     pub effect: Option<&'static str>,
 }
 
 /// Why a robot cannot be imported.
 #[derive(Debug)]
 pub enum Failure {
-    /// Its file, or one that it includes, is wrong or has what cannot be imported; the report is about one file.
+    /// Its file or an included one has errors or unsupported parts; the report is about one file.
     File(Box<Report>),
     /// A joint that cannot be locked, in a sentence.
     Lock(String),
-    /// Names that are to become parameters but name nothing.
+    /// Names of parameters that match nothing.
     Unknown {
         /// The first one.
         name: String,
-        /// What may be meant.
+        /// A suggestion.
         help: String,
     },
 }

@@ -19,40 +19,40 @@ const DRIVEN: f64 = 1e-2;
 const BESIDE: [f64; 3] = [1.0, 0.1, 0.01];
 /// Largest constraint residual due to rounded numbers in the file.
 const CLOSED: f64 = 1e-4;
-/// Most entries of the equations' matrix.
+/// Largest number of entries of the constraint matrix.
 const MOST_ENTRIES: usize = 1 << 18;
 
 /// A pair of points, one of each body, that must coincide.
 #[derive(Debug)]
 pub(crate) struct Meeting {
-    /// Bodies, and the points from the bodies' points, in their frames; no body is the ground.
+    /// Bodies, and the points relative to the bodies' reference points, in their frames; `None` is the ground.
     pub(crate) ends: [(Option<usize>, Vector); 2],
-    /// The body along whose axes the equations are written.
+    /// The body in whose frame the equations are written.
     pub(crate) along: Option<usize>,
-    /// The equations that are kept: which axis, and which coordinate follows.
+    /// The retained equations: axis, and dependent coordinate.
     pub(crate) rows: Vec<(usize, Follower)>,
 }
 
-/// A way of a body to move: which of its coordinates, or, behind those of its place, about which axis.
+/// A dependent freedom of a body: index of its coordinate or, after those of its position, of the axis of rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Follower {
     pub(crate) body: usize,
     pub(crate) component: usize,
 }
 
-/// The equations of a robot with their followers.
+/// The equations of a robot with their dependent coordinates.
 #[derive(Debug, Default)]
 pub(crate) struct Equations {
     /// By connection.
     pub(crate) meetings: Vec<(String, Vec<Meeting>)>,
-    /// By coupling; none where it says nothing new.
+    /// By coupling; `None` if it is redundant.
     pub(crate) couplings: Vec<Option<Follower>>,
-    /// Where the motion begins, where followers alone cannot make the equations hold.
+    /// The initial configuration, if changing the dependent coordinates alone does not satisfy the equations.
     pub(crate) start: Option<Configuration>,
 }
 
 impl Equations {
-    /// All followers.
+    /// All dependent coordinates.
     pub(crate) fn followers(&self) -> impl Iterator<Item = Follower> {
         let meetings = self.meetings.iter().flat_map(|(_, of)| of);
         let meetings =
@@ -64,18 +64,18 @@ impl Equations {
 /// Which equation a row belongs to.
 enum Of {
     Coupling(usize),
-    /// Connection, meeting and axis.
+    /// Connection, pair of points and axis.
     Meeting(usize, usize, usize),
 }
 
 /// An equation between coordinates.
 struct Row {
     of: Of,
-    /// The coordinate that follows if it can.
+    /// The preferred dependent coordinate.
     preferred: Option<usize>,
 }
 
-/// The equations of all couplings and connections. Refuses what cannot move by them.
+/// The equations of all couplings and connections. Refuses inconsistent ones.
 pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equations {
     let freedoms = Freedom::all(&robot.links);
     let places = Places::new(robot, tree, freedoms);
@@ -140,17 +140,17 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
     equations
 }
 
-/// Where links are, as they are drawn, where the motion begins, and where no link is in line with another by chance.
+/// Configurations as drawn, at the start of the motion, and in generic position.
 struct Places<'a> {
     robot: &'a Robot,
     tree: &'a Tree,
     freedoms: Vec<Freedom>,
     drawn: Vec<Pose>,
     begun: Configuration,
-    /// Where the equations hold, if that is found.
+    /// A configuration that satisfies the equations, if one was found.
     start: Option<Configuration>,
     anywhere: Configuration,
-    /// By how much the equations deviate nearest to where the motion begins, if they do not come to hold there.
+    /// Residuals of the equations after the search, if none was found.
     open: Vec<f64>,
 }
 
@@ -246,7 +246,7 @@ impl<'a> Places<'a> {
         );
     }
 
-    /// All equations at a place.
+    /// All equations at a configuration.
     fn linear(&self, at: &Configuration) -> Linear {
         let poses = at.poses(&self.robot.links);
         let mut linear = Linear::default();
@@ -307,7 +307,7 @@ impl<'a> Places<'a> {
         linear.off.push(follows - polynomial);
     }
 
-    /// The points that a connection makes meet, without their equations.
+    /// The pairs of points of a connection, without their equations.
     fn meetings(&self, connection: &Connection) -> Vec<Meeting> {
         let along = self.along(connection);
         let points = connection.points().into_iter();
@@ -322,7 +322,7 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// The body that carries both ends, along whose axes the equations are written.
+    /// The common ancestor of both ends, in whose frame the equations are written.
     fn along(&self, connection: &Connection) -> Option<usize> {
         let shared = self.carrier_of_both(connection.links());
         shared.and_then(|link| self.tree.body_of[link])
@@ -348,8 +348,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Adds how a point of a link moves along a direction with every coordinate behind the link that carries
-    /// both ends: what moves that moves both.
+    /// Adds the partial velocities of a point of a link along a direction. Freedoms above the common ancestor of both
+    /// ends cancel and are skipped.
     fn add_slopes(
         &self,
         row: &mut [f64],
@@ -370,11 +370,11 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The rows that say something new, each with the freedom that follows from it, and where the motion has to begin.
+    /// The independent rows, each with its dependent freedom, and the initial configuration if it has to be given.
     ///
-    /// How many they are shows where no link is in line with another by chance. Couplings have their followers; for the
-    /// others, rows and followers are those with the largest pivots where the motion begins, or, where fewer rows say
-    /// something there, anywhere.
+    /// Their number is the generic rank. Couplings prefer their declared dependent coordinate; otherwise rows and
+    /// dependent freedoms are those with the largest pivots at the start, or in the generic configuration if the rank at
+    /// the start is smaller.
     fn followers(&self, rows: &[Row]) -> (Vec<(usize, usize)>, Option<Configuration>) {
         let weights: Vec<f64> = (0..self.freedoms.len())
             .map(|column| self.weight(column))
@@ -524,7 +524,7 @@ impl Connection {
         self.ends.map(|(link, _)| link)
     }
 
-    /// A point of the first end, shifted in its frame, and the point of the second that it meets.
+    /// A point of the first end, shifted in its frame, and the coincident point of the second.
     fn ends_at(&self, offset: Vector) -> [(Option<usize>, Vector); 2] {
         let [(first, at), (second, _)] = self.ends;
         let at = add(at, offset);
@@ -532,12 +532,12 @@ impl Connection {
     }
 }
 
-/// Where a point of a link is.
+/// Position of a point of a link.
 fn place((link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
     link.map_or(at, |link| poses[link].of(at))
 }
 
-/// The pose of one link in another while all is as drawn; none is the ground.
+/// The pose of one link in another as drawn; `None` is the ground.
 pub(crate) fn drawn(links: &[Link], [first, second]: [Option<usize>; 2]) -> Pose {
     let poses = Configuration::new(links, |_| 0.0).poses(links);
     let of = |link: Option<usize>| link.map_or(Pose::IDENTITY, |link| poses[link]);

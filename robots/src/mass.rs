@@ -6,7 +6,7 @@ use crate::kinematics::{Freedom, Twist};
 use crate::model::{Link, Tendon};
 use crate::rotation::{Pose, Vector, add, cross, dot, scaled};
 
-/// Most freedoms of a robot whose inertia is looked at here.
+/// Largest number of freedoms for which the mass matrix is computed.
 pub(crate) const MOST_FREEDOMS: usize = 512;
 
 /// Inertia of a rigid body about the origin of the ground.
@@ -67,11 +67,11 @@ impl Spatial {
 /// A mass matrix; rows and columns are the freedoms.
 pub(crate) struct Mass {
     pub(crate) entries: Vec<Vec<f64>>,
-    /// By freedom: the size of the terms of which the entry on the diagonal is the sum.
+    /// By freedom: the magnitude of the terms of the diagonal entry, before cancellation.
     terms: Vec<f64>,
 }
 
-/// M of the tree with the armature of joints and tendons, where the links are.
+/// M of the tree at given poses of the links, with the armature of joints and tendons.
 pub(crate) fn matrix(links: &[Link], tendons: &[Tendon], poses: &[Pose]) -> Mass {
     let each = links.iter().zip(poses);
     let mut carried: Vec<Spatial> = each
@@ -158,8 +158,8 @@ fn inverse(mut m: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     inverse
 }
 
-/// Gives joints the spring and the damping by which they settle as they shall, with their inertia as drawn. Whether the robot is
-/// small enough for that.
+/// Computes stiffness and damping from time constant and damping ratio, with the inertia as drawn. False if the robot is
+/// too large for that.
 pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     let settles = |link: &Link| {
         link.joint
@@ -236,7 +236,7 @@ pub(crate) fn without_inertia(mass: &Mass, rows: &[(usize, Vec<f64>)]) -> Option
     None
 }
 
-/// What rounding leaves of an inertia that vanishes, against that of all that moves along.
+/// Relative rounding error of a vanishing inertia.
 const ROUNDING: f64 = 1e-13;
 
 #[cfg(test)]

@@ -184,7 +184,7 @@ pub(crate) fn read(
     robot
 }
 
-/// What flags of `option` leave out.
+/// Properties that are disabled by flags of `option`.
 fn switched_off(is_off: &dyn Fn(&str) -> bool) -> Vec<Without> {
     let passive = is_off("passive");
     let (springs, dampers) = (passive || is_off("spring"), passive || is_off("damper"));
@@ -192,7 +192,7 @@ fn switched_off(is_off: &dyn Fn(&str) -> bool) -> Vec<Without> {
     let all = [
         (springs, Without::Springs),
         (dampers, Without::Damping),
-        // Without springs and dampers no passive force is left.
+        // With springs and dampers disabled, there are no passive forces.
         (springs && dampers, Without::Compensation),
         (constraint || is_off("frictionloss"), Without::Friction),
         (constraint || is_off("limit"), Without::Limits),
@@ -231,7 +231,7 @@ impl<'x> Reader<'x, '_> {
         });
     }
 
-    /// Leaves out an element of a section, or all that a section holds.
+    /// Leaves out an element of a section, or a whole section.
     fn leave_out_of(&mut self, section: &str, element: Element<'_>) {
         if element.tag_name().name() != section {
             let what = format!("{section}/{}", element.tag_name().name());

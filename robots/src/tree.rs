@@ -32,7 +32,7 @@ pub(crate) struct Part {
     pub(crate) centre: Vector,
 }
 
-/// A joint with all links that it moves as one.
+/// A joint with all links that it moves as one rigid body.
 #[derive(Debug)]
 pub(crate) struct Body {
     pub(crate) parent: Option<usize>,
@@ -58,7 +58,7 @@ pub(crate) struct Body {
     pub(crate) start: Pose,
 }
 
-/// The body of a link, and where the link is in it.
+/// The body of a link, and the pose of the link in it.
 #[derive(Clone, Copy)]
 struct Seat {
     body: Option<usize>,

@@ -201,7 +201,7 @@ pub(crate) fn children<'x>(
     elements(element).filter(move |child| child.tag_name().name() == name)
 }
 
-/// The elements that an element holds.
+/// The children of an element that are elements.
 pub(crate) fn elements(element: Element<'_>) -> impl Iterator<Item = Element<'_>> {
     element.children().filter(Node::is_element)
 }
@@ -232,7 +232,7 @@ pub(crate) fn numbers(findings: &Findings, attribute: &Attribute<'_, '_>) -> Opt
     Some(numbers)
 }
 
-/// What to write for a word that is no number.
+/// The correction to suggest for a word that is not a number.
 fn instead(word: &str) -> String {
     let pointed = word.replace(',', ".");
     if word.matches(',').count() == 1 && pointed.parse::<f64>().is_ok() {
@@ -247,7 +247,7 @@ fn instead(word: &str) -> String {
     "write a number such as `0.5` or `1e-3`".to_owned()
 }
 
-/// As many numbers as something needs.
+/// A fixed number of numbers of an attribute.
 pub(crate) fn exactly<const N: usize>(
     findings: &Findings,
     attribute: &Attribute<'_, '_>,

@@ -111,7 +111,7 @@ fn copies(root: Element<'_>, element: Element<'_>, findings: &Findings) -> Vec<(
     let mut copies = Vec::new();
     let mut position = [0.0; 3];
     while (copies.len() as f64) < count {
-        // As MuJoCo 4.0 has it: angles add up, and offsets are along the axes of the copy before.
+        // As in MuJoCo 4.0: angles add up, and offsets are along the axes of the previous copy.
         let rotation = angles.euler(scaled(turns, copies.len() as f64));
         let number = format!("{separator}{:0width$}", copies.len());
         copies.push((Pose { rotation, position }, number));
@@ -127,7 +127,7 @@ fn edits(root: Element<'_>, element: Element<'_>, copies: &[(Pose, String)]) -> 
         .descendants()
         .filter_map(|inner| named(&inner))
         .collect();
-    // Each span of the text is replaced by copies of a part of it, with words before and after.
+    // Each span of the text is replaced by copies of a part of it, with a prefix and a suffix.
     let mut replaced: Vec<(Span, Vec<Edit>)> = Vec::new();
     let own = element.range();
     let mut within = Vec::new();

@@ -43,7 +43,7 @@ impl Row {
         Self { open: false, ..row }
     }
 
-    /// Elements that are left out, whatever they hold.
+    /// Elements that are left out with all their contents.
     const fn apart(element: &'static str, within: &'static str, effect: &'static str) -> Self {
         let row = Self::idle_element(element, within);
         Self {
@@ -74,7 +74,7 @@ const ALIGNED: &str = "coordinates of the free joint are those of the body's fra
                        centre of mass and principal axes";
 const YIELD: &str = "the spring does not yield";
 const TENDON: &str = "it resists nothing and bounds nothing";
-/// What geoms would do.
+/// Effect of contacts.
 pub(super) const TOUCH: &str = "bodies pass through each other";
 
 /// All elements with their attributes.
@@ -234,7 +234,7 @@ const TABLE: &[Row] = &[
     Row::apart(ACTUATORS, "actuator default", ACTUATOR),
 ];
 
-/// Tendons of both kinds, and what their defaults are.
+/// Tendons of both kinds, and their defaults.
 const TENDONS: Row = Row::read(
     "spatial",
     "tendon",
@@ -255,7 +255,7 @@ fn has(words: &str, word: &str) -> bool {
     words.split_ascii_whitespace().any(|own| own == word)
 }
 
-/// The kind of an element that holds others.
+/// The kind of an element as a parent.
 fn kind(holder: Element<'_>) -> &str {
     match holder.tag_name().name() {
         "worldbody" | "frame" | "replicate" => "body",

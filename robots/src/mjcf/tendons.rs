@@ -29,7 +29,7 @@ impl<'x> Reader<'x, '_> {
         tendons
     }
 
-    /// A path through space: listed where it does something.
+    /// A spatial tendon: listed as left out if it exerts a force.
     fn spatial_tendon(&mut self, element: Element<'x>) {
         let class = self.class(element, "class");
         let does = ["stiffness", "damping", "frictionloss", "armature", "range"];
@@ -213,7 +213,7 @@ impl<'x> Reader<'x, '_> {
         }
     }
 
-    /// `equality/tendon`: a tendon follows another one by a polynomial, or keeps its length.
+    /// `equality/tendon`: the length of a tendon is a polynomial of another one, or constant.
     pub(super) fn coupled_tendons(
         &self,
         element: Element<'x>,

@@ -101,7 +101,7 @@ impl Writer<'_> {
         written
     }
 
-    /// The frame of a body. One that does not turn against its parent has that of the parent.
+    /// The frame of a body. One that does not rotate relative to its parent has the frame of the parent.
     pub(super) fn frame(&mut self, index: usize) {
         let body = self.at(index);
         let called = self.called.links[body.link].clone();
@@ -170,7 +170,7 @@ impl Writer<'_> {
                 } else {
                     (turn.angle, AXES[turn.axis].to_owned())
                 };
-            // A right angle is not a number that anyone measures.
+            // Right angles are not parameters.
             let by = if right_angles(value).is_some() {
                 quantity(value, "rad")
             } else {
@@ -344,7 +344,7 @@ impl Writer<'_> {
         self.bodies.add(&called, &item);
     }
 
-    /// Origins of links that the ground carries.
+    /// Origins of links that are fixed to the ground.
     pub(super) fn links_on_the_ground(&mut self) {
         for part in &self.tree.ground {
             if !is_zero(part.position) {
@@ -386,7 +386,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Forces that carry a share of the weight of links.
+    /// Forces that compensate a fraction of the weight of links.
     pub(super) fn carried(&mut self, gravity: Vector, letters: &[String; 3]) {
         if is_zero(gravity) {
             return;
@@ -457,7 +457,7 @@ impl Writer<'_> {
         self.loads.add(name, &item);
     }
 
-    /// The furthest link that carries nothing, of each body that carries none.
+    /// Of each body without child bodies, the farthest link without child links.
     fn ends_of_chains(&self) -> impl Iterator<Item = &'_ Part> {
         let mut is_parent = vec![false; self.links.len()];
         for parent in self.links.iter().filter_map(|link| link.parent) {

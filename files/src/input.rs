@@ -117,8 +117,8 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, FileError> {
     })
 }
 
-/// The path of a file that is referenced by a file in `folder`. It must lie below `root`, also after symbolic links are
-/// resolved.
+/// The path of a file that is referenced by a file in `folder`. It must lie below `root`, also after
+/// symbolic links are resolved.
 ///
 /// A file that does not exist is no error here, so that the caller can report it.
 pub fn within(root: &Path, folder: &Path, named: &str) -> Result<PathBuf, FileError> {

@@ -151,7 +151,7 @@ fn without_jumps(mut squares: Vec<f64>) -> f64 {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "what is missing fails the test")]
+#[allow(clippy::unwrap_used, reason = "a missing value fails the test")]
 mod tests {
     use super::Smooth;
 

@@ -373,8 +373,8 @@ impl<'a> Places<'a> {
     /// The independent rows, each with its dependent freedom, and the initial configuration if it has to be given.
     ///
     /// Their number is the generic rank. Couplings prefer their declared dependent coordinate; otherwise rows and
-    /// dependent freedoms are those with the largest pivots at the start, or in the generic configuration if the rank at
-    /// the start is smaller.
+    /// dependent freedoms are those with the largest pivots at the start, or in the generic configuration if the
+    /// rank at the start is smaller.
     fn followers(&self, rows: &[Row]) -> (Vec<(usize, usize)>, Option<Configuration>) {
         let weights: Vec<f64> = (0..self.freedoms.len())
             .map(|column| self.weight(column))

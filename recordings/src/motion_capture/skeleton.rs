@@ -295,7 +295,10 @@ impl Reader<'_, '_> {
         match units::parse(&text) {
             Ok(unit) if unit.dimension == wanted.dimension => Some(unit.scale),
             _ => {
-                let message = format!("`{}` is no unit of what is measured in {si}", shown(&text));
+                let message = format!(
+                    "`{}` is not a unit with the dimension of {si}",
+                    shown(&text)
+                );
                 self.fields.tell(Code::UnitMismatch, message, at, &help);
                 None
             }

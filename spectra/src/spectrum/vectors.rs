@@ -119,7 +119,7 @@ fn vectors(a: &DMatrix<f64>, values: &[Complex<f64>], norm: f64) -> Vec<Vector> 
     let (n, a) = (values.len(), complex(a));
     let vector = |(i, &value): (usize, &Complex<f64>)| {
         let singular = Singular::of(&(&a - DMatrix::from_diagonal_element(n, n, value)));
-        // The copies of a repeated eigenvalue get different vectors of the null space, as far as its dimension allows.
+        // A repeated eigenvalue gets several vectors of the null space, as far as its dimension allows.
         let small = |&&size: &&f64| size <= SAME * norm;
         let own = singular.values.iter().rev().take_while(small).count();
         let earlier = cluster(values, i, norm).take_while(|&j| j < i).count();

@@ -371,8 +371,8 @@ impl<'a> SteadyProblem<'a> {
         outside
     }
 
-    /// The zeros reached from the base and from further points, the nearest first, and the point that comes nearest
-    /// to being one.
+    /// The zeros reached from the base and from further points, the nearest first, and the point with the smallest
+    /// residual.
     fn zeros(&self, equations: &SteadyEquations<'_>, starts: usize) -> (Vec<Zero>, Missed) {
         let base = equations.unknowns_of(&self.base);
         let mut spread = Spread::new(base.len());
@@ -427,9 +427,9 @@ impl<'a> SteadyProblem<'a> {
         zeros.iter().all(|zero| zero.family() > 0) && first == second
     }
 
-    /// Gives the speeds of a starting point values at which the conditions hold and the essential coordinates stand
-    /// still: linear equations for the speeds, as long as they are conditions on rates and on outputs linear in them.
-    /// Of many solutions the one nearest to the given speeds is taken.
+    /// Chooses the speeds of a starting point so that the conditions hold and the essential coordinates are constant.
+    /// The equations are linear in the speeds if the conditions are on rates and on outputs linear in them; the
+    /// solution nearest to the given speeds is taken.
     fn with_speeds(&self, equations: &SteadyEquations<'_>, start: DVector<f64>) -> DVector<f64> {
         /// Newton steps, for outputs that are not linear.
         const STEPS: usize = 4;

@@ -1,10 +1,10 @@
-//! Unit quaternions that turn in a steady motion.
+//! Unit quaternions that vary in a steady motion.
 //!
-//! The four numbers of a turning body go on changing, though nothing else does. They change as ė = K e with an
-//! antisymmetric K, and the motion is steady if the equations are the same along that rotation,
-//! ẋ(exp(K s) x) = exp(K s) ẋ(x): for attitudes in the ground K is e ↦ ½ a e, a turn about the vertical where gravity
-//! is all that has a direction, any turn where nothing has. Such rotations are found from A and ẋ, as ignorable
-//! coordinates are. Departures from the motion are those of exp(-K t) x, which stands still.
+//! The quaternion of a rotating body varies even if the motion is steady: ė = K e with an antisymmetric K. The motion
+//! is a relative equilibrium if the equations are equivariant under this rotation, ẋ(exp(K s) x) = exp(K s) ẋ(x). For
+//! attitudes relative to the ground, K is e ↦ ½ a e: a rotation about the vertical if only gravity distinguishes a
+//! direction, any rotation without gravity. The symmetries are determined from A and ẋ, like ignorable coordinates.
+//! Perturbations are those of exp(-K t) x, which is constant in the steady motion.
 
 use appell_runtime::model::{At, Model};
 use appell_spectra::singular::Singular;
@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Matrix4};
 const ROUNDING: f64 = 1e-11;
 /// Directions shorter than this, relative to the longest, coincide with others.
 const SAME_DIRECTION: f64 = 1e-9;
-/// Rotations of four numbers: pairs of axes.
+/// Rotations in four dimensions: pairs of axes.
 const PLANES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 /// Steps towards a reference.
 const MOST_STEPS: usize = 100;
@@ -27,7 +27,7 @@ pub(crate) struct Sample {
     pub(crate) a: Vec<f64>,
 }
 
-/// Quaternions, and the rotations of their numbers along which the equations are the same.
+/// Quaternions, and the rotations of their components under which the equations are equivariant.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Turning {
     /// The components of each, by their index among the states.
@@ -36,8 +36,8 @@ pub(crate) struct Turning {
     rotations: Vec<Vec<Matrix4<f64>>>,
 }
 
-/// The quaternions of a model, by their components among the states: their norms are kept by position
-/// constraints, so that the slopes are twice the components.
+/// The quaternions of a model, by their components among the states. They are recognised by the position
+/// constraints of their norms, whose gradient is twice the components.
 pub(crate) fn quaternions(model: &dyn Model, at: At<'_>) -> Vec<[usize; 4]> {
     let speeds = model.info().speeds;
     let (count, coordinates) = (model.dependent_coordinates().len(), at.x.len() - speeds);

@@ -75,7 +75,7 @@ impl Piece {
         RegressionSpline::fit(basis, &self.times, &self.values)
     }
 
-    /// Equal parts of at most so many knots.
+    /// Equal parts with at most `MOST_KNOTS` knots each.
     fn parts(&self, spacing: f64) -> Vec<Self> {
         let knots = (self.length() / spacing).max(1.0);
         let count = (knots / MOST_KNOTS as f64).ceil();

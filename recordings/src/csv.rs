@@ -40,7 +40,7 @@ fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
     })
 }
 
-/// A CSV file row by row, with the place of every cell: memory for one line.
+/// A CSV file read row by row, with the position of every cell; memory holds one line.
 ///
 /// Cells are separated by commas, semicolons or tabs; empty lines and comments, which begin with `#`, are
 /// skipped.

@@ -1,4 +1,4 @@
-//! Tables of a TOML file, read with places. Mistakes are reported and skipped, so that all of them are
+//! Tables of a TOML file, read with positions. Errors are reported and skipped, so that all of them are
 //! reported at once.
 
 use appell_spec::diagnostic::MAX_SHOWN;
@@ -18,7 +18,7 @@ fn whole(integer: &DeInteger<'_>) -> Option<f64> {
     }
 }
 
-/// A value with its place.
+/// A value with its position.
 pub type Value<'t> = Spanned<DeValue<'t>>;
 
 /// The text of a file, with findings.
@@ -151,7 +151,7 @@ impl<'t> Fields<'t> {
         flag.unwrap_or(false)
     }
 
-    /// File, line and column of a place.
+    /// File, line and column of a position.
     pub fn place(&self, at: Span) -> (String, usize, usize) {
         let report = Report::new(self.file, self.text, Vec::new());
         let (line, column) = report.line_column(at.start);

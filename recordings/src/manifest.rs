@@ -304,7 +304,7 @@ fn clock<'e>(
     Some((first.get_ref(), value))
 }
 
-/// Whether a line says that it is that of the times.
+/// Whether an entry has `time = true`.
 fn is_time(value: &Value<'_>) -> bool {
     let table = value.get_ref().as_table();
     table.and_then(|table| table.get("time")?.get_ref().as_bool()) == Some(true)

@@ -90,7 +90,7 @@ fn without_lost_inputs(mut table: Table, channels: &[Channel]) -> Table {
     table
 }
 
-/// Whether an angle may start anew after a turn: one that goes far beyond is counted on already.
+/// Whether an angle may be wrapped; one with a range of several turns is not.
 fn may_be_wrapped(values: &[f64]) -> bool {
     let present = || values.iter().copied().filter(|value| !value.is_nan());
     let [low, high] = [

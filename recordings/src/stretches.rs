@@ -54,7 +54,7 @@ impl DataSet {
         }
     }
 
-    /// Windows of so many seconds, about `most` of them, spread evenly over all runs, each with no more than
+    /// Windows of `length` seconds, about `most` of them, spread evenly over all runs, each with no more than
     /// about `rows` rows.
     pub fn windows(
         &self,

@@ -26,13 +26,13 @@ pub(crate) struct Columns {
     pub(crate) names: Vec<String>,
     /// Values of the requested ones; the others are empty. NaN where a value is missing.
     pub(crate) values: Vec<Vec<f64>>,
-    /// How the format itself says when a row was recorded.
+    /// The clock of the format itself.
     pub(crate) clock: OwnClock,
     /// Omitted rows.
     pub(crate) findings: Vec<Finding>,
 }
 
-/// How a format says when a row was recorded.
+/// The times of the rows, as given by a format.
 pub(crate) enum OwnClock {
     /// Not at all.
     None,

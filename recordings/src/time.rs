@@ -74,7 +74,7 @@ impl TimeColumn {
     }
 }
 
-/// Why a file has no column of the times, with what to write instead.
+/// Why a file has no column of the times, with a suggested correction.
 pub(crate) struct NoTime {
     pub(crate) message: String,
     pub(crate) help: String,

@@ -285,7 +285,7 @@ fn link_of(
     link
 }
 
-/// The motions of a joint, one after the other; none where it is fixed.
+/// The motions of a joint in series; none if it is fixed.
 fn moves(element: Element<'_>, name: &str, findings: &Findings) -> Vec<Joint> {
     let Some(kind) = element.attribute_node("type") else {
         let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
@@ -356,7 +356,7 @@ fn joint(element: Element<'_>, name: &str, motion: Motion, findings: &Findings) 
     }
 }
 
-/// Displacements along the two axes of a plane, then the turn about the axis across.
+/// Displacements along the two axes of a plane, then the rotation about its normal.
 fn planar(name: &str, across: Vector) -> Vec<Joint> {
     let (nearest, turn) = Axis::nearest(across);
     let slides = [1, 2].map(|step| {
@@ -399,7 +399,7 @@ fn range(element: Element<'_>, name: &str, findings: &Findings) -> Option<[f64; 
     }
 }
 
-/// `<mimic>`: this joint follows another one.
+/// `<mimic>`: the position of this joint is an affine function of that of another one.
 fn mimic<'x>(
     element: Element<'x>,
     joints: &BTreeMap<&'x str, Element<'x>>,
@@ -506,7 +506,7 @@ fn tree(
     }
     let mut links: Vec<Link> = Vec::new();
     let mut connections: Vec<Option<Connection<'_>>> = connections.into_iter().map(Some).collect();
-    // (link, where its parent stands in the result, the joint to it)
+    // (link, index of its parent in the result, the joint to it)
     let mut open: Vec<(usize, Option<usize>, Option<usize>)> = roots
         .first()
         .map(|root| (*root, None, None))

@@ -49,7 +49,7 @@ impl Writer<'_> {
         written
     }
 
-    /// What resists the lengths of tendons.
+    /// The passive forces of tendons.
     pub(super) fn tendons(&mut self, tendons: &[Tendon]) {
         for tendon in tendons {
             let called = self.quantities.new_one(&crate::names::short(&tendon.name));

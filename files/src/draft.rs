@@ -106,7 +106,7 @@ impl Draft {
         })
     }
 
-    /// Flushes the file to disk and renames it to its target. An existing file is replaced and its permissions are kept.
+    /// Flushes the file to disk and renames it to its target. An existing file is replaced; its permissions are kept.
     pub fn finish(self) -> io::Result<()> {
         let file = self.file.into_inner().map_err(IntoInnerError::into_error)?;
         if let Ok(there) = std::fs::metadata(&self.target) {

@@ -158,8 +158,8 @@ fn inverse(mut m: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     inverse
 }
 
-/// Computes stiffness and damping from time constant and damping ratio, with the inertia as drawn. False if the robot is
-/// too large for that.
+/// Computes stiffness and damping from time constant and damping ratio, with the inertia as drawn. False if the robot
+/// is too large for that.
 pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     let settles = |link: &Link| {
         link.joint

@@ -107,8 +107,8 @@ pub(crate) fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
     })
 }
 
-/// The text with a byte order mark, and an XML declaration that is not at the beginning, replaced by blanks, so that all
-/// positions are unchanged.
+/// The text with a byte order mark, and an XML declaration that is not at the beginning, replaced by blanks, so that
+/// all positions are unchanged.
 pub(crate) fn begun(text: &str) -> String {
     let blank = |part: &str| -> String {
         let bytes = part.bytes();

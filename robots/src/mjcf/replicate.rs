@@ -1,5 +1,5 @@
-//! `<replicate>`: replaced by copies of its children, each posed relative to the previous one. The number of the copy is
-//! appended to names, and elements of other sections that refer to them are copied as well.
+//! `<replicate>`: replaced by copies of its children, each posed relative to the previous one. The number of the copy
+//! is appended to names, and elements of other sections that refer to them are copied as well.
 
 use std::collections::BTreeSet;
 

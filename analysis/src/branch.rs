@@ -160,7 +160,7 @@ impl<'a> Branches<'a> {
     ) -> Result<Branch, BranchError> {
         let start = match direction {
             Some(direction) => {
-                // Beside the crossing, where the curve is isolated.
+                // Start off the branch point, where the curve is isolated.
                 let step = self.options.longest_step * 0.1 * (1.0 + z.norm());
                 let beside = correct(equations, &(z + direction * step), direction);
                 beside.and_then(|(z, _)| OnCurve::new(equations, z, direction))
@@ -190,7 +190,7 @@ impl<'a> Branches<'a> {
             (backward, first)
         };
         curve.extend(forward);
-        // From small values of the quantity to large ones, if it says so.
+        // In the order of increasing values of the quantity, if they differ.
         let value = |at: &OnCurve| equations.term(self.along, &at.z).0;
         let mut ends = [first, end];
         if let [a, .., b] = curve.as_slice()
@@ -255,8 +255,8 @@ impl<'a> Branches<'a> {
         (part * range / slope).min(part * 5.0 * (1.0 + at.z.norm()))
     }
 
-    /// Where a branch ends: at the ends of the range of its quantity and of the declared ranges of
-    /// essential states, and where a requirement is violated if the options say so.
+    /// Limits of a branch: the ends of the range of its quantity and of the declared ranges of essential
+    /// states and, depending on the options, violation of a requirement.
     fn limits(&self) -> Vec<Limit> {
         let within = |term: Term, [low, high]: [f64; 2], end: End| {
             [(1.0, low), (-1.0, -high)].map(|(sign, least)| Limit {

@@ -40,10 +40,10 @@ pub struct Cell {
 pub struct Chart {
     /// The horizontal and the vertical quantity.
     pub axes: [Axis; 2],
-    /// What [`Cell::unknowns`] are.
+    /// The quantities of [`Cell::unknowns`].
     pub unknowns: Vec<Term>,
-    /// The motions of each grid point, row by row, the horizontal quantity running fastest: none where
-    /// no steady motion was found, several where branches overlap.
+    /// The motions of each grid point, row by row, the horizontal quantity varying fastest: none if
+    /// no steady motion was found, several if branches overlap.
     pub cells: Vec<Vec<Cell>>,
     /// Where eigenvalues reach the imaginary axis, as curves.
     pub boundaries: Vec<Boundary>,

@@ -8,8 +8,8 @@
 //! | `stability.rs` | eigenvalues without the zeros of the family; the verdict |
 //! | `stability/` | smooth test functions for changes of stability; modes tracked through crossings |
 //! | `branch.rs` | steady motions along one quantity: folds, crossings, ends, feasibility |
-//! | `branch/` | what a branch holds; pseudo-arclength continuation; special points; branch points |
-//! | `chart.rs` | stability over two quantities: what a chart holds |
+//! | `branch/` | data types; pseudo-arclength continuation; special points; branch points |
+//! | `chart.rs` | stability over two quantities: data types |
 //! | `chart/` | the grid and its verdicts; boundaries of stability and feasibility |
 //! | `control/` | linear models, gains, sampled controllers, schedules, controllability, regions of attraction |
 //!

@@ -184,7 +184,7 @@ pub(crate) fn independent(
     })
 }
 
-/// Departures along directions that change nothing are left out: of each direction, the state that it moves most.
+/// Removes perturbations along neutral directions: for each direction, the state with the largest component.
 fn without_largest(matrix: &mut DMatrix<f64>, directions: &mut DMatrix<f64>) -> Option<usize> {
     /// Directions that are shorter than this, where all that differ have a length of about 1, are rounding.
     const SHORT: f64 = 1e-9;

@@ -117,7 +117,7 @@ pub enum SteadyError {
         .outside.join(", ")
     )]
     OutOfRange {
-        /// What is outside of which range.
+        /// Quantities outside of their ranges, with the ranges.
         outside: Vec<String>,
     },
     /// The conditions determine a family of motions.
@@ -133,7 +133,7 @@ pub enum SteadyError {
     },
 }
 
-/// What may be the matter where attitudes are quaternions.
+/// Hint for models whose attitudes are quaternions.
 const PERIODIC: &str = "; pseudo-velocities along a body that spins while its axis goes around are periodic, not \
                         steady: take them along a frame that does not spin, with an angle for the spin";
 
@@ -190,7 +190,7 @@ impl<'a> SteadyProblem<'a> {
         &self.base
     }
 
-    /// The conditions on states, rates and outputs, and on what was freed before.
+    /// The conditions on states, rates, outputs and freed quantities.
     pub fn conditions(&self) -> &[Condition] {
         &self.conditions
     }
@@ -371,8 +371,8 @@ impl<'a> SteadyProblem<'a> {
         outside
     }
 
-    /// The zeros reached from the base and from further points, the nearest first, and the point that comes nearest
-    /// to being one.
+    /// The zeros reached from the base and from further points, the nearest first, and the point with the smallest
+    /// residual.
     fn zeros(&self, equations: &SteadyEquations<'_>, starts: usize) -> (Vec<Zero>, Missed) {
         let base = equations.unknowns_of(&self.base);
         let mut spread = Spread::new(base.len());
@@ -427,9 +427,9 @@ impl<'a> SteadyProblem<'a> {
         zeros.iter().all(|zero| zero.family() > 0) && first == second
     }
 
-    /// Gives the speeds of a starting point values at which the conditions hold and the essential coordinates stand
-    /// still: linear equations for the speeds, as long as they are conditions on rates and on outputs linear in them.
-    /// Of many solutions the one nearest to the given speeds is taken.
+    /// Chooses the speeds of a starting point so that the conditions hold and the essential coordinates are constant.
+    /// The equations are linear in the speeds if the conditions are on rates and on outputs linear in them; the
+    /// solution nearest to the given speeds is taken.
     fn with_speeds(&self, equations: &SteadyEquations<'_>, start: DVector<f64>) -> DVector<f64> {
         /// Newton steps, for outputs that are not linear.
         const STEPS: usize = 4;
@@ -477,7 +477,7 @@ impl<'a> SteadyProblem<'a> {
         }
     }
 
-    /// Brings essential angles into one turn where the equations are the same after each turn.
+    /// Reduces essential angles to one turn where the equations are periodic in them.
     fn fold(&self, point: &mut Point) {
         /// Rates that differ by less, relative to the largest, are the same.
         const SAME_RATES: f64 = 1e-9;
@@ -519,8 +519,8 @@ impl<'a> SteadyProblem<'a> {
         Err(SteadyError::Family { dimension, open })
     }
 
-    /// Dimension of the family of a motion where it is least, and what varies there: families meet in motions
-    /// such as rest, and the tangents of all of them count there.
+    /// Generic dimension of the family of a motion, and the quantities that vary within it. At singular motions such
+    /// as rest several families intersect, and the tangent space contains the tangents of all of them.
     fn generic_family(&self, motion: &SteadyMotion, starts: usize) -> (usize, Vec<Term>) {
         let equations = self.equations();
         let mut spread = Spread::new(equations.unknowns.len());

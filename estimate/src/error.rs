@@ -70,7 +70,7 @@ pub enum EstimateError {
     /// No measurements, no recordings, or no states.
     #[error("there are no {what}")]
     Nothing {
-        /// What is missing.
+        /// The missing items, in the plural.
         what: &'static str,
     },
     /// Recordings whose rows lie far apart, or that are long.

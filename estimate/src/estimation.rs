@@ -16,7 +16,7 @@ use crate::motion::timeline::{Action, timeline};
 use crate::motion::transition::stages_len;
 use crate::parallel::in_parallel;
 
-/// Rows for which no thread is worth its start.
+/// Up to this number of rows the start of a thread costs more than it saves.
 const FEW_ROWS: usize = 200;
 
 /// Largest memory of the tapes of all recordings in bytes, 16 GiB; more indicates a wrong unit of the times.
@@ -124,7 +124,7 @@ impl<'a> Estimation<'a> {
         Ok((sum, gradient.unwrap_or_default()))
     }
 
-    /// The log-likelihood, and its gradient where one is asked for after a look at it: the reverse
+    /// The log-likelihood, and its gradient if the predicate holds for the log-likelihood: the reverse
     /// sweep takes twice as long as the filter.
     pub(crate) fn gradient_if(
         &self,
@@ -214,7 +214,7 @@ impl<'a> Estimation<'a> {
         Pass::over(self.system(), values, (run, recording), &actions, tape)
     }
 
-    /// Nobody panics while holding them.
+    /// The tapes; a poisoned lock is ignored, as no code panics while holding it.
     fn tapes(&self) -> MutexGuard<'_, Vec<Vec<f64>>> {
         self.tapes.lock().unwrap_or_else(PoisonError::into_inner)
     }

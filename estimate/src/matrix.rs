@@ -5,7 +5,7 @@ pub(super) fn multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let columns = b.len() / inner;
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
         for (&factor, b) in a.iter().zip(b.chunks_exact(columns)) {
-            // Slopes of coordinates and of what is measured are zero but for one or two.
+            // Most gradients of coordinates and outputs have one or two nonzero entries.
             if factor != 0.0 {
                 add_scaled(factor, b, c);
             }

@@ -5,7 +5,7 @@
 //! | `command.rs` | the inputs between rows |
 //! | `closure.rs` | closed loops, whose coordinates depend on each other |
 //! | `plant.rs` | the equations at one point, with their Jacobians |
-//! | `sensors.rs` | lagging channels: filters of what they measure |
+//! | `sensors.rs` | lagging channels: filters of the measured quantities |
 //! | `timeline.rs` | the order of steps and samples |
 //! | `transition.rs` | one step and its transition matrix; step control |
 

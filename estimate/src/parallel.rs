@@ -1,16 +1,15 @@
-//! Independent pieces of work on all processors.
+//! Parallel execution of independent tasks.
 
 use std::cell::Cell;
 use std::sync::{Mutex, OnceLock, PoisonError};
 use std::{panic, thread};
 
 thread_local! {
-    /// Whether this thread works on a piece already: what is inside of it stays there.
+    /// Whether this thread is a worker already: nested calls then run on this thread.
     static IS_WORKER: Cell<bool> = const { Cell::new(false) };
 }
 
-/// What `work` makes of each item, in their order. Where pieces of work have such pieces themselves, the outer
-/// ones are spread.
+/// The results of `work` for the items, in their order. Of nested calls only the outermost is run in parallel.
 pub fn in_parallel<I, T: Send>(
     items: impl IntoIterator<Item = I, IntoIter: ExactSizeIterator + Send>,
     work: impl Fn(I) -> T + Sync,
@@ -51,7 +50,7 @@ pub fn in_parallel<I, T: Send>(
     done.into_iter().map(|(_, result)| result).collect()
 }
 
-/// Their number, asked for once.
+/// Number of processors, determined once.
 fn processors() -> usize {
     static PROCESSORS: OnceLock<usize> = OnceLock::new();
     *PROCESSORS.get_or_init(|| thread::available_parallelism().map_or(1, usize::from))

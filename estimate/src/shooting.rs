@@ -72,7 +72,7 @@ struct Trial {
 }
 
 impl<'o, 'e> Shooting<'o, 'e> {
-    /// Segments of so many rows. `guess` returns the state at the first row of a part of a
+    /// Segments of a number of rows. `guess` returns the state at the first row of a part of a
     /// recording; measured values suffice for measured states.
     ///
     /// Parameters, biases, scales and lags can be estimated. Noise weights the channels and has to

@@ -1,4 +1,4 @@
-//! Files that are written.
+//! Atomic writing of files.
 
 use std::fs::{File, Metadata, TryLockError};
 use std::io::{self, BufWriter, IntoInnerError, Write};
@@ -8,36 +8,36 @@ use std::time::Duration;
 
 use tempfile::{Builder, NamedTempFile};
 
-/// End of the name of a draft, which begins with a dot.
+/// Suffix of the name of a draft, which begins with a dot.
 const SUFFIX: &str = ".draft";
 
-/// Without locks a draft of this age has no writer any more.
+/// Where file locks are not available, a draft older than this is abandoned.
 const LEFT_BEHIND: Duration = Duration::from_hours(1);
 
 /// The drafts of this process.
 static DRAFTS: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn drafts() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is whole at any time.
+    // A panic cannot leave a list of paths inconsistent.
     DRAFTS.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes all drafts of this process, which is about to be ended by a signal.
+/// Removes all drafts of this process. Called before a signal terminates it.
 pub fn remove_drafts() {
     for draft in drafts().drain(..) {
-        // There is nobody left to tell.
+        // The process is terminating: errors cannot be reported.
         let _ = std::fs::remove_file(draft);
     }
 }
 
-/// Removes the drafts of a folder whose writers are gone, and none of those that somebody is writing.
+/// Removes the abandoned drafts of a folder. Drafts that are still being written are kept.
 pub fn remove_left_behind(folder: &Path) -> io::Result<()> {
     for entry in std::fs::read_dir(folder)? {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         if name.starts_with('.') && name.ends_with(SUFFIX) && is_left_behind(&path) {
             match std::fs::remove_file(&path) {
-                // Another one was faster.
+                // Another process has removed it meanwhile.
                 Err(cause) if cause.kind() != io::ErrorKind::NotFound => return Err(cause),
                 _ => {}
             }
@@ -71,17 +71,18 @@ impl Drop for Listed {
     }
 }
 
-/// A new file under a random name beside its place. [`Draft::finish`] puts it there; dropped before that, it is removed.
+/// A new file under a random name in the folder of its target. [`Draft::finish`] renames it to the target; a draft that
+/// is dropped before is removed.
 #[derive(Debug)]
 pub struct Draft {
     file: BufWriter<NamedTempFile>,
     target: PathBuf,
-    // After the file, which is removed first.
+    // Dropped after `file`, so that the file is removed first.
     _listed: Listed,
 }
 
 impl Draft {
-    /// A draft of the file at `target`, whose folder exists.
+    /// A draft of the file at `target`, whose folder must exist.
     pub fn new(target: &Path) -> io::Result<Self> {
         let folder = match target.parent() {
             Some(folder) if !folder.as_os_str().is_empty() => folder,
@@ -89,13 +90,13 @@ impl Draft {
         };
         let mut naming = Builder::new();
         naming.prefix(".").suffix(SUFFIX);
-        // As other programs make files: with what the user's mask leaves.
+        // The usual permissions of new files, which the umask restricts.
         #[cfg(unix)]
         naming.permissions(std::os::unix::fs::PermissionsExt::from_mode(0o666));
-        // Listed while it is made: a signal meanwhile waits for the list.
+        // The list is locked while the file is created, so that a signal handler does not miss it.
         let mut drafts = drafts();
         let file = naming.tempfile_in(folder)?;
-        // Says that it has a writer; on a system without locks its age does.
+        // The lock marks the draft as in use; systems without locks go by its age.
         let _ = file.as_file().try_lock();
         drafts.push(file.path().to_owned());
         Ok(Self {
@@ -105,7 +106,7 @@ impl Draft {
         })
     }
 
-    /// Puts the file in its place once it is on the disk. It replaces a file that is there, whose permissions it takes.
+    /// Flushes the file to disk and renames it to its target. An existing file is replaced; its permissions are kept.
     pub fn finish(self) -> io::Result<()> {
         let file = self.file.into_inner().map_err(IntoInnerError::into_error)?;
         if let Ok(there) = std::fs::metadata(&self.target) {

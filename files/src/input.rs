@@ -1,10 +1,10 @@
-//! Files that are read.
+//! Reading of untrusted files.
 
 use std::fs::{File, FileType};
 use std::io::{self, Read as _};
 use std::path::{Component, Path, PathBuf};
 
-/// Why a file is not read. No message holds a part of the file.
+/// Why a file is not read. Messages never quote the contents of the file.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// A pipe, a device, a socket or a folder.
@@ -12,7 +12,7 @@ pub enum FileError {
     NotRegular {
         /// The file.
         path: PathBuf,
-        /// What it is instead.
+        /// The kind of file, with its article.
         kind: &'static str,
     },
     /// The file is too large.
@@ -31,18 +31,18 @@ pub enum FileError {
         /// The first line that is not text.
         line: usize,
     },
-    /// A file names one that does not lie below its folder.
+    /// A file references one outside of its folder.
     #[error(
         "`{}` is not below {}: copy the file there",
         named.escape_debug(), folder(root)
     )]
     Outside {
-        /// The name in the file.
+        /// The path as written in the file.
         named: String,
         /// The folder.
         root: PathBuf,
     },
-    /// The operating system refuses.
+    /// An error of the operating system.
     #[error("cannot read {}: {cause}", path.display())]
     System {
         /// The file.
@@ -53,7 +53,7 @@ pub enum FileError {
     },
 }
 
-/// A size in words.
+/// A size with its unit.
 fn size(bytes: u64) -> String {
     match bytes {
         0..1024 => format!("{bytes} bytes"),
@@ -76,7 +76,7 @@ pub fn open(path: &Path, most: u64) -> Result<File, FileError> {
         path: path.to_owned(),
         cause,
     };
-    // Before it is opened: to open a pipe waits for who writes to it.
+    // Checked before opening, as opening a pipe blocks until there is a writer.
     regular(path, std::fs::metadata(path).map_err(system)?.file_type())?;
     let file = File::open(path).map_err(system)?;
     let about = file.metadata().map_err(system)?;
@@ -91,7 +91,7 @@ pub fn open(path: &Path, most: u64) -> Result<File, FileError> {
 /// The bytes of a regular file of at most `most` bytes.
 pub fn read(path: &Path, most: u64) -> Result<Vec<u8>, FileError> {
     let mut bytes = Vec::new();
-    // A file that grows meanwhile, or one of the kernel that has no length, is read no further.
+    // The limit also covers growing files, and files of the kernel that report no length.
     let read = open(path, most)?
         .take(most.saturating_add(1))
         .read_to_end(&mut bytes);
@@ -117,9 +117,10 @@ pub fn read_text(path: &Path, most: u64) -> Result<String, FileError> {
     })
 }
 
-/// The path of a file that another one in `folder` names: below `root`, also when links are followed.
+/// The path of a file that is referenced by a file in `folder`. It must lie below `root`, also after
+/// symbolic links are resolved.
 ///
-/// A file that does not exist has a path as well, so that the caller can say so.
+/// A file that does not exist is no error here, so that the caller can report it.
 pub fn within(root: &Path, folder: &Path, named: &str) -> Result<PathBuf, FileError> {
     let outside = || FileError::Outside {
         named: named.to_owned(),
@@ -135,7 +136,7 @@ pub fn within(root: &Path, folder: &Path, named: &str) -> Result<PathBuf, FileEr
     if !is_below.unwrap_or(false) {
         return Err(outside());
     }
-    // Without the file, or without the right to see it, there is nothing to follow.
+    // A file that is missing or not accessible cannot be resolved.
     let real = |path: &Path| Path::new(".").join(path).canonicalize();
     match (real(&path), real(root)) {
         (Ok(target), Ok(root)) if !target.starts_with(&root) => Err(outside()),
@@ -143,7 +144,7 @@ pub fn within(root: &Path, folder: &Path, named: &str) -> Result<PathBuf, FileEr
     }
 }
 
-/// The path of a file that another one in the folder `root` names, below this folder.
+/// The path of a file that is referenced by a file in the folder `root`. It must lie below this folder.
 pub fn below(root: &Path, named: &str) -> Result<PathBuf, FileError> {
     within(root, root, named)
 }

@@ -1,9 +1,9 @@
-//! Files: one rule for all that are read, one for all that are written.
+//! Reading of untrusted files and atomic writing of files.
 //!
-//! A spec, a robot file, a recording or a study is untrusted. What is read is a regular file of bounded size, so that a
-//! pipe cannot block and a device cannot fill the memory ([`read`], [`read_text`], [`open`]). A file that another file
-//! names lies below the folder of the latter, or below one that the user names ([`below`], [`within`]). What is written is there as a
-//! whole or not at all ([`Draft`]), and what killed writers left is removed ([`remove_left_behind`]).
+//! Specs, robot files, recordings and studies are untrusted. Only regular files of bounded size are read, so that a
+//! pipe cannot block and a device cannot fill the memory ([`read`], [`read_text`], [`open`]). A file that is referenced
+//! by another file must lie below the folder of the latter, or below a folder given by the user ([`below`],
+//! [`within`]). Writing is atomic ([`Draft`]); drafts of killed processes are removed by [`remove_left_behind`].
 
 mod draft;
 mod input;

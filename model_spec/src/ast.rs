@@ -1,4 +1,4 @@
-//! The syntax tree: what the text says, before names are looked up.
+//! The syntax tree of a spec, before names are resolved.
 
 use num_rational::BigRational;
 
@@ -6,12 +6,12 @@ use crate::expr::{BinaryOp, Function, Relation, Span, Word};
 use crate::language::{Key, Kind, Section, Sense};
 use crate::units::Unit;
 
-/// A value and where it stands.
+/// A value and its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Spanned<T> {
     /// The value.
     pub value: T,
-    /// Where it stands in the text.
+    /// Its position in the text.
     pub span: Span,
 }
 
@@ -20,16 +20,16 @@ pub struct Spanned<T> {
 pub struct SpecAst {
     /// The sections.
     pub sections: Vec<SectionAst>,
-    /// Whether parts of the text could not be read; what they define is not known.
+    /// Whether parts of the text could not be parsed, so that definitions may be missing.
     pub broken: bool,
 }
 
 /// A section.
 #[derive(Debug, Clone)]
 pub struct SectionAst {
-    /// Which one.
+    /// The kind of section.
     pub section: &'static Section,
-    /// Where its name stands.
+    /// Position of its name.
     pub span: Span,
     /// Its items in the order of the text; a section that is one table has one item.
     pub items: Vec<ItemAst>,
@@ -38,9 +38,9 @@ pub struct SectionAst {
 /// One definition: a name and a table of keys.
 #[derive(Debug, Clone)]
 pub struct ItemAst {
-    /// Name of what is defined.
+    /// The defined name.
     pub name: Spanned<String>,
-    /// Which kind it is, where the section has several.
+    /// Its kind, if the section has several.
     pub kind: Option<&'static Kind>,
     /// The keys and their values.
     pub entries: Vec<Entry>,
@@ -53,7 +53,7 @@ pub struct ItemAst {
 pub struct Entry {
     /// Which key.
     pub key: &'static Key,
-    /// Where the value stands.
+    /// Position of the value.
     pub span: Span,
     /// The value.
     pub value: ValueAst,
@@ -84,7 +84,7 @@ pub enum ValueAst {
     Pair([Spanned<String>; 2]),
     /// Four names.
     Four(Box<[Spanned<String>; 4]>),
-    /// Names that are made here.
+    /// Names that are defined here.
     Names(Vec<Spanned<String>>),
     /// A list of tables.
     Tables(Vec<ItemAst>),
@@ -95,16 +95,16 @@ pub enum ValueAst {
 /// An expression.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ExprAst {
-    /// What it is.
+    /// Its form.
     pub kind: ExprAstKind,
-    /// Where it stands in the text.
+    /// Its position in the text.
     pub span: Span,
 }
 
 /// The forms of an expression.
 #[derive(Debug, Clone, PartialEq)]
 pub enum ExprAstKind {
-    /// A number, with a unit where one is written.
+    /// A number, with its unit if stated.
     Number(BigRational, Option<Box<Unit>>),
     /// A name.
     Name(String),
@@ -127,7 +127,7 @@ pub enum ExprAstKind {
         /// Value where the relation holds, and value elsewhere.
         branches: Box<[ExprAst; 2]>,
     },
-    /// A part that could not be read; the parser has said so.
+    /// A part that could not be parsed, which has been reported.
     Broken,
 }
 
@@ -147,7 +147,7 @@ impl ItemAst {
         self.entries.iter().find(|e| e.key.name == key)
     }
 
-    /// What the word under a key means.
+    /// The meaning of the word under a key.
     pub fn word(&self, key: &str) -> Option<Sense> {
         self.entry(key).and_then(|e| match &e.value {
             ValueAst::Word(meaning) => Some(*meaning),

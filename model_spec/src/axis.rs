@@ -12,7 +12,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// Its place among the components of a vector.
+    /// Its index among the components of a vector.
     pub const fn index(self) -> usize {
         match self {
             Self::X => 0,

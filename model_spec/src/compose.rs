@@ -21,13 +21,13 @@ impl Composition {
         })
     }
 
-    /// Adds the items of a fragment, which is written as a spec is, sections and all. Where the spec
+    /// Adds the items of a fragment, which has the syntax and the sections of a spec. Where the spec
     /// has an item of the same name, the keys of the fragment replace its own.
     pub fn add(&mut self, fragment: &str) -> Result<(), EditError> {
         self.add_noted(fragment, "")
     }
 
-    /// Adds the items of a fragment, with a comment above what is new in each section.
+    /// Adds the items of a fragment, with a comment above the new items of each section.
     pub fn add_noted(&mut self, fragment: &str, note: &str) -> Result<(), EditError> {
         let fragment = document(fragment)?;
         for (section, items) in fragment.iter() {
@@ -75,7 +75,7 @@ impl Composition {
         }
     }
 
-    /// The text of the whole.
+    /// The text of the composed spec.
     pub fn text(&self) -> String {
         self.document.to_string()
     }

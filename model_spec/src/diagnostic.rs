@@ -1,4 +1,4 @@
-//! What is wrong with a spec, where, and what to write instead.
+//! Diagnostics of a spec: message, positions and suggested correction.
 
 mod codes;
 mod render;
@@ -7,32 +7,32 @@ use crate::expr::Span;
 
 pub use codes::{CODES, Code, CodeInfo, Stage};
 
-/// Most diagnostics shown for one file.
+/// Maximum number of diagnostics shown for one file.
 pub const MAX_SHOWN: usize = 100;
 
-/// How much a diagnostic matters.
+/// Severity of a diagnostic.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Severity {
     /// The spec cannot be used.
     Error,
     /// The spec can be used, but something looks unintended.
     Warning,
-    /// Nothing is wrong, but worth knowing.
+    /// A remark; the spec is valid.
     Note,
 }
 
 /// One finding.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Diagnostic {
-    /// Which rule of the table of codes is broken.
+    /// The violated rule, from the table of codes.
     pub code: Code,
-    /// How much it matters.
+    /// Its severity.
     pub severity: Severity,
-    /// What is wrong, in one line.
+    /// The message, in one line.
     pub message: String,
-    /// Places in the spec text with a few words each; the first is the place to look at.
+    /// Labelled positions in the spec text; the first is the primary one.
     pub labels: Vec<(Span, String)>,
-    /// What to write instead.
+    /// The suggested correction.
     pub help: Option<String>,
 }
 
@@ -64,21 +64,21 @@ impl Diagnostic {
         }
     }
 
-    /// Points at a place; the first call names the main one.
+    /// Adds a position; the first one is primary.
     #[must_use]
     pub fn at(mut self, span: Span, words: impl Into<String>) -> Self {
         self.labels.push((span, words.into()));
         self
     }
 
-    /// Says what to write instead.
+    /// Sets the suggested correction.
     #[must_use]
     pub fn help(mut self, help: impl Into<String>) -> Self {
         self.help = Some(help.into());
         self
     }
 
-    /// Says what to write instead, where that is known.
+    /// Sets the suggested correction, if there is one.
     #[must_use]
     pub fn maybe_help(mut self, help: Option<String>) -> Self {
         self.help = help.or(self.help);
@@ -90,7 +90,7 @@ impl Diagnostic {
     }
 }
 
-/// Everything that was found in one file, with the text to show it in.
+/// All findings in one file, with its text.
 #[derive(Debug, Clone)]
 pub struct Report {
     file: String,
@@ -141,7 +141,7 @@ impl Report {
             .any(|d| d.severity == Severity::Error)
     }
 
-    /// Line and column of a place, both from 1; the column counts characters.
+    /// Line and column of a position, both from 1; the column counts characters.
     pub fn line_column(&self, at: usize) -> (usize, usize) {
         let (line, column) = line_column(&self.text, at);
         (line - 1 + self.first_line, column)

@@ -10,7 +10,7 @@ pub enum EditError {
     /// The text is not TOML.
     #[error("the spec is not TOML: {message}")]
     Syntax {
-        /// What the TOML parser says.
+        /// The message of the TOML parser.
         message: String,
     },
     /// The spec has no such parameter.
@@ -37,7 +37,7 @@ pub enum EditError {
 
 /// Writes parameter values, given in SI, each in the unit of its parameter.
 ///
-/// A value that the text already states is left as it is written.
+/// A value that does not change keeps its notation.
 pub fn set_parameters(text: &str, values: &[(&str, f64)]) -> Result<String, EditError> {
     set_numbers(text, "value", values)
 }
@@ -129,7 +129,7 @@ fn append(table: &mut Item, key: &str, number: f64) {
     }
 }
 
-/// The number with the fewest digits that means `value` when it is read in `unit`.
+/// The shortest decimal number that is read as `value` in `unit`.
 fn shortest(unit: &Unit, value: f64) -> f64 {
     let exact_number = unit.from_si(value);
     (0..17)

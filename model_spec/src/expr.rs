@@ -1,4 +1,4 @@
-//! Resolved expressions: trees whose names have been replaced by what they refer to.
+//! Resolved expressions: trees whose names have been replaced by references.
 
 mod named;
 mod value;
@@ -14,12 +14,12 @@ pub use named::{Motion, Response, Word};
 /// A place in the spec text, in bytes.
 pub type Span = Range<usize>;
 
-/// An expression and where it stands.
+/// An expression and its position.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Expr {
-    /// What it is.
+    /// Its form.
     pub kind: ExprKind,
-    /// Where it stands in the spec.
+    /// Its position in the spec.
     pub span: Span,
 }
 
@@ -36,7 +36,7 @@ pub enum ExprKind {
     Binary(BinaryOp, Box<Expr>, Box<Expr>),
     /// A function of one or two arguments.
     Call(Function, Vec<Expr>),
-    /// `if(a < b, then, otherwise)` and its kin.
+    /// `if(a < b, then, otherwise)`, also with the other relations.
     Choice {
         /// Relation between the two compared expressions.
         relation: Relation,
@@ -47,7 +47,7 @@ pub enum ExprKind {
     },
 }
 
-/// What a name refers to.
+/// The quantity to which a name refers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Quantity {
     /// A parameter.
@@ -207,7 +207,7 @@ impl Relation {
 }
 
 impl Expr {
-    /// Calls `seen` with every quantity of the expression, from left to right.
+    /// Visits every quantity of the expression, from left to right.
     pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
         match &self.kind {
             ExprKind::Number(_) => {}

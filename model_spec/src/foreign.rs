@@ -1,22 +1,22 @@
-//! Texts of others inside texts of ours: sentences of a spec, names of files, words of a report.
+//! Untrusted text in generated text: sentences of a spec, names of files, words of a report.
 //!
-//! A character is written where it is known to be harmless: a letter, a digit, a mark or a sign that is seen. Whatever
-//! else it may be - a control character, one that turns the direction of writing, one without a glyph - has no
-//! effect. Writers of a language escape its own marks beyond that.
+//! A character is written if it is known to be harmless: a letter, a digit, a mark or a visible sign. Any other one,
+//! such as a control character, one that changes the writing direction or one without a glyph, has no
+//! effect. Emitters of a language additionally escape its special characters.
 
-/// What stands for a character that must not be written.
+/// Replacement of a character that must not be written.
 const REPLACED: char = '\u{fffd}';
 
 /// Pairs that open or close comments, or begin a trigraph, in some language.
 const PAIRS: [[char; 2]; 3] = [['*', '/'], ['/', '*'], ['?', '?']];
 
-/// A text on one line of characters that are seen, for markup and strings whose writer escapes its own marks.
+/// A text on one line of visible characters, for markup and strings whose emitter escapes special characters.
 pub fn one_line(text: &str) -> String {
     text.chars().map(seen).collect()
 }
 
 /// A text inside a comment, a documentation string or a string of any language that code is emitted in: on one line,
-/// with single spaces, without a backslash, and without what ends a comment or starts one.
+/// with single spaces, without backslashes and without delimiters of comments.
 pub fn sentence(text: &str) -> String {
     let mut written = String::with_capacity(text.len());
     let mut last = ' ';
@@ -35,7 +35,7 @@ pub fn sentence(text: &str) -> String {
     written
 }
 
-/// A text as a string of TOML, which is read as [`one_line`] has it.
+/// A text as a string of TOML, whose value is that of [`one_line`].
 pub fn toml_string(text: &str) -> String {
     let mut quoted = String::from('"');
     for c in text.chars().map(seen) {
@@ -48,12 +48,12 @@ pub fn toml_string(text: &str) -> String {
     quoted
 }
 
-/// Whether a text may stand as it is where lines are kept.
+/// Whether a text of several lines can be written unchanged.
 pub fn is_seen(text: &str) -> bool {
     text.chars().all(|c| c == '\n' || seen(c) == c)
 }
 
-/// The character, a space for those that make room, or the sign of a replaced one.
+/// The character, a space for white space, or the replacement character.
 fn seen(c: char) -> char {
     if c == ' ' || c.is_ascii_graphic() {
         return c;

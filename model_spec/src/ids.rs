@@ -1,13 +1,13 @@
-//! Which item of a mechanism is meant: ids of one kind index lists of that kind, and no others.
+//! Typed ids of the items of a mechanism: ids of one kind index only lists of that kind.
 
 use std::marker::PhantomData;
 use std::ops::{Deref, DerefMut, Index, IndexMut};
 
-/// The place of an item in its list.
+/// The index of an item in its list.
 pub trait Id: Copy {
-    /// The id of the item at a place, counted from 0.
+    /// The id of the item at an index, counted from 0.
     fn new(index: usize) -> Self;
-    /// The place of the item, counted from 0.
+    /// The index of the item, counted from 0.
     fn index(self) -> usize;
 }
 
@@ -18,12 +18,12 @@ macro_rules! ids {
         pub struct $name(usize);
 
         impl $name {
-            /// The id of the item at a place, counted from 0.
+            /// The id of the item at an index, counted from 0.
             pub const fn new(index: usize) -> Self {
                 Self(index)
             }
 
-            /// The place of the item, counted from 0.
+            /// The index of the item, counted from 0.
             pub const fn index(self) -> usize {
                 self.0
             }
@@ -66,7 +66,7 @@ ids! {
     OutputId;
 }
 
-/// Items that are found by ids of one kind; else a slice.
+/// A slice of items that is indexed by ids of one kind.
 #[derive(Debug, Clone, PartialEq)]
 pub struct List<I, T> {
     items: Vec<T>,
@@ -85,12 +85,12 @@ impl<I: Id, T> List<I, T> {
         items.map(|(index, item)| (I::new(index), item))
     }
 
-    /// The id of the first item that is what is wanted.
+    /// The id of the first item that satisfies a predicate.
     pub fn find(&self, wanted: impl FnMut(&T) -> bool) -> Option<I> {
         self.items.iter().position(wanted).map(I::new)
     }
 
-    /// Adds an item; its id.
+    /// Adds an item; returns its id.
     pub fn push(&mut self, item: T) -> I {
         self.items.push(item);
         I::new(self.items.len() - 1)

@@ -1,16 +1,16 @@
-//! Joints: each stands for items of other sections, which are put in its place before anything is looked up.
+//! Joints: each is expanded to items of other sections before names are resolved.
 //!
-//! A joint becomes text ([`made`]), which is read as any spec is; what was read gets the places of the
-//! joint's own keys. So the spec that [`crate::expanded`] writes is, word for word, the one that is checked.
+//! A joint is expanded to text ([`made`]), which is parsed like any spec; the result gets the positions of the
+//! joint's own keys. Therefore the spec that [`crate::expanded`] writes is exactly the one that is checked.
 //!
-//! | file | holds |
+//! | file | content |
 //! |---|---|
-//! | `made.rs` | what each kind stands for |
+//! | `made.rs` | the expansion of each kind |
 //! | `quantities.rs` | names, units and meanings of its coordinates and pseudo-velocities |
-//! | `direction.rs` | axes: turns about them, displacements along them |
-//! | `written.rs`, `piece.rs` | expressions of the spec as parts of others, with their places |
-//! | `places.rs` | other places for everything in a syntax tree |
-//! | `document.rs` | the text of a spec with the items in place of the joints |
+//! | `direction.rs` | axes: rotations about them, displacements along them |
+//! | `written.rs`, `piece.rs` | expressions of the spec as parts of others, with their positions |
+//! | `places.rs` | replaces all positions in a syntax tree |
+//! | `document.rs` | the text of a spec with expanded joints |
 
 mod direction;
 mod document;
@@ -40,17 +40,17 @@ pub(crate) const SECTION: &str = "joints";
 /// A spec without joints.
 #[derive(Debug, Clone)]
 pub struct Expansion {
-    /// The syntax tree, with items of other sections in place of the joints; their places are those of
+    /// The syntax tree with expanded joints; the positions of their items are those of
     /// the joints' keys.
     pub ast: SpecAst,
-    /// What is wrong with the joints.
+    /// Findings about the joints.
     pub findings: Vec<Diagnostic>,
     /// The items by joint.
     made: Vec<(String, Vec<Made>)>,
 }
 
-/// Puts items of other sections in place of the joints of a spec; `None` where there are none. `ast` is
-/// what was read of `text`.
+/// Expands the joints of a spec; `None` if there are none. `ast` is the syntax tree
+/// of `text`.
 pub fn expand(ast: &SpecAst, text: &str) -> Option<Expansion> {
     let section = ast.sections.iter().find(|s| s.section.name == SECTION)?;
     let mut rest = ast.clone();
@@ -63,7 +63,7 @@ pub fn expand(ast: &SpecAst, text: &str) -> Option<Expansion> {
     };
     for joint in &section.items {
         if !joint.intact {
-            // It may define names that are used.
+            // Names that it would define may be used.
             expansion.ast.broken = true;
             continue;
         }
@@ -80,7 +80,7 @@ pub fn expand(ast: &SpecAst, text: &str) -> Option<Expansion> {
     Some(expansion)
 }
 
-/// The text of a spec with items of other sections in place of its joints. `ast` is what was read of `text`.
+/// The text of a spec with expanded joints. `ast` is the syntax tree of `text`.
 pub(crate) fn replaced(ast: &SpecAst, text: &str) -> Result<String, EditError> {
     match expand(ast, text) {
         Some(expansion) => document::replaced(text, SECTION, &expansion.made),
@@ -110,8 +110,8 @@ pub fn maker<'a>(ast: &'a SpecAst, namespace: Namespace, name: &str) -> Option<&
     ast.items(SECTION).iter().find(makes)
 }
 
-/// Findings on a joint, without what only follows from what is told of it. The others say how to see
-/// what they are about.
+/// Removes findings on a joint that are consequences of another one. The others get a hint on how to see
+/// the expansion.
 pub(crate) fn explained(
     ast: &SpecAst,
     told: &[Diagnostic],
@@ -139,7 +139,7 @@ pub(crate) fn explained(
             places.push(place.clone());
             is_new
         });
-        // The components of an axis stand in several expressions.
+        // The components of an axis occur in several expressions.
         let Some(axis) = entry.filter(|entry| matches!(entry.key.form, Form::Direction)) else {
             return true;
         };
@@ -151,7 +151,7 @@ pub(crate) fn explained(
     findings
 }
 
-/// The joint on which a finding lies, and the key of it.
+/// The joint in which a finding lies, and its key.
 fn at<'a>(ast: &'a SpecAst, finding: &Diagnostic) -> Option<(&'a ItemAst, Option<&'a Entry>)> {
     let (place, _) = finding.labels.first()?;
     let holds = |part: &Span| part.start <= place.start && place.end <= part.end;
@@ -163,7 +163,7 @@ fn at<'a>(ast: &'a SpecAst, finding: &Diagnostic) -> Option<(&'a ItemAst, Option
 
 fn shows(joint: &str) -> String {
     format!(
-        "it is in what the joint `{joint}` stands for, which `appell derive` writes out as a spec"
+        "it is in the expansion of the joint `{joint}`, which `appell derive` writes out as a spec"
     )
 }
 
@@ -197,7 +197,7 @@ impl Places for Known<'_> {
 }
 
 impl Expansion {
-    /// Takes the items of a joint whose names are free.
+    /// Adopts the items of a joint whose names are not taken.
     fn admit(&mut self, joint: &ItemAst, made: Vec<Made>) {
         let mut free = Vec::new();
         for one in made {
@@ -209,7 +209,7 @@ impl Expansion {
         self.made.push((joint.name.value.clone(), free));
     }
 
-    /// What else has the name of an item.
+    /// The conflict of an item with another one of the same name.
     fn clash(&self, joint: &ItemAst, own: &[Made], one: &Made) -> Option<Diagnostic> {
         let namespace = Namespace::of_section(one.section);
         let is_same = |section: &str, name: &str| {
@@ -258,7 +258,7 @@ impl Expansion {
         Some(finding.help(help))
     }
 
-    /// Reads what was made, and puts it at the end of its sections.
+    /// Parses the expansion and appends it to its sections.
     fn read(&mut self, joints: &Span) {
         let all: Vec<&Made> = self.made.iter().flat_map(|(_, made)| made).collect();
         let mut text = Piece::default();
@@ -304,7 +304,7 @@ impl Expansion {
         }
     }
 
-    /// Refuses what is too much or nothing.
+    /// Refuses too many items, and a spec without coordinates.
     fn count(&mut self, joints: &Span) {
         for section in &self.ast.sections {
             let is_made = self

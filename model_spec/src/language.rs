@@ -19,7 +19,7 @@ pub struct Section {
     pub name: &'static str,
     /// One-sentence description.
     pub about: &'static str,
-    /// What it holds.
+    /// The form of its contents.
     pub shape: Shape,
     /// Whether a spec must have it.
     pub presence: Presence,
@@ -32,16 +32,16 @@ pub enum Presence {
     Required,
     /// May be left out.
     Optional,
-    /// Unless it has another section, which makes items of this one.
+    /// Unless it has another section that introduces items of this one.
     Unless(&'static str),
 }
 
-/// What a section holds.
+/// The form of the contents of a section.
 #[derive(Debug)]
 pub enum Shape {
     /// One table of keys.
     Table(&'static [Key]),
-    /// Named items with the same keys. The last part names the key that an item holds when it is
+    /// Named items with the same keys. The last part names the key to which a value belongs that is
     /// written without a table, if that is allowed.
     Items(&'static [Key], Option<&'static str>),
     /// Named items of several kinds.
@@ -55,7 +55,7 @@ pub enum Shape {
 pub struct Kind {
     /// The word after `kind =`.
     pub word: &'static str,
-    /// What the word means.
+    /// The kind of item.
     pub is: ItemKind,
     /// One-sentence description.
     pub about: &'static str,
@@ -116,11 +116,11 @@ pub enum LoadWord {
 pub struct Word {
     /// As written.
     pub text: &'static str,
-    /// What it means.
+    /// Its meaning.
     pub sense: Sense,
 }
 
-/// What a word means.
+/// The meaning of a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Sense {
     /// A coordinate axis.
@@ -154,7 +154,7 @@ pub enum Need {
     Always,
     /// May be omitted.
     Optional,
-    /// Exactly one of the numbered ways must be chosen, with all its keys.
+    /// Exactly one of the numbered alternatives must be chosen, with all its keys.
     Way(u8),
 }
 
@@ -165,9 +165,9 @@ pub enum Form {
     Text,
     /// A name that is defined here.
     Name,
-    /// The name of a coordinate or pseudo-velocity that is made here.
+    /// The name of a coordinate or pseudo-velocity that is introduced here.
     NewName,
-    /// So many of them.
+    /// A list of such names with this length.
     NewNames(usize),
     /// The name of a frame, point, body or coordinate.
     Reference(Target),
@@ -179,7 +179,7 @@ pub enum Form {
     Numbers,
     /// Lower and upper end, in the item's unit.
     Range,
-    /// So many numbers, each in the unit of its quantity.
+    /// A list of numbers with this length, each in the unit of its quantity.
     Values(usize),
     /// An expression: a string, or a plain number.
     Expression,
@@ -205,7 +205,7 @@ pub enum Form {
     Tables(&'static [Key]),
 }
 
-/// What a reference leads to.
+/// The target of a reference.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Target {
     /// A frame, `ground` included.

@@ -4,8 +4,8 @@
 //! text --parse--> SpecAst --expand--> SpecAst without joints --resolve--> Mechanism
 //! ```
 //!
-//! [`load`] does both. Every finding of a file is reported at once, each with its place in the
-//! text and with what to write instead.
+//! [`load`] does all of this. All findings of a file are reported at once, each with its position in the
+//! text and a suggested correction.
 
 pub mod ast;
 mod axis;
@@ -49,16 +49,16 @@ pub struct Checked {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// A spec as far as it can be read.
+/// A possibly invalid spec.
 #[derive(Debug, Clone)]
 pub struct Reading {
     /// The syntax tree.
     pub ast: ast::SpecAst,
-    /// The same with other items in place of joints; `None` where there are none.
+    /// The same with expanded joints; `None` if there are none.
     without_joints: Option<ast::SpecAst>,
-    /// The mechanism, with placeholders wherever an error is reported.
+    /// The mechanism, with placeholders for invalid parts.
     pub mechanism: Mechanism,
-    /// The errors; warnings and notes where there are none.
+    /// The errors; if there are none, warnings and notes.
     pub findings: Vec<Diagnostic>,
 }
 
@@ -89,7 +89,7 @@ impl Reading {
         }
     }
 
-    /// The syntax tree with other items in place of joints; their places are those of the joints' keys.
+    /// The syntax tree with expanded joints; the positions of their items are those of the joints' keys.
     pub fn expanded(&self) -> &ast::SpecAst {
         self.without_joints.as_ref().unwrap_or(&self.ast)
     }
@@ -112,8 +112,8 @@ pub fn load(file: &str, text: &str) -> Result<Checked, Report> {
     })
 }
 
-/// The text of a spec with items of other sections in place of its joints; the rest keeps its words and
-/// its comments, and a text without joints all of it. Errors of the spec come as a report.
+/// The text of a spec with expanded joints; everything else is unchanged, including comments. Errors
+/// of the spec are returned as a report.
 ///
 /// ```
 /// # let text = appell_spec::starter("fresh").expect("a name");

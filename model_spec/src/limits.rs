@@ -18,7 +18,7 @@ pub const MAX_TURNS: usize = 16;
 pub const MAX_EXPRESSION: usize = 4096;
 /// Deepest expression, in nested operations.
 pub const MAX_DEPTH: usize = 128;
-/// Most terms that definitions put in place of names.
+/// Maximum number of terms from expanded definitions.
 pub const MAX_DEFINED: usize = 1 << 17;
 /// Most digits of a number.
 pub const MAX_DIGITS: usize = 40;

@@ -1,4 +1,4 @@
-//! A checked mechanism: what the text of a spec means, ready for the derivation.
+//! A checked mechanism, ready for the derivation of its equations.
 //!
 //! Everything here is in SI units. References between items are ids in the lists of
 //! [`Mechanism`]; the checks of this crate guarantee that they are in range, that parents come
@@ -58,11 +58,11 @@ pub struct Mechanism {
     pub loads: List<LoadId, Load>,
     /// Named quantities of interest.
     pub outputs: List<OutputId, Output>,
-    /// Named expressions; what uses one holds its expression.
+    /// Named expressions; they are substituted where they are used.
     pub definitions: Vec<Definition>,
 }
 
-/// What every named quantity carries.
+/// Name, description and unit of a quantity.
 #[derive(Debug, Clone)]
 pub struct Label {
     /// Identifier in the spec.
@@ -73,7 +73,7 @@ pub struct Label {
     pub unit: Unit,
     /// Line of the definition in the spec, from 1.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
@@ -108,7 +108,7 @@ pub struct Coordinate {
 pub struct Definition {
     /// Name, sentence and unit.
     pub label: Label,
-    /// What it stands for.
+    /// Its value.
     pub value: Expr,
 }
 
@@ -128,11 +128,11 @@ pub struct Signal {
     pub times: Vec<f64>,
     /// Values in SI, one per time.
     pub values: Vec<f64>,
-    /// What happens between two samples.
+    /// Interpolation between two samples.
     pub interpolation: Interpolation,
 }
 
-/// How a signal runs between two samples; outside the table the end values hold.
+/// Interpolation of a signal between two samples; outside the table the end values hold.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
     /// Constant until the next sample.
@@ -161,7 +161,7 @@ impl Interpolation {
     }
 }
 
-/// A frame, turned from its parent by a chain of rotations about coordinate axes.
+/// A frame, rotated relative to its parent by a chain of rotations about coordinate axes.
 #[derive(Debug, Clone)]
 pub struct Frame {
     /// Identifier.
@@ -172,12 +172,12 @@ pub struct Frame {
     pub parent: Option<FrameId>,
     /// Rotations, first the one next to the parent.
     pub turns: Vec<Turn>,
-    /// Instead of them the coordinates of a unit quaternion, its scalar part first. It turns the components of
-    /// a vector in this frame into those in the parent.
+    /// Alternatively the coordinates of a unit quaternion, scalar part first. It maps the components of
+    /// a vector in this frame to those in the parent.
     pub quaternion: Option<[CoordinateId; 4]>,
     /// Line of the definition, from 1; 0 for the ground.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
@@ -192,14 +192,14 @@ pub struct Turn {
     pub angle: Expr,
 }
 
-/// A point, placed from another point.
+/// A point, given by its position relative to another point.
 #[derive(Debug, Clone)]
 pub struct Point {
     /// Identifier.
     pub name: String,
     /// One-sentence description.
     pub about: String,
-    /// The point it is placed from; `None` for the origin of the ground.
+    /// The reference point; `None` for the origin of the ground.
     pub from: Option<PointId>,
     /// Frame in which `at` is written.
     pub frame: FrameId,
@@ -207,7 +207,7 @@ pub struct Point {
     pub at: Components,
     /// Line of the definition, from 1; 0 for the origin.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
@@ -231,19 +231,19 @@ pub struct Body {
     pub taken_away: bool,
     /// Line of the definition, from 1.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
 impl Body {
-    /// Whether it is anywhere: what has no mass and turns about the origin, such as the rotor of a drive, has no
-    /// place of its own.
+    /// Whether its position matters: a body without mass whose centre is the origin, such as the rotor of a
+    /// drive, has rotational inertia only.
     pub fn has_place(&self) -> bool {
         let massless = matches!(&self.mass.kind, ExprKind::Number(mass) if mass.is_zero());
         !(massless && self.centre == ORIGIN)
     }
 
-    /// Minus one for what is taken away.
+    /// Minus one for subtracted bodies.
     pub(crate) fn sign(&self) -> f64 {
         if self.taken_away { -1.0 } else { 1.0 }
     }
@@ -252,14 +252,14 @@ impl Body {
 /// Inertia tensor about a centre of mass.
 #[derive(Debug, Clone)]
 pub struct Inertia {
-    /// Frame in which the components are written. Where it is not the body's own, the tensor must
-    /// not change with the rotation between the two; the derivation checks that.
+    /// Frame in which the components are written. If it is not fixed in the body, the tensor must
+    /// be invariant under the rotation between the two; the derivation checks that.
     pub frame: FrameId,
     /// Symmetric matrix, products of inertia with their sign (`I_xy = -∫xy dm`).
     pub matrix: [[Expr; 3]; 3],
     /// Line of the definition, from 1.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
@@ -270,30 +270,30 @@ pub struct Constraint {
     pub name: String,
     /// One-sentence description.
     pub about: String,
-    /// What it demands.
+    /// Its equations.
     pub kind: ConstraintKind,
     /// Line of the definition, from 1.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
-/// What a constraint demands.
+/// The equations of a constraint.
 #[derive(Debug, Clone)]
 pub enum ConstraintKind {
-    /// The material points of `body` and of what it rolls on have one velocity at `contact`.
+    /// The material points of `body` and of the surface have the same velocity at `contact`.
     Rolling {
         /// The rolling body.
         body: BodyId,
         /// Contact point.
         contact: PointId,
-        /// The body that carries the surface; the ground, where there is none.
+        /// The body to which the surface belongs; `None` is the ground.
         on: Option<BodyId>,
         /// Normal of the surface, if the spec gives it.
         normal: Option<Normal>,
         /// Coefficient of friction, if the spec gives it.
         friction: Option<Expr>,
-        /// How the contact creeps, if the spec gives it.
+        /// Creep coefficients of the contact, if the spec gives them.
         creep: Option<Box<Creep>>,
     },
     /// `zero = equals`, `zero` linear in the generalised velocities, `equals` a function of
@@ -310,7 +310,7 @@ pub enum ConstraintKind {
     FixedVelocity {
         /// The point; the material point of `body` there when a body is named.
         point: PointId,
-        /// Body whose material point at that place is meant.
+        /// Body whose material point is meant.
         body: Option<BodyId>,
         /// Frame in which `direction` is written.
         frame: FrameId,
@@ -318,7 +318,7 @@ pub enum ConstraintKind {
         direction: Components,
         /// Prescribed velocity.
         equals: Expr,
-        /// Whether the reaction can only push along `direction`.
+        /// Whether the constraint is unilateral: its reaction acts only in the sense of `direction`.
         one_sided: bool,
     },
     /// `zero = 0`, an equation between coordinates, parameters, signals and time.
@@ -327,9 +327,9 @@ pub enum ConstraintKind {
         zero: Expr,
         /// Its dimension.
         dimension: Dimension,
-        /// The coordinate that follows from the others; chosen when the spec names none.
+        /// The dependent coordinate; chosen automatically if the spec names none.
         dependent: Option<CoordinateId>,
-        /// Whether the reaction can only push, towards positive `zero`.
+        /// Whether the constraint is unilateral: its reaction acts only towards positive `zero`.
         one_sided: bool,
     },
 }
@@ -349,7 +349,7 @@ pub struct Normal {
 /// normal force.
 #[derive(Debug, Clone)]
 pub struct Creep {
-    /// Along the travel.
+    /// In the direction of travel.
     pub longitudinal: Expr,
     /// Across it.
     pub lateral: Expr,
@@ -366,7 +366,7 @@ impl ConstraintKind {
         }
     }
 
-    /// How many scalar equations it stands for.
+    /// Its number of scalar equations.
     pub const fn rows(&self) -> usize {
         match self {
             Self::Rolling { .. } => 3,
@@ -392,7 +392,7 @@ pub struct PseudoVelocity {
     pub label: Label,
     /// Definition, linear in `dot(q)`.
     pub definition: Expr,
-    /// Its rate, where that is given; a drive then brings whatever force it takes.
+    /// Its prescribed rate, if any; an actuator then supplies the required generalised force.
     pub rate: Option<Expr>,
     /// Initial value in SI.
     pub initial: f64,
@@ -405,15 +405,15 @@ pub struct Load {
     pub name: String,
     /// One-sentence description.
     pub about: String,
-    /// What acts.
+    /// Its kind.
     pub kind: LoadKind,
     /// Line of the definition, from 1.
     pub line: usize,
-    /// Place of the definition in the spec text; empty for what the language supplies.
+    /// Position of the definition in the spec text; empty for predefined items.
     pub span: Span,
 }
 
-/// What a load does.
+/// The kinds of loads.
 #[derive(Debug, Clone)]
 pub enum LoadKind {
     /// Weight of every body.
@@ -427,9 +427,9 @@ pub enum LoadKind {
     Force {
         /// Point of application.
         on: PointId,
-        /// Body whose material point at `on` is meant; without it the point itself moves.
+        /// Body whose material point at `on` is meant; without it the velocity of the point itself counts.
         body: Option<BodyId>,
-        /// Point that feels the reaction.
+        /// Point of application of the reaction.
         reaction_on: Option<PointId>,
         /// Frame in which `vector` is written.
         frame: FrameId,
@@ -440,7 +440,7 @@ pub enum LoadKind {
     Torque {
         /// Body.
         on: BodyId,
-        /// Body that feels the reaction.
+        /// Body on which the reaction acts.
         reaction_on: Option<BodyId>,
         /// Frame in which `vector` is written.
         frame: FrameId,
@@ -449,7 +449,7 @@ pub enum LoadKind {
     },
     /// A linear spring.
     Spring {
-        /// What it connects.
+        /// The connected points or the coordinate.
         between: Connection,
         /// Stiffness.
         stiffness: Expr,
@@ -458,7 +458,7 @@ pub enum LoadKind {
     },
     /// A linear damper.
     Damper {
-        /// What it connects.
+        /// The connected points or the coordinate.
         between: Connection,
         /// Damping coefficient.
         damping: Expr,
@@ -474,7 +474,7 @@ pub enum LoadKind {
 }
 
 impl Mechanism {
-    /// Direction of the weight, a unit vector of the ground; nothing without gravity.
+    /// Direction of the weight, a unit vector of the ground; `None` without gravity.
     pub fn down(&self) -> Option<[i8; 3]> {
         self.loads.iter().find_map(|load| match load.kind {
             LoadKind::Gravity { down, .. } => Some(down),
@@ -496,7 +496,7 @@ impl Mechanism {
         found.map(|(id, _)| id)
     }
 
-    /// The loads, each after those whose forces it names; they do not lead into circles.
+    /// The loads in dependency order: each after those whose forces it uses. There are no cycles.
     pub fn loads_after_what_they_name(&self) -> Vec<LoadId> {
         let mut waiting: Vec<(LoadId, Vec<LoadId>)> = Vec::new();
         for (index, load) in self.loads.entries() {
@@ -532,7 +532,7 @@ impl Mechanism {
 }
 
 impl LoadKind {
-    /// What it connects, for loads along a connection.
+    /// The connected points or the coordinate, for springs and dampers.
     pub const fn between(&self) -> Option<&Connection> {
         match self {
             Self::Spring { between, .. } | Self::Damper { between, .. } => Some(between),
@@ -543,7 +543,7 @@ impl LoadKind {
         }
     }
 
-    /// All expressions it has.
+    /// All its expressions.
     pub fn expressions(&self) -> Vec<&Expr> {
         match self {
             Self::Gravity { acceleration, .. } => vec![acceleration],
@@ -571,7 +571,7 @@ impl LoadKind {
     }
 }
 
-/// What a spring or damper connects.
+/// The points or the coordinate to which a spring or damper is attached.
 #[derive(Debug, Clone)]
 pub enum Connection {
     /// Acts along the line between two points.

@@ -1,4 +1,4 @@
-//! What a valid name is.
+//! Validity of names.
 
 use crate::limits::MAX_NAME;
 

@@ -1,4 +1,4 @@
-//! Where the names of a spec stand: their definitions and their uses.
+//! Occurrences of the names of a spec: their definitions and their uses.
 
 use crate::ast::{Entry, ExprAst, ExprAstKind, ItemAst, Spanned, SpecAst, ValueAst};
 use crate::expr::{Span, Word};
@@ -19,15 +19,15 @@ pub enum Namespace {
     Load,
 }
 
-/// A name where it stands.
+/// An occurrence of a name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Occurrence {
-    /// What it names.
+    /// Its namespace.
     pub namespace: Namespace,
     /// The name.
     pub name: String,
-    /// Where it stands, without quotes; the whole string where it is written with escapes. The name of the
-    /// joint where what a joint makes is named after it.
+    /// Its position, without quotes; the whole string if it is written with escapes. For items named after a
+    /// joint, the position of the name of the joint.
     pub span: Span,
     /// Whether the name is defined there.
     pub defines: bool,
@@ -49,7 +49,7 @@ impl From<Target> for Namespace {
 }
 
 impl Namespace {
-    /// What the items of a section are called by.
+    /// The namespace of the items of a section.
     pub fn of_section(section: &str) -> Option<Self> {
         Some(match section {
             "parameters" | "coordinates" | "inputs" | "signals" | "definitions"
@@ -64,7 +64,7 @@ impl Namespace {
     }
 }
 
-/// What the first name after a word refers to, as the frame in `angular_velocity(frame, z)`.
+/// The target of the first name after a word, such as the frame in `angular_velocity(frame, z)`.
 pub fn named_by(word: Word) -> Target {
     match word {
         Word::Position | Word::Velocity | Word::Speed | Word::Acceleration => Target::Point,

@@ -1,6 +1,6 @@
-//! Where keys and strings stand in the text of a spec, also in one that is being typed.
+//! Positions of keys and strings in the text of a spec, also in one that is being typed.
 //!
-//! The syntax tree holds what could be read, and a name that stands in several headers only once.
+//! The syntax tree contains only valid parts, and a name that occurs in several headers only once.
 //! Editors need the rest as well.
 
 use toml_parser::parser::{Event, EventKind, RecursionGuard, parse_document};
@@ -9,17 +9,17 @@ use crate::expr::Span;
 use crate::language::{Form, Key, SECTIONS, Section, Shape};
 use crate::limits::{MAX_FILE, MAX_NAME};
 
-/// Deeper tables are not looked into; the parser of specs stops there as well.
+/// Deeper tables are skipped, as by the parser of specs.
 const MAX_NESTED: u32 = 80;
-/// No value of a spec stands below more keys; many dots would take memory without end.
+/// Maximum length of a path of keys, which bounds the memory for input with many dots.
 const MAX_KEYS: usize = 8;
 
-/// A key or a string, with its place.
+/// A key or a string, with its position.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Part {
     /// The keys that lead to it, from the section; those of a key end with itself.
     pub path: Vec<String>,
-    /// Where it stands, quotes included.
+    /// Its position, quotes included.
     pub span: Span,
 }
 
@@ -33,7 +33,7 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Reads a text; what is no TOML is passed over.
+    /// Reads a text; invalid TOML is skipped.
     pub fn new(text: &str) -> Self {
         let mut reader = Reader::default();
         if text.len() <= MAX_FILE {
@@ -46,7 +46,7 @@ impl Outline {
         reader.outline
     }
 
-    /// The string around a place, quotes excluded; one that is never closed ends with its line.
+    /// The string around a position, quotes excluded; an unterminated one ends with its line.
     pub fn string_at(&self, text: &str, at: usize) -> Option<&Part> {
         let mut strings = self.strings.iter();
         strings.find(|part| {
@@ -56,7 +56,7 @@ impl Outline {
         })
     }
 
-    /// What stands between the quotes of a string.
+    /// The span between the quotes of a string.
     pub fn content(text: &str, string: &Part) -> Span {
         let written = text.get(string.span.clone()).unwrap_or_default();
         let closing = usize::from(unquoted(written) != written);
@@ -64,7 +64,7 @@ impl Outline {
         start..start.max(string.span.end - closing)
     }
 
-    /// The key whose value stands at a path.
+    /// The key at a path.
     pub fn key_of(&self, text: &str, path: &[String]) -> Option<&'static Key> {
         let [section, item, rest @ ..] = path else {
             return None;
@@ -109,7 +109,7 @@ struct Reader {
     header: Vec<String>,
     /// Keys above the next value, those of the header included.
     path: Vec<String>,
-    /// How many of them each open table has, the innermost last.
+    /// The number of them for each open table, the innermost last.
     open: Vec<usize>,
     in_header: bool,
     /// Whether a key goes on after a dot.
@@ -139,7 +139,7 @@ impl Reader {
                 if let Some(raw) = source.get(event) {
                     raw.decode_key(&mut key, &mut ());
                 }
-                // What is longer is no name, and would be repeated for all that stands below.
+                // A longer key is no name, and would be repeated in the paths of all keys below.
                 if key.len() > MAX_NAME {
                     key.clear();
                 }

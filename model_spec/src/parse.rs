@@ -22,7 +22,7 @@ pub use expression::unit_diagnostic;
 pub(crate) use expression::{SECOND_RATE, zero};
 pub use reader::is_forbidden;
 
-/// Reads a spec; what could not be read is left out of the tree and reported in the diagnostics.
+/// Parses a spec; invalid parts are omitted from the tree and reported in the diagnostics.
 pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
     let mut reader = Reader {
         text,
@@ -61,13 +61,13 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
     (ast, reader.findings)
 }
 
-/// Reads items that were made, sections and all.
+/// Parses generated items with their sections.
 pub(crate) fn made(text: &str) -> (Vec<SectionAst>, Vec<Diagnostic>) {
     let mut reader = Reader {
         text,
         findings: Vec::new(),
         broken: false,
-        // Whatever else a spec needs is elsewhere.
+        // The other required parts of a spec are not in this text.
         incomplete: true,
     };
     let (table, errors) = DeTable::parse_recoverable(text);
@@ -76,13 +76,13 @@ pub(crate) fn made(text: &str) -> (Vec<SectionAst>, Vec<Diagnostic>) {
     (sections, reader.findings)
 }
 
-/// Where a tag opens a text, such as a robot file: no line of it would be TOML.
+/// The tag at the beginning of an XML text, such as a robot file, which is not TOML at all.
 fn markup(text: &str) -> Option<usize> {
     let start = text.trim_start_matches('\u{feff}').trim_start();
     start.starts_with('<').then(|| text.len() - start.len())
 }
 
-/// Reads an expression that stands at `whole` in a document.
+/// Parses an expression at the position `whole` of a document.
 pub(crate) fn expression_in(
     document: &str,
     text: &str,
@@ -92,7 +92,7 @@ pub(crate) fn expression_in(
 }
 
 impl Reader<'_> {
-    /// Refuses what cannot be seen or reorders what is seen, comments included.
+    /// Refuses invisible characters and those that reorder text, also in comments.
     fn characters(&mut self) {
         let hidden: Vec<(usize, char)> = self
             .text
@@ -137,21 +137,21 @@ impl Reader<'_> {
         lines
     }
 
-    /// Further errors on a line with broken TOML are only consequences.
+    /// Drops further errors on a line with invalid TOML, as they are consequences.
     fn forget_findings_on(&mut self, lines: &[Span]) {
         if lines.is_empty() {
             return;
         }
         self.findings.retain(|finding| {
             matches!(finding.code, Code::TomlSyntax | Code::DuplicateName)
-                // What the parser supplied for an unread value stands nowhere.
+                // Placeholders of the parser for invalid values have no position.
                 || !finding.labels.first().is_some_and(|(at, _)| {
                     *at == (0..0) || lines.iter().any(|line| line.contains(&at.start))
                 })
         });
     }
 
-    /// The line around a place, its line break included.
+    /// The line around a position, its line break included.
     fn line(&self, at: usize) -> Span {
         let at = self.text.floor_char_boundary(at);
         let start = self.text[..at].rfind('\n').map_or(0, |i| i + 1);

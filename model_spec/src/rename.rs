@@ -1,4 +1,4 @@
-//! Another name for an item, at its definition and at every use.
+//! Renaming of an item, at its definition and all its uses.
 
 use crate::ast::ItemAst;
 use crate::diagnostic::{Diagnostic, Severity};
@@ -11,22 +11,22 @@ use crate::parse::parse;
 use crate::resolve::{is_reserved, resolve};
 use crate::suggest::shown;
 
-/// Why an item keeps its name.
+/// Why an item cannot be renamed.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum RenameError {
-    /// The name may not be defined.
+    /// The new name is invalid.
     #[error("`{}` is not a valid name: a name is {}", shown(.0), name::RULE)]
     Invalid(String),
-    /// Expressions use the word otherwise.
+    /// The word has another meaning in expressions.
     #[error("`{0}` is reserved in expressions; choose another name")]
     Reserved(String),
-    /// Something else has the name.
+    /// The name is taken.
     #[error("`{0}` is taken; choose another name")]
     Taken(String),
-    /// The language supplies it.
+    /// The item is predefined.
     #[error("`{0}` is defined by the language and keeps its name")]
     Supplied(String),
-    /// A joint gives the name.
+    /// The name is derived from a joint.
     #[error(
         "`{name}` is named after the joint `{joint}`; rename the joint, or name it with a key of the joint"
     )]
@@ -36,18 +36,18 @@ pub enum RenameError {
         /// The joint.
         joint: String,
     },
-    /// Uses may stand in what cannot be read.
+    /// There may be uses in parts that could not be parsed.
     #[error("the spec has a syntax error; correct it first: {0}")]
     Broken(String),
     /// A use is written with escapes.
     #[error("a use of `{0}` is written with escapes; write it out first")]
     Escaped(String),
-    /// The spec would be wrong with the new name.
+    /// The spec would be invalid with the new name.
     #[error("with this name the spec is no longer valid: {0}")]
     Refused(String),
 }
 
-/// The places of a name, each with its new word. With all of them replaced the spec is as valid as before.
+/// The positions of a name, each with its replacement. Replacing all of them keeps the spec valid.
 ///
 /// The frame and the point of a joint have one name, and its coordinates and pseudo-velocities may be named
 /// after it.
@@ -96,7 +96,7 @@ pub fn rename(
     let mut edits: Vec<(Span, String)> = Vec::new();
     for (namespace, old, new) in &words {
         for place in named(*namespace, old) {
-            // What is named after a joint does not stand at its definition.
+            // Items named after a joint have no definition of their own in the text.
             if joint.is_some_and(|joint| {
                 place.defines
                     && *old != joint.name.value
@@ -144,7 +144,7 @@ fn of_joint(joint: &ItemAst, new: &str) -> Vec<(Namespace, String, String)> {
         .collect()
 }
 
-/// A text with other words at places that do not overlap.
+/// A text with replacements at disjoint positions.
 fn replaced(text: &str, edits: &[(Span, String)]) -> String {
     let mut whole = String::with_capacity(text.len());
     let mut at = 0;

@@ -47,7 +47,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     resolver.derivative_names(&signals);
     let frames = resolver.frames();
     let points = resolver.points();
-    // They may be velocities of points and frames.
+    // Pseudo-velocities may be velocities of points and frames.
     let mut pseudo_velocities = resolver.pseudo_velocities(&coordinates);
     resolver.given_rates(&mut pseudo_velocities);
     let bodies = resolver.bodies(&frames);
@@ -118,7 +118,7 @@ impl Resolver<'_> {
         seconds
     }
 
-    /// Warns of quantities that nothing uses.
+    /// Warns of unused quantities.
     fn unused(&mut self, mechanism: &Mechanism) {
         let mut idle = Vec::new();
         let parameters = mechanism.parameters.iter().map(|p| &p.label);

@@ -1,6 +1,6 @@
 //! A JSON schema of the language, for completion and checks in editors.
 //!
-//! It is made from the same table that the parser reads, so the two cannot drift apart.
+//! It is generated from the table that the parser uses, so that the two agree.
 
 use serde_json::{Map, Value, json};
 

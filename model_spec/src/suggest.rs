@@ -1,4 +1,4 @@
-//! "Did you mean": the closest of a list of words, and how a message says so.
+//! "Did you mean": the closest of a list of words, and its text in messages.
 
 use crate::visible::visible_line;
 
@@ -24,7 +24,7 @@ pub fn closest<'a>(word: &str, candidates: impl IntoIterator<Item = &'a str>) ->
         .filter(|c| c.len() <= MAX_LENGTH && c.len().abs_diff(word.len()) <= allowed)
         .map(|c| (distance(word, c), c))
         .filter(|(d, c)| *d <= allowed || c.eq_ignore_ascii_case(word))
-        // The first of the closest, so that the answer does not depend on chance.
+        // The first of equally close ones, so that the answer is deterministic.
         .min_by_key(|(d, _)| *d)
         .map(|(_, c)| c)
 }
@@ -39,7 +39,7 @@ pub fn did_you_mean<'a>(
     closest(word, candidates).map_or_else(otherwise, meant)
 }
 
-/// The help that names what was probably meant.
+/// The help text that names the probable intention.
 pub(crate) fn meant(similar: &str) -> String {
     format!("did you mean `{similar}`?")
 }

@@ -20,7 +20,7 @@ pub struct Unit {
     pub text: String,
     /// One of this unit in SI: 1 for SI units, π/180 for `deg`.
     pub scale: f64,
-    /// What it measures.
+    /// Its dimension.
     pub dimension: Dimension,
     /// Rational part of the scale, exact: 1/180 for `deg`.
     pub factor: BigRational,
@@ -46,7 +46,7 @@ impl Unit {
         }
     }
 
-    /// The SI unit of a dimension, written the way people write it.
+    /// The SI unit of a dimension in its usual notation.
     pub fn si(dimension: Dimension) -> Self {
         let text = table::si_text(&dimension);
         Self::new(text, dimension, BigRational::one(), 0)
@@ -63,7 +63,7 @@ impl Unit {
         self.dimension.is_none() && self.has_angle()
     }
 
-    /// Whether an angle stands in it, as in `deg/s`, `rpm` and `N*m/rad`.
+    /// Whether it contains an angle, as in `deg/s`, `rpm` and `N*m/rad`.
     pub fn has_angle(&self) -> bool {
         let mut symbols = self.text.split(|c: char| !c.is_alphabetic());
         symbols.any(parse::is_angle)
@@ -94,7 +94,7 @@ fn scaled(factor: &BigRational, pi_power: i8) -> f64 {
     }
 }
 
-/// Name of what a dimension measures, with its article: `a length`, `a force`.
+/// Name of the quantity of a dimension, with its article: `a length`, `a force`.
 pub fn quantity_name(dimension: &Dimension) -> String {
     table::quantity_word(dimension)
         .map_or_else(|| format!("`{}`", table::si_text(dimension)), str::to_owned)

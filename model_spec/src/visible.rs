@@ -1,12 +1,12 @@
-//! Characters that hide or reorder a text, or command a terminal.
+//! Characters that hide or reorder text, or control a terminal.
 
 use std::borrow::Cow;
 use std::fmt::Write as _;
 
-/// Control characters other than line feed and tabulator, and marks that hide or reorder text.
+/// Control characters other than line feed and tab, and marks that hide or reorder text.
 pub(crate) fn is_hidden(c: char) -> bool {
     if matches!(c, ' '..='~' | '\n' | '\t') {
-        // Almost all of every file.
+        // The fast path for nearly all characters.
         return false;
     }
     c.is_control()
@@ -15,8 +15,8 @@ pub(crate) fn is_hidden(c: char) -> bool {
             | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// A text as it may be shown on a terminal: hidden characters are written as in Rust, `\u{1b}`. Line feeds and
-/// tabulators stay.
+/// A text that is safe to show on a terminal: hidden characters are escaped as in Rust, `\u{1b}`. Line feeds and
+/// tabs are kept.
 ///
 /// ```
 /// use appell_spec::visible;

@@ -18,7 +18,7 @@ const HELD_OUT: usize = 3;
 const APART: f64 = 1.0;
 
 /// Reads CSV files whose columns have the names and units of the spec. The last third of the files is
-/// held out; of a single one its last third, after a second.
+/// held out; of a single file, the last third after a gap of one second.
 pub fn read_bare(spec: Spec, files: &[PathBuf]) -> Result<DataSet, DataError> {
     let sources: Vec<Source<'_>> = files.iter().cloned().map(Source::File).collect();
     assemble(spec, &sources)

@@ -1,5 +1,5 @@
-//! Inputs between rows: held, or along lines or splines; inputs that look as if they had been sampled from a continuous
-//! signal.
+//! Interpolation of inputs between rows (hold, linear, cubic); detection of held inputs that appear to be samples of a
+//! continuous signal.
 
 use appell_estimate::{EstimateError, Recording};
 use appell_spec::mechanism::Interpolation;
@@ -9,7 +9,7 @@ use crate::{DataSet, Finding, FindingKind, Part, Run};
 
 /// Least number of rows of an input.
 const FEWEST: usize = 32;
-/// Part of the rows that may repeat the one before: a command that is held for several rows does so in most.
+/// Largest fraction of rows that may repeat the previous one; of a command that is held for several rows most do.
 const REPEATED: f64 = 0.05;
 /// Part of the differences that jumps may make, and how many times the mean of the other squares theirs are at least.
 const JUMPS: f64 = 0.15;
@@ -17,16 +17,16 @@ const FAR: f64 = 16.0;
 /// Mean square of second differences over that of first ones: (ω h)² for a frequency ω, 2 for steps at random, 3 for
 /// noise. Below this a period has ten rows and more.
 const SMOOTH: f64 = 0.4;
-/// Errors of lines, relative to the size of an input, that are told.
+/// Errors of linear interpolation above this are reported, relative to the size of the input.
 const BENT: f64 = 1e-3;
 
 impl Channel {
-    /// Whether it is an input that runs on from row to row.
+    /// Whether it is an input that is interpolated between rows, not held.
     pub fn is_joined(&self) -> bool {
         !matches!(self.interpolation, None | Some(Interpolation::Hold))
     }
 
-    /// How it runs from row to row as an input.
+    /// Interpolation between rows, for inputs.
     pub fn between_rows(&self) -> appell_runtime::model::Interpolation {
         use appell_runtime::model::Interpolation as Runs;
         match self.interpolation {
@@ -38,8 +38,8 @@ impl Channel {
 }
 
 impl DataSet {
-    /// Adds a note on every input that changes smoothly and is held without a word, or that bends between rows which
-    /// are joined by lines.
+    /// Adds a finding for every smooth input that is held without a stated interpolation, or that is interpolated
+    /// linearly in spite of its curvature.
     pub(crate) fn tell_smooth_inputs(&mut self) {
         let runs: Vec<&Run> = self.runs.iter().filter(|r| r.part == Part::Fit).collect();
         for (index, channel) in self.channels.iter().enumerate() {
@@ -77,7 +77,7 @@ impl DataSet {
         }
     }
 
-    /// The same recordings with every input held at its mean from row to row.
+    /// The same recordings with every input held at its mean between rows.
     pub(crate) fn held_at_means(mut self) -> Result<Self, EstimateError> {
         for (index, channel) in self.channels.iter_mut().enumerate() {
             if channel.is_joined() {
@@ -99,14 +99,14 @@ impl DataSet {
 /// Errors of an input that changes smoothly, relative to its size.
 #[derive(Debug, Clone, Copy)]
 pub struct Smooth {
-    /// Where its rows are held: it acts half a row late.
+    /// If it is held: it then acts half a row late.
     pub held: f64,
-    /// Where they are joined by lines.
+    /// If it is interpolated linearly.
     pub by_lines: f64,
 }
 
 impl Smooth {
-    /// Nothing where it does not change smoothly.
+    /// `None` if it does not change smoothly.
     pub fn of<'v>(runs: impl Iterator<Item = &'v [f64]>) -> Option<Self> {
         let (mut rows, mut repeated) = (0_usize, 0_usize);
         let (mut first, mut second) = (Vec::new(), Vec::new());
@@ -151,7 +151,7 @@ fn without_jumps(mut squares: Vec<f64>) -> f64 {
 }
 
 #[cfg(test)]
-#[allow(clippy::unwrap_used, reason = "what is missing fails the test")]
+#[allow(clippy::unwrap_used, reason = "a missing value fails the test")]
 mod tests {
     use super::Smooth;
 

@@ -137,7 +137,7 @@ impl<'b> File<'b> {
         (rate.is_finite() && rate > 0.0 && file.scale.is_finite()).then_some(file)
     }
 
-    /// Reads the groups and parameters that stand from a place on.
+    /// Reads the groups and parameters that begin at an offset.
     fn section(&mut self, mut at: usize) -> Option<()> {
         let bytes = self.bytes;
         let signed = |at: usize| bytes.get(at).map(|byte| byte.cast_signed());
@@ -238,7 +238,7 @@ impl<'b> File<'b> {
         number.unwrap_or(f64::NAN)
     }
 
-    /// The wanted columns; nothing where they are more than may be.
+    /// The wanted columns; `None` if they exceed the budget.
     fn columns(&self, wanted: Wanted<'_>, budget: usize) -> Option<Columns> {
         let mut columns = Columns {
             names: vec![TIME.to_owned()],

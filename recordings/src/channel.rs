@@ -11,7 +11,7 @@ use crate::level::Noise;
 pub struct Channel {
     /// Name of the column.
     pub column: String,
-    /// What it holds.
+    /// Its role.
     pub role: Role,
     /// Unit in the files.
     pub unit: Unit,
@@ -21,7 +21,7 @@ pub struct Channel {
     pub unit_checked: bool,
     /// Whether its positive sense is opposite to that of the spec, where it is stated.
     pub reversed: Option<bool>,
-    /// How an input runs between rows, where it is stated: held or along lines.
+    /// Interpolation of an input between rows, if stated.
     pub interpolation: Option<Interpolation>,
     /// Noise level as stated, in SI.
     pub stated_noise: Option<f64>,
@@ -102,7 +102,7 @@ impl Role {
 }
 
 impl Channel {
-    /// What a number of its column stands for, in SI.
+    /// Factor from the numbers of its column to SI, negative if it is reversed.
     pub fn scale(&self) -> f64 {
         let sign = if self.reversed == Some(true) {
             -1.0

@@ -131,7 +131,7 @@ impl Sampling {
         }
     }
 
-    /// Whether the times of a column look like those of another unit than seconds.
+    /// Whether the times of a column appear to be in another unit than seconds.
     pub(crate) fn doubt(&self, column: &str) -> Option<Finding> {
         // Of the units of loggers the one in which rows come at 1 Hz to 1 kHz.
         let unit = match self.step {

@@ -40,15 +40,15 @@ fn open(path: &Path) -> Result<CsvFile<BufReader<File>>, DataError> {
     })
 }
 
-/// A CSV file row by row, with the place of every cell: memory for one line.
+/// A CSV file read row by row, with the position of every cell; memory holds one line.
 ///
-/// Commas, semicolons or tabs stand between cells; empty lines and comments, which begin with `#`, are
-/// passed over.
+/// Cells are separated by commas, semicolons or tabs; empty lines and comments, which begin with `#`, are
+/// skipped.
 pub struct Rows<R> {
     lines: Lines<R>,
     separator: char,
     header: Vec<String>,
-    /// Where the cells of the line stand.
+    /// Positions of the cells in the line.
     cells: Vec<Range<usize>>,
 }
 
@@ -61,7 +61,7 @@ impl<R: BufRead> Rows<R> {
                 "the file is empty; begin with a header: `t`, then the name of each column";
             return Err(DataError::whole(&*lines.file, message));
         }
-        // Tables from other programs use what is not a decimal comma.
+        // With a decimal comma, other programs separate cells by semicolons or tabs.
         let separator = [',', ';', '\t']
             .into_iter()
             .find(|c| lines.text.contains(*c));
@@ -104,7 +104,7 @@ impl<R: BufRead> Rows<R> {
         &self.lines.text[self.place(column)]
     }
 
-    /// Where a cell stands in the line.
+    /// Position of a cell in the line.
     pub fn place(&self, column: usize) -> Span {
         self.cells.get(column).cloned().unwrap_or(0..0)
     }
@@ -114,7 +114,7 @@ impl<R: BufRead> Rows<R> {
         0..self.lines.text.len()
     }
 
-    /// What is wrong with a part of the line.
+    /// The error for a part of the line.
     pub fn mistake(
         &self,
         code: Code,
@@ -126,7 +126,7 @@ impl<R: BufRead> Rows<R> {
         self.lines.report(diagnostic)
     }
 
-    /// That the row has not as many cells as the header.
+    /// The error if the row and the header differ in length.
     pub fn uneven(&self) -> Option<DataError> {
         let (cells, columns) = (self.count(), self.header.len());
         let message = || format!("{cells} cells under {columns} columns");
@@ -197,7 +197,7 @@ impl<R: BufRead> CsvFile<R> {
         checked(file, (&places.time, times), channels, columns, findings)
     }
 
-    /// Where the time and the channels stand; nothing where one is missing.
+    /// Columns of the time and of the channels; `None` if one is missing.
     fn places(
         &mut self,
         time: &Stated,
@@ -242,7 +242,7 @@ impl<R: BufRead> CsvFile<R> {
         let unknown: Vec<String> = unknown.map(|i| shown(&header[i])).collect();
         if !unknown.is_empty() {
             let message = format!(
-                "columns that nobody describes are left aside: {}",
+                "columns without a description are ignored: {}",
                 listed(&unknown)
             );
             findings.push(Finding::new(FindingKind::UnknownColumn, message));
@@ -250,7 +250,7 @@ impl<R: BufRead> CsvFile<R> {
         Some(Places { time, channels })
     }
 
-    /// The number in a cell in SI, NaN where it is missing; tells where there is something else.
+    /// The number in a cell in SI, NaN if it is missing; other contents are reported.
     fn number(&mut self, column: usize, scale: f64) -> f64 {
         let text = self.rows.cell(column);
         match text.parse::<f64>().map(|number| number * scale) {
@@ -267,7 +267,7 @@ impl<R: BufRead> CsvFile<R> {
     }
 }
 
-/// What to write in the place of a text that is no number.
+/// The correction to suggest for a text that is not a number.
 fn instead(text: &str) -> String {
     let with_point = text.replace(',', ".");
     if with_point.parse::<f64>().is_ok() {
@@ -282,7 +282,7 @@ fn instead(text: &str) -> String {
     "leave the cell empty where a value is missing".to_owned()
 }
 
-/// What stands for a missing value, besides `nan`.
+/// Texts for a missing value, in addition to `nan`.
 const MISSING: [&str; 4] = ["", "na", "n/a", "null"];
 
 struct Places {
@@ -365,7 +365,7 @@ pub(crate) fn texts(line: &str, separator: char) -> Vec<String> {
     cells.map(|cell| line[cell].to_owned()).collect()
 }
 
-/// Where the cells of a line stand, without blanks and quotes around them.
+/// Positions of the cells of a line, without surrounding blanks and quotes.
 fn cells(line: &str, separator: char) -> impl Iterator<Item = Range<usize>> {
     let mut quoted = false;
     line.split(move |c| {

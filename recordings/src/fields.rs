@@ -1,4 +1,4 @@
-//! Tables of a TOML file, read with places. Mistakes are reported and skipped, so that all of them are
+//! Tables of a TOML file, read with positions. Errors are reported and skipped, so that all of them are
 //! reported at once.
 
 use appell_spec::diagnostic::MAX_SHOWN;
@@ -18,10 +18,10 @@ fn whole(integer: &DeInteger<'_>) -> Option<f64> {
     }
 }
 
-/// A value with its place.
+/// A value with its position.
 pub type Value<'t> = Spanned<DeValue<'t>>;
 
-/// The text of a file, and what is wrong with it.
+/// The text of a file, with findings.
 pub struct Fields<'t> {
     file: &'t str,
     text: &'t str,
@@ -44,7 +44,7 @@ impl<'t> Fields<'t> {
         (fields, table)
     }
 
-    /// Adds a finding; more than a report shows are not kept.
+    /// Adds a finding, up to the number that a report shows.
     pub fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
         if self.findings.len() > MAX_SHOWN && self.is_wrong() {
             return;
@@ -54,19 +54,19 @@ impl<'t> Fields<'t> {
         self.findings.push(diagnostic.maybe_help(help));
     }
 
-    /// Whether something is wrong.
+    /// Whether there are errors.
     pub fn is_wrong(&self) -> bool {
         self.findings
             .iter()
             .any(|finding| finding.severity == Severity::Error)
     }
 
-    /// Everything that is wrong.
+    /// All findings.
     pub fn report(self) -> Report {
         Report::new(self.file, self.text, self.findings)
     }
 
-    /// The table of a section; nothing where it is absent.
+    /// The table of a section; `None` if it is absent.
     pub fn section<'a, 'd>(
         &mut self,
         table: &'a DeTable<'d>,
@@ -80,7 +80,7 @@ impl<'t> Fields<'t> {
         inner
     }
 
-    /// Tells of keys that nobody reads.
+    /// Reports unknown keys.
     pub fn only(&mut self, table: &DeTable<'_>, keys: &[&str]) {
         for key in table.keys() {
             let name = key.get_ref().as_ref();
@@ -94,7 +94,7 @@ impl<'t> Fields<'t> {
         }
     }
 
-    /// A text that may be absent.
+    /// An optional string.
     pub fn string(&mut self, table: &DeTable<'_>, key: &str) -> Option<(String, Span)> {
         let value = table.get(key)?;
         self.text_of(value)
@@ -151,7 +151,7 @@ impl<'t> Fields<'t> {
         flag.unwrap_or(false)
     }
 
-    /// File, line and column of a place.
+    /// File, line and column of a position.
     pub fn place(&self, at: Span) -> (String, usize, usize) {
         let report = Report::new(self.file, self.text, Vec::new());
         let (line, column) = report.line_column(at.start);

@@ -45,7 +45,7 @@ pub enum FindingKind {
     NoiseBound,
     /// Recordings were split, as no held-out runs were specified.
     Split,
-    /// Nothing is held out.
+    /// There are no held-out runs.
     NoTestRun,
     /// An input without a column; taken as zero.
     NoInput,

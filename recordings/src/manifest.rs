@@ -1,4 +1,4 @@
-//! What `recording.toml` says.
+//! The contents of `recording.toml`.
 //!
 //! ```toml
 //! mechanism   = "pendulum"                 # a name of the library, or the path of a spec beside this file
@@ -85,7 +85,7 @@ pub(crate) fn read(
         (None, Some((name, at))) => find(&name, at, path, library, &mut fields)?,
         (None, None) => {
             let message = "the key `mechanism` is missing";
-            let help = "name a shipped mechanism, or the path of a spec beside this file";
+            let help = "name a shipped mechanism, or the path of a spec relative to this file";
             fields.tell(Code::MissingKey, message, 0..0, help);
             None
         }
@@ -139,7 +139,7 @@ fn find(
     }
     let names = || library.iter().map(|(name, _)| *name);
     let help = did_you_mean(name, names(), || {
-        "name a shipped mechanism, or the path of a spec beside this file".to_owned()
+        "name a shipped mechanism, or the path of a spec relative to this file".to_owned()
     });
     let message = format!("there is no mechanism and no file `{}`", shown(name));
     fields.tell(Code::UnknownReference, message, at, &help);
@@ -218,7 +218,7 @@ fn parameter(
     })
 }
 
-/// What is said of the times, and the channels.
+/// The description of the times, and the channels.
 fn channels(
     fields: &mut Fields<'_>,
     table: &DeTable<'_>,
@@ -257,8 +257,8 @@ fn channels(
     (time, channels)
 }
 
-/// The line of the times: the one that says so, that of `t`, or the only one with the name of a clock that
-/// describes nothing else.
+/// The entry of the times: the one with `time = true`, that of `t`, or the only other one with the name of a clock and
+/// no other role.
 fn clock<'e>(
     fields: &mut Fields<'_>,
     entries: &[(&'e Spanned<Cow<'e, str>>, &'e Value<'e>)],
@@ -304,7 +304,7 @@ fn clock<'e>(
     Some((first.get_ref(), value))
 }
 
-/// Whether a line says that it is that of the times.
+/// Whether an entry has `time = true`.
 fn is_time(value: &Value<'_>) -> bool {
     let table = value.get_ref().as_table();
     table.and_then(|table| table.get("time")?.get_ref().as_bool()) == Some(true)
@@ -372,13 +372,13 @@ fn channel(
     let unit = fields.unit(table, label.map(|label| (label.name.as_str(), &label.unit)));
     let stated = fields.deviation(table, "noise_std");
     if stated.is_some() && !matches!(role, Role::Measures(_)) {
-        let message = "only what is measured has noise";
+        let message = "only measured channels have noise";
         fields.tell(Code::NotAllowedHere, message, at, "remove `noise_std`");
         return None;
     }
     let unit: Unit = match unit {
         Some(unit) => unit,
-        // A unit that could not be read has been told; a recorded channel may have none.
+        // An invalid unit has been reported; a recorded channel may have none.
         None if table.get("unit").is_none() => Unit::si(Dimension::NONE),
         None => return None,
     };

@@ -1,8 +1,8 @@
 //! MCAP, the container that robots log into: messages of many topics with their times.
 //!
 //! Messages are JSON or those of ROS 2 (CDR with definitions in its message language). Every number of a
-//! message is a value of the column `topic.field.field` or `topic.field[2]`. Messages of one time make a
-//! row; what a row lacks is missing. `t` is in s from the first message on, by the clock of the logger.
+//! message is a value of the column `topic.field.field` or `topic.field[2]`. Messages of the same time form a
+//! row; values without a message are missing. `t` is in s since the first message, by the clock of the logger.
 
 mod cdr;
 
@@ -25,8 +25,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
     let bytes = appell_files::read(path, MAX_BYTES)?;
     let place = path.to_string_lossy();
     let damaged = |error: mcap::McapError| {
-        let message =
-            format!("the file breaks off or is damaged: {error}; `mcap recover` saves what it can");
+        let message = format!("the file is truncated or damaged: {error}; try `mcap recover`");
         DataError::whole(&*place, message)
     };
     check_lengths(&bytes).map_err(damaged)?;
@@ -69,7 +68,7 @@ fn check_lengths(bytes: &[u8]) -> Result<(), mcap::McapError> {
 struct Log {
     /// Place of each column.
     names: BTreeMap<String, usize>,
-    /// Definitions of the messages of a channel, by its number; nothing where nobody can read them.
+    /// Definitions of the messages of a channel, by its number; `None` if they cannot be parsed.
     definitions: BTreeMap<u16, Option<Definitions>>,
     /// Time in ns, column and value.
     values: Vec<(u64, usize, f64)>,
@@ -109,7 +108,7 @@ impl Log {
         Ok(())
     }
 
-    /// Rows in the order of time; nothing where they hold more than may be.
+    /// Rows in the order of time; `None` if they exceed the budget.
     fn columns(mut self, budget: usize) -> Option<Columns> {
         self.values.sort_by_key(|(time, ..)| *time);
         let start = self.values.first().map_or(0, |(time, ..)| *time);

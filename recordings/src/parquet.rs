@@ -38,7 +38,7 @@ pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Col
     }
 }
 
-/// The wanted columns; nothing where they are more than may be.
+/// The wanted columns; `None` if they exceed the budget.
 fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Columns>> {
     let reader = SerializedFileReader::new(file)?;
     let schema = reader.metadata().file_metadata().schema_descr_ptr();

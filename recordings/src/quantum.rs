@@ -4,16 +4,16 @@
 const MOST: usize = 20_000;
 /// Least number of changes of a few steps.
 const FEWEST: usize = 24;
-/// How many steps a change may have to be looked at.
+/// Largest change that is examined, in steps.
 const FAR: f64 = 20.0;
-/// How far from a whole number of steps a change may lie: digits are rounded.
+/// Largest distance of a change from a whole number of steps, as digits are rounded.
 const NEAR: f64 = 0.1;
 /// Part of the changes that have to be whole; of numbers without steps, a fifth are.
 const MOST_OF_THEM: f64 = 0.98;
 /// Part of the values that have to repeat the one before, or to change by several steps.
 const REPEATED: f64 = 0.05;
 
-/// The step that all changes are multiples of; nothing where there is none.
+/// The largest step of which all changes are multiples; `None` if there is none.
 pub(crate) fn quantum<'v>(records: impl Iterator<Item = &'v [f64]>) -> Option<f64> {
     let (mut changes, mut unchanged) = (Vec::new(), 0_usize);
     for values in records {

@@ -10,7 +10,7 @@ use crate::finding::{Finding, FindingKind, counted};
 use crate::set::{Part, Run};
 use crate::table::Table;
 
-/// Rows without an input beyond which nobody knows what it was.
+/// Largest number of successive rows without an input; over a longer dropout the input is unknown.
 const LOST: usize = 5;
 /// Range in turns beyond which an angle is not wrapped.
 const MOST_TURNS: f64 = 3.0;
@@ -90,7 +90,7 @@ fn without_lost_inputs(mut table: Table, channels: &[Channel]) -> Table {
     table
 }
 
-/// Whether an angle may start anew after a turn: one that goes far beyond is counted on already.
+/// Whether an angle may be wrapped; one with a range of several turns is not.
 fn may_be_wrapped(values: &[f64]) -> bool {
     let present = || values.iter().copied().filter(|value| !value.is_nan());
     let [low, high] = [

@@ -1,4 +1,4 @@
-//! Stretches of long recordings, as fits do not need all rows.
+//! Segments of long recordings, as fits do not need all rows.
 
 use std::ops::Range;
 
@@ -9,8 +9,8 @@ use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
 use crate::{DataSet, Run};
 
-/// Least number of rows of a stretch, as its initial state is unknown; fewer where these hold so many measured
-/// values, which soon tell it.
+/// Least number of rows of a segment, as its initial state is unknown; fewer if they contain this many measured
+/// values, which determine it.
 const LENGTH: usize = 1000;
 const VALUES: usize = 4000;
 /// Least number of rows of a piece of an interrupted run.
@@ -22,7 +22,7 @@ impl DataSet {
         self.runs.iter().map(|run| run.times.len()).sum()
     }
 
-    /// About `most` rows: each run keeps its share, in stretches spread evenly over it. A data set
+    /// About `most` rows, in proportion to the length of each run, as segments spread evenly over it. A data set
     /// with fewer rows is unchanged.
     #[must_use]
     pub fn stretches(&self, most: usize) -> Self {
@@ -54,14 +54,14 @@ impl DataSet {
         }
     }
 
-    /// Windows of so many seconds, about `most` of them, spread evenly over all runs, each with no more than
+    /// Windows of `length` seconds, about `most` of them, spread evenly over all runs, each with no more than
     /// about `rows` rows.
     pub fn windows(
         &self,
         length: f64,
         (most, rows): (usize, usize),
     ) -> Result<Self, EstimateError> {
-        // Long rows have the mean of an input, not its value at their beginning.
+        // Subsampled rows use the mean of an input, not its value at their beginning.
         let held = self.clone().held_at_means()?;
         let set = &held;
         let ends = |run: &Run| (run.times[0], run.times[run.times.len() - 1]);
@@ -69,7 +69,6 @@ impl DataSet {
         let runs = set.runs.iter().flat_map(|run| {
             let (from, to) = ends(run);
             let count = ((to - from) / total * most as f64).round().max(1.0);
-            // As many as asked for.
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let places = 0..count as usize;
             places.map(move |place| {
@@ -85,8 +84,8 @@ impl DataSet {
         Ok(Self { runs, ..held })
     }
 
-    /// A run with no more than about so many rows: what is measured in those that remain, and the mean of each
-    /// input until the next of them.
+    /// A run subsampled to about `most` rows: the measurements of the remaining rows, and the mean of each input up to
+    /// the next of them.
     fn thinned(&self, run: &Run, most: usize) -> Run {
         let every = run.times.len() / most;
         if every < 2 {
@@ -111,8 +110,8 @@ impl DataSet {
     }
 }
 
-/// Runs cut where they were interrupted, if there are inputs: what these were in between is not known. Pieces
-/// too short for a motion are left out; each cut is told.
+/// Runs cut at their gaps if there are inputs, as these are unknown in between. Pieces too short for a motion are
+/// dropped; each cut is reported.
 pub(crate) fn uninterrupted(
     runs: Vec<Run>,
     channels: &[Channel],
@@ -147,7 +146,7 @@ pub(crate) fn uninterrupted(
             from = to;
         }
         let message = format!(
-            "cut at its {} into {}, as nobody recorded the inputs in between",
+            "cut at its {} into {}, as the inputs in between were not recorded",
             if run.sampling.gaps.len() == 1 {
                 "gap"
             } else {
@@ -182,7 +181,7 @@ fn without(run: &Run, windows: &[(String, [f64; 2])]) -> Vec<Run> {
     pieces
 }
 
-/// Stretches of `kept` rows together and about `least` rows each at least, each in the middle of its part of the run.
+/// Segments of `kept` rows in total and at least about `least` rows each, each in the middle of its part of the run.
 fn pieces(rows: usize, kept: usize, least: usize) -> Vec<Range<usize>> {
     let count = (kept / least).max(1);
     let length = kept / count;

@@ -26,13 +26,13 @@ pub(crate) struct Columns {
     pub(crate) names: Vec<String>,
     /// Values of the requested ones; the others are empty. NaN where a value is missing.
     pub(crate) values: Vec<Vec<f64>>,
-    /// How the format itself says when a row was recorded.
+    /// The clock of the format itself.
     pub(crate) clock: OwnClock,
     /// Omitted rows.
     pub(crate) findings: Vec<Finding>,
 }
 
-/// How a format says when a row was recorded.
+/// The times of the rows, as given by a format.
 pub(crate) enum OwnClock {
     /// Not at all.
     None,
@@ -101,7 +101,7 @@ impl Columns {
         let unknown: Vec<String> = unknown.map(|i| shown(&self.names[i])).collect();
         if !unknown.is_empty() {
             let message = format!(
-                "columns that nobody describes are left aside: {}",
+                "columns without a description are ignored: {}",
                 listed(&unknown)
             );
             let finding = Finding::new(FindingKind::UnknownColumn, message);
@@ -191,7 +191,7 @@ pub(crate) fn too_many(place: String) -> DataError {
     DataError::whole(place, message)
 }
 
-/// What is impossible about some times.
+/// The reason why times are invalid, if they are.
 fn no_clock(times: &[f64]) -> Option<String> {
     let far = times.iter().find(|t| t.abs() > MAX_TIME);
     let near = times.windows(2).find(|pair| pair[1] - pair[0] < MIN_STEP);
@@ -199,7 +199,7 @@ fn no_clock(times: &[f64]) -> Option<String> {
         .or_else(|| near.map(|pair| format!("rows are {:e} s apart", pair[1] - pair[0])))
 }
 
-/// A table with enough rows, and something in every column.
+/// Checks that a table has enough rows and that no column is empty.
 pub(crate) fn checked(
     file: &str,
     (clock, times): (&TimeColumn, Vec<f64>),

@@ -9,7 +9,7 @@ use appell_spec::{closest, shown};
 
 use crate::channel::Channel;
 
-/// Its name where nothing else is stated.
+/// Default name of the column of the times.
 pub(crate) const TIME: &str = "t";
 
 /// Names of clocks, in small letters with `_` between words.
@@ -45,12 +45,12 @@ const WORDS: [(&str, &str); 17] = [
 /// Symbols that may follow a name without brackets.
 const SYMBOLS: [&str; 4] = ["s", "ms", "us", "ns"];
 
-/// What a description says of the times.
+/// Description of the times.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Stated {
     /// The column, where it is described.
     pub(crate) column: Option<String>,
-    /// Whether only its name tells that this column is the one of the times.
+    /// Whether it was recognised as the column of the times by its name alone.
     pub(crate) by_name_alone: bool,
     /// The unit, where it is stated.
     pub(crate) unit: Option<Unit>,
@@ -74,7 +74,7 @@ impl TimeColumn {
     }
 }
 
-/// Why a file has no column of the times, with what to write instead.
+/// Why a file has no column of the times, with a suggested correction.
 pub(crate) struct NoTime {
     pub(crate) message: String,
     pub(crate) help: String,
@@ -190,7 +190,7 @@ fn is_clock(name: &str) -> bool {
     NAMES.contains(&name)
 }
 
-/// What stands before and in brackets at the end.
+/// Splits a name into the part before and the part within trailing brackets.
 fn bracketed(name: &str) -> Option<(&str, &str)> {
     let ends = [('[', ']'), ('(', ')')];
     ends.into_iter().find_map(|(open, close)| {

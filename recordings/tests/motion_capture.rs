@@ -212,7 +212,7 @@ fn all_mistakes_of_a_skeleton_are_told_with_their_places() {
         "there is no table `wintre`",
         "did you mean `winter`?",
         "there is no point `D`",
-        "`kg` is no unit of what is measured in m",
+        "`kg` is not a unit with the dimension of m",
         "there is no point `K`",
         "skeleton.toml:7",
     ] {

@@ -1,22 +1,22 @@
-//! Where joints stand, and the nearest place at which equations between them hold, by the method of Gauss and Newton.
+//! Joint positions, and the nearest ones that satisfy the constraints, by the Gauss–Newton method.
 
 use crate::elimination::largest;
 use crate::kinematics::{Freedom, poses};
 use crate::model::{Link, Motion};
 use crate::rotation::{Pose, Rotation, Vector, add, minus};
 
-/// Deviations that count as none, against the longest lever.
+/// Residuals that count as zero, relative to the longest lever.
 pub(crate) const HELD: f64 = 1e-9;
-/// Most steps, most halvings of one, and the longest one, in m or rad.
+/// Largest number of steps, of halvings of one, and the longest step, in m or rad.
 const MOST_STEPS: usize = 40;
 const MOST_HALVINGS: usize = 6;
 const LONGEST_STEP: f64 = 0.5;
-/// The sum of squares after a step that leads somewhere, as a share of that before.
+/// Largest ratio of the sums of squares after and before an accepted step.
 const BETTER: f64 = 0.99;
-/// The square of the share of a gradient at which a linear problem is solved.
+/// Squared relative norm of the gradient at which a linear problem counts as solved.
 const SOLVED: f64 = 1e-26;
 
-/// How far each link has moved on its parent from how it is drawn.
+/// Displacement of each link relative to its parent, from the drawn configuration.
 #[derive(Debug, Clone)]
 pub(crate) struct Configuration {
     /// Along or about the axis of its joint.
@@ -25,7 +25,7 @@ pub(crate) struct Configuration {
     pub(crate) turned: Vec<Pose>,
 }
 
-/// Equations between rates where joints stand, and by how much those between coordinates deviate there.
+/// Jacobian and residuals of the constraints at a configuration.
 #[derive(Default)]
 pub(crate) struct Linear {
     pub(crate) rows: Vec<Vec<f64>>,
@@ -33,7 +33,7 @@ pub(crate) struct Linear {
 }
 
 impl Linear {
-    /// The largest deviation against the longest lever.
+    /// The largest residual relative to the longest lever.
     pub(crate) fn size(&self) -> f64 {
         let lever = self.rows.iter().map(|row| largest(row)).fold(1.0, f64::max);
         largest(&self.off) / lever
@@ -52,7 +52,7 @@ impl Configuration {
         poses(links, |link| self.ways[link], &self.turned)
     }
 
-    /// Moves along each freedom by some way.
+    /// Displaces each freedom by an amount.
     pub(crate) fn step(&mut self, links: &[Link], freedoms: &[Freedom], by: &[f64]) {
         let poses = self.poses(links);
         for (freedom, &by) in freedoms.iter().zip(by) {
@@ -123,7 +123,7 @@ fn squares(a: &[f64]) -> f64 {
 }
 
 /// The shortest solution by least squares, by conjugate gradients (Björck, *Numerical Methods for Least Squares Problems*,
-/// 1996, section 7.4): rows may depend on each other.
+/// 1996, section 7.4); rows may be linearly dependent.
 fn least(rows: &[Vec<f64>], right: &[f64]) -> Vec<f64> {
     let count = rows.first().map_or(0, Vec::len);
     let across = |left: &[f64]| -> Vec<f64> {

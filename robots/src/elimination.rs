@@ -1,8 +1,8 @@
-//! Linear equations: which say something new, and which unknowns follow from the others.
+//! Systems of linear equations: selection of independent equations and of dependent unknowns.
 
-/// A row shorter than this share of itself, less what others say, adds nothing.
+/// A row is linearly dependent if elimination reduces it below this fraction of its size.
 const NOTHING: f64 = 1e-5;
-/// By how much a pivot has to be larger than one before it.
+/// Ratio by which a pivot must exceed an earlier candidate, so that rounding does not decide.
 const ALIKE: f64 = 1.001;
 
 /// The largest magnitude.
@@ -20,7 +20,7 @@ fn subtract(row: &mut [f64], pivot: usize, other: &[f64]) {
     }
 }
 
-/// A row that says something new, with its pivot, reduced so that it alone has its pivot, whose entry is 1.
+/// An independent row in reduced echelon form: its pivot entry is 1, and the other rows have zeros there.
 #[derive(Debug)]
 pub(crate) struct Reduced {
     pub(crate) row: usize,
@@ -28,10 +28,10 @@ pub(crate) struct Reduced {
     pub(crate) entries: Vec<f64>,
 }
 
-/// The rows that do not follow from others, by complete pivoting, in their order.
+/// The linearly independent rows, by complete pivoting, in their order.
 ///
-/// Rows with a preferred pivot take it as long as it is there; among the other columns weights count, and one without a
-/// weight is the last choice. Of what is alike the first is taken.
+/// A row gets its preferred pivot if that is not negligible. Otherwise entries are compared after scaling by the
+/// weights of their columns; columns of weight 0 come last. Among equal pivots the first is chosen.
 pub(crate) fn eliminated(
     mut rows: Vec<Vec<f64>>,
     preferred: &[Option<usize>],
@@ -114,7 +114,7 @@ pub(crate) fn matched(rows: &[&Vec<f64>], pivots: &[usize]) -> Vec<usize> {
     matched
 }
 
-/// Gives a row a pivot, of which another row may have to let go.
+/// Assigns a pivot to a row along an augmenting path: another row may have to take a different pivot.
 fn give(
     row: usize,
     has: &dyn Fn(usize, usize) -> bool,

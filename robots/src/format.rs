@@ -1,4 +1,4 @@
-//! The formats of robot files, told by their first element.
+//! The formats of robot files, recognised by their first element.
 
 /// The format of a robot file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

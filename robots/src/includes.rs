@@ -1,23 +1,23 @@
-//! A file with those that it includes, as one text; every place in it is known in its file.
+//! A file with its includes as one text, whose positions are mapped back to the files.
 //!
-//! As `MuJoCo` has it, what the root of an included file holds stands in the place of `<include file="…"/>`, each file
-//! at most once, and paths are those from the folder of the first file, or else from that of the file that names them.
+//! As in `MuJoCo`, `<include file="…"/>` is replaced by the children of the root of the included file. Each file is
+//! included at most once. Paths are relative to the folder of the first file, or else to that of the including file.
 
 use appell_spec::{Code, Diagnostic, Report, Severity, shown};
 
 use crate::xml::{Element, Span, begun, inside, parse};
 
-/// Largest file with those that it includes, in bytes.
+/// Largest size of a file with its includes, in bytes.
 pub const MAX_FILE: u64 = 1 << 24;
 /// Deepest nesting of files.
 const MOST_NESTED: usize = 16;
 
-/// Gives the bytes of a file by its path from the folder of the first one, or says why not.
+/// Reads a file by its path relative to the folder of the first one; errors are messages.
 pub(crate) type Others<'f> = &'f dyn Fn(&str) -> Result<Vec<u8>, String>;
 
-/// A file with those that it includes.
+/// A file with its includes.
 pub(crate) struct Whole<'f> {
-    /// The text of all.
+    /// The combined text.
     pub(crate) text: String,
     /// Name and text of each, the first one includes the others.
     files: Vec<(String, String)>,
@@ -27,9 +27,9 @@ pub(crate) struct Whole<'f> {
     others: Others<'f>,
 }
 
-/// A part of a file that stands in the text as a whole.
+/// A contiguous part of a file in the combined text.
 struct Piece {
-    /// Where it begins in the text of all.
+    /// Where it begins in the combined text.
     start: usize,
     file: usize,
     /// Where it begins in its file.
@@ -40,19 +40,19 @@ struct Piece {
 pub(crate) enum Edit {
     /// A part of the text as it is.
     Keep(Span),
-    /// Words that stand for what is at a place.
+    /// Inserted text, with the position to which errors in it refer.
     Insert(String, usize),
 }
 
 /// `<include>`
 struct Include {
     place: Span,
-    /// What it names, with the place of that.
+    /// The path, with its position.
     named: Option<(String, Span)>,
 }
 
 impl<'f> Whole<'f> {
-    /// A file with all that it includes; what is wrong with the XML of one of them.
+    /// Reads a file with all its includes. The error is a report on the XML of one of the files.
     pub(crate) fn read(file: &str, text: &str, others: Others<'f>) -> Result<Self, Box<Report>> {
         let mut whole = Self {
             text: String::new(),
@@ -73,7 +73,7 @@ impl<'f> Whole<'f> {
         Report::new(name.as_str(), text.as_str(), findings)
     }
 
-    /// What the root of a file holds, and what it includes.
+    /// Span of the contents of the root of a file, and its includes.
     fn parsed(&self, file: usize) -> Result<(Span, Vec<Include>), Box<Report>> {
         let text = &self.files[file].1;
         let document = parse(text).map_err(|error| self.report(file, vec![error]))?;
@@ -92,7 +92,7 @@ impl<'f> Whole<'f> {
         Ok((inside(root), includes.collect()))
     }
 
-    /// Appends a part of a file with what it includes.
+    /// Appends a part of a file with its includes.
     fn append(
         &mut self,
         (file, part): (usize, Span),
@@ -101,7 +101,7 @@ impl<'f> Whole<'f> {
     ) -> Result<(), Box<Report>> {
         let mut from = part.start;
         for include in includes {
-            // Within another one.
+            // Nested in another include.
             if include.place.start < from {
                 continue;
             }
@@ -193,7 +193,7 @@ impl<'f> Whole<'f> {
         self.named(self.origin(place).0, within, name)
     }
 
-    /// Reads a file that another includes; the result is its place.
+    /// Reads an included file; the result is its index.
     fn found(&mut self, by: usize, include: &Include, depth: usize) -> Result<usize, Diagnostic> {
         let Some((named, place)) = &include.named else {
             let error = Diagnostic::error(Code::MissingKey, "`include` names no file");
@@ -232,19 +232,19 @@ impl<'f> Whole<'f> {
             return fail(Code::WrongType, message, "save it as UTF-8");
         };
         if crate::format::first_element(&text).is_none() {
-            // Its lines are shown nowhere: it may be anything.
+            // Its contents are not quoted, as it may be any file.
             let message = format!("`{name}` is no XML file");
             return fail(Code::WrongType, message, "name a file of MuJoCo");
         }
         let all: usize = self.files.iter().map(|(_, text)| text.len()).sum();
         if (all + text.len()) as u64 > MAX_FILE {
             let message = format!("all files have more than {} MiB together", MAX_FILE >> 20);
-            return fail(Code::LimitExceeded, message, "leave out what is not needed");
+            return fail(Code::LimitExceeded, message, "remove unused parts");
         }
         Ok(self.add(path, &text))
     }
 
-    /// Keeps a file; the result is its index.
+    /// Adds a file; the result is its index.
     fn add(&mut self, name: String, text: &str) -> usize {
         let text = begun(text);
         let ends = text.match_indices('\n').map(|(at, _)| at + 1);
@@ -253,7 +253,7 @@ impl<'f> Whole<'f> {
         self.files.len() - 1
     }
 
-    /// File and place of a place in the text of all.
+    /// File and position for a position in the combined text.
     fn origin(&self, place: &Span) -> (usize, Span) {
         let next = self
             .pieces
@@ -267,7 +267,7 @@ impl<'f> Whole<'f> {
         (piece.file, at(place.start)..at(place.end))
     }
 
-    /// Name of the file of a place in the text of all, and the line.
+    /// Name of the file and line for a position in the combined text.
     pub(crate) fn line(&self, place: &Span) -> (&str, usize) {
         let (file, place) = self.origin(place);
         let line = self.lines[file].partition_point(|start| *start <= place.start);

@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia: turned, shifted, put together.
+//! Mass, centre of mass and inertia: rotated, shifted, combined.
 
 use crate::letters::plain;
 use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
@@ -6,7 +6,7 @@ use crate::rotation::{Pose, Rotation, Vector, add, cross, dot, minus, scaled};
 /// A symmetric tensor: xx, yy, zz, xy, xz, yz.
 pub(crate) type Tensor = [f64; 6];
 
-/// What rounding leaves of the entries that vanish, against the largest one.
+/// Rounding error of vanishing entries, relative to the largest one.
 const ROUNDING: f64 = 1e-15;
 /// How far the largest moment may exceed the sum of the others by the rounding of a file.
 const WRITTEN: f64 = 1e-4;
@@ -123,7 +123,7 @@ impl Inertia {
         rows(self.tensor)
     }
 
-    /// Whether all of it are numbers.
+    /// Whether all entries are finite.
     pub(crate) fn is_finite(&self) -> bool {
         let numbers = [self.mass]
             .into_iter()
@@ -141,7 +141,7 @@ impl Inertia {
         }
     }
 
-    /// Two bodies as one.
+    /// The combined inertia of two bodies.
     pub(crate) fn with(&self, other: &Self) -> Self {
         if self.is_nothing() {
             return *other;
@@ -182,7 +182,7 @@ impl Inertia {
         large > small + middle
     }
 
-    /// What rounding leaves of moments beside those of the mass about the origin of the frame is zero.
+    /// Sets the moments of inertia to zero if they are rounding errors relative to m·|c|².
     pub(crate) fn without_rounding(&self) -> Self {
         let about = self.mass.abs() * dot(self.centre, self.centre);
         let vanishes = |entry: &f64| entry.abs() <= ROUNDING * about;
@@ -194,7 +194,7 @@ impl Inertia {
         Self { tensor, ..*self }
     }
 
-    /// What no body has, in words; `None` if there can be such a body.
+    /// The property that is physically impossible, in words; `None` for a valid inertia.
     pub(crate) fn impossible(&self) -> Option<String> {
         let [small, middle, large] = sorted(principal(self.tensor).0);
         let number = |x: f64| plain(format!("{x:.3e}").parse().unwrap_or(x));

@@ -1,10 +1,10 @@
-//! Where links are, and how they move with each coordinate.
+//! Poses of links, and their partial velocities.
 
 use crate::model::{Link, Motion};
 use crate::rotation::{Pose, Rotation, Vector, add, cross, minus, scaled};
 
-/// A degree of freedom: the link that it moves, and which of its joint's coordinates, or, behind those of its place,
-/// about which axis of the link.
+/// A degree of freedom: its link, and the index of the coordinate of its joint or, after those of the position, of
+/// the axis of rotation of the link.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Freedom {
     pub(crate) link: usize,
@@ -22,7 +22,7 @@ impl Freedom {
         joints.flat_map(each).collect()
     }
 
-    /// How all that the link carries moves per unit of its rate.
+    /// Partial velocity of the link and its descendants.
     pub(crate) fn twist(self, links: &[Link], poses: &[Pose]) -> Twist {
         let pose = poses[self.link];
         let Some(joint) = &links[self.link].joint else {
@@ -60,7 +60,7 @@ impl Twist {
     }
 }
 
-/// Poses of all links where joints with an axis have moved by some way from how they are drawn, and the others by a pose.
+/// Poses of all links for displacements from the drawn configuration: numbers for joints with an axis, else poses.
 pub(crate) fn poses(links: &[Link], moved: impl Fn(usize) -> f64, turned: &[Pose]) -> Vec<Pose> {
     let mut poses: Vec<Pose> = Vec::with_capacity(links.len());
     for (index, link) in links.iter().enumerate() {
@@ -72,7 +72,7 @@ pub(crate) fn poses(links: &[Link], moved: impl Fn(usize) -> f64, turned: &[Pose
 }
 
 impl Link {
-    /// Its pose in its parent where a joint with an axis has moved by some way from how it is drawn.
+    /// Its pose in its parent for a displacement of a joint with an axis from the drawn configuration.
     pub(crate) fn moved(&self, way: f64) -> Pose {
         let Some(joint) = &self.joint else {
             return self.pose;
@@ -92,7 +92,7 @@ impl Link {
     }
 }
 
-/// A displacement of each freedom at which no link is in line with another by chance.
+/// A displacement of each freedom to a generic configuration, where no links are aligned by chance.
 pub(crate) fn anywhere(index: usize) -> f64 {
     0.1 + 0.05 * ((7 * index) % 5) as f64
 }

@@ -36,7 +36,7 @@ impl Letters {
     }
 }
 
-/// What a number is, which decides whether it becomes a letter.
+/// Kind of a number, which decides whether it becomes a parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Kind {
     /// Of a mass, a centre of mass or an inertia.
@@ -69,14 +69,14 @@ pub(crate) struct Parameter {
     pub(crate) never_negative: bool,
 }
 
-/// Decides for each number, and keeps the parameters.
+/// Chooses the form of each number, and collects the parameters.
 #[derive(Debug)]
 pub(crate) struct Numbers<'a> {
     letters: &'a Letters,
     pub(crate) parameters: Vec<Parameter>,
-    /// Names that chose a number.
+    /// Names that matched a number.
     used: BTreeSet<String>,
-    /// All names that could.
+    /// All names that can be matched.
     known: BTreeSet<String>,
 }
 
@@ -104,7 +104,7 @@ impl<'a> Numbers<'a> {
                     .filter(|one| names_of.contains(&one.as_str()))
                     .collect();
                 self.used.extend(of_it.iter().map(|one| (*one).clone()));
-                // A name alone means what is there; a letter means this number, whatever its value.
+                // A link or joint selects its inertias and nonzero numbers; a parameter name selects any value.
                 of_it.iter().any(|one| *one == number.letter)
                     || (!of_it.is_empty() && (number.kind == Kind::Inertial || number.value != 0.0))
             }
@@ -123,7 +123,7 @@ impl<'a> Numbers<'a> {
         name
     }
 
-    /// Names that chose nothing.
+    /// Names that matched nothing.
     pub(crate) fn unused(&self) -> Vec<&str> {
         match self.letters {
             Letters::Of(chosen) => {
@@ -134,13 +134,13 @@ impl<'a> Numbers<'a> {
         }
     }
 
-    /// Names that would have chosen something.
+    /// Names that would have matched.
     pub(crate) fn known(&self) -> impl Iterator<Item = &str> {
         self.known.iter().map(String::as_str)
     }
 }
 
-/// A number without what rounding adds to it: 0.3, not 0.30000000000000004.
+/// A number without rounding errors: 0.3, not 0.30000000000000004.
 pub(crate) fn tidy(x: f64) -> f64 {
     const ROUNDING: f64 = 4.0 * f64::EPSILON;
     let rounded: f64 = format!("{x:.13e}").parse().unwrap_or(x);
@@ -153,7 +153,7 @@ pub(crate) fn tidy(x: f64) -> f64 {
     short + 0.0
 }
 
-/// A number as TOML and expressions have it.
+/// A number in the syntax of TOML and of expressions.
 pub(crate) fn plain(x: f64) -> String {
     let x = tidy(x);
     if x != 0.0 && !(1e-4..1e7).contains(&x.abs()) {

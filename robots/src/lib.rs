@@ -8,18 +8,18 @@
 //!
 //! | file | does |
 //! |---|---|
-//! | `includes.rs` | a file with those that it includes, as one text |
+//! | `includes.rs` | a file with its includes, as one text |
 //! | `format.rs` | the formats |
 //! | `xml.rs` | elements and numbers with their places, and findings about them |
 //! | `urdf.rs`, `mjcf.rs` | the formats, each to a `Robot` |
-//! | `model.rs` | what a robot is: links in a tree, joints with their properties |
-//! | `rotation.rs`, `inertia.rs` | rotations and their turns; inertias turned, shifted, put together |
-//! | `tree.rs` | links that are fixed together become one body |
-//! | `kinematics.rs`, `mass.rs` | where links are and how they move with each coordinate; the mass matrix |
-//! | `loops.rs`, `elimination.rs` | equations between coordinates, of loops and couplings, and which follow from the others |
-//! | `assembly.rs` | where joints stand, and where equations hold |
+//! | `model.rs` | a robot: links in a tree, joints with their properties |
+//! | `rotation.rs`, `inertia.rs` | rotations as successive turns; inertias rotated, shifted, combined |
+//! | `tree.rs` | links that are fixed together are merged into one body |
+//! | `kinematics.rs`, `mass.rs` | poses and partial velocities of links; the mass matrix |
+//! | `loops.rs`, `elimination.rs` | constraints of loops and couplings; independent constraints and dependent coordinates |
+//! | `assembly.rs` | positions of joints that satisfy the constraints |
 //! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
-//! | `options.rs`, `without.rs`, `lock.rs`, `snap.rs` | requests; what is left out; joints made rigid; nearly right angles |
+//! | `options.rs`, `without.rs`, `lock.rs`, `snap.rs` | options; omitted properties; joints made rigid; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
 mod assembly;
@@ -73,7 +73,7 @@ pub struct Imported {
     pub bodies: usize,
     /// Warnings, by the file that they are about.
     pub warnings: Vec<Report>,
-    /// What has no counterpart in the spec.
+    /// Parts of the file without a counterpart in the spec.
     pub left_out: Vec<LeftOut>,
     /// Orientations and axes that are nearly along the axes of their parents.
     pub nearly_right: usize,
@@ -88,27 +88,27 @@ pub struct LeftOut {
     pub file: String,
     /// Their lines, from 1.
     pub lines: Vec<usize>,
-    /// How the motion differs without them; none where it does not.
+    /// How the motion differs without them; `None` if it does not.
     pub effect: Option<&'static str>,
 }
 
 /// Why a robot cannot be imported.
 #[derive(Debug)]
 pub enum Failure {
-    /// Its file, or one that it includes, is wrong or has what cannot be imported; the report is about one file.
+    /// Its file or an included one has errors or unsupported parts; the report is about one file.
     File(Box<Report>),
     /// A joint that cannot be locked, in a sentence.
     Lock(String),
-    /// Names that are to become parameters but name nothing.
+    /// Names of parameters that match nothing.
     Unknown {
         /// The first one.
         name: String,
-        /// What may be meant.
+        /// A suggestion.
         help: String,
     },
 }
 
-/// Frees the links that nothing else moves or holds.
+/// Gives root links without a joint a free joint.
 fn float(robot: &mut model::Robot) {
     for link in &mut robot.links {
         if link.parent.is_none() && link.joint.is_none() {
@@ -122,7 +122,7 @@ fn float(robot: &mut model::Robot) {
     }
 }
 
-/// Refuses what a spec cannot have, where it comes from in the file of the robot.
+/// Reports the errors of the spec at their sources in the file of the robot.
 fn refuse(spec: &Report, lines: &[(usize, xml::Span)], root: xml::Span, findings: &xml::Findings) {
     for error in spec.diagnostics() {
         if error.severity != Severity::Error {
@@ -140,7 +140,7 @@ fn refuse(spec: &Report, lines: &[(usize, xml::Span)], root: xml::Span, findings
     }
 }
 
-/// What has no counterpart, by kind, with its lines.
+/// Parts of the file without a counterpart in a spec, by kind, with their lines.
 fn left_out(robot: &model::Robot, whole: &Whole<'_>) -> Vec<LeftOut> {
     let mut left_out: Vec<LeftOut> = Vec::new();
     let mut index = std::collections::BTreeMap::new();
@@ -160,7 +160,7 @@ fn left_out(robot: &model::Robot, whole: &Whole<'_>) -> Vec<LeftOut> {
         }
         left_out[at].lines.push(line);
     }
-    // What changes the motion comes first.
+    // Omissions that change the motion come first.
     left_out.sort_by_key(|one| one.effect.is_none());
     left_out
 }
@@ -181,8 +181,8 @@ pub fn import(file: &str, text: &str, options: &Options) -> Result<Imported, Fai
     import_with(file, text, options, &none)
 }
 
-/// [`import`] where files that this one names may be read: `others` gives the bytes of a file by its path from
-/// the folder of this one, or says why not. An MJCF includes others, and meshes are read where a body has no other inertia.
+/// [`import`] with access to other files: `others` reads a file by its path relative to the folder of this one. It is
+/// used for includes of an MJCF, and for meshes of bodies without another source of inertia.
 pub fn import_with(
     file: &str,
     text: &str,
@@ -229,7 +229,7 @@ pub fn import_with(
     for one in &options.without {
         one.apply(&mut robot);
     }
-    // A file that is wrong is told so first.
+    // Errors of the file are reported before those of the options.
     if !findings.has_errors() {
         lock::lock(&mut robot, &options.lock).map_err(Failure::Lock)?;
     }

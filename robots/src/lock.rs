@@ -12,7 +12,7 @@ use crate::model::{Motion, Robot};
 pub struct Lock {
     /// Its name in the file.
     pub joint: String,
-    /// The coordinate that it keeps, in rad or m; as the file draws it, where there is none.
+    /// The constant coordinate, in rad or m; `None` as drawn in the file.
     pub value: Option<f64>,
 }
 
@@ -47,7 +47,7 @@ impl FromStr for Lock {
     }
 }
 
-/// Makes joints rigid; what moved with them is fixed there. The error is a sentence.
+/// Makes joints rigid: their links are fixed to the parents. The error is a sentence.
 pub(crate) fn lock(robot: &mut Robot, locks: &[Lock]) -> Result<(), String> {
     let mut values: BTreeMap<String, f64> = BTreeMap::new();
     for one in locks {

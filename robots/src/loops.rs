@@ -1,6 +1,6 @@
-//! Equations between coordinates: closed loops, where what connects two links of the tree demands that points of both
-//! meet, and couplings. Some may say the same, as that across the plane of a four-bar; these are left out. Each of the
-//! others gets the coordinate that follows from it, chosen by pivoting where the motion begins and the equations hold.
+//! Constraint equations between coordinates: loop closures, where points of two links of the tree coincide, and
+//! couplings. Redundant equations, such as those normal to the plane of a four-bar, are dropped. Each remaining one
+//! determines a dependent coordinate, chosen by pivoting at the assembled initial configuration.
 
 use appell_spec::Code;
 
@@ -13,46 +13,46 @@ use crate::rotation::{Pose, Rotation, Vector, add, dot, minus};
 use crate::tree::Tree;
 use crate::xml::Findings;
 
-/// What a driven joint counts less where one is chosen to follow.
+/// Weight of a driven joint in the choice of dependent coordinates.
 const DRIVEN: f64 = 1e-2;
-/// How far places lie at which ranks are taken, as shares of [`anywhere`]: the next one where none is found.
+/// Displacements at which ranks are determined, as fractions of [`anywhere`]; the first that can be assembled is used.
 const BESIDE: [f64; 3] = [1.0, 0.1, 0.01];
-/// Deviations that rounded numbers of a file leave.
+/// Largest constraint residual due to rounded numbers in the file.
 const CLOSED: f64 = 1e-4;
-/// Most entries of the equations' matrix.
+/// Largest number of entries of the constraint matrix.
 const MOST_ENTRIES: usize = 1 << 18;
 
-/// A point of each of two bodies that shall meet.
+/// A pair of points, one of each body, that must coincide.
 #[derive(Debug)]
 pub(crate) struct Meeting {
-    /// Bodies, and the points from the bodies' points, in their frames; no body is the ground.
+    /// Bodies, and the points relative to the bodies' reference points, in their frames; `None` is the ground.
     pub(crate) ends: [(Option<usize>, Vector); 2],
-    /// The body along whose axes the equations are written.
+    /// The body in whose frame the equations are written.
     pub(crate) along: Option<usize>,
-    /// The equations that are kept: which axis, and which coordinate follows.
+    /// The retained equations: axis, and dependent coordinate.
     pub(crate) rows: Vec<(usize, Follower)>,
 }
 
-/// A way of a body to move: which of its coordinates, or, behind those of its place, about which axis.
+/// A dependent freedom of a body: index of its coordinate or, after those of its position, of the axis of rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) struct Follower {
     pub(crate) body: usize,
     pub(crate) component: usize,
 }
 
-/// The equations of a robot with their followers.
+/// The equations of a robot with their dependent coordinates.
 #[derive(Debug, Default)]
 pub(crate) struct Equations {
     /// By connection.
     pub(crate) meetings: Vec<(String, Vec<Meeting>)>,
-    /// By coupling; none where it says nothing new.
+    /// By coupling; `None` if it is redundant.
     pub(crate) couplings: Vec<Option<Follower>>,
-    /// Where the motion begins, where followers alone cannot make the equations hold.
+    /// The initial configuration, if changing the dependent coordinates alone does not satisfy the equations.
     pub(crate) start: Option<Configuration>,
 }
 
 impl Equations {
-    /// All followers.
+    /// All dependent coordinates.
     pub(crate) fn followers(&self) -> impl Iterator<Item = Follower> {
         let meetings = self.meetings.iter().flat_map(|(_, of)| of);
         let meetings =
@@ -64,18 +64,18 @@ impl Equations {
 /// Which equation a row belongs to.
 enum Of {
     Coupling(usize),
-    /// Connection, meeting and axis.
+    /// Connection, pair of points and axis.
     Meeting(usize, usize, usize),
 }
 
 /// An equation between coordinates.
 struct Row {
     of: Of,
-    /// The coordinate that follows if it can.
+    /// The preferred dependent coordinate.
     preferred: Option<usize>,
 }
 
-/// The equations of all couplings and connections. Refuses what cannot move by them.
+/// The equations of all couplings and connections. Refuses inconsistent ones.
 pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equations {
     let freedoms = Freedom::all(&robot.links);
     let places = Places::new(robot, tree, freedoms);
@@ -140,17 +140,17 @@ pub(crate) fn equations(robot: &Robot, tree: &Tree, findings: &Findings) -> Equa
     equations
 }
 
-/// Where links are, as they are drawn, where the motion begins, and where no link is in line with another by chance.
+/// Configurations as drawn, at the start of the motion, and in generic position.
 struct Places<'a> {
     robot: &'a Robot,
     tree: &'a Tree,
     freedoms: Vec<Freedom>,
     drawn: Vec<Pose>,
     begun: Configuration,
-    /// Where the equations hold, if that is found.
+    /// A configuration that satisfies the equations, if one was found.
     start: Option<Configuration>,
     anywhere: Configuration,
-    /// By how much the equations deviate nearest to where the motion begins, if they do not come to hold there.
+    /// Residuals of the equations after the search, if none was found.
     open: Vec<f64>,
 }
 
@@ -175,7 +175,7 @@ impl<'a> Places<'a> {
         places
     }
 
-    /// Finds where the motion can begin; the result is a place beside it.
+    /// Finds an initial configuration; the result is a generic configuration near it.
     fn start_and_beside(&mut self) -> Option<Configuration> {
         let (at, linear) = self.nearest(&self.begun);
         if linear.size() <= CLOSED {
@@ -187,7 +187,7 @@ impl<'a> Places<'a> {
         self.start.clone()
     }
 
-    /// The nearest place where all equations hold.
+    /// The nearest configuration that satisfies all equations.
     fn assembled(&self, from: &Configuration) -> Option<Configuration> {
         let (at, linear) = self.nearest(from);
         (linear.size() <= CLOSED).then_some(at)
@@ -199,7 +199,7 @@ impl<'a> Places<'a> {
             .assembled(links, &self.freedoms, &|at| self.linear(at))
     }
 
-    /// A place beside the start where no link is in line with another by chance, and all equations hold.
+    /// A configuration near the start that satisfies all equations and is generic: no links are aligned by chance.
     fn beside(&self) -> Option<Configuration> {
         let each = BESIDE.into_iter();
         each.map(|share| self.displaced(share))
@@ -215,7 +215,7 @@ impl<'a> Places<'a> {
         displaced
     }
 
-    /// Refuses what cannot hold.
+    /// Refuses constraints that cannot be satisfied.
     fn refuse_what_stays_open(&self, rows: &[Row], findings: &Findings) {
         if self.start.is_some() {
             return;
@@ -246,7 +246,7 @@ impl<'a> Places<'a> {
         );
     }
 
-    /// All equations at a place.
+    /// All equations at a configuration.
     fn linear(&self, at: &Configuration) -> Linear {
         let poses = at.poses(&self.robot.links);
         let mut linear = Linear::default();
@@ -307,7 +307,7 @@ impl<'a> Places<'a> {
         linear.off.push(follows - polynomial);
     }
 
-    /// The points that a connection makes meet, without their equations.
+    /// The pairs of points of a connection, without their equations.
     fn meetings(&self, connection: &Connection) -> Vec<Meeting> {
         let along = self.along(connection);
         let points = connection.points().into_iter();
@@ -322,7 +322,7 @@ impl<'a> Places<'a> {
             .collect()
     }
 
-    /// The body that carries both ends, along whose axes the equations are written.
+    /// The common ancestor of both ends, in whose frame the equations are written.
     fn along(&self, connection: &Connection) -> Option<usize> {
         let shared = self.carrier_of_both(connection.links());
         shared.and_then(|link| self.tree.body_of[link])
@@ -348,8 +348,8 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Adds how a point of a link moves along a direction with every coordinate behind the link that carries
-    /// both ends: what moves that moves both.
+    /// Adds the partial velocities of a point of a link along a direction. Freedoms above the common ancestor of both
+    /// ends cancel and are skipped.
     fn add_slopes(
         &self,
         row: &mut [f64],
@@ -370,11 +370,11 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The rows that say something new, each with the freedom that follows from it, and where the motion has to begin.
+    /// The independent rows, each with its dependent freedom, and the initial configuration if it has to be given.
     ///
-    /// How many they are shows where no link is in line with another by chance. Couplings have their followers; for the
-    /// others, rows and followers are those with the largest pivots where the motion begins, or, where fewer rows say
-    /// something there, anywhere.
+    /// Their number is the generic rank. Couplings prefer their declared dependent coordinate; otherwise rows and
+    /// dependent freedoms are those with the largest pivots at the start, or in the generic configuration if the
+    /// rank at the start is smaller.
     fn followers(&self, rows: &[Row]) -> (Vec<(usize, usize)>, Option<Configuration>) {
         let weights: Vec<f64> = (0..self.freedoms.len())
             .map(|column| self.weight(column))
@@ -396,7 +396,7 @@ impl<'a> Places<'a> {
         } else {
             anywhere
         };
-        // Only followers move, until what is kept holds.
+        // Only dependent coordinates are changed, until the retained equations are satisfied.
         let follow = |at: &Configuration| {
             let all = self.linear(at);
             let mut linear = Linear::default();
@@ -420,7 +420,7 @@ impl<'a> Places<'a> {
         (kept, start)
     }
 
-    /// How gladly a freedom follows.
+    /// Weight of a freedom as a dependent coordinate.
     fn weight(&self, freedom: usize) -> f64 {
         let joint = self.robot.links[self.freedoms[freedom].link].joint.as_ref();
         match joint {
@@ -430,7 +430,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// Whether a way to move is a turn of what has no angle.
+    /// Whether a freedom is a rotation that has no angle as its coordinate.
     fn turns(&self, freedom: usize) -> bool {
         let Freedom { link, component } = self.freedoms[freedom];
         match self.robot.links[link]
@@ -457,11 +457,11 @@ impl<'a> Places<'a> {
                 "`{}` closes a loop in which the attitude of joint `{joint}` would have to follow",
                 connection.name
             ),
-            "connect by a point what a ball joint or a free joint turns, or use hinges",
+            "connect a body on a ball joint or a free joint by a point only, or use hinges",
         );
     }
 
-    /// A joint along which nothing has inertia, whatever follows it, has no equation of motion.
+    /// Refuses a joint without inertia along it, dependent coordinates included, as it has no equation of motion.
     fn refuse_what_has_no_mass(&self, kept: &[(usize, usize)], findings: &Findings) {
         let links = &self.robot.links;
         if findings.has_errors() || self.freedoms.len() > mass::MOST_FREEDOMS {
@@ -486,7 +486,7 @@ impl<'a> Places<'a> {
         }
     }
 
-    /// The last link that carries both; none is the ground.
+    /// The last common ancestor of both links; `None` is the ground.
     fn carrier_of_both(&self, ends: [Option<usize>; 2]) -> Option<usize> {
         let way = |end: Option<usize>| -> Vec<usize> {
             std::iter::successors(end, |&link| self.robot.links[link].parent).collect()
@@ -501,7 +501,7 @@ impl<'a> Places<'a> {
         poses[moved.link].rotation.then(moved.own)
     }
 
-    /// A point of a link as its body has it.
+    /// A point of a link, in the frame of its body.
     fn on_body(&self, link: Option<usize>, at: Vector) -> (Option<usize>, Vector) {
         let at = place((link, at), &self.drawn);
         let Some(body) = link.and_then(|link| self.tree.body_of[link]) else {
@@ -524,7 +524,7 @@ impl Connection {
         self.ends.map(|(link, _)| link)
     }
 
-    /// A point of the first end, shifted in its frame, and the point of the second that it meets.
+    /// A point of the first end, shifted in its frame, and the coincident point of the second.
     fn ends_at(&self, offset: Vector) -> [(Option<usize>, Vector); 2] {
         let [(first, at), (second, _)] = self.ends;
         let at = add(at, offset);
@@ -532,12 +532,12 @@ impl Connection {
     }
 }
 
-/// Where a point of a link is.
+/// Position of a point of a link.
 fn place((link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
     link.map_or(at, |link| poses[link].of(at))
 }
 
-/// The pose of one link in another while all is as drawn; none is the ground.
+/// The pose of one link in another as drawn; `None` is the ground.
 pub(crate) fn drawn(links: &[Link], [first, second]: [Option<usize>; 2]) -> Pose {
     let poses = Configuration::new(links, |_| 0.0).poses(links);
     let of = |link: Option<usize>| link.map_or(Pose::IDENTITY, |link| poses[link]);

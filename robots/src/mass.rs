@@ -6,7 +6,7 @@ use crate::kinematics::{Freedom, Twist};
 use crate::model::{Link, Tendon};
 use crate::rotation::{Pose, Vector, add, cross, dot, scaled};
 
-/// Most freedoms of a robot whose inertia is looked at here.
+/// Largest number of freedoms for which the mass matrix is computed.
 pub(crate) const MOST_FREEDOMS: usize = 512;
 
 /// Inertia of a rigid body about the origin of the ground.
@@ -67,11 +67,11 @@ impl Spatial {
 /// A mass matrix; rows and columns are the freedoms.
 pub(crate) struct Mass {
     pub(crate) entries: Vec<Vec<f64>>,
-    /// By freedom: the size of the terms of which the entry on the diagonal is the sum.
+    /// By freedom: the magnitude of the terms of the diagonal entry, before cancellation.
     terms: Vec<f64>,
 }
 
-/// M of the tree with the armature of joints and tendons, where the links are.
+/// M of the tree at given poses of the links, with the armature of joints and tendons.
 pub(crate) fn matrix(links: &[Link], tendons: &[Tendon], poses: &[Pose]) -> Mass {
     let each = links.iter().zip(poses);
     let mut carried: Vec<Spatial> = each
@@ -158,8 +158,8 @@ fn inverse(mut m: Vec<Vec<f64>>) -> Vec<Vec<f64>> {
     inverse
 }
 
-/// Gives joints the spring and the damping by which they settle as they shall, with their inertia as drawn. Whether the robot is
-/// small enough for that.
+/// Computes stiffness and damping from time constant and damping ratio, with the inertia as drawn. False if the robot
+/// is too large for that.
 pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     let settles = |link: &Link| {
         link.joint
@@ -178,7 +178,7 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     for joint in links.iter_mut().filter_map(|link| link.joint.as_mut()) {
         let next = first + joint.motion.freedoms();
         if let Some([time, ratio]) = joint.settles {
-            // As MuJoCo 4.0 has it: while all other joints are free.
+            // As in MuJoCo 4.0: with all other joints free.
             let sum: f64 = (first..next).map(|row| mobility[row][row]).sum();
             let inertia = (next - first) as f64 / sum;
             let inertia = if inertia.is_finite() { inertia } else { 0.0 };
@@ -190,16 +190,15 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     true
 }
 
-/// The first freedom, from the ends of the tree inwards, along which nothing has inertia.
+/// The first freedom without inertia along it, from the leaves of the tree inwards.
 ///
-/// The freedoms are reduced to the independent ones: `rows` are equations between them, each reduced so that it alone has
-/// its pivot, whose entry is 1.
+/// The freedoms are reduced to the independent ones: `rows` are the equations between them in reduced echelon form.
 pub(crate) fn without_inertia(mass: &Mass, rows: &[(usize, Vec<f64>)]) -> Option<usize> {
     let m = &mass.entries;
     let count = m.len();
     let follows = |column: usize| rows.iter().any(|(pivot, _)| *pivot == column);
     let free: Vec<usize> = (0..count).rev().filter(|&c| !follows(c)).collect();
-    // How all freedoms move with an independent one.
+    // Partial velocities of all freedoms with respect to an independent one.
     let moves = |column: usize| {
         let mut all = vec![0.0; count];
         all[column] = 1.0;
@@ -237,7 +236,7 @@ pub(crate) fn without_inertia(mass: &Mass, rows: &[(usize, Vec<f64>)]) -> Option
     None
 }
 
-/// What rounding leaves of an inertia that vanishes, against that of all that moves along.
+/// Relative rounding error of a vanishing inertia.
 const ROUNDING: f64 = 1e-13;
 
 #[cfg(test)]

@@ -47,12 +47,12 @@ const ELSEWHERE: &[&str] = &[
     "extension",
     "deformable",
 ];
-/// What stands in a body beside those that are read.
+/// Elements of a body that are read separately.
 const READ: &[&str] = &["joint", "inertial", "freejoint"];
 /// Elements that change the tree, and are not read.
 const NOT_YET: &[&str] = &["replicate", "composite", "flexcomp", "attach"];
 
-/// What all parts of the reader share.
+/// State that all parts of the reader share.
 pub(crate) struct Reader<'x, 'f> {
     findings: &'f Findings,
     compiler: Compiler,
@@ -65,12 +65,12 @@ pub(crate) struct Reader<'x, 'f> {
     /// Link and pose of sites.
     sites: BTreeMap<String, (Option<usize>, Pose)>,
     left_out: Vec<LeftOut>,
-    /// Geoms that could touch others.
+    /// Geoms that could collide with others.
     touching: Vec<Span>,
-    /// Whether masses of bodies that no joint moves count as well.
+    /// Whether masses of static bodies count as well.
     all_count: bool,
     root: Element<'x>,
-    /// The file, and those that it names.
+    /// The file with its includes.
     whole: &'f Whole<'f>,
 }
 
@@ -83,10 +83,10 @@ struct Level<'x> {
     class: Option<&'x str>,
 }
 
-/// What a body holds, itself or by frames within it.
+/// A child of a body, direct or within frames.
 struct Held<'x> {
     element: Element<'x>,
-    /// Where the frames put it, and the class of their children.
+    /// Pose and child class of the enclosing frames.
     pose: Pose,
     class: Option<&'x str>,
 }
@@ -184,7 +184,7 @@ pub(crate) fn read(
     robot
 }
 
-/// What flags of `option` leave out.
+/// Properties that are disabled by flags of `option`.
 fn switched_off(is_off: &dyn Fn(&str) -> bool) -> Vec<Without> {
     let passive = is_off("passive");
     let (springs, dampers) = (passive || is_off("spring"), passive || is_off("damper"));
@@ -192,7 +192,7 @@ fn switched_off(is_off: &dyn Fn(&str) -> bool) -> Vec<Without> {
     let all = [
         (springs, Without::Springs),
         (dampers, Without::Damping),
-        // Without springs and dampers no passive force is left.
+        // With springs and dampers disabled, there are no passive forces.
         (springs && dampers, Without::Compensation),
         (constraint || is_off("frictionloss"), Without::Friction),
         (constraint || is_off("limit"), Without::Limits),
@@ -231,7 +231,7 @@ impl<'x> Reader<'x, '_> {
         });
     }
 
-    /// Leaves out an element of a section, or all that a section holds.
+    /// Leaves out an element of a section, or a whole section.
     fn leave_out_of(&mut self, section: &str, element: Element<'_>) {
         if element.tag_name().name() != section {
             let what = format!("{section}/{}", element.tag_name().name());
@@ -275,7 +275,7 @@ impl<'x> Reader<'x, '_> {
         );
     }
 
-    /// What a body, a frame or the world holds.
+    /// Reads the children of a body, a frame or the world.
     fn level(&mut self, element: Element<'x>, level: Level<'x>) {
         for inner in elements(element) {
             match inner.tag_name().name() {
@@ -299,7 +299,7 @@ impl<'x> Reader<'x, '_> {
                     Code::NotAllowedHere,
                     tag(inner),
                     format!("the world holds a `{name}`"),
-                    "write `<body>` around it and what it moves",
+                    "put it inside a `<body>`, together with its geoms",
                 ),
                 name if READ.contains(&name) => {}
                 name => self.leave_out(name.to_owned(), inner),
@@ -307,7 +307,7 @@ impl<'x> Reader<'x, '_> {
         }
     }
 
-    /// The class that an attribute names, which has to exist.
+    /// The class that an attribute names; a missing one is an error.
     fn class(&self, element: Element<'x>, key: &str) -> Option<&'x str> {
         let given = element.attribute_node(key)?;
         let name = given.value();
@@ -339,7 +339,7 @@ impl<'x> Reader<'x, '_> {
         };
         let position =
             attribute("pos").and_then(|given| exactly(self.findings, &given, "a position, x y z,"));
-        // What the element says itself stands before what its class says otherwise.
+        // An orientation of the element takes precedence over one of its class in another form.
         let own = self
             .compiler
             .angles
@@ -385,13 +385,13 @@ impl<'x> Reader<'x, '_> {
         self.level(element, inside);
     }
 
-    /// Whether a joint moves a link, or what carries it.
+    /// Whether a link or one of its ancestors has a joint.
     fn moves(&self, link: Option<usize>) -> bool {
         let mut behind = std::iter::successors(link, |&link| self.links[link].parent);
         behind.any(|link| self.links[link].joint.is_some())
     }
 
-    /// Names of one kind are different.
+    /// Refuses duplicate names of one kind.
     fn refuse_twice(&mut self, kind: &'static str, name: &str, place: Span) {
         if !self.names.insert((kind, name.to_owned())) {
             let message = format!("there are two {kind} `{name}`");
@@ -400,7 +400,7 @@ impl<'x> Reader<'x, '_> {
         }
     }
 
-    /// Keeps where a site is; they are drawn marks where nothing names them.
+    /// Records the pose of a site by its name; sites that are not referenced are only drawn.
     fn site_at(&mut self, element: Element<'x>, level: Level<'x>) {
         let class = self.class(element, "class").or(level.class);
         let pose = level.pose.then(self.pose(element, Some(("site", class))));
@@ -410,7 +410,7 @@ impl<'x> Reader<'x, '_> {
         self.leave_out("site".to_owned(), element);
     }
 
-    /// Collects what a body or a frame holds, in the order of the file.
+    /// Collects the children of a body or a frame in the order of the file.
     fn hold(
         &self,
         holder: Element<'x>,

@@ -1,4 +1,4 @@
-//! A robot as its file has it: links in a tree, each with at most one joint.
+//! A robot as described by its file: a tree of links, each with at most one joint.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -11,30 +11,30 @@ use crate::xml::Span;
 pub(crate) struct Robot {
     pub(crate) name: String,
     pub(crate) gravity: Vector,
-    /// Parents stand before their children.
+    /// Parents come before their children.
     pub(crate) links: Vec<Link>,
     pub(crate) couplings: Vec<Coupling>,
     pub(crate) tendons: Vec<Tendon>,
     pub(crate) connections: Vec<Connection>,
-    /// Joints that something drives.
+    /// Actuated joints.
     pub(crate) driven: BTreeSet<String>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
-/// A link, or a step on the way to one that has several joints.
+/// A link, or an intermediate massless link of one with several joints.
 #[derive(Debug)]
 pub(crate) struct Link {
     pub(crate) name: String,
-    /// The ground, where there is none.
+    /// `None` is the ground.
     pub(crate) parent: Option<usize>,
-    /// Where its frame is in that of the parent while the joint is at zero.
+    /// Pose of its frame in that of the parent at joint position zero.
     pub(crate) pose: Pose,
-    /// Fixed to the parent, where there is none.
+    /// `None` if fixed to the parent.
     pub(crate) joint: Option<Joint>,
     pub(crate) inertia: Inertia,
-    /// The share of its weight that something carries.
+    /// The fraction of its weight that is compensated.
     pub(crate) carried: f64,
-    /// Whether the file has such a link: a step on the way to one is not.
+    /// Whether the file defines this link; intermediate links are not in the file.
     pub(crate) written: bool,
     pub(crate) place: Span,
 }
@@ -54,7 +54,7 @@ impl Link {
         }
     }
 
-    /// Appends it to `links`, moved by joints one after the other, with a step for each but the last. The result is its
+    /// Appends it to `links` with joints in series, with an intermediate link for each but the last. The result is its
     /// index.
     pub(crate) fn moved_by(mut self, mut joints: Vec<Joint>, links: &mut Vec<Self>) -> usize {
         self.joint = joints.pop();
@@ -79,9 +79,9 @@ pub(crate) enum Motion {
     Turning,
     /// It slides along its axis.
     Sliding,
-    /// It turns about every axis.
+    /// It rotates about a point (spherical).
     Ball,
-    /// It moves anywhere.
+    /// It has six degrees of freedom.
     Free,
 }
 
@@ -91,7 +91,7 @@ impl Motion {
         matches!(self, Self::Turning | Self::Sliding)
     }
 
-    /// In how many ways it moves.
+    /// Number of degrees of freedom.
     pub(crate) fn freedoms(self) -> usize {
         match self {
             Self::Turning | Self::Sliding => 1,
@@ -118,20 +118,20 @@ pub(crate) struct Joint {
     pub(crate) range: Option<[f64; 2]>,
     /// Damping, with the rate.
     pub(crate) damping: Polynomial,
-    /// Inertia of what turns with the joint alone.
+    /// Inertia of parts that move with this joint only (rotor).
     pub(crate) armature: f64,
     /// Dry friction.
     pub(crate) friction: f64,
     pub(crate) stiffness: Polynomial,
     /// The coordinate at which the spring is relaxed.
     pub(crate) relaxed: f64,
-    /// Time constant and damping ratio that its spring and its damping shall give it.
+    /// Time constant and damping ratio from which its stiffness and damping are computed.
     pub(crate) settles: Option<[f64; 2]>,
     pub(crate) place: Span,
 }
 
 impl Joint {
-    /// The coordinate at which the motion begins: as it is drawn, if that is in its range.
+    /// The initial coordinate: as drawn, if that is in its range.
     pub(crate) fn start(&self) -> f64 {
         match self.range {
             Some([from, to]) if !(from..=to).contains(&self.zero) => f64::midpoint(from, to),
@@ -139,7 +139,7 @@ impl Joint {
         }
     }
 
-    /// A joint without an axis, and without anything that resists it.
+    /// A joint without an axis, springs, damping and friction.
     pub(crate) fn without_axis(name: String, motion: Motion, anchor: Vector) -> Self {
         Self {
             anchor,
@@ -147,7 +147,7 @@ impl Joint {
         }
     }
 
-    /// A joint about or along an axis through the origin, without anything that resists it.
+    /// A joint about or along an axis through the origin, without springs, damping and friction.
     pub(crate) fn along(name: String, motion: Motion, axis: Vector) -> Self {
         Self {
             name,
@@ -191,7 +191,7 @@ impl Sum {
         self.terms.retain(|(name, _)| !values.contains_key(name));
     }
 
-    /// Its value where the coordinates have values.
+    /// Its value for given coordinates.
     pub(crate) fn at(&self, value: impl Fn(&str) -> f64) -> f64 {
         let terms = self.terms.iter();
         self.constant
@@ -201,7 +201,8 @@ impl Sum {
     }
 }
 
-/// An equation between coordinates: what follows, less its value as drawn, is a polynomial of another sum less its own.
+/// A constraint between coordinates: the deviation of the dependent sum from its value as drawn is a polynomial of the
+/// deviation of the other sum.
 #[derive(Debug)]
 pub(crate) struct Coupling {
     pub(crate) name: String,
@@ -214,7 +215,7 @@ pub(crate) struct Coupling {
     pub(crate) place: Span,
 }
 
-/// A length that is a sum of coordinates, and what resists it.
+/// A length that is a sum of coordinates, with its spring, damping and friction.
 #[derive(Debug)]
 pub(crate) struct Tendon {
     pub(crate) name: String,
@@ -228,21 +229,21 @@ pub(crate) struct Tendon {
     pub(crate) place: Span,
 }
 
-/// Two links that meet, and close a loop of the tree.
+/// A connection of two links that closes a loop of the tree.
 #[derive(Debug)]
 pub(crate) struct Connection {
     pub(crate) name: String,
-    /// The links, and a point of each, in its frame; no link is the ground.
+    /// The links, and a point of each, in its frame; `None` is the ground.
     pub(crate) ends: [(Option<usize>, Vector); 2],
     /// The pose of the first in the second.
     pub(crate) second: Pose,
-    /// Whether they do not turn against each other either.
+    /// Whether the relative orientation is fixed as well.
     pub(crate) rigid: bool,
     pub(crate) place: Span,
 }
 
 impl Connection {
-    /// The points that have to meet, from the first end in its frame.
+    /// The points that must coincide, relative to the first end in its frame.
     pub(crate) fn points(&self) -> Vec<Vector> {
         let mut points = vec![[0.0; 3]];
         if self.rigid {
@@ -252,13 +253,13 @@ impl Connection {
     }
 }
 
-/// What has no place in a spec.
+/// A part of the file without a counterpart in a spec.
 #[derive(Debug)]
 pub(crate) struct LeftOut {
     /// Its element, such as `actuator/motor`.
     pub(crate) what: String,
     pub(crate) name: Option<String>,
-    /// How the motion differs without it, where it does.
+    /// How the motion differs without it, if it does.
     pub(crate) effect: Option<&'static str>,
     pub(crate) place: Span,
 }

@@ -4,14 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use appell_spec::limits::MAX_NAME;
 
-/// What stands before or after a name when it is part of another one, at most.
+/// Largest length of prefixes and suffixes of names that are built from another name.
 const ROOM: usize = 16;
 
 /// The names of one namespace.
 #[derive(Debug, Default)]
 pub(crate) struct Names {
     taken: BTreeSet<String>,
-    /// The last number behind a name.
+    /// The last number appended to a name.
     counts: BTreeMap<String, usize>,
 }
 
@@ -24,7 +24,7 @@ impl Names {
         }
     }
 
-    /// A valid name, as close to `name` as possible, that nothing else has.
+    /// A unique valid name, as close to `name` as possible.
     pub(crate) fn new_one(&mut self, name: &str) -> String {
         let valid = legal(name);
         let mut candidate = valid.clone();
@@ -39,7 +39,7 @@ impl Names {
     }
 }
 
-/// The characters of a name that may stand in one.
+/// The valid characters of a name.
 fn legal(name: &str) -> String {
     let kept = name
         .chars()
@@ -52,7 +52,7 @@ fn legal(name: &str) -> String {
     kept
 }
 
-/// A name that leaves room for what stands before it in other names.
+/// A name that is short enough for prefixes.
 pub(crate) fn short(name: &str) -> String {
     name.chars().take(MAX_NAME - ROOM).collect()
 }

@@ -1,20 +1,20 @@
-//! What can be asked for.
+//! Options of the import.
 
 use crate::letters::Letters;
 use crate::lock::Lock;
 use crate::without::Without;
 
-/// How a robot becomes a spec.
+/// Options of the conversion of a robot to a spec.
 #[derive(Debug, Clone, Default)]
 pub struct Options {
     /// Which numbers become parameters.
     pub letters: Letters,
-    /// What is left out.
+    /// Properties that are left out.
     pub without: Vec<Without>,
     /// Joints that become rigid.
     pub lock: Vec<Lock>,
     /// Makes angles right that differ from a right angle by less than [`SNAP`](crate::SNAP).
     pub snap: bool,
-    /// Lets the root of a URDF float; elsewhere the file says what does.
+    /// Gives the root of a URDF a free joint; an MJCF file declares free joints itself.
     pub floating: bool,
 }

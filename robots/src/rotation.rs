@@ -4,7 +4,7 @@
 /// Three components.
 pub(crate) type Vector = [f64; 3];
 
-/// What may be missing in a right angle that is meant as one.
+/// Tolerance of right angles in radians.
 const RIGHT: f64 = 1e-12;
 
 /// An axis of a frame: its index, and whether it is taken backwards.
@@ -269,11 +269,11 @@ impl Rotation {
         best.map(|(_, turns)| turns).unwrap_or_default()
     }
 
-    /// Angles of three successive turns about given axes. Each is taken from what the turns before leave, so
-    /// that their product is this rotation to rounding even where two of the axes nearly meet.
+    /// Angles of three successive turns about given axes. Each is computed from the remaining rotation after the
+    /// previous turns, so that the product is exact to rounding even close to gimbal lock.
     fn angles(self, [i, j, k]: [usize; 3], half: bool) -> Vector {
         let column = |rotation: Self, axis: usize| rotation.0.map(|row| row[axis]);
-        // The first turn brings the last axis into the plane across the second.
+        // The first turn rotates the last axis into the plane normal to the second.
         let u = column(self, k);
         let other = 3 - i - j;
         let handed = if (i + 1) % 3 == j { 1.0 } else { -1.0 };
@@ -306,7 +306,7 @@ fn wrapped(angle: f64) -> f64 {
     if angle > PI { angle - 2.0 * PI } else { angle }
 }
 
-/// How many right angles an angle is, if it is meant as that.
+/// An angle as a multiple of a right angle, if it is one within the tolerance.
 pub(crate) fn right_angles(angle: f64) -> Option<f64> {
     let count = (angle / std::f64::consts::FRAC_PI_2).round();
     ((angle - count * std::f64::consts::FRAC_PI_2).abs() <= RIGHT).then_some(count)
@@ -316,10 +316,10 @@ fn is_right(angle: f64) -> bool {
     right_angles(angle).is_some()
 }
 
-/// A right angle as the machine has it; a zero without a sign.
+/// A multiple of π/2 exact to rounding; zero has no sign.
 fn clean(angle: f64) -> f64 {
     right_angles(angle).map_or(angle, |count| match count {
-        // One way to write half a turn.
+        // −π and π are the same rotation.
         -2.0 => std::f64::consts::PI,
         _ => count * std::f64::consts::FRAC_PI_2 + 0.0,
     })

@@ -3,10 +3,10 @@
 use crate::model::Robot;
 use crate::rotation::{Rotation, Vector, unit};
 
-/// What angles may lack of a right one, in rad, to be taken for it on request.
+/// Largest deviation from a right angle, in rad, that is corrected on request.
 pub const SNAP: f64 = 1e-4;
 
-/// Makes nearly right angles right, if asked to; returns how many orientations and axes have such angles.
+/// Makes nearly right angles right, if requested; returns how many orientations and axes have such angles.
 pub(crate) fn snap(robot: &mut Robot, really: bool) -> usize {
     let mut count = 0;
     for link in &mut robot.links {

@@ -22,17 +22,17 @@ use crate::tree::{Body, Tree};
 use crate::without::Without;
 use crate::xml::Span;
 
-/// What bodies and joints are called in the spec.
+/// Names of bodies and joints in the spec.
 struct Called {
     /// By link.
     links: Vec<String>,
-    /// The coordinate, by body; what its coordinates begin with where a body has several.
+    /// The coordinate, by body; the common prefix if a body has several.
     coordinates: Vec<String>,
-    /// Where a body has several: those of its place, if it moves, and of its quaternion.
+    /// For bodies with several: those of the position, if it varies, and of the quaternion.
     several: Vec<Vec<String>>,
     /// The frame, by body.
     frames: Vec<String>,
-    /// The point that the body is placed by.
+    /// The reference point of the body.
     points: Vec<String>,
 }
 
@@ -41,14 +41,14 @@ pub(crate) struct Writer<'a> {
     links: &'a [Link],
     tree: &'a Tree,
     called: Called,
-    /// The namespace of what expressions name.
+    /// The namespace of quantities in expressions.
     quantities: Names,
     /// That of frames, points and bodies, which are called by their links.
     places: Names,
     numbers: Numbers<'a>,
     /// Names, points and masses of drives that have inertia, but no weight.
     weightless: Vec<(String, String, String)>,
-    /// Where the motion begins, where that is not as the file has it.
+    /// The initial configuration, if it differs from that of the file.
     start: Option<&'a Configuration>,
     coordinates: Section,
     inputs: Section,
@@ -61,7 +61,7 @@ pub(crate) struct Writer<'a> {
     outputs: Section,
 }
 
-/// A spec, and what was chosen in vain.
+/// A spec, and the selected names that matched no number.
 pub(crate) struct Written {
     pub(crate) text: String,
     /// Where lines begin, and where in the file of the robot they come from.
@@ -79,7 +79,7 @@ pub(crate) fn write(
     equations: &Equations,
     options: &Options,
 ) -> Written {
-    // The folder may be another one where the spec is read.
+    // The path may not be valid where the spec is read.
     let file = file.rsplit('/').next().unwrap_or(file);
     let mut writer = Writer::new(robot, tree, options);
     writer.start = equations.start.as_ref();
@@ -183,19 +183,19 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// The frame of the body on which another one stands.
+    /// The frame of the parent of a body.
     fn frame_of(&self, parent: Option<usize>) -> String {
         parent.map_or("ground".to_owned(), |parent| {
             self.called.frames[parent].clone()
         })
     }
 
-    /// The point from which what stands on a body is placed.
+    /// The point relative to which children of a body are positioned.
     fn point_of(&self, parent: Option<usize>) -> String {
         parent.map_or("O".to_owned(), |parent| self.called.points[parent].clone())
     }
 
-    /// Says where in the robot's file the items come from that were added since this was said last.
+    /// Records the source, in the robot's file, of the items that were added since the last call.
     fn mark(&mut self, place: &Span) {
         for section in [
             &mut self.coordinates,
@@ -212,7 +212,7 @@ impl<'a> Writer<'a> {
         }
     }
 
-    /// Speeds of the coordinates that follow from no equation.
+    /// Pseudo-velocities of the independent coordinates.
     fn speeds(&mut self, equations: &Equations) {
         let mut followers: Vec<Vec<usize>> = vec![Vec::new(); self.tree.bodies.len()];
         for follower in equations.followers() {

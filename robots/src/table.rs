@@ -65,7 +65,7 @@ pub(crate) fn list(values: &[String]) -> String {
 }
 
 impl Section {
-    /// Adds an item, with a number behind its name where that is taken.
+    /// Adds an item; a number is appended to its name if that is taken.
     pub(crate) fn add(&mut self, name: &str, item: &Item) {
         let name = self.names.new_one(name);
         self.items.push((name, item.table()));
@@ -76,7 +76,7 @@ impl Section {
         self.items.push((name.to_owned(), value));
     }
 
-    /// Says where the items come from that were added since this was said last.
+    /// Records the source of the items that were added since the last call.
     pub(crate) fn mark(&mut self, place: &Span) {
         self.places.resize(self.items.len(), place.clone());
     }

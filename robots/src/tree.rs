@@ -1,4 +1,4 @@
-//! From links to bodies: what is fixed together is one, and its frame has an axis along the axis of its joint.
+//! From links to bodies: links that are fixed together form one body, whose frame has an axis along that of its joint.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use crate::model::{Joint, Link, Motion};
 use crate::rotation::{Axis, Pose, Rotation, Turn, Vector, scaled};
 use crate::xml::Findings;
 
-/// Bodies in the order of the tree, and what stands on the ground.
+/// Bodies in the order of the tree, and the links that are fixed to the ground.
 #[derive(Debug)]
 pub(crate) struct Tree {
     pub(crate) bodies: Vec<Body>,
@@ -32,7 +32,7 @@ pub(crate) struct Part {
     pub(crate) centre: Vector,
 }
 
-/// A joint with all links that it moves as one.
+/// A joint with all links that it moves as one rigid body.
 #[derive(Debug)]
 pub(crate) struct Body {
     pub(crate) parent: Option<usize>,
@@ -45,7 +45,7 @@ pub(crate) struct Body {
     pub(crate) own: Rotation,
     /// Axis of the joint in the body's frame.
     pub(crate) axis: Axis,
-    /// What is added to the coordinate: the angle or the way at which the coordinate is zero.
+    /// Offset added to the coordinate: the joint position at which the coordinate is zero.
     pub(crate) offset: f64,
     /// The body's point from that of the parent, in the parent's frame, before a joint slides.
     pub(crate) position: Vector,
@@ -58,14 +58,14 @@ pub(crate) struct Body {
     pub(crate) start: Pose,
 }
 
-/// The body of a link, and where the link is in it.
+/// The body of a link, and the pose of the link in it.
 #[derive(Clone, Copy)]
 struct Seat {
     body: Option<usize>,
     pose: Pose,
 }
 
-/// Merges what is fixed together.
+/// Merges links that are fixed together.
 pub(crate) fn merged(links: &[Link], findings: &Findings) -> Tree {
     let mut tree = Tree {
         bodies: Vec::new(),

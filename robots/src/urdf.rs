@@ -1,4 +1,4 @@
-//! URDF: links, and joints that name their parent and child.
+//! URDF: links, and joints with a parent and a child.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,14 +13,14 @@ use crate::xml::{Element, Findings, child, children, elements, exactly, tag};
 
 const GRAVITY: Vector = [0.0, 0.0, -9.81];
 
-/// A joint with what it connects.
+/// A joint with the links that it connects.
 struct Connection<'x> {
     element: Element<'x>,
     name: &'x str,
     parent: usize,
     child: usize,
     pose: Pose,
-    /// One after the other; fixed where there is none.
+    /// In series; empty if fixed.
     joints: Vec<Joint>,
 }
 
@@ -80,7 +80,7 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings, options: &Options) ->
     }
 }
 
-/// What is read of a joint: with several coordinates it is not known to which one `dynamics`, `limit` or `mimic` belong.
+/// Elements of a joint that are read; with several coordinates `dynamics`, `limit` and `mimic` would be ambiguous.
 fn known_of(joint: Element<'_>) -> &'static [&'static str] {
     const ALL: &[&str] = &[
         "origin", "parent", "child", "axis", "dynamics", "limit", "mimic",
@@ -138,7 +138,7 @@ fn unknown<'x>(
     })
 }
 
-/// A number of an attribute, and what it is if the file does not say.
+/// A number from an attribute, with a default.
 fn number(element: Option<Element<'_>>, key: &str, default: f64, findings: &Findings) -> f64 {
     let attribute = element.and_then(|element| element.attribute_node(key));
     let read =
@@ -285,7 +285,7 @@ fn link_of(
     link
 }
 
-/// The motions of a joint, one after the other; none where it is fixed.
+/// The motions of a joint in series; none if it is fixed.
 fn moves(element: Element<'_>, name: &str, findings: &Findings) -> Vec<Joint> {
     let Some(kind) = element.attribute_node("type") else {
         let help = "write `type=\"revolute\"`, `continuous`, `prismatic` or `fixed`";
@@ -356,7 +356,7 @@ fn joint(element: Element<'_>, name: &str, motion: Motion, findings: &Findings) 
     }
 }
 
-/// Displacements along the two axes of a plane, then the turn about the axis across.
+/// Displacements along the two axes of a plane, then the rotation about its normal.
 fn planar(name: &str, across: Vector) -> Vec<Joint> {
     let (nearest, turn) = Axis::nearest(across);
     let slides = [1, 2].map(|step| {
@@ -399,7 +399,7 @@ fn range(element: Element<'_>, name: &str, findings: &Findings) -> Option<[f64; 
     }
 }
 
-/// `<mimic>`: this joint follows another one.
+/// `<mimic>`: the position of this joint is an affine function of that of another one.
 fn mimic<'x>(
     element: Element<'x>,
     joints: &BTreeMap<&'x str, Element<'x>>,
@@ -506,7 +506,7 @@ fn tree(
     }
     let mut links: Vec<Link> = Vec::new();
     let mut connections: Vec<Option<Connection<'_>>> = connections.into_iter().map(Some).collect();
-    // (link, where its parent stands in the result, the joint to it)
+    // (link, index of its parent in the result, the joint to it)
     let mut open: Vec<(usize, Option<usize>, Option<usize>)> = roots
         .first()
         .map(|root| (*root, None, None))

@@ -1,4 +1,4 @@
-//! What is left out of a robot on request.
+//! Properties that are left out of a robot on request.
 
 use std::str::FromStr;
 
@@ -6,7 +6,7 @@ use appell_spec::did_you_mean;
 
 use crate::model::Robot;
 
-/// A property of robots that a spec can do without.
+/// A property of robots that a spec may omit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Without {
     /// Damping in proportion to rates.
@@ -19,11 +19,11 @@ pub enum Without {
     Friction,
     /// Ranges of coordinates.
     Limits,
-    /// Joints that follow others, and connections of links: all then move freely.
+    /// Couplings of joints and loop closures: all joints are then independent.
     Couplings,
-    /// Forces that carry the weight of links (`gravcomp`).
+    /// Forces that compensate the weight of links (`gravcomp`).
     Compensation,
-    /// Points at the origins of links that nothing uses.
+    /// Unused points at the origins of links.
     Points,
 }
 

@@ -1,4 +1,4 @@
-//! Elements and attributes with their places; what is wrong with them is collected.
+//! Elements and attributes with their positions; collection of findings about them.
 
 use std::cell::{Cell, RefCell};
 use std::ops::Range;
@@ -11,7 +11,7 @@ pub(crate) type Span = Range<usize>;
 
 /// Deepest nesting of elements.
 pub(crate) const MOST_NESTED: usize = 200;
-/// What to do with a file that has to be expanded.
+/// Help for a file that has to be expanded.
 pub(crate) const XACRO: &str = "this is a xacro file, expand it first: `xacro FILE > OUT.urdf`";
 /// Most elements and texts of a file.
 const MOST_NODES: u32 = 1 << 20;
@@ -19,18 +19,18 @@ const MOST_NODES: u32 = 1 << 20;
 /// An element whose attributes are read.
 pub(crate) type Element<'x> = Node<'x, 'x>;
 
-/// What was found in a file.
+/// Findings about a file.
 #[derive(Debug, Default)]
 pub(crate) struct Findings {
     all: RefCell<Vec<Diagnostic>>,
     errors: Cell<usize>,
 }
 
-/// Most errors that are kept, and most warnings.
+/// Largest number of errors, and of warnings; further ones are dropped.
 const MOST_FINDINGS: usize = 100;
 
 impl Findings {
-    /// Adds a finding; what is read twice is wrong once. Of very many the first are kept.
+    /// Adds a finding unless it is a duplicate or there are too many.
     pub(crate) fn add(&self, finding: Diagnostic) {
         let mut all = self.all.borrow_mut();
         let is_error = finding.severity == Severity::Error;
@@ -76,7 +76,7 @@ impl Findings {
     }
 }
 
-/// The document of a text, or what is wrong with its XML.
+/// Parses an XML document; the error is a diagnostic.
 pub(crate) fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
     let options = roxmltree::ParsingOptions {
         nodes_limit: MOST_NODES,
@@ -107,8 +107,8 @@ pub(crate) fn parse(text: &str) -> Result<Document<'_>, Diagnostic> {
     })
 }
 
-/// The text with blanks in place of a mark of byte order, and of a declaration that does not stand first, where XML wants
-/// it; all places stay.
+/// The text with a byte order mark, and an XML declaration that is not at the beginning, replaced by blanks, so that
+/// all positions are unchanged.
 pub(crate) fn begun(text: &str) -> String {
     let blank = |part: &str| -> String {
         let bytes = part.bytes();
@@ -177,7 +177,7 @@ fn offset(text: &str, at: roxmltree::TextPos) -> usize {
     (start + within).min(text.len())
 }
 
-/// The tag of an element without what it holds.
+/// The start tag of an element.
 pub(crate) fn tag(element: Element<'_>) -> Span {
     let all = element.range();
     let text = &element.document().input_text()[all.clone()];
@@ -201,7 +201,7 @@ pub(crate) fn children<'x>(
     elements(element).filter(move |child| child.tag_name().name() == name)
 }
 
-/// The elements that an element holds.
+/// The children of an element that are elements.
 pub(crate) fn elements(element: Element<'_>) -> impl Iterator<Item = Element<'_>> {
     element.children().filter(Node::is_element)
 }
@@ -232,7 +232,7 @@ pub(crate) fn numbers(findings: &Findings, attribute: &Attribute<'_, '_>) -> Opt
     Some(numbers)
 }
 
-/// What to write for a word that is no number.
+/// The correction to suggest for a word that is not a number.
 fn instead(word: &str) -> String {
     let pointed = word.replace(',', ".");
     if word.matches(',').count() == 1 && pointed.parse::<f64>().is_ok() {
@@ -247,7 +247,7 @@ fn instead(word: &str) -> String {
     "write a number such as `0.5` or `1e-3`".to_owned()
 }
 
-/// As many numbers as something needs.
+/// A fixed number of numbers of an attribute.
 pub(crate) fn exactly<const N: usize>(
     findings: &Findings,
     attribute: &Attribute<'_, '_>,
@@ -272,7 +272,7 @@ pub(crate) fn exactly<const N: usize>(
     })
 }
 
-/// What an element holds.
+/// The contents of an element.
 pub(crate) fn inside(element: Element<'_>) -> Span {
     let (all, tag) = (element.range(), tag(element));
     let text = &element.document().input_text()[all.clone()];

@@ -5,15 +5,15 @@
 
 use nalgebra::{ComplexField, DMatrix, DVector};
 
-/// Rounds over all pairs of columns; a handful is usual.
+/// Maximum number of sweeps over all pairs of columns; a handful is usual.
 const MOST_ROUNDS: usize = 60;
 
-/// `A V = W`: V unitary, the columns of W at right angles, their lengths the singular values.
+/// `A V = W`: V is unitary, the columns of W are orthogonal, and their norms are the singular values.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Singular<T: ComplexField<RealField = f64>> {
     /// Singular values, the largest first; one per column of A.
     pub values: Vec<f64>,
-    /// V; its last columns span what A takes to zero.
+    /// V; its last columns span the null space of A.
     pub right: DMatrix<T>,
     /// W.
     pub images: DMatrix<T>,

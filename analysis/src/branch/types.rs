@@ -1,4 +1,4 @@
-//! What a branch holds: requirements, options, points, special points; errors.
+//! Data types of a branch: requirements, options, points, special points; errors.
 
 use nalgebra::DVector;
 

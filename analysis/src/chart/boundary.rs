@@ -130,7 +130,7 @@ impl Critical<'_> {
         })
     }
 
-    /// The change of the eigenvalues at a motion, and whether they decide on stability.
+    /// The change of the eigenvalues at a motion, and whether it changes stability.
     fn at(&self, z: &DVector<f64>) -> (Option<Change>, bool) {
         let problem = self.plane.problem;
         let point = self.plane.equations.point(z);

@@ -21,8 +21,8 @@ pub(crate) struct GridContinuation<'a> {
     open: VecDeque<(usize, usize)>,
 }
 
-/// Motions of one grid point that differ by less, relative to their size, are the same: near a fold
-/// those reached from different neighbours agree no better.
+/// Motions of one grid point that differ by less, relative to their size, are the same: near a fold this is the
+/// accuracy with which continuation from different neighbours agrees.
 const SAME_AT_POINT: f64 = 1e-5;
 /// Failed probes of holes after which the rest is taken as empty.
 const MOST_PROBES: usize = 8;

@@ -158,7 +158,7 @@ impl<'a> Plane<'a> {
         start: &DVector<f64>,
         to: [f64; 2],
     ) -> Option<DVector<f64>> {
-        /// The shortest step, as a part of the way.
+        /// The shortest step, as a fraction of the distance.
         const SHORTEST: f64 = 1.0 / 64.0;
         let (mut z, mut done, mut step) = (start.clone(), 0.0, 1.0);
         // Steps are halves of halves, so that the last one ends at 1.

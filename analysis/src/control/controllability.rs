@@ -110,8 +110,8 @@ fn singular_values(system: &LinearSystem) -> Vec<f64> {
     values
 }
 
-/// The eigenvalues of A, multiple ones once, with the test of Popov, Belevitch and Hautus. Of a
-/// complex pair the one above the real axis stands for both.
+/// The eigenvalues of A, multiple ones once, with the test of Popov, Belevitch and Hautus. A complex
+/// pair is represented by the eigenvalue above the real axis.
 fn modes(system: &LinearSystem, scales: &[f64]) -> Result<Vec<Mode>, SpectrumError> {
     let size = system.a.amax().max(system.b.amax()).max(f64::MIN_POSITIVE);
     let mut open = spectrum::eigenvalues(&system.a)?;

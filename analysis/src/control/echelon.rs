@@ -6,7 +6,7 @@ use nalgebra::{ComplexField, DMatrix};
 const PIVOT: f64 = 1e-4;
 
 /// The reduced row echelon form of independent rows: each row has a 1 where the others have 0, and
-/// rounding becomes 0. Columns stand for states; the first ones are eliminated, so that relations
+/// rounding becomes 0. Columns are states; the first ones are eliminated, so that relations
 /// give speeds in terms of coordinates.
 pub(super) fn row_echelon<T>(mut rows: DMatrix<T>, negligible: f64) -> DMatrix<T>
 where

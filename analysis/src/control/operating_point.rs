@@ -210,7 +210,7 @@ impl<'a> OperatingPoint<'a> {
         if self.model.dependent_coordinates().is_empty() {
             return Ok(none());
         }
-        // What depends on time turns nothing.
+        // Equations that depend on time have no symmetric rotations here.
         let structure = Structure::of(self.model, &Point { x, u, p });
         Ok(structure.map_or_else(
             |_| none(),

@@ -1,7 +1,7 @@
 //! Pole placement with one input.
 //!
 //! The gains are unique. By Ackermann's formula kᵀ = eₙᵀ [b Ab … Aⁿ⁻¹b]⁻¹ p(A); in Hessenberg form,
-//! which the staircase gives, the matrix in brackets is triangular and what remains is one row
+//! which the staircase gives, the matrix in brackets is triangular, so that only one row has to be
 //! multiplied n times (B. N. Datta, *An algorithm to assign eigenvalues in a Hessenberg matrix:
 //! single input case*, IEEE Transactions on Automatic Control 32, 1987).
 
@@ -83,7 +83,7 @@ pub enum PlacementError {
     Spectrum(#[from] SpectrumError),
 }
 
-/// Gains of one input that give A − b kᵀ the poles.
+/// Gains of one input that place the poles of A − b kᵀ.
 pub fn place(system: &LinearSystem, poles: &[Complex<f64>]) -> Result<Placement, PlacementError> {
     let poles = paired(poles, system.order())?;
     let balanced = system.balanced();

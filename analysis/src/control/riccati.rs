@@ -183,7 +183,7 @@ fn cayley(a: &Matrix, g: &Matrix, q: &Matrix, gamma: f64) -> Option<[Matrix; 3]>
     ])
 }
 
-/// The limit of H under doubling; nothing where it has none.
+/// The limit of H under doubling; `None` without convergence.
 fn doubled([mut a, mut g, mut h]: [Matrix; 3]) -> Option<Matrix> {
     let identity = Matrix::identity(a.nrows(), a.nrows());
     for _ in 0..DOUBLINGS {

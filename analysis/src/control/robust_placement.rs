@@ -126,7 +126,7 @@ fn first_vectors(choices: &[Matrix], poles: &[Complex<f64>], start: usize) -> Ma
     vectors
 }
 
-/// Sets an eigenvector, and the conjugate one beside it for a complex pole.
+/// Sets the eigenvector of pole `j`; for a complex pole also its conjugate, in the next column.
 fn set(vectors: &mut Matrix, poles: &[Complex<f64>], j: usize, vector: &DVector<Complex<f64>>) {
     if poles[j].im > 0.0 {
         vectors.set_column(j + 1, &vector.conjugate());

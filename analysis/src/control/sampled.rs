@@ -56,12 +56,12 @@ impl Sampling {
         }
     }
 
-    /// Between two measurements, in s.
+    /// Time between two measurements, in s.
     pub fn period(self) -> f64 {
         self.period
     }
 
-    /// From a measurement to its effect, in s.
+    /// Time from a measurement to the change of the input, in s.
     pub fn delay(self) -> f64 {
         self.delay
     }
@@ -70,7 +70,7 @@ impl Sampling {
     #[expect(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,
-        reason = "a count; what is no count saturates"
+        reason = "a count; values out of range saturate"
     )]
     pub fn pending(self) -> usize {
         // Rounding must not turn a delay of exactly three periods (0.3 s / 0.1 s) into four.

@@ -93,11 +93,11 @@ impl<D: Fn(f64, &mut [f64])> InputSource for SampledFeedback<D> {
     }
 }
 
-/// How many of the times `first`, `first + period`, … have come at `t`.
+/// How many of the times `first`, `first + period`, … are not after `t`.
 #[expect(
     clippy::cast_possible_truncation,
     clippy::cast_sign_loss,
-    reason = "a count; what is no count saturates"
+    reason = "a count; values out of range saturate"
 )]
 fn times_until(period: f64, first: f64, t: f64) -> usize {
     let mut count = ((t - first) / period).floor().max(0.0) as usize;

@@ -52,7 +52,7 @@ pub(crate) struct Criteria {
 }
 
 impl Criteria {
-    /// For the polynomials of a family, all of which have so many zeros.
+    /// For the characteristic polynomials of a family, all of which have `zeros` zero roots.
     pub(crate) fn of(polynomials: &[Vec<f64>], zeros: usize) -> Self {
         // A typical eigenvalue: the largest estimate from any coefficient.
         let size = |(k, c): (usize, &f64)| c.abs().powf(1.0 / k.max(1) as f64);
@@ -83,7 +83,7 @@ impl Criteria {
         scaled.map(|(k, c)| c / power(k)).collect()
     }
 
-    /// The last coefficient, and the determinant or discriminant; 1 where there is none.
+    /// The last coefficient, and the determinant or discriminant; 1 if there is none.
     pub(crate) fn values(&self, coefficients: &[f64]) -> [f64; 2] {
         let scaled = self.scaled(coefficients);
         let degree = scaled.len().saturating_sub(1);

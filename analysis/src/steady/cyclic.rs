@@ -26,7 +26,7 @@ pub struct Structure {
     /// The ignorable states whose rates depend on essential states alone: constant rates in a steady
     /// motion.
     pub uniform: Vec<usize>,
-    /// How unit quaternions may turn in a steady motion.
+    /// Symmetric rotations of unit quaternions in a steady motion.
     pub(crate) turning: Turning,
 }
 
@@ -43,7 +43,7 @@ pub enum StructureError {
 
 impl Structure {
     /// From the zeros of A at points within the ranges of states and inputs, and for the parameters
-    /// of `point`: a spring of zero stiffness couples nothing.
+    /// of `point`: a spring of zero stiffness causes no coupling.
     pub fn of(model: &dyn Model, point: &Point) -> Result<Self, StructureError> {
         let info = model.info();
         if info.explicit_time {
@@ -83,7 +83,7 @@ impl Structure {
         self.essential.contains(&state)
     }
 
-    /// The rates of a state but for quaternions that turn as they may: zero for essential states in a steady motion.
+    /// The rates of a state without the symmetric rotation of quaternions; zero for essential states if it is steady.
     pub fn still(&self, x: &[f64], rates: &[f64]) -> Vec<f64> {
         self.turning.still(x, rates)
     }

@@ -180,7 +180,7 @@ impl Equations for SteadyEquations<'_> {
         let (info, len) = (self.model.info(), z.len());
         let constraints = self.model.dependent_coordinates().len();
         let essential = &self.structure.essential;
-        // Steps do not turn what may be turned.
+        // Newton steps are orthogonal to the symmetric rotations.
         let turned = self.structure.turning.directions(&point.x);
         let rows = essential.len() + constraints + turned.ncols() + self.conditions.len();
         let mut values = DVector::zeros(rows);

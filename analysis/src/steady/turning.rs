@@ -1,10 +1,10 @@
-//! Unit quaternions that turn in a steady motion.
+//! Unit quaternions that vary in a steady motion.
 //!
-//! The four numbers of a turning body go on changing, though nothing else does. They change as ė = K e with an
-//! antisymmetric K, and the motion is steady if the equations are the same along that rotation,
-//! ẋ(exp(K s) x) = exp(K s) ẋ(x): for attitudes in the ground K is e ↦ ½ a e, a turn about the vertical where gravity
-//! is all that has a direction, any turn where nothing has. Such rotations are found from A and ẋ, as ignorable
-//! coordinates are. Departures from the motion are those of exp(-K t) x, which stands still.
+//! The quaternion of a rotating body varies even if the motion is steady: ė = K e with an antisymmetric K. The motion
+//! is a relative equilibrium if the equations are equivariant under this rotation, ẋ(exp(K s) x) = exp(K s) ẋ(x). For
+//! attitudes relative to the ground, K is e ↦ ½ a e: a rotation about the vertical if only gravity distinguishes a
+//! direction, any rotation without gravity. The symmetries are determined from A and ẋ, like ignorable coordinates.
+//! Perturbations are those of exp(-K t) x, which is constant in the steady motion.
 
 use appell_runtime::model::{At, Model};
 use appell_spectra::singular::Singular;
@@ -14,7 +14,7 @@ use nalgebra::{DMatrix, DVector, Matrix4};
 const ROUNDING: f64 = 1e-11;
 /// Directions shorter than this, relative to the longest, coincide with others.
 const SAME_DIRECTION: f64 = 1e-9;
-/// Rotations of four numbers: pairs of axes.
+/// Rotations in four dimensions: pairs of axes.
 const PLANES: [[usize; 2]; 6] = [[0, 1], [0, 2], [0, 3], [1, 2], [1, 3], [2, 3]];
 /// Steps towards a reference.
 const MOST_STEPS: usize = 100;
@@ -27,7 +27,7 @@ pub(crate) struct Sample {
     pub(crate) a: Vec<f64>,
 }
 
-/// Quaternions, and the rotations of their numbers along which the equations are the same.
+/// Quaternions, and the rotations of their components under which the equations are equivariant.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Turning {
     /// The components of each, by their index among the states.
@@ -36,8 +36,8 @@ pub(crate) struct Turning {
     rotations: Vec<Vec<Matrix4<f64>>>,
 }
 
-/// The quaternions of a model, by their components among the states: their norms are kept by position
-/// constraints, so that the slopes are twice the components.
+/// The quaternions of a model, by their components among the states. They are recognised by the position
+/// constraints of their norms, whose gradient is twice the components.
 pub(crate) fn quaternions(model: &dyn Model, at: At<'_>) -> Vec<[usize; 4]> {
     let speeds = model.info().speeds;
     let (count, coordinates) = (model.dependent_coordinates().len(), at.x.len() - speeds);
@@ -118,7 +118,7 @@ impl Turning {
         changes
     }
 
-    /// Whether a state is a component of a quaternion that a rotation turns.
+    /// Whether a state is a component of a quaternion that is changed by a rotation.
     pub(crate) fn moves(&self, state: usize) -> bool {
         let of = self.quaternions.iter().position(|q| q.contains(&state));
         let turns = |of: usize| self.rotations.iter().any(|all| all[of] != Matrix4::zeros());
@@ -149,7 +149,7 @@ impl Turning {
         directions
     }
 
-    /// The K with which a state turns that has these rates, as a matrix of all states.
+    /// The generator Σ c K of the rotation of a state with these rates, as a matrix over all states.
     pub(crate) fn turn(&self, x: &[f64], rates: &[f64]) -> DMatrix<f64> {
         let n = x.len();
         let mut turn = DMatrix::zeros(n, n);
@@ -168,7 +168,7 @@ impl Turning {
         turn
     }
 
-    /// The rates of the turned back state.
+    /// The rates relative to the rotation.
     pub(crate) fn still(&self, x: &[f64], rates: &[f64]) -> Vec<f64> {
         let turning = self.turn(x, rates) * DVector::from_column_slice(x);
         rates
@@ -178,7 +178,7 @@ impl Turning {
             .collect()
     }
 
-    /// Takes from columns of derivatives of rates what is along the rotations.
+    /// Projects columns of derivatives of rates onto the orthogonal complement of the rotations.
     pub(crate) fn across(&self, x: &[f64], columns: &mut DMatrix<f64>) {
         if !self.rotations.is_empty() {
             let along = Along::of(self.directions(x));
@@ -210,10 +210,10 @@ impl Turning {
         }
     }
 
-    /// Among the states that differ by rotations and by signs of quaternions, the one nearest to another state: of
-    /// motions that are the same but for these, one is told.
+    /// Replaces a state by the one nearest to `reference` among those that differ only by rotations and by signs of
+    /// quaternions, so that equivalent motions are reported once.
     pub(crate) fn bring_near(&self, reference: &[f64], x: &mut [f64]) {
-        /// Where a reference is as far from all of them, another one decides.
+        /// Below this all of them are equally far from the reference, and a perturbed reference decides.
         const FAR: f64 = 1e-6;
         const BESIDE: [f64; 4] = [0.3, 0.9, -0.5, 0.7];
         let mut wanted = DVector::zeros(x.len());
@@ -232,7 +232,7 @@ impl Turning {
         }
     }
 
-    /// Rotates a state so that its product with another becomes the largest; returns that.
+    /// Rotates a state so that its inner product with another is maximal; returns this product.
     fn climb(&self, wanted: &DVector<f64>, x: &mut [f64]) -> f64 {
         let product = |x: &[f64]| -> f64 { x.iter().zip(wanted.iter()).map(|(x, w)| x * w).sum() };
         for quaternion in &self.quaternions {
@@ -250,7 +250,7 @@ impl Turning {
             if slope.sqrt() <= ROUNDING || length <= 0.0 {
                 break;
             }
-            // Of one rotation the product is a sine.
+            // For a single rotation the product is a sine of its angle.
             let rate = length / (self.quaternions.len() as f64).sqrt();
             let mut by = (slope / rate).atan2(here) / rate;
             let mut turned = x.to_vec();

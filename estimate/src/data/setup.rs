@@ -115,7 +115,7 @@ impl<'a> Setup<'a> {
         place.map(|place| self.lagging.len() + place)
     }
 
-    /// What a channel reads at a moment: a lagging one the state of its filter.
+    /// The quantity that a channel reads: the state of its filter if the channel lags.
     pub(crate) fn reads(&self, channel: usize) -> Measured {
         let lag = self.lag_of_channel(channel);
         lag.map_or(self.channels[channel].measures, |lag| {

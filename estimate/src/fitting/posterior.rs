@@ -55,7 +55,8 @@ impl Posterior<'_, '_> {
         Ok(self.point((values, coordinates), likelihood))
     }
 
-    /// The same where it is better by this gain; most steps that are not are seen before their gradient.
+    /// The same if the objective rises by more than `gain`; most other steps are rejected before their gradient is
+    /// computed.
     pub(crate) fn bettered(&self, point: &Point, step: &DVector<f64>, gain: f64) -> Option<Point> {
         let (values, coordinates) = self.stepped(point, step);
         let (prior, _) = self.selection.prior(&coordinates);
@@ -137,8 +138,8 @@ impl Point {
         rise.abs() <= ROUNDING * self.objective.abs()
     }
 
-    /// Whether another point is better by this gain; by the directional derivatives if the
-    /// difference is rounding.
+    /// Whether the objective of another point is larger by more than `gain`; if the difference is rounding, the
+    /// directional derivatives decide.
     pub(crate) fn is_worse_than(&self, other: &Point, gain: f64) -> bool {
         let rise = other.objective - self.objective;
         if !self.is_rounding(rise) {

@@ -356,7 +356,7 @@ impl Backward<'_, '_> {
         gradient[noise] += 2.0 * pass.values[noise] * by_s;
         // a = P c with P = root rootᵀ.
         match pass.system.setup.reads(sample.innovation.channel) {
-            // c is along this state alone, as its slope stays: all that is asked for.
+            // c has this component only, so that only this component of the derivative is needed.
             Measured::State(state) => by_c[state] += dot(a, by_a) / c[state],
             Measured::Output(_) => {
                 let [projection, product, _] = &mut self.square;

@@ -1,8 +1,8 @@
 //! Fisher information of levels of disturbances and noise along a recording, by one pass of the filter.
 //!
 //! They change covariances: dP⁺ = F (dP + dN) Fᵀ + dN over a step; at a scalar with a = P c, s = cᵀ P c + r
-//! and residual e, da = dP c and ds = cᵀ da + dr give dP⁺ = dP − d(a aᵀ/s), dz⁺ = dz + d(a e/s). The motion that
-//! F and c are linearised about is held: its changes multiply innovations, which have zero mean.
+//! and residual e, da = dP c and ds = cᵀ da + dr give dP⁺ = dP − d(a aᵀ/s), dz⁺ = dz + d(a e/s). The motion about
+//! which F and c are linearised is held: its changes multiply innovations, which have zero mean.
 
 use nalgebra::DMatrix;
 

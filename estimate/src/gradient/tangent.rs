@@ -5,9 +5,9 @@
 //! the covariance, be it for a parameter, a bias, a delay that is not part of the setup, or a
 //! candidate force.
 //!
-//! Every column is predictable: what it adds to a reading is known before that reading. A controller computes
-//! its command from the reading of the same row, so that the command holds the noise of it; a column with
-//! that command in it would find this noise in the innovation. So commands of a row act on what comes after it.
+//! Every column is predictable: its contribution to a reading does not depend on that reading. A controller computes
+//! its command from the reading of the same row, so that the command contains the noise of the reading and would be
+//! correlated with the innovation. The command of a row therefore acts on later readings only.
 
 use nalgebra::DMatrix;
 
@@ -66,8 +66,8 @@ pub struct Tangent {
     /// A row for each sample; a column for each direction, then for each shape along the first
     /// disturbance or channel, and so on.
     pub slopes: DMatrix<f64>,
-    /// For each shape along a disturbance, in the order of their columns: the mean square of what it adds in a
-    /// row, in standard deviations of the filter before that row.
+    /// For each shape along a disturbance, in the order of their columns: the mean square of its contribution per
+    /// row, in standard deviations of the prediction of that row.
     pub added_squares: Vec<f64>,
 }
 

@@ -1,7 +1,7 @@
 //! Inconsistency of recorded motions with a model, for any inputs, and the parameters that minimise
 //! it.
 //!
-//! The relations ρ of a stretch have the covariance C = J Σ Jᵀ from the noise of the samples; J is
+//! The relations ρ of a segment have the covariance C = J Σ Jᵀ from the noise of the samples; J is
 //! their exact Jacobian with respect to the motion, which depends on the parameters θ, and Σ is the
 //! covariance of the motion with all correlations in time. The inconsistency is
 //!
@@ -62,7 +62,7 @@ pub struct Consistency<'a> {
     sought: Vec<Sought>,
 }
 
-/// The relations of a stretch: rows for each relation of each time.
+/// The relations of a segment: rows for each relation of each time.
 struct Evaluated {
     values: DVector<f64>,
     by_motion: [DMatrix<f64>; 3],
@@ -190,14 +190,14 @@ impl<'a> Consistency<'a> {
             all.cost += 0.5 * white.norm_squared();
             all.information += slopes.tr_mul(&slopes);
             all.count += white.len();
-            // Neighbours within a stretch may be correlated; stretches are not.
+            // Neighbours within a segment may be correlated; segments are not.
             all.squares += &score * score.transpose();
             all.score += score;
         }
         Ok(all)
     }
 
-    /// Relations at all times of a stretch.
+    /// Relations at all times of a segment.
     fn evaluate(
         &self,
         stretch: &Stretch,

@@ -35,7 +35,7 @@ pub struct Found {
     pub values: DVector<f64>,
     /// Their covariance from the noise of the samples.
     pub covariance: DMatrix<f64>,
-    /// The same from the scores of stretches (robust).
+    /// The same from the scores of segments (robust).
     pub robust: DMatrix<f64>,
     /// 95 % intervals; infinite at an unbounded end.
     pub intervals: Vec<[f64; 2]>,

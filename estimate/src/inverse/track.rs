@@ -1,4 +1,4 @@
-//! Recorded coordinates as splines, in stretches with independent errors.
+//! Recorded coordinates as splines, in segments with independent errors.
 //!
 //! All coordinates share the knots, so that the splines filter both sides of the equations alike.
 //! The spacing matters little once it is small enough, as derivatives are weighted with all
@@ -18,9 +18,9 @@ const CLOSER: f64 = 1.5;
 const FEWEST_SAMPLES: f64 = 2.0;
 /// Length of a gap, in steps, at which a record is cut.
 const GAP: f64 = 6.0;
-/// Largest number of knots of a stretch, whose covariance is a full matrix.
+/// Largest number of knots of a segment, whose covariance is a full matrix.
 const MOST_KNOTS: usize = 96;
-/// Least number of knots of a stretch.
+/// Least number of knots of a segment.
 const FEWEST_KNOTS: f64 = 8.0;
 /// Significance, in standard deviations, of a reduction of the residuals.
 const CHANCE: f64 = 3.0;
@@ -75,7 +75,7 @@ impl Piece {
         RegressionSpline::fit(basis, &self.times, &self.values)
     }
 
-    /// Equal parts of at most so many knots.
+    /// Equal parts with at most `MOST_KNOTS` knots each.
     fn parts(&self, spacing: f64) -> Vec<Self> {
         let knots = (self.length() / spacing).max(1.0);
         let count = (knots / MOST_KNOTS as f64).ceil();
@@ -143,8 +143,8 @@ impl Track {
         Self::beside(records, 0)
     }
 
-    /// The same where the last columns of the records are no coordinates: they have the same knots and do not
-    /// decide how close these are.
+    /// The same where the last columns of the records are no coordinates: they share the knots, whose spacing is
+    /// chosen without them.
     pub fn beside(records: &[Record], others: usize) -> Result<Self, InverseError> {
         let pieces: Vec<Piece> = records.iter().enumerate().flat_map(cut).collect();
         let (spacing, left) = distance(&pieces, others).ok_or(InverseError::TooShort)?;
@@ -164,7 +164,7 @@ impl Track {
         Ok(track)
     }
 
-    /// Covariance of (q, q̇, q̈) at one of the middles of a stretch.
+    /// Covariance of (q, q̇, q̈) at one of the midpoints of a segment.
     pub fn spread(&self, stretch: &Stretch, place: usize) -> DMatrix<f64> {
         let channels = self.noise.ncols();
         DMatrix::from_fn(3 * channels, 3 * channels, |i, j| {

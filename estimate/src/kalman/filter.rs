@@ -429,8 +429,8 @@ impl<'a> Pass<'a> {
         self.held.clone()
     }
 
-    /// Keeps on the tape what the update by a scalar starts from. Returns its quantity without scale
-    /// and bias, in the state before the first scalar of the moment, whose tape is `prior`.
+    /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale
+    /// and bias, in the state before the first scalar of this time, whose tape is `prior`.
     fn keep(&mut self, channel: usize, (prior, tape): (usize, usize)) -> f64 {
         let n = self.sizes.n;
         let (earlier, rest) = self.tape.split_at_mut(tape);

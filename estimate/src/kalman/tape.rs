@@ -7,7 +7,7 @@ use crate::matrix::pieces;
 use crate::motion::timeline::Advance;
 use crate::motion::transition::{Stages, stages_len};
 
-/// What the filter did, in order.
+/// An action of the filter.
 #[derive(Debug, Clone)]
 pub(crate) enum Record {
     /// A step; its numbers start at `tape`.
@@ -107,8 +107,8 @@ impl Sizes {
 }
 
 impl Pass<'_> {
-    /// Visits the records from the last one on, each with the tape that its numbers stand on, and in
-    /// place of a step in parts its parts.
+    /// Visits the records in reverse order, each with the tape of its numbers. A step in parts is
+    /// replaced by its parts.
     pub(crate) fn walk_back(&self, tape: &mut [f64], mut visit: impl FnMut(&Record, &mut [f64])) {
         let mut again = Self::blank(self.system, self.values, self.run);
         for record in self.records.iter().rev() {

@@ -62,7 +62,7 @@ impl Closure {
         (0..self.n).filter(|state| !self.dependent.contains(state))
     }
 
-    /// Lets those coordinates follow that do so best at a place, as [`Closure::close`] does.
+    /// Chooses the best conditioned dependent coordinates at a point, as [`Closure::close`] does.
     pub(crate) fn choose(&mut self, plant: &Plant<'_>, place: Place<'_>, scratch: &mut Scratch) {
         plant.at(place, scratch, |at| {
             let follow = self.positions.choose_dependent(plant.model, at);

@@ -1,9 +1,9 @@
 //! The model with the states that estimation adds to it: lagging inputs, lagging channels, drifting
 //! parameters.
 //!
-//! `ż = (ẋ(t, x, u, p), (u_j − ν_j)/τ_j …, (q_k − f_k)/τ_k …, 0 …)`, where the model sees `ν_j` in place of
-//! the lagging `u_j` and the last states in place of the drifting parameters; `q_k` is what a lagging
-//! channel measures, `f_k` what it reads.
+//! `ż = (ẋ(t, x, u, p), (u_j − ν_j)/τ_j …, (q_k − f_k)/τ_k …, 0 …)`. The model is evaluated with `ν_j`
+//! instead of the lagging input `u_j`, and with the last states instead of the drifting parameters; `q_k` is
+//! the quantity measured by a lagging channel, `f_k` its reading.
 
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
@@ -226,12 +226,12 @@ impl<'a> Plant<'a> {
         }
     }
 
-    /// How far a lag is behind what it follows, at a point with these rates.
+    /// The difference between the input of a lag and its state, at a point with these rates.
     pub(crate) fn gap(&self, place: Place<'_>, rates: &[f64], lag: usize) -> f64 {
         let state = self.info().state_len() + lag;
         match self.lagging.get(lag) {
             Some(&input) => place.input(input) - place.z[state],
-            // What a channel measures need not be evaluated again.
+            // From its rate, as evaluating the measured quantity again is expensive.
             None => rates[state] * place.lags[lag],
         }
     }

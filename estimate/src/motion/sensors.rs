@@ -12,7 +12,7 @@ pub(super) struct Filter {
     pub(super) lag: usize,
     /// Its state f.
     pub(super) state: usize,
-    /// What it follows.
+    /// The measured quantity.
     follows: Measured,
 }
 

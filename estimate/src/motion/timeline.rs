@@ -65,7 +65,7 @@ struct Stop {
     action: Option<Action>,
 }
 
-/// All actions of a run. Inputs change before what is measured at the same time.
+/// All actions of a run. At equal times inputs change before measurements are taken.
 pub(crate) fn timeline(
     setup: &Setup<'_>,
     layout: &Layout,

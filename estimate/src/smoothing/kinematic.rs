@@ -352,7 +352,7 @@ fn triangularise(a: &mut [f64], rows: usize, columns: usize, pivots: usize) {
     }
 }
 
-/// Solves R X = B for B of so many columns, R standing in the first columns of the rows.
+/// Solves R X = B for B of `width` columns; R is stored in the first columns of the rows.
 fn back_substitute(rows: &[f64], columns: usize, m: usize, b: &mut [f64], width: usize) {
     for j in 0..width {
         for i in (0..m).rev() {

@@ -1,4 +1,4 @@
-//! The noise level of samples, without a model of what they measure.
+//! The noise level of samples, without a model of the measured quantity.
 //!
 //! Both methods assume white noise. For sensors with internal filtering the estimated level is too
 //! small, and smoothing with it too weak.
@@ -14,7 +14,7 @@ const MOST: usize = 100_000;
 /// Significance, in standard deviations, of a difference of two levels. One suffices, as levels of
 /// neighbouring orders are correlated.
 const CHANCE: f64 = 1.0;
-/// Of so many differences the largest is left out, as it may be an impact.
+/// One in this many differences, the largest, is left out, as it may be an impact.
 const LEFT_OUT: usize = 10;
 /// Mean square of the smallest nine tenths of standard normal numbers.
 const NORMAL_TRIMMED: f64 = 0.623_01;
@@ -105,15 +105,15 @@ fn choose(n: usize, k: usize) -> f64 {
     (1..=k).map(|i| (n - k + i) as f64 / i as f64).product()
 }
 
-/// Samples of a stretch that is tested for standstill.
+/// Number of samples of a segment that is tested for standstill.
 const STRETCH: usize = 40;
-/// The ratio of J. von Neumann (1941) is 2 for white noise and falls with every motion; with a stretch
-/// of 40 it varies by 0.3.
+/// The ratio of J. von Neumann (1941) is 2 for white noise and falls with every motion; for a segment
+/// of 40 samples its standard deviation is 0.3.
 const AT_REST: f64 = 1.4;
-/// Least number of stretches at rest.
+/// Least number of segments at rest.
 const FEWEST_STRETCHES: usize = 4;
 
-/// The level at standstill: the standard deviation in stretches whose samples vary like white noise
+/// The level at standstill: the standard deviation in segments whose samples vary like white noise
 /// about a constant. `None` if there are too few.
 pub fn at_standstill(records: &[Samples<'_>]) -> Option<f64> {
     let (mut stretches, mut squares) = (0, 0.0);

@@ -178,7 +178,7 @@ pub struct Estimate {
 }
 
 impl Estimate {
-    /// A value and `order` derivatives at so many times, all zero.
+    /// A value and `order` derivatives at a number of times, all zero.
     pub(super) fn zeros(times: usize, order: usize) -> Self {
         let width = order + 1;
         Self {

@@ -18,7 +18,7 @@ pub struct SavitzkyGolay {
 }
 
 impl SavitzkyGolay {
-    /// Polynomials of a degree over so many neighbouring samples, more than the degree.
+    /// Polynomials of a degree over a window of samples, whose number must exceed the degree.
     pub fn new(degree: usize, count: usize) -> Result<Self, SamplesError> {
         let degree = within("degree", degree, [0, MOST_DEGREE])?;
         let count = within("window", count, [degree + 1, usize::MAX])?;

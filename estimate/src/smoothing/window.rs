@@ -2,8 +2,8 @@
 //!
 //! The rule of A. Goldenshluger and O. Lepski (2011), averaged over the record. A wide window is
 //! compared with every narrower one. Noise alone makes their estimates differ by the difference of
-//! their variances, because least squares over the wide window is the better of two unbiased
-//! estimates (J. Hausman, 1978); what the squared difference holds beyond is bias. The window with
+//! their variances, because least squares over the wide window is the more efficient of two unbiased
+//! estimates (J. Hausman, 1978); the excess of the squared difference is due to bias. The window with
 //! the smallest sum of bias and variance is taken.
 
 use super::samples::{Estimate, Samples, SamplesError};

@@ -25,7 +25,7 @@ pub struct Blocks {
 }
 
 impl Blocks {
-    /// Blocks of so many rows within runs. `sensitivity` is that of the fit.
+    /// Blocks of a number of rows within runs. `sensitivity` is that of the fit.
     pub fn of(fit: &Fit, sensitivity: &Sensitivity, rows: usize) -> Result<Self, EstimateError> {
         let all = sensitivity.scores();
         let mut blocks: BTreeMap<(usize, usize), DVector<f64>> = BTreeMap::new();

@@ -1,6 +1,6 @@
 //! The one table of all codes.
 
-/// Which stage finds it.
+/// The stage that reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
     /// Reading and checking the spec, in this crate.
@@ -16,7 +16,7 @@ pub struct CodeInfo {
     pub code: Code,
     /// As written in messages.
     pub text: &'static str,
-    /// Which stage finds it.
+    /// The stage that reports it.
     pub stage: Stage,
     /// The rule, in a few words.
     pub title: &'static str,
@@ -56,7 +56,7 @@ impl Code {
         self.info().text
     }
 
-    /// The code written so.
+    /// The code with this name.
     pub fn from_text(text: &str) -> Option<Self> {
         CODES.iter().find(|c| c.text == text).map(|c| c.code)
     }

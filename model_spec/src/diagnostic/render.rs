@@ -49,10 +49,10 @@ fn render_one(renderer: &Renderer, report: &Report, diagnostic: &Diagnostic) -> 
     lines.join("\n").trim_end().to_owned()
 }
 
-/// Most bytes of a line that are shown behind what is marked.
+/// Maximum number of bytes shown after the marked part of a line.
 const MOST_BEHIND: usize = 1000;
 
-/// The lines that the labels touch, and no others: a large file costs nothing.
+/// Only the lines that the labels touch, so that the cost does not depend on the size of the file.
 fn snippet<'a>(
     report: &'a Report,
     diagnostic: &'a Diagnostic,
@@ -68,7 +68,7 @@ fn snippet<'a>(
     let from = text[..first].rfind('\n').map_or(0, |i| i + 1);
     let end = text.ceil_char_boundary(text.len().min(last + MOST_BEHIND));
     let to = text[last..end].find('\n').map_or(end, |i| last + i);
-    // Where a place is once hidden characters are written out.
+    // Column after hidden characters have been escaped.
     let column = |at: usize| shown(&text[from..at]).len();
     let annotations = spans.iter().zip(&diagnostic.labels).enumerate();
     let annotations = annotations.map(|(i, (span, (_, words)))| {
@@ -90,7 +90,7 @@ fn snippet<'a>(
         .annotations(annotations)
 }
 
-/// A carriage return ends a line; a blank keeps the places.
+/// A carriage return would end a line; a blank in its place preserves the columns.
 fn shown(text: &str) -> String {
     visible(&text.replace('\r', " ")).into_owned()
 }
@@ -129,13 +129,13 @@ mod tests {
             assert_eq!(shown.matches("\\u{202e}").count(), 5, "{shown}");
         }
         assert!(!report.plain().contains('\u{1b}'));
-        // What is left are the colours.
+        // The remaining escape sequences are colours.
         let commands = coloured.split('\u{1b}').skip(1);
         for command in commands {
             let end = command.find(|c: char| c.is_ascii_alphabetic());
             assert_eq!(end.map(|end| &command[end..=end]), Some("m"), "{command}");
         }
-        // The mark stands below its place.
+        // The mark is below the marked text.
         let plain = report.plain();
         let lines: Vec<&str> = plain.lines().collect();
         let line = lines.iter().position(|line| line.contains("x = 1"));

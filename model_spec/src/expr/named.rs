@@ -10,27 +10,27 @@ pub enum Motion {
     Position(PointId, Axis, FrameId),
     /// Velocity of a point, along an axis of a frame.
     Velocity(PointId, Axis, FrameId),
-    /// Size of the velocity of a point.
+    /// Magnitude of the velocity of a point.
     Speed(PointId),
     /// Angular velocity of the first frame, along an axis of the second.
     AngularVelocity(FrameId, Axis, FrameId),
 }
 
-/// An acceleration relative to the ground, or a force. Of a force without an axis the one number is
-/// meant that it has.
+/// An acceleration relative to the ground, or a force. A force without an axis is the scalar by which it
+/// is defined.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Response {
     /// Acceleration of a point, along an axis of a frame.
     Acceleration(PointId, Axis, FrameId),
     /// Angular acceleration of the first frame, along an axis of the second.
     AngularAcceleration(FrameId, Axis, FrameId),
-    /// Reaction where a constraint acts.
+    /// Reaction of a constraint at its point.
     Reaction(ConstraintId, Option<(Axis, FrameId)>),
     /// Reaction of a contact along the normal of its surface.
     NormalForce(ConstraintId),
     /// Force or torque of a load.
     Force(LoadId, Option<(Axis, FrameId)>),
-    /// What a drive brings along a pseudo-velocity whose rate is given.
+    /// Generalised force that the actuator supplies along a pseudo-velocity with prescribed rate.
     DriveForce(SpeedId),
 }
 
@@ -60,7 +60,7 @@ pub enum Word {
 }
 
 impl Word {
-    /// Every kind with its name and how it is written.
+    /// Every kind with its name and syntax.
     pub const ALL: &'static [(Self, &'static str, &'static str)] = &[
         (Self::Position, "position", "position(P, x)"),
         (Self::Velocity, "velocity", "velocity(P, x)"),
@@ -95,7 +95,7 @@ impl Word {
             .map_or("", |row| row.1)
     }
 
-    /// How it is written.
+    /// Its syntax.
     pub fn example(self) -> &'static str {
         Self::ALL
             .iter()

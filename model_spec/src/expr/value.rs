@@ -5,7 +5,7 @@ use num_traits::ToPrimitive;
 use super::{BinaryOp, Expr, ExprKind, Function, Quantity, Relation};
 
 impl Expr {
-    /// The value in SI where `known` tells that of each quantity; `NaN` where one is not known.
+    /// The value in SI, given the value of each quantity by `known`; `NaN` if one is unknown.
     pub fn value(&self, known: &dyn Fn(Quantity) -> f64) -> f64 {
         let of = |expr: &Self| expr.value(known);
         match &self.kind {
@@ -47,7 +47,7 @@ impl Expr {
 
 fn call(function: Function, values: &[f64]) -> f64 {
     let smooth_abs = |a: f64, w: f64| a.hypot(w);
-    // By how much a smoothed corner is off the sharp one, √(d² + w²) − |d| over 2.
+    // Deviation of a smoothed corner from the sharp one, (√(d² + w²) − |d|) / 2.
     let rounding = |d: f64, w: f64| w * w / (2.0 * (d.abs() + d.hypot(w)));
     match (function, values) {
         (Function::Sin, [a]) => a.sin(),

@@ -1,4 +1,4 @@
-//! Axes of joints: turns about them, displacements along them.
+//! Axes of joints: rotations about them, displacements along them.
 
 use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
@@ -16,7 +16,7 @@ pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
 /// A turn of a frame: the word of its axis, as TOML, and the angle.
 pub(super) type Turn = (Piece, Written);
 
-/// Where the axis of a joint points.
+/// Direction of the axis of a joint.
 #[derive(Debug, Clone)]
 pub(super) enum Direction {
     /// Along an axis of the frame, or against it.
@@ -68,7 +68,7 @@ impl Direction {
         }))
     }
 
-    /// The turns of a frame about the axis by an angle. Where the angle is 0, they leave the frame as it is.
+    /// The rotations of a frame about the axis by an angle; for the angle 0 their product is the identity.
     pub(super) fn turns(&self, by: &Written) -> Vec<Turn> {
         let components = match self {
             Self::Along { index, negative } => return vec![(word(*index, *negative), by.clone())],
@@ -79,7 +79,7 @@ impl Direction {
             Written::made(call, true)
         };
         let [x, y, z] = components.each_ref().map(|one| &one.piece);
-        // In a plane of two axes, one turn takes the first of them to the direction, and another one back.
+        // In a coordinate plane, one rotation maps the first axis to the direction, and another one back.
         if let Some(across) = (0..3).find(|&i| components[i].is_zero()) {
             let [first, second] = [(across + 1) % 3, (across + 2) % 3];
             let angle = atan2(&components[second].piece, &components[first].piece);
@@ -101,7 +101,7 @@ impl Direction {
         ]
     }
 
-    /// A place that is moved along the axis by a way.
+    /// A position displaced along the axis by a distance.
     pub(super) fn moved(&self, place: &[Written; 3], by: &Written) -> [Written; 3] {
         let mut moved = place.clone();
         match self {

@@ -1,4 +1,4 @@
-//! The text of a spec with items of other sections in place of its joints.
+//! The text of a spec with expanded joints.
 
 use toml_edit::{DocumentMut, InlineTable, Item, Table, Value};
 
@@ -6,7 +6,7 @@ use crate::edit::EditError;
 
 use super::made::Made;
 
-/// Writes the items at the end of their sections. Comments of a joint go with its frame.
+/// Writes the items at the end of their sections. Comments of a joint are moved to its frame.
 pub(super) fn replaced(
     text: &str,
     section: &str,
@@ -71,7 +71,7 @@ fn insert(
             .iter()
             .any(|(_, item)| item.as_table().is_some_and(|table| !table.is_dotted()))
     {
-        // After tables of their own, with headers, nothing else can stand.
+        // After subtables with headers no keys of the section can follow.
         let mut own = table.into_table();
         own.decor_mut().set_prefix(format!("\n{comments}"));
         section.insert(&made.name, Item::Table(own));

@@ -1,4 +1,4 @@
-//! What each kind of joint stands for.
+//! The expansion of each kind of joint.
 
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
@@ -18,7 +18,7 @@ pub(super) struct Made {
     pub(super) section: &'static str,
     /// The name of the item.
     pub(super) name: String,
-    /// What gives it this name.
+    /// The source of its name.
     pub(super) at: Span,
     /// The key for another name.
     pub(super) key: Option<&'static str>,
@@ -34,7 +34,7 @@ pub(super) trait Places {
     fn has_point(&self, name: &str) -> bool;
 }
 
-/// The items that a joint stands for.
+/// The items to which a joint is expanded.
 pub(super) fn made(
     text: &str,
     item: &ItemAst,
@@ -243,7 +243,7 @@ impl Joint<'_> {
         Some(Written::new(self.text, expression))
     }
 
-    /// A coordinate with what the joint has where it is 0.
+    /// A coordinate plus the offset of the joint.
     fn with_offset(&self, place: usize) -> Written {
         let offset = self.expression("offset").unwrap_or_else(Written::zero);
         offset.plus(&self.coordinate(place))
@@ -263,7 +263,7 @@ impl Joint<'_> {
         let from = self.from(places)?;
         let carrier = parent.clone();
         let mut turns = self.constant_turns();
-        // What moves in a plane that it turns in does so in a frame of its own.
+        // With constant rotations, a planar joint moves in an intermediate frame.
         if self.word == JointWord::Planar && !turns.is_empty() {
             let mount = format!("mount_{name}");
             let table = self.frame(&parent, &std::mem::take(&mut turns));
@@ -278,7 +278,7 @@ impl Joint<'_> {
         };
         let table = table.maybe("about", self.verbatim("about").as_ref());
         self.add("frames", &name, &table);
-        // The axis has the same components in the frame of the joint as before its turn.
+        // The axis has the same components before and after a rotation about it.
         let moving = if is_turned {
             Piece::new(name.as_str()).quoted()
         } else {
@@ -288,7 +288,7 @@ impl Joint<'_> {
         Ok(())
     }
 
-    /// The point: at its place in what carries the joint, and moved from there.
+    /// The point: displaced from its position in the parent.
     fn point(
         &mut self,
         name: &str,
@@ -335,7 +335,7 @@ impl Joint<'_> {
         }
     }
 
-    /// A place, moved by the coordinates.
+    /// A position, displaced by the coordinates.
     fn moved(&self, at: &[Written; 3], axis: Option<&Direction>) -> [Written; 3] {
         let mut moved = at.clone();
         match (self.word, axis) {
@@ -363,7 +363,7 @@ impl Joint<'_> {
         }
     }
 
-    /// The turns that the coordinates make.
+    /// The rotations by the coordinates.
     fn moving_turns(&self, axis: Option<&Direction>, second: Option<&Direction>) -> Vec<Turn> {
         let about = |axis: Option<&Direction>, angle: &Written| {
             axis.map_or_else(Vec::new, |axis| axis.turns(angle))
@@ -382,7 +382,7 @@ impl Joint<'_> {
         }
     }
 
-    /// The turns before the joint moves.
+    /// The constant rotations before those of the joint.
     fn constant_turns(&self) -> Vec<Turn> {
         let Some(ValueAst::Tables(turns)) = self.item.entry("turns").map(|entry| &entry.value)
         else {
@@ -397,7 +397,7 @@ impl Joint<'_> {
         turns.iter().filter_map(turn).collect()
     }
 
-    /// A frame by its turns.
+    /// A frame given by rotations.
     fn frame(&self, parent: &Piece, turns: &[Turn]) -> Table {
         let turned =
             |table: Table, (axis, by): &Turn| table.key("about_axis", axis).key("by", &by.value());
@@ -416,7 +416,7 @@ impl Joint<'_> {
         }
     }
 
-    /// A frame by a quaternion, whose components are the last coordinates.
+    /// A frame given by a quaternion, whose components are the last coordinates.
     fn quaternion(&self, parent: &Piece) -> Table {
         let first = self.coordinates.len().saturating_sub(4);
         let names = (first..self.coordinates.len()).map(|place| self.coordinate(place).piece);
@@ -434,7 +434,7 @@ impl Joint<'_> {
         }
     }
 
-    /// The point from which the joint is placed.
+    /// The point relative to which the joint is positioned.
     fn from(&self, places: &dyn Places) -> Result<Piece, Diagnostic> {
         if let Some(from) = self.verbatim("from") {
             return Ok(from);

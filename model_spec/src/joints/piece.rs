@@ -1,22 +1,22 @@
-//! Text that is made, with the places of the spec that its parts come from.
+//! Generated text with a source map to the spec.
 
 use std::ops::Range;
 
 use crate::expr::Span;
 
-/// Where a part of a made text comes from.
+/// Source of a part of generated text.
 #[derive(Debug, Clone)]
 pub(super) struct Origin {
     /// The part.
     made: Range<usize>,
-    /// Its place in the spec.
+    /// Its position in the spec.
     from: Span,
-    /// Whether the spec has the same letters there.
+    /// Whether the spec has the same text there.
     is_copy: bool,
 }
 
 impl Origin {
-    /// The place in the spec of a place in the part, if it lies there.
+    /// The position in the spec of a position in the part, if it lies there.
     fn of(&self, place: &Span) -> Option<Span> {
         let is_inside = self.made.start <= place.start && place.end <= self.made.end;
         is_inside.then(|| {
@@ -30,7 +30,7 @@ impl Origin {
     }
 }
 
-/// A made text.
+/// Generated text.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Piece {
     /// The text.
@@ -39,7 +39,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// A text that stands nowhere in the spec.
+    /// A text without a source in the spec.
     pub(super) fn new(text: impl Into<String>) -> Self {
         Self {
             text: text.into(),
@@ -47,7 +47,7 @@ impl Piece {
         }
     }
 
-    /// A text that stands at `from`.
+    /// A text with its source at `from`.
     pub(super) fn copied(text: impl Into<String>, from: Span) -> Self {
         let text = text.into();
         let is_copy = text.len() == from.len();
@@ -59,7 +59,7 @@ impl Piece {
         Self { text, origins }
     }
 
-    /// The same text, all of which comes from a place unless its parts know better.
+    /// The same text with a source for all parts that have none.
     pub(super) fn from(mut self, place: &Span) -> Self {
         self.origins.push(Origin {
             made: 0..self.text.len(),
@@ -87,7 +87,7 @@ impl Piece {
         self
     }
 
-    /// Between two words.
+    /// Enclosed by two strings.
     pub(super) fn within(&self, before: &str, after: &str) -> Self {
         Self::new(before).then(self).word(after)
     }
@@ -97,7 +97,7 @@ impl Piece {
         self.within("\"", "\"")
     }
 
-    /// Several, with a word between.
+    /// Several, joined by a string.
     pub(super) fn joined(pieces: &[Self], between: &str) -> Self {
         let mut all = Self::default();
         for (count, piece) in pieces.iter().enumerate() {
@@ -109,7 +109,7 @@ impl Piece {
         all
     }
 
-    /// The place in the spec of a place in the text, as exactly as it is known.
+    /// The position in the spec of a position in the text, as precisely as known.
     pub(super) fn place(&self, place: &Span) -> Option<Span> {
         let mut known: Vec<&Origin> = self.origins.iter().collect();
         known.sort_by_key(|origin| origin.made.len());

@@ -1,9 +1,9 @@
-//! Other places for everything in a syntax tree.
+//! Replaces all positions in a syntax tree.
 
 use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
 use crate::expr::Span;
 
-/// Moves every place of an item.
+/// Maps every position of an item.
 pub(super) fn relocate(item: &mut ItemAst, to: &dyn Fn(&Span) -> Span) {
     item.name.span = to(&item.name.span);
     for entry in &mut item.entries {

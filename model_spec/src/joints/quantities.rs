@@ -6,19 +6,19 @@ use crate::language::{ItemKind, JointWord, Sense};
 
 use super::direction::AXES;
 
-/// What a kind calls a quantity, which unit it has and what it is.
+/// Name, unit and description of a quantity of a kind of joint.
 type Known = (String, &'static str, &'static str);
 
-/// A coordinate or pseudo-velocity that a joint makes.
+/// A coordinate or pseudo-velocity that a joint introduces.
 #[derive(Debug, Clone)]
 pub(super) struct JointQuantity {
     /// Its name.
     pub(super) name: String,
-    /// Where the spec names it; `None` where it is named after the joint.
+    /// Position of its name in the spec; `None` if it is named after the joint.
     pub(super) written: Option<Span>,
     /// Its unit.
     pub(super) unit: &'static str,
-    /// What it is.
+    /// Its description.
     pub(super) about: &'static str,
 }
 
@@ -57,7 +57,7 @@ pub(super) fn coordinates(item: &ItemAst) -> Vec<JointQuantity> {
     named(item, known, ["coordinate", "coordinates"])
 }
 
-/// The pseudo-velocities of a joint, in order; none where its rates follow from constraints.
+/// The pseudo-velocities of a joint, in order; none if its rates are determined by constraints.
 pub(super) fn speeds(item: &ItemAst) -> Vec<JointQuantity> {
     if item.flag("dependent") {
         return Vec::new();
@@ -82,7 +82,7 @@ pub(super) fn speeds(item: &ItemAst) -> Vec<JointQuantity> {
     named(item, known, ["speed", "speeds"])
 }
 
-/// The two axes of the plane of a joint, so that they and the axis across are right-handed.
+/// The two axes of the plane of a joint, which form a right-handed system with its normal.
 pub(super) fn plane(item: &ItemAst) -> [usize; 2] {
     match item.word("axis") {
         Some(Sense::Axis { axis, .. }) => [(axis.index() + 1) % 3, (axis.index() + 2) % 3],

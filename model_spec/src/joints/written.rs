@@ -1,4 +1,4 @@
-//! What the spec says of a joint, as text for other sections.
+//! Values and expressions of a joint as text for other sections.
 
 use num_rational::BigRational;
 use num_traits::Zero;
@@ -14,7 +14,7 @@ use super::piece::Piece;
 pub(super) struct Written {
     /// Its text.
     pub(super) piece: Piece,
-    /// Its value, where it is a number.
+    /// Its value, if it is a number.
     pub(super) literal: Option<BigRational>,
     /// Whether it is one factor.
     is_factor: bool,
@@ -35,7 +35,7 @@ impl Written {
         }
     }
 
-    /// What is made.
+    /// From generated text.
     pub(super) fn made(piece: Piece, is_factor: bool) -> Self {
         Self {
             piece,
@@ -58,7 +58,7 @@ impl Written {
         self.literal.as_ref().is_some_and(Zero::is_zero)
     }
 
-    /// For a product, a power or behind a minus sign.
+    /// As an operand of a product, a power or a minus sign.
     pub(super) fn factor(&self) -> Piece {
         if self.is_factor {
             self.piece.clone()
@@ -96,7 +96,7 @@ impl Written {
     }
 }
 
-/// The letters of an expression; of one with escapes, what they mean.
+/// The text of an expression, with escapes decoded.
 fn copied(text: &str, expression: &ExprAst) -> Piece {
     let span: &Span = &expression.span;
     let letters = text.get(span.clone()).unwrap_or_default();
@@ -104,7 +104,7 @@ fn copied(text: &str, expression: &ExprAst) -> Piece {
         Ok(Value::String(decoded)) => decoded.into_value(),
         _ => letters.to_owned(),
     };
-    // The parser has told of what it could not read.
+    // The parser has reported parts that it could not read.
     if matches!(expression.kind, ExprAstKind::Broken) || decoded.contains(['"', '\\']) {
         return Piece::copied("0", span.clone());
     }
@@ -125,7 +125,7 @@ fn plain(letters: &str, number: &BigRational) -> String {
     letters.replace(['_', '+'], "")
 }
 
-/// The number that an expression is, in its unit.
+/// The number of an expression that is a literal, in its unit.
 fn literal(expression: &ExprAst) -> Option<BigRational> {
     match &expression.kind {
         ExprAstKind::Number(number, _) => Some(number.clone()),

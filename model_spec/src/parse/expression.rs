@@ -18,7 +18,7 @@ use super::source::Source;
 /// Binding power of a sign: as strong as a product, weaker than a power.
 const SIGN: u8 = 3;
 
-/// Reads an expression; the first thing that is wrong ends it.
+/// Parses an expression up to the first error.
 pub(super) fn parse(source: &Source<'_>) -> Result<ExprAst, Diagnostic> {
     let tokens = tokens(source)?;
     let mut parser = Parser {
@@ -45,7 +45,7 @@ pub(super) fn parse(source: &Source<'_>) -> Result<ExprAst, Diagnostic> {
 struct Tree {
     expr: ExprAst,
     height: usize,
-    /// Place in the text of the expression, to join places before they become places in the file.
+    /// Span in the text of the expression; spans are joined before they are mapped to the file.
     start: usize,
     end: usize,
 }
@@ -74,7 +74,7 @@ impl<'a> Parser<'_, 'a> {
             .at(self.source.span(at.start..at.end), "")
     }
 
-    /// A token that cannot follow what stands before it.
+    /// A token that cannot follow the previous one.
     fn stray(&self) -> Diagnostic {
         let found = self.peek();
         let words = found.token.words();
@@ -95,7 +95,7 @@ impl<'a> Parser<'_, 'a> {
         }
     }
 
-    /// What the tokens around the present place would mean with one more sign.
+    /// The correction for a missing operator, bracket or decimal point at this position.
     fn forgotten_sign(&self) -> Option<String> {
         let before = self.tokens.get(self.at.checked_sub(1)?)?.token;
         let after = self.tokens.get(self.at + 1).map(|located| located.token);
@@ -203,7 +203,7 @@ impl<'a> Parser<'_, 'a> {
             Token::Symbol('(') => {
                 let inner = self.expression(0)?;
                 let close = self.expect(')', "the expression in parentheses")?;
-                // The parentheses belong to the place, not to the tree.
+                // The parentheses are part of the span, not of the tree.
                 Ok(Tree {
                     start: first.start,
                     end: close.end,
@@ -386,14 +386,14 @@ impl<'a> Parser<'_, 'a> {
     }
 }
 
-/// What to write where an expression asks for a second derivative.
+/// The correction to suggest for a second derivative in an expression.
 pub(crate) const SECOND_RATE: &str = "accelerations are results: an output may name `acceleration(P, x)` of a point, or \
      `angular_acceleration(F, x)` of a frame; a spec states rates, `dot(q)`";
 
-/// What stands before functions in other languages.
+/// Prefixes of functions in other languages.
 const LIBRARIES: [&str; 8] = ["np", "numpy", "math", "Math", "sp", "sympy", "ca", "jnp"];
 
-/// What other languages call a function.
+/// Names of functions in other languages.
 fn familiar(name: &str) -> Option<&'static str> {
     Some(match name {
         "log" => "ln",
@@ -419,13 +419,13 @@ fn operator(token: Token<'_>) -> Option<(BinaryOp, u8, u8)> {
         Token::Symbol('-') => Some((BinaryOp::Subtract, 1, 2)),
         Token::Symbol('*') => Some((BinaryOp::Multiply, 3, 4)),
         Token::Symbol('/') => Some((BinaryOp::Divide, 3, 4)),
-        // To the right alike: a^b^c is a^(b^c).
+        // Right associative: a^b^c is a^(b^c).
         Token::Symbol('^') => Some((BinaryOp::Power, 6, 5)),
         _ => None,
     }
 }
 
-/// The message for an invalid number; the caller adds the place.
+/// The message for an invalid number; the caller adds the position.
 pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
     // A hostile number may be a megabyte long.
     let short: String = text.chars().take(30).collect();
@@ -443,7 +443,7 @@ pub(super) fn number_diagnostic(error: NumberError, text: &str) -> Diagnostic {
     }
 }
 
-/// The message for an invalid unit; `place` maps places in the unit text to places in the file.
+/// The message for an invalid unit; `place` maps positions in the unit text to positions in the file.
 pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) -> Diagnostic {
     match error {
         UnitError::Unknown {
@@ -459,7 +459,7 @@ pub fn unit_diagnostic(error: &UnitError, place: impl Fn(Range<usize>) -> Span) 
     }
 }
 
-/// The number zero, for what is left out.
+/// The number zero, for omitted expressions.
 pub(crate) fn zero(span: Span) -> ExprAst {
     ExprAst {
         kind: ExprAstKind::Number(BigRational::from_integer(0.into()), None),

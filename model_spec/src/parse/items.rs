@@ -20,7 +20,7 @@ static STATE_VALUE: Key = Key {
     about: "Initial value in the unit of the state.",
 };
 
-/// Name and place of the thing that a table defines.
+/// Name and position of the definition of a table.
 struct Owner<'a> {
     name: &'a str,
     span: Span,
@@ -178,7 +178,7 @@ impl Reader<'_> {
         item
     }
 
-    /// Reports an unknown key; returns the one that was probably meant.
+    /// Reports an unknown key; returns the probably intended one.
     fn unknown_key(
         &mut self,
         name: &str,
@@ -210,7 +210,7 @@ impl Reader<'_> {
         similar
     }
 
-    /// Whether every required key is there, and only one of several ways to say a thing.
+    /// Checks that all required keys are present, and only one of several alternatives.
     fn required(
         &mut self,
         owner: &Owner<'_>,
@@ -280,7 +280,7 @@ impl Reader<'_> {
         );
     }
 
-    /// Reports two keys that exclude each other, at the later one.
+    /// Reports two mutually exclusive keys, at the later one.
     fn conflict(&mut self, owner: &Owner<'_>, a: (String, Span), b: (String, Span)) {
         let (first, second) = if a.1.start <= b.1.start {
             (a, b)
@@ -343,7 +343,7 @@ impl Reader<'_> {
     }
 }
 
-/// An item of which nothing is known but the name.
+/// An item with a name only.
 fn empty(owner: &Owner<'_>) -> ItemAst {
     ItemAst {
         name: Spanned {
@@ -363,7 +363,7 @@ fn join<'a>(names: impl Iterator<Item = &'a str>, with: &str) -> String {
         .join(with)
 }
 
-/// The line that writes a load which has no kind of its own.
+/// The line to suggest for words that are no kinds of loads, such as `motor` and `weight`.
 fn written_otherwise(kind: &Kind, word: &str, name: &str) -> Option<String> {
     let generalized = |force: &str| {
         format!(

@@ -18,7 +18,7 @@ pub(super) enum Token<'a> {
     End,
 }
 
-/// A token and where it stands in the expression.
+/// A token and its position in the expression.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Located<'a> {
     pub(super) token: Token<'a>,

@@ -1,4 +1,4 @@
-//! What the reading of every part shares: the text, its findings, and words for values.
+//! State and helpers shared by all parts of the parser: text, findings, descriptions of values.
 
 use toml::de::{DeTable, DeValue};
 
@@ -8,18 +8,18 @@ use crate::visible::is_hidden;
 /// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
 
-/// A key of a TOML table, with its place.
+/// A key of a TOML table, with its position.
 pub(super) type TomlKey<'a> = toml::Spanned<std::borrow::Cow<'a, str>>;
-/// A value of a TOML table, with its place.
+/// A value of a TOML table, with its position.
 pub(super) type TomlValue<'a> = toml::Spanned<DeValue<'a>>;
 
-/// What is read, and what is told of it.
+/// The text being parsed, and the findings about it.
 pub(super) struct Reader<'a> {
     pub(super) text: &'a str,
     pub(super) findings: Vec<Diagnostic>,
-    /// The TOML itself is broken: whatever is missing may only be unread.
+    /// The TOML is invalid, so that missing parts may be present in the text.
     pub(super) broken: bool,
-    /// Some definition was refused: its name may be used without being known.
+    /// Some definition was refused, so that unknown names may refer to it.
     pub(super) incomplete: bool,
 }
 
@@ -39,7 +39,7 @@ impl Reader<'_> {
     }
 }
 
-/// The entries of a table as they stand in the text; the table itself sorts them by name.
+/// The entries of a table in the order of the text; the table itself sorts them by name.
 pub(super) fn in_text_order<'t, 'a>(
     table: &'t DeTable<'a>,
 ) -> Vec<(&'t TomlKey<'a>, &'t TomlValue<'a>)> {
@@ -48,7 +48,7 @@ pub(super) fn in_text_order<'t, 'a>(
     entries
 }
 
-/// A value for people.
+/// A description of a value for messages.
 fn words(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a string",
@@ -65,7 +65,7 @@ pub fn is_forbidden(c: char) -> bool {
     c != '\r' && is_hidden(c)
 }
 
-/// A sentence as the end of another one.
+/// A sentence as the last part of another one.
 pub(super) fn phrase(sentence: &str) -> String {
     let mut letters = sentence.chars();
     let first = letters.next().map(|c| c.to_ascii_lowercase());

@@ -1,17 +1,17 @@
-//! From places in a TOML string back to places in the file.
+//! Maps positions in a TOML string to positions in the file.
 
 use std::ops::Range;
 
 use crate::expr::Span;
 
-/// The decoded text of a TOML string, and where it came from.
+/// The decoded text of a TOML string, and its source.
 #[derive(Debug, Clone)]
 pub(super) struct Source<'a> {
-    /// What the string means.
+    /// The decoded text.
     pub(super) text: &'a str,
-    /// The whole string in the file, quotes included.
+    /// Span of the whole string in the file, quotes included.
     pub(super) whole: Span,
-    /// Where the text starts in the file, if the file holds it unchanged.
+    /// Start of the text in the file, if it is the same there.
     start: Option<usize>,
 }
 
@@ -29,7 +29,7 @@ impl<'a> Source<'a> {
         Self { text, whole, start }
     }
 
-    /// The place in the file of a place in the text.
+    /// The position in the file of a position in the text.
     pub(super) fn span(&self, part: Range<usize>) -> Span {
         match self.start {
             Some(start) => start + part.start..start + part.end,

@@ -1,4 +1,4 @@
-//! Values: numbers, units, names, sentences, and what is made of expressions.
+//! Values: numbers, units, names, sentences, expressions and lists of them.
 
 use num_bigint::BigInt;
 use num_rational::BigRational;
@@ -105,7 +105,7 @@ impl Reader<'_> {
             );
             return None;
         }
-        // Every table is read before one that is refused refuses them all.
+        // All tables are parsed first, so that the errors of all are reported.
         let tables: Vec<Option<ItemAst>> = array
             .iter()
             .map(|v| self.table_item(key.name, keys, v))
@@ -174,7 +174,7 @@ impl Reader<'_> {
         if let Some(c) = text.chars().find(|c| is_forbidden(*c) || c.is_control()) {
             let written = self.text.get(value.span()).unwrap_or_default();
             if is_forbidden(c) && written.contains(c) {
-                // Told when the file was looked at as a whole.
+                // Already reported by the check of the whole file.
                 return None;
             }
             self.tell(
@@ -298,7 +298,7 @@ impl Reader<'_> {
             .map(|elements| elements.map(|v| self.expression(v)))
     }
 
-    /// An expression; an unreadable one becomes a placeholder that gives no further error.
+    /// An expression; an invalid one becomes a placeholder that causes no further error.
     fn expression(&mut self, value: &TomlValue<'_>) -> ExprAst {
         let broken = ExprAst {
             kind: ExprAstKind::Broken,

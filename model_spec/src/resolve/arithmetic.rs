@@ -17,7 +17,7 @@ use super::resolver::Resolver;
 const MAX_BITS: u64 = 4096;
 const EXPONENT: Place = Place::constant("an exponent");
 
-/// What the operands make of an operation; the fields are those of [`Typed`].
+/// The result type of an operation; the fields are those of [`Typed`].
 struct Grade {
     dim: Dim,
     degree: Option<u8>,
@@ -43,7 +43,7 @@ impl Resolver<'_> {
         let Some(Grade { dim, degree, size }) = grade else {
             return Typed::poisoned(span);
         };
-        // What has been refused has no value: it may be a power that nothing can hold.
+        // A refused operation has no value, as it may be a power that overflows.
         let known = a.constant.as_ref().zip(b.constant.as_ref());
         let constant = known
             .filter(|_| dim != Dim::Unknown)
@@ -106,7 +106,7 @@ impl Resolver<'_> {
             None => self.varying_power(a, b),
         };
         let factor = match &b.constant {
-            // Where a power has been refused, a large degree is only another side of it.
+            // If a power has been refused, a large degree is a consequence.
             Some(value) if dim != Dim::Unknown => value.abs().ceil().to_u32().unwrap_or(1).max(1),
             _ => 1,
         };
@@ -198,7 +198,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The exact value of an operation on numbers, where it is short; reports one that no double holds.
+    /// The exact value of an operation on numbers, if it is short; reports one that overflows a double.
     fn constant(
         &mut self,
         op: BinaryOp,
@@ -261,7 +261,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The exact value of an operation on numbers, where it is short.
+/// The exact value of an operation on numbers, if it is short.
 fn constant(op: BinaryOp, a: &BigRational, b: &BigRational) -> Option<BigRational> {
     let bits = |value: &BigRational| value.numer().bits() + value.denom().bits();
     let value = match op {
@@ -281,7 +281,7 @@ fn constant(op: BinaryOp, a: &BigRational, b: &BigRational) -> Option<BigRationa
     (bits(&value) <= MAX_BITS).then_some(value)
 }
 
-/// Whether a double holds the value of an operation on numbers that are not zero.
+/// Whether the result of an operation on nonzero numbers is representable as a double.
 fn is_double(op: BinaryOp, a: &BigRational, b: &BigRational) -> bool {
     let double = |value: &BigRational| value.to_f64().unwrap_or(f64::NAN);
     let (x, y) = (double(a), double(b));

@@ -67,8 +67,8 @@ impl Resolver<'_> {
         }
     }
 
-    /// The inertia of a body that moves in a plane, by its moment about the normal: that of a flat body, as the
-    /// other moments change nothing.
+    /// The inertia of a body in planar motion from its moment about the normal: that of a lamina, as the other
+    /// moments have no effect.
     fn planar_inertia(
         &mut self,
         moment: &ExprAst,
@@ -89,7 +89,7 @@ impl Resolver<'_> {
             ),
             span: span.clone(),
         };
-        // That a frame is missing is told with the body.
+        // A missing frame is reported with the body.
         let normal = frame.map_or(Some(Axis::Z), |frame| normal(frame, frames));
         let Some(normal) = normal else {
             self.tell(
@@ -159,7 +159,7 @@ impl Resolver<'_> {
         })
     }
 
-    /// The two halves of a written tensor must read the same.
+    /// Checks the symmetry of a tensor that is written with all entries.
     fn symmetric(&mut self, rows: &[[Expr; 3]; 3]) {
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if !same(&rows[i][j], &rows[j][i]) {
@@ -182,7 +182,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The axis about which all turns between a frame and the ground are, if it is one.
+/// The common axis of all rotations between a frame and the ground, if there is one.
 fn normal(frame: FrameId, frames: &[Frame]) -> Option<Axis> {
     let mut normal = None;
     let mut at = Some(frame);
@@ -202,7 +202,7 @@ fn normal(frame: FrameId, frames: &[Frame]) -> Option<Axis> {
     normal
 }
 
-/// Written where the expression is.
+/// The negative of an expression, at the same position.
 fn negative(expr: Expr) -> Expr {
     Expr {
         span: expr.span.clone(),
@@ -210,7 +210,7 @@ fn negative(expr: Expr) -> Expr {
     }
 }
 
-/// Whether two expressions read the same, wherever they stand.
+/// Whether two expressions are syntactically equal.
 fn same(a: &Expr, b: &Expr) -> bool {
     match (&a.kind, &b.kind) {
         (ExprKind::Number(x), ExprKind::Number(y)) => x == y,

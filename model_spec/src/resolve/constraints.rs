@@ -36,7 +36,7 @@ impl Resolver<'_> {
             self.constraints
                 .insert(item.name.value.as_str(), constraints.len());
             let mut acting = acting(&kind);
-            // Nothing follows from what could not be read.
+            // Invalid parts cause no further findings.
             if left == Dim::Unknown {
                 acting.dimension = None;
             }
@@ -79,7 +79,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// How a contact creeps, if it does.
+    /// The creep coefficients of a contact, if given.
     fn creep(&mut self, item: &ItemAst) -> Option<Box<Creep>> {
         let keys = ["longitudinal_creep", "lateral_creep"];
         if keys.iter().all(|key| item.expression(key).is_none()) {
@@ -199,7 +199,7 @@ impl Resolver<'_> {
     }
 }
 
-/// What expressions may name of the reaction of a constraint: the force at its point, or a multiplier.
+/// Form of the reaction of a constraint in expressions: the force at its point, or a multiplier.
 fn acting(kind: &ConstraintKind) -> Acting {
     let (shape, pushes) = match kind {
         ConstraintKind::Rolling { .. } => (Shape::Vector, true),

@@ -1,8 +1,8 @@
-//! Definitions: named expressions, read anew at each place that uses them.
+//! Definitions: named expressions, elaborated anew at each use.
 //!
-//! A name stands for its expression wherever that may stand: a definition of parameters may be a mass, one of
-//! coordinates cannot. Hence the expression is elaborated at the place of its use, and by itself only once, to
-//! report what is wrong wherever it is used.
+//! A name can replace its expression wherever that is valid: a definition of parameters may be a mass, one of
+//! coordinates cannot. Therefore the expression is elaborated in the context of each use, and once by itself to
+//! report errors that do not depend on the context.
 
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
@@ -15,7 +15,7 @@ use super::meaning::Meaning;
 use super::place::Place;
 use super::resolver::Resolver;
 
-/// Findings that the place of a use decides; the others are reported at the definition.
+/// Findings that depend on the context of a use; the others are reported at the definition.
 const BY_PLACE: &[Code] = &[
     Code::MotionMayJump,
     Code::NotAllowedHere,
@@ -24,7 +24,7 @@ const BY_PLACE: &[Code] = &[
 ];
 
 impl Resolver<'_> {
-    /// Gives the definitions their names, before anything uses them.
+    /// Declares the names of definitions before their uses.
     pub(super) fn announce_definitions(&mut self) {
         let ast = self.ast;
         for (id, item) in ast.items("definitions").iter().enumerate() {
@@ -42,7 +42,7 @@ impl Resolver<'_> {
         definitions
     }
 
-    /// Reports what is wrong with definitions wherever they are used.
+    /// Reports errors of definitions that do not depend on their uses.
     pub(super) fn settle(&mut self) {
         for finding in std::mem::take(&mut self.reading.findings) {
             self.tell(finding);
@@ -50,7 +50,7 @@ impl Resolver<'_> {
     }
 
     fn definition(&mut self, id: usize, item: &ItemAst, coordinates: &[Coordinate]) -> Definition {
-        // What occurs in unused definitions alone is not used.
+        // Quantities that occur only in unused definitions count as unused.
         let used = (self.used.clone(), self.reading.used.clone());
         self.reading.open.push(id);
         let typed = self.value_of(item, &Place::DEFINITION);
@@ -63,7 +63,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The expression of a definition, at the place of a use.
+    /// The expression of a definition, in the context of a use.
     pub(super) fn defined(&mut self, id: usize, name: &str, span: Span, place: &Place) -> Typed {
         let ast = self.ast;
         self.reading.used.insert(id);
@@ -84,7 +84,7 @@ impl Resolver<'_> {
         typed
     }
 
-    /// Notes a circle of definitions, once.
+    /// Reports a cycle of definitions, once.
     fn circle(&mut self, first: usize) {
         let ast = self.ast;
         let items = ast.items("definitions");
@@ -106,7 +106,7 @@ impl Resolver<'_> {
         self.reading.circular.extend(circle);
     }
 
-    /// Keeps what the place decides of the findings in a definition, and has it told at the use.
+    /// Retains the context-dependent findings in a definition, and moves them to the use.
     fn findings_through(&mut self, before: usize, name: &str, span: &Span) {
         let within = self.findings.split_off(before.min(self.findings.len()));
         self.told.retain(|_, index| *index < before);
@@ -127,7 +127,7 @@ impl Resolver<'_> {
             Diagnostic::error(
                 Code::LimitExceeded,
                 format!(
-                    "definitions make the expressions too large: there may be {MAX_DEPTH} nested operations, and {MAX_DEFINED} terms in place of names"
+                    "definitions make the expressions too large: there may be {MAX_DEPTH} nested operations, and {MAX_DEFINED} terms from expanded names"
                 ),
             )
             .at(span, "")
@@ -135,7 +135,7 @@ impl Resolver<'_> {
         );
     }
 
-    /// Goes one operation deeper; false where definitions have made that too deep or too much.
+    /// Enters a nested operation; false if expanded definitions exceed the limits of depth or size.
     pub(super) fn enter(&mut self, span: &Span) -> bool {
         self.reading.depth += 1;
         if self.reading.open.is_empty() {

@@ -26,7 +26,7 @@ impl Resolver<'_> {
         }
         for coordinate in &mechanism.coordinates {
             let label = &coordinate.label;
-            // What turns round and round has no range.
+            // Angles that grow without bound have no range.
             let most = coordinate
                 .range
                 .map_or(0.0, |ends| ends[0].abs().max(ends[1].abs()));
@@ -68,7 +68,7 @@ impl Resolver<'_> {
 }
 
 impl Resolver<'_> {
-    /// Plain numbers of more than a revolution in the sums that turn a frame or stand in `sin`, `cos`, `tan`.
+    /// Plain numbers of more than a revolution in angles of frames and in arguments of `sin`, `cos`, `tan`.
     fn numbers_beside_angles(&self) -> Vec<Diagnostic> {
         let sections = self.ast.sections.iter();
         let items = sections.flat_map(|section| &section.items);
@@ -85,7 +85,7 @@ impl Resolver<'_> {
     }
 }
 
-/// The expressions of an item that are angles, with words for what each is.
+/// The expressions of an item that are angles, with a description of each.
 fn collect_angles<'a>(item: &'a ItemAst, angles: &mut Vec<(&'a ExprAst, &'static str)>) {
     for entry in &item.entries {
         let expressions: Vec<&ExprAst> = match &entry.value {
@@ -105,7 +105,7 @@ fn collect_angles<'a>(item: &'a ItemAst, angles: &mut Vec<(&'a ExprAst, &'static
             _ => continue,
         };
         for expression in expressions {
-            // A turn by a number alone is told of already.
+            // A constant angle is reported elsewhere.
             let is_number = matches!(expression.kind, ExprAstKind::Number(..));
             if entry.key.name == "by" && !is_number {
                 angles.push((expression, "the turn"));
@@ -159,7 +159,7 @@ fn large_term(sum: &ExprAst) -> Option<(f64, &Span)> {
     }
 }
 
-/// Whether the ends of a range are those of a sector in degrees: within a turn either way, and multiples of five.
+/// Whether a range looks like one in degrees: at most a revolution to either side, in multiples of five.
 fn is_sector_in_degrees(ends: [f64; 2]) -> bool {
     let most = ends[0].abs().max(ends[1].abs());
     most > TAU && most <= 360.0 && ends.iter().all(|end| (end / 5.0).fract() == 0.0)
@@ -179,7 +179,7 @@ fn in_degrees(what: &str, angle: f64, span: &Span) -> Diagnostic {
         .help("if it is in degrees, write the unit `deg`")
 }
 
-/// Whether an expression has the rate of an angle.
+/// Whether an expression contains the rate of an angle.
 fn turns(expr: &Expr, mechanism: &Mechanism) -> bool {
     let mut found = false;
     expr.visit(&mut |quantity| {

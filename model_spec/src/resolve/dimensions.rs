@@ -1,4 +1,4 @@
-//! What is known of the dimension of an expression.
+//! Dimensions of expressions, as far as known.
 
 use num_rational::BigRational;
 use num_traits::ToPrimitive;
@@ -15,27 +15,27 @@ use super::resolver::Resolver;
 pub(super) enum Dim {
     /// A literal zero: fits everywhere.
     Any,
-    /// Something else is wrong with it, already reported.
+    /// Unknown because of an error that has been reported.
     Unknown,
     /// This one.
     Known(Dimension),
 }
 
-/// An expression with what the checks need to know of it.
+/// An expression with its properties for the checks.
 #[derive(Debug, Clone)]
 pub(super) struct Typed {
     pub(super) expr: Expr,
     pub(super) dim: Dim,
     /// Degree in the rates; `None` for a literal zero, which has every degree.
     pub(super) degree: Option<u8>,
-    /// Value, where it is made of numbers only.
+    /// Value, if it consists of numbers only.
     pub(super) constant: Option<BigRational>,
-    /// Bound on the polynomial degree, against hostile powers.
+    /// Bound on the polynomial degree, as a protection against huge powers.
     pub(super) size: u32,
 }
 
 impl Typed {
-    /// An invalid expression; expressions that use it give no further error.
+    /// An invalid expression; expressions that contain it cause no further error.
     pub(super) fn poisoned(span: Span) -> Self {
         Self {
             expr: Expr {
@@ -53,7 +53,7 @@ impl Typed {
         self.expr.span.clone()
     }
 
-    /// What to write where a bare number stands for a quantity.
+    /// The correction to suggest for a bare number where a quantity is required.
     fn missing_unit(&self, wanted: Dimension) -> Option<String> {
         let bare = self.constant.is_some() && self.dim == Dim::NONE;
         bare.then(|| {
@@ -62,7 +62,7 @@ impl Typed {
         })
     }
 
-    /// What to write where a number has milliseconds in the place of metres and seconds, as in `9.81 [ms^-2]`.
+    /// The correction to suggest for milliseconds instead of metres and seconds, as in `9.81 [ms^-2]`.
     fn milliseconds(&self, wanted: Dimension) -> Option<String> {
         let unit = Unit::si(wanted).text;
         let Dim::Known(found) = self.dim else {

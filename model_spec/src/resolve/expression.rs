@@ -284,7 +284,7 @@ impl Resolver<'_> {
         );
     }
 
-    /// Warns of a choice that changes its branch while the mechanism moves.
+    /// Warns of a conditional whose branch can change during the motion.
     fn jumps(&mut self, compared: &[&Typed], span: &Span, place: &Place) {
         if !place.smooth.admits(Interpolation::Hold) && compared.iter().any(|e| moves(&e.expr)) {
             let help = "make both branches agree in value and slope where they meet";
@@ -292,7 +292,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// Warns of a function that breaks the motion of its argument.
+    /// Warns of a nonsmooth function of quantities that change during the motion.
     fn kinks(&mut self, function: Function, arguments: &[&Typed], span: &Span, place: &Place) {
         let (course, smooth) = match function {
             Function::Sign => (Interpolation::Hold, "smooth_sign"),
@@ -455,7 +455,7 @@ fn measured(value: &BigRational, unit: &Unit, span: &Span) -> Typed {
     }
 }
 
-/// Whether an expression changes while the mechanism moves.
+/// Whether an expression can change during the motion.
 fn moves(expr: &Expr) -> bool {
     let mut moves = false;
     expr.visit(&mut |quantity| {

@@ -14,7 +14,7 @@ use super::dimensions::Dim;
 use super::place::Place;
 use super::resolver::Resolver;
 
-/// What an expression outside a spec may depend on.
+/// The quantities on which an expression outside a spec may depend.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Scope {
     /// Parameters only.
@@ -29,14 +29,14 @@ pub enum Scope {
     Equation,
 }
 
-/// An expression and where it stands.
+/// An expression and its position.
 #[derive(Debug, Clone)]
 pub struct Snippet<'a> {
-    /// The text around it, for the places of findings.
+    /// The text around it, for the positions of findings.
     pub document: &'a str,
     /// The expression.
     pub text: &'a str,
-    /// Where it stands in the document, quotes included.
+    /// Its position in the document, quotes included.
     pub whole: Span,
 }
 
@@ -56,12 +56,12 @@ impl<'a> Snippet<'a> {
 ///
 /// - A value of plain numbers, such as `20`, `2*10` or `5*sin(2*t)`, is in the quantity's unit.
 /// - Names, and numbers with a unit, carry dimensions, which are checked: `5[m/s]/R`.
-/// - Gains: where time or the state may occur and no number has a unit, a plain number may stand
-///   beside names, as in `-3*x - v`, and a function of names alone, as in `sin(t)`, is a plain number.
-///   Everything is in SI then, and dimensions do not matter. A
-///   quantity that is not declared in SI must not be given so: two readings would differ.
+/// - Gains: if time or the state may occur and no number has a unit, plain numbers can be combined with
+///   names, as in `-3*x - v`, and a function of names alone, as in `sin(t)`, is a plain number.
+///   All values are then in SI and dimensions are not checked. A
+///   quantity that is not declared in SI cannot be given in this form, as it would be ambiguous.
 ///
-/// The places of the findings are places in the snippet's document.
+/// The positions of the findings refer to the snippet's document.
 pub fn formula(
     spec: &str,
     snippet: &Snippet<'_>,
@@ -122,7 +122,7 @@ pub fn formula(
     Err(findings)
 }
 
-/// What to write where names alone have another unit.
+/// The correction to suggest if the names have a different unit.
 fn names_alone(text: &str, unit: &Unit, found: Dimension, scope: Scope) -> String {
     let is_name = text.chars().all(|c| c.is_alphanumeric() || c == '_');
     let text = if is_name {
@@ -144,10 +144,10 @@ fn names_alone(text: &str, unit: &Unit, found: Dimension, scope: Scope) -> Strin
     if scope == Scope::Constant || !unit.is_si() {
         return with_unit;
     }
-    format!("{with_unit}, or `1*{text}`: beside a number without a unit all is in SI")
+    format!("{with_unit}, or `1*{text}`: with a plain number, all values are in SI")
 }
 
-/// Whether a value is a number whatever its arguments measure.
+/// Whether a value is a plain number for arguments of any dimension.
 fn is_plain(ast: &ExprAst) -> bool {
     match &ast.kind {
         ExprAstKind::Number(_, unit) => unit.is_none(),
@@ -183,7 +183,7 @@ fn has_unit(ast: &ExprAst) -> bool {
     matches!(ast.kind, ExprAstKind::Number(_, Some(_)))
 }
 
-/// Whether an expression has a part of a kind.
+/// Whether an expression contains a part of some kind.
 fn any(ast: &ExprAst, is: &impl Fn(&ExprAst) -> bool) -> bool {
     let within = |part: &ExprAst| any(part, is);
     is(ast)

@@ -1,4 +1,4 @@
-//! The order in which loads are read: each after those whose forces it names.
+//! The order in which loads are resolved: each after those whose forces it uses.
 
 use crate::ast::{ExprAst, ExprAstKind, ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
@@ -6,7 +6,7 @@ use crate::expr::Word;
 
 use super::resolver::Resolver;
 
-/// Places in a list of loads, ordered, and what is left of circles.
+/// Indices into a list of loads in dependency order; loads in cycles are reported and come last.
 pub(super) fn ordered(resolver: &mut Resolver<'_>, items: &[&ItemAst]) -> Vec<usize> {
     let named: Vec<Vec<(usize, &Spanned<String>)>> = items
         .iter()
@@ -21,13 +21,13 @@ pub(super) fn ordered(resolver: &mut Resolver<'_>, items: &[&ItemAst]) -> Vec<us
                     _ => {}
                 }
             }
-            // A load that does not exist is told where it is looked up.
+            // A missing load is reported when the name is resolved.
             let place_of = |name: &str| resolver.loads.get(name).copied();
             let mut known: Vec<_> = names
                 .into_iter()
                 .filter_map(|name| Some((place_of(&name.value)?, name)))
                 .collect();
-            // Each once: an expression may name one load a thousand times.
+            // Without duplicates, as an expression may name a load many times.
             known.sort_by_key(|(place, _)| *place);
             known.dedup_by_key(|(place, _)| *place);
             known
@@ -57,7 +57,7 @@ pub(super) fn ordered(resolver: &mut Resolver<'_>, items: &[&ItemAst]) -> Vec<us
     order
 }
 
-/// The loads whose forces an expression names.
+/// The loads whose forces an expression uses.
 fn forces<'a>(ast: &'a ExprAst, names: &mut Vec<&'a Spanned<String>>) {
     match &ast.kind {
         ExprAstKind::Named(Word::Force, own) => names.extend(own.first()),
@@ -81,7 +81,7 @@ fn forces<'a>(ast: &'a ExprAst, names: &mut Vec<&'a Spanned<String>>) {
     }
 }
 
-/// Tells one circle of those that are left.
+/// Reports one cycle among the remaining loads.
 fn circle(
     resolver: &mut Resolver<'_>,
     items: &[&ItemAst],
@@ -92,7 +92,7 @@ fn circle(
     let mut path = vec![first];
     let mut steps: Vec<&Spanned<String>> = Vec::new();
     let mut place = first;
-    // Every load that waits names one that waits.
+    // Every remaining load depends on a remaining one.
     while let Some(&(next, name)) = named[place].iter().find(|(own, _)| !done[*own]) {
         steps.push(name);
         if let Some(start) = path.iter().position(|&own| own == next) {

@@ -41,7 +41,7 @@ impl Resolver<'_> {
         read.into_iter().flatten().map(|(load, _)| load).collect()
     }
 
-    /// A load and what expressions may name of its force.
+    /// A load, and the form of its force in expressions.
     fn load(&mut self, item: &ItemAst, bodies: &[Body]) -> Option<(Load, Acting)> {
         let Some(ItemKind::Load(word)) = item.kind.map(|kind| kind.is) else {
             return None;
@@ -152,7 +152,7 @@ impl Resolver<'_> {
         );
     }
 
-    /// What a spring or damper connects, and the dimension of its displacement.
+    /// The connection of a spring or damper, and the dimension of its displacement.
     fn connection(&mut self, item: &ItemAst) -> (Connection, Option<Dimension>) {
         let both = item.entry("between").is_some() && item.entry("coordinate").is_some();
         if let Some(ValueAst::Pair([a, b])) = item.entry("between").map(|e| &e.value) {
@@ -208,7 +208,7 @@ impl Resolver<'_> {
 
     /// A generalised force and its dimension.
     fn generalized(&mut self, item: &ItemAst) -> (LoadKind, Option<Dimension>) {
-        // Force times velocity is a power, whatever the velocity is of.
+        // Force times velocity is a power for velocities of any dimension.
         let (velocity, dimension) = if item.entry("velocity").is_some() {
             let along = self.velocity_along(item);
             (along.expr, along.dim.known())

@@ -1,4 +1,4 @@
-//! What names in expressions mean, which quantities occur there, and the definitions on the way.
+//! Meanings of names in expressions, quantities that occur there, and definitions being expanded.
 
 use std::collections::BTreeSet;
 
@@ -6,7 +6,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expr::{Quantity, Span};
 use crate::units::Dimension;
 
-/// What a name in an expression means.
+/// The meaning of a name in an expression.
 #[derive(Debug, Clone)]
 pub(super) struct Named {
     pub(super) meaning: Meaning,
@@ -20,35 +20,35 @@ pub(super) enum Meaning {
     Quantity(Quantity),
     /// A named expression, by its index.
     Definition(usize),
-    /// Outputs share the names, but expressions cannot use them.
+    /// Outputs are in the same namespace, but cannot occur in expressions.
     Output,
 }
 
-/// What is known of the force of a load or of a constraint when an expression names it.
+/// Properties of the force of a load or constraint for its use in expressions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Acting {
-    /// What an expression can name of it.
+    /// Its form.
     pub(super) shape: Shape,
     /// `None` while it is not known.
     pub(super) dimension: Option<Dimension>,
     /// Bound on the polynomial degree.
     pub(super) size: u32,
-    /// Whether it can only push, along a normal.
+    /// Whether it is a unilateral contact force along a normal.
     pub(super) pushes: bool,
 }
 
-/// The number that a force is, or the numbers.
+/// The form of a force: a scalar or a vector.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Shape {
     /// It has components.
     Vector,
     /// It is one number.
     Scalar,
-    /// It acts on every body in another way.
+    /// It differs from body to body.
     Spread,
 }
 
-/// Places of what occurs in expressions.
+/// Positions at which quantities occur in expressions.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Used {
     pub(super) parameters: BTreeSet<usize>,
@@ -73,21 +73,21 @@ impl Used {
     }
 }
 
-/// The definitions whose expressions are being read, and what they have added.
+/// The definitions that are being expanded, and the size of their expansions.
 #[derive(Debug, Default)]
 pub(super) struct Reading {
     /// By index, the innermost last.
     pub(super) open: Vec<usize>,
     /// Nested operations around the next expression.
     pub(super) depth: usize,
-    /// Terms that stand for names, in all.
+    /// Total number of terms from expanded names.
     pub(super) count: usize,
     /// Whether they are too many or too deep.
     pub(super) exceeded: bool,
     /// Definitions that occur somewhere.
     pub(super) used: BTreeSet<usize>,
-    /// Definitions that lead back to themselves.
+    /// Definitions that depend on themselves.
     pub(super) circular: BTreeSet<usize>,
-    /// What is wrong with definitions wherever they are used.
+    /// Errors of definitions that do not depend on their uses.
     pub(super) findings: Vec<Diagnostic>,
 }

@@ -1,5 +1,5 @@
-//! Items that are right by themselves and probably meant otherwise: a force at the material point of another body,
-//! weight along the ground or twice, a wheel whose axle is not its axis of symmetry.
+//! Items that are valid but probably a mistake: a force at the material point of another body,
+//! gravity along the ground or twice, a wheel whose axle is not its axis of symmetry.
 
 use super::nominal::value;
 use super::resolver::Resolver;
@@ -15,7 +15,7 @@ const ROUNDING: f64 = 1e-9;
 impl Resolver<'_> {
     /// Notes on forces, blades, weight and wheels.
     pub(super) fn mistaken(&mut self, mechanism: &Mechanism) {
-        // References that could not be read are placeholders.
+        // Invalid references are placeholders.
         if self.ast.broken || self.findings.iter().any(|f| f.severity == Severity::Error) {
             return;
         }
@@ -40,7 +40,7 @@ fn note(message: String, span: &Span, help: String) -> Diagnostic {
     note.at(span.clone(), "").help(help)
 }
 
-/// Material points of a body at the centre of mass of another one, which is not placed in that body.
+/// Material points of a body at the centre of mass of another one, which is not fixed in that body.
 fn material_points(mechanism: &Mechanism) -> Vec<Diagnostic> {
     let of_loads = mechanism.loads.iter().filter_map(|load| match load.kind {
         LoadKind::Force {
@@ -84,7 +84,7 @@ fn material_points(mechanism: &Mechanism) -> Vec<Diagnostic> {
     of_loads.chain(of_constraints).filter_map(told).collect()
 }
 
-/// Weight along the ground on which a body rolls, whose normal nobody gives.
+/// Gravity parallel to the ground on which a body rolls, if no normal is given.
 fn sideways(mechanism: &Mechanism) -> Vec<Diagnostic> {
     let mut notes = Vec::new();
     for (load, down) in weights(mechanism) {
@@ -185,7 +185,7 @@ fn repeated(mechanism: &Mechanism) -> Vec<Diagnostic> {
     repeats.collect()
 }
 
-/// A wheel with equal moments about its axle and across it: then its moments across differ, as if it were not round.
+/// A wheel with equal moments about its axle and a transverse axis, so that its transverse moments differ.
 fn axle(mechanism: &Mechanism, body: &Body, contact: PointId) -> Option<Diagnostic> {
     let frame = body.frame?;
     let Inertia {
@@ -226,7 +226,7 @@ fn axle(mechanism: &Mechanism, body: &Body, contact: PointId) -> Option<Diagnost
     ))
 }
 
-/// Whether a point is placed by means of a frame.
+/// Whether the position of a point depends on a frame.
 fn is_placed_in(mechanism: &Mechanism, point: PointId, frame: FrameId) -> bool {
     let mut place = Some(point);
     while let Some(point) = place {

@@ -1,4 +1,4 @@
-//! Kinematic quantities and forces by name: what the names refer to, and the dimension.
+//! Kinematic quantities and forces by name: their references and dimensions.
 
 use crate::ast::Spanned;
 use crate::diagnostic::{Code, Diagnostic};
@@ -66,7 +66,7 @@ impl Resolver<'_> {
         Typed::poisoned(span)
     }
 
-    /// What a drive brings along a pseudo-velocity whose rate is given.
+    /// Generalised force that the actuator supplies along a pseudo-velocity with prescribed rate.
     fn drive_force(&mut self, names: Names<'_>, span: Span, place: &Place) -> Typed {
         let [of] = names else {
             self.wrong_names(Word::DriveForce, &span);
@@ -190,7 +190,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// The load or constraint whose force is meant, and along which axis.
+    /// The load or constraint of a force, and the axis.
     fn force_of<I: Referred>(
         &mut self,
         word: Word,
@@ -212,7 +212,7 @@ impl Resolver<'_> {
             None => None,
         };
         let id = self.find(&of.value, &of.span)?;
-        // What could not be read, or leads into a circle, has been told.
+        // Invalid and cyclic references have been reported.
         let acting = known(self, id)?;
         let (own, name) = (word.name(), shown(&of.value));
         let (message, help) = match (acting.shape, along) {
@@ -241,7 +241,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// A constraint that pushes along a normal.
+    /// A contact with a normal force.
     fn contact(&mut self, names: Names<'_>, span: &Span) -> Option<(ConstraintId, Acting)> {
         let [of] = names else {
             self.wrong_names(Word::NormalForce, span);
@@ -270,7 +270,7 @@ impl Resolver<'_> {
         None
     }
 
-    /// A place that no acceleration or force can enter.
+    /// Reports an expression in which accelerations and forces are not allowed.
     fn unanswered(&mut self, word: Word, span: &Span, place: &Place) {
         let is_acceleration = matches!(
             word,

@@ -1,4 +1,4 @@
-//! Names: what they may be, and what they mean.
+//! Names: validity and meaning.
 
 use crate::ast::{ItemAst, Spanned};
 use crate::diagnostic::{Code, Diagnostic};
@@ -12,7 +12,7 @@ use crate::units::{Dimension, Unit};
 use super::meaning::{Meaning, Named};
 use super::resolver::Resolver;
 
-/// An id of what items name as their own.
+/// An id of items that other items refer to.
 pub(super) trait Referred: Id {
     /// Where the name is looked up.
     const TARGET: Target;
@@ -46,7 +46,7 @@ impl Referred for LoadId {
     const TARGET: Target = Target::Load;
 }
 
-/// Names that the language keeps for itself.
+/// Reserved names of the language.
 pub fn is_reserved(name: &str) -> bool {
     matches!(name, "t" | "pi" | "dot" | "if") || Function::from_name(name).is_some()
 }
@@ -63,7 +63,7 @@ fn state(target: Target, meaning: Meaning) -> Option<usize> {
 }
 
 impl<'a> Resolver<'a> {
-    /// Gives a name its meaning; reports a name that is taken.
+    /// Declares a name; reports a name that is taken.
     pub(super) fn define(
         &mut self,
         name: &'a Spanned<String>,
@@ -102,7 +102,7 @@ impl<'a> Resolver<'a> {
         self.names.insert(text, named);
     }
 
-    /// Defines the names of a section before anything in it has been looked at.
+    /// Declares the names of a section before its items are resolved.
     pub(super) fn announce(&mut self, section: &str) {
         let ast = self.ast;
         for (id, item) in ast.items(section).iter().enumerate() {
@@ -130,7 +130,7 @@ impl<'a> Resolver<'a> {
                     format!("defines its derivative `{name}`"),
                 );
                 let mut places = [named, derived];
-                // The later definition is the one that comes into the way.
+                // The conflict is reported at the later definition.
                 places.sort_by_key(|(span, _)| std::cmp::Reverse(span.start));
                 let mut diagnostic = Diagnostic::error(
                     Code::DuplicateName,
@@ -165,7 +165,7 @@ impl<'a> Resolver<'a> {
         span: &Span,
         diagnostic: impl FnOnce(&Self) -> Diagnostic,
     ) {
-        // What defines it may stand in a part that could not be read.
+        // Its definition may be in a part that could not be parsed.
         if self.ast.broken {
             return;
         }
@@ -183,7 +183,8 @@ impl<'a> Resolver<'a> {
         self.tell(diagnostic);
     }
 
-    /// What a key refers to; the first item where it refers to nothing, which has been told.
+    /// The item to which a key refers; the first item for an invalid reference, which is
+    /// reported.
     pub(super) fn reference<I: Referred>(&mut self, item: &ItemAst, key: &str) -> I {
         self.optional_reference(item, key).unwrap_or(I::new(0))
     }
@@ -225,7 +226,7 @@ impl<'a> Resolver<'a> {
         if items.any(|item| item.name.value == name) {
             let message = format!("the {word} `{}` cannot be named here", shown(name));
             let help =
-                "it depends on what is defined here: write the coordinates that it depends on";
+                "it depends on the item defined here: write the coordinates that it depends on";
             return Diagnostic::error(Code::UnknownReference, message)
                 .at(span.clone(), "")
                 .help(help);

@@ -13,7 +13,7 @@ impl Resolver<'_> {
     /// Reports physically impossible masses, inertias and coefficients of friction.
     pub(super) fn physical(&mut self, mechanism: &Mechanism) {
         let parameters = &mechanism.parameters;
-        // Values that could not be read are placeholders; nothing follows from them.
+        // Invalid values are placeholders, which cause no further findings.
         if self.ast.broken || self.findings.iter().any(|f| f.severity == Severity::Error) {
             return;
         }
@@ -28,7 +28,7 @@ impl Resolver<'_> {
         }
     }
 
-    /// A coefficient that changes with the place has no value to judge.
+    /// A coefficient that varies with the configuration has no nominal value.
     fn physical_friction(&mut self, constraint: &Constraint, parameters: &[Parameter]) {
         if let ConstraintKind::Rolling {
             friction: Some(friction),
@@ -75,7 +75,7 @@ impl Resolver<'_> {
                 }
             }
         }
-        // What a body without mass has is a share, such as that of a rotor about its axle: the rest counts elsewhere.
+        // A body without mass may have a partial inertia, such as that of a rotor about its axle only.
         let is_share = value(&body.mass, parameters) == 0.0;
         let is_right = if is_share {
             has_no_negative_moment(&matrix)
@@ -99,7 +99,7 @@ impl Resolver<'_> {
     }
 }
 
-/// Why no distribution of mass has such a tensor, and what to look for.
+/// Why no mass distribution has such a tensor, and a hint on the probable mistake.
 fn impossible(inertia: &[[f64; 3]; 3]) -> (String, &'static str) {
     let axes = ["x", "y", "z"];
     let moments = [inertia[0][0], inertia[1][1], inertia[2][2]];
@@ -157,14 +157,14 @@ fn is_physical(inertia: &[[f64; 3]; 3]) -> bool {
     half_trace >= 0.0 && is_semidefinite(&moments, half_trace)
 }
 
-/// Whether no axis has a negative moment.
+/// Whether the moments about all axes are nonnegative.
 fn has_no_negative_moment(inertia: &[[f64; 3]; 3]) -> bool {
     let trace = inertia[0][0] + inertia[1][1] + inertia[2][2];
     trace >= 0.0 && is_semidefinite(inertia, trace)
 }
 
-/// Whether a symmetric matrix has no negative eigenvalue, which its principal minors tell. Rounding counts relative to
-/// `size`, so that it means the same for a watch and for a ship; without a size all entries are zero.
+/// Whether a symmetric matrix has no negative eigenvalue, by its principal minors. Rounding is relative to
+/// `size`, so that the test is invariant under scaling; for size zero all entries are zero.
 fn is_semidefinite(matrix: &[[f64; 3]; 3], size: f64) -> bool {
     if size == 0.0 {
         return matrix.iter().flatten().all(|entry| *entry == 0.0);

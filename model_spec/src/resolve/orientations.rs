@@ -12,7 +12,7 @@ use crate::units::Dimension;
 use super::resolver::Resolver;
 
 impl Resolver<'_> {
-    /// The coordinates of a frame's quaternion, its scalar part first; none where a frame is turned by angles.
+    /// The coordinates of a frame's quaternion, scalar part first; none if the frame is rotated by angles.
     pub(super) fn quaternion(&mut self, item: &ItemAst) -> Option<[CoordinateId; 4]> {
         let Some(ValueAst::Four(names)) = item.entry("quaternion").map(|entry| &entry.value) else {
             return None;
@@ -62,7 +62,7 @@ pub(super) fn norms(frames: &[Frame], taken: &[Constraint]) -> Vec<Constraint> {
     let quaternions = frames
         .iter()
         .filter_map(|frame| Some((frame, frame.quaternion?)));
-    // Several frames may turn alike.
+    // Several frames may share a quaternion.
     let quaternions = quaternions.filter(|(_, quaternion)| {
         let is_new = !told.contains(quaternion);
         told.push(*quaternion);
@@ -108,7 +108,7 @@ fn norm(coordinates: &[CoordinateId], span: &Span) -> Expr {
     })
 }
 
-/// Initial quaternions at norm 1; those without initial values are as their parents.
+/// Normalises initial quaternions; those without initial values become the identity.
 pub(super) fn normalise(mechanism: &mut Mechanism) {
     for frame in &mechanism.frames {
         let Some(quaternion) = frame.quaternion else {

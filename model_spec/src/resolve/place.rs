@@ -1,12 +1,12 @@
-//! Where an expression stands, and what it may depend on there.
+//! Contexts of expressions, and the quantities that may occur there.
 
 use crate::expr::{Motion, Quantity, Response, Word};
 use crate::mechanism::Interpolation;
 
-/// A place for an expression.
+/// A context of expressions.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    /// The place as named in messages: `the angle of a frame`.
+    /// The context as named in messages: `the angle of a frame`.
     pub(super) what: &'static str,
     /// Which quantities may occur, besides parameters and `pi`.
     allows: u16,
@@ -64,7 +64,7 @@ impl Place {
         Self::new(what, COORDINATES | TIME, Smooth::Twice)
     }
 
-    /// What the positions of a mechanism satisfy.
+    /// A position constraint.
     pub(super) const fn closure(what: &'static str) -> Self {
         Self::new(what, COORDINATES | TIME | POSITIONS, Smooth::Twice)
     }
@@ -95,7 +95,7 @@ impl Place {
         Self::new(what, COORDINATES | SPEEDS | TIME, Smooth::Any)
     }
 
-    /// A value in a motion, from other values there.
+    /// A value computed from others along a motion.
     pub(super) const fn motion(what: &'static str) -> Self {
         Self::new(what, COORDINATES | RATES | SPEEDS, Smooth::Any)
     }
@@ -145,7 +145,7 @@ impl Place {
         self.allows & asked == asked
     }
 
-    /// Whether a kind of quantity by name may occur, whatever it is of.
+    /// Whether a kind of kinematic quantity or force may occur.
     pub(super) fn allows_word(&self, word: Word) -> bool {
         let asked = match word {
             Word::Position => POSITIONS,
@@ -156,7 +156,7 @@ impl Place {
         self.allows & asked == asked
     }
 
-    /// Whether it may depend on where the mechanism is.
+    /// Whether it may depend on the configuration.
     pub(super) fn allows_coordinates(&self) -> bool {
         self.allows & COORDINATES != 0
     }
@@ -166,7 +166,7 @@ impl Place {
         self.allows & FORCES != 0 && self.allows & ACCELERATIONS == 0
     }
 
-    /// What may occur here, as listed in messages.
+    /// The quantities that may occur here, as listed in messages.
     pub(super) fn allowed_words(&self) -> String {
         let mut words = vec!["parameters"];
         for (flag, word) in [
@@ -199,7 +199,7 @@ impl Smooth {
         }
     }
 
-    /// The interpolation that would do.
+    /// The required interpolation.
     pub(super) const fn remedy(self) -> &'static str {
         match self {
             Self::Any => "hold",

@@ -1,4 +1,4 @@
-//! Frames and points: ordered so that each comes after the one it is placed from.
+//! Frames and points: ordered so that each comes after its parent.
 
 use std::collections::BTreeMap;
 
@@ -124,7 +124,7 @@ impl<'a> Resolver<'a> {
                 break;
             }
         }
-        // What still waits leads into a circle.
+        // The remaining items depend on a cycle.
         self.circles(&waiting, key, target);
         for item in &waiting {
             ordered.push(item);

@@ -243,7 +243,7 @@ impl<'a> Resolver<'a> {
                 );
             }
             let (unit, definition) = self.checked_unit(item, typed, coordinates);
-            // What a later expression may use.
+            // Later expressions may use it.
             if let Some(named) = self.names.get_mut(item.name.value.as_str())
                 && matches!(
                     named.meaning,
@@ -262,7 +262,7 @@ impl<'a> Resolver<'a> {
         speeds
     }
 
-    /// Given rates, which may name every pseudo-velocity.
+    /// Prescribed rates, which may contain all pseudo-velocities.
     pub(super) fn given_rates(&mut self, speeds: &mut [PseudoVelocity]) {
         let ast = self.ast;
         let place = Place::equation("the rate of a pseudo-velocity");
@@ -308,7 +308,7 @@ impl<'a> Resolver<'a> {
         item.expression("value").map(|e| self.elaborate(e, place))
     }
 
-    /// The unit of a value: the one that is written, if it fits, or else one that does.
+    /// The unit of a value: the stated one if it has the right dimension, otherwise the SI unit.
     pub(super) fn checked_unit(
         &mut self,
         item: &ItemAst,

@@ -1,4 +1,4 @@
-//! What the resolution of every section shares.
+//! State shared by the resolution of all sections.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -15,15 +15,15 @@ use super::place::Place;
 /// Maximum number of diagnostics collected.
 const MAX_FINDINGS: usize = 1000;
 
-/// A spec on its way to a mechanism, and what is told of it.
+/// A spec during its resolution to a mechanism, with findings.
 pub(super) struct Resolver<'a> {
     pub(super) ast: &'a SpecAst,
     pub(super) findings: Vec<Diagnostic>,
     /// Where each line of the text starts.
     pub(super) line_starts: Vec<usize>,
-    /// What the names in expressions mean.
+    /// Meanings of names in expressions.
     pub(super) names: BTreeMap<&'a str, Named>,
-    /// Names that an item has and expressions cannot use; each is reported where it is defined.
+    /// Defined names that cannot be used in expressions; each is reported at its definition.
     pub(super) reserved: BTreeSet<&'a str>,
     /// Names of frames, points and bodies, each with its index.
     pub(super) frames: BTreeMap<&'a str, usize>,
@@ -38,13 +38,13 @@ pub(super) struct Resolver<'a> {
     pub(super) acting: Vec<Option<Acting>>,
     /// Largest polynomial degree since it was last set to zero.
     pub(super) largest_size: u32,
-    /// Unknown names already reported, each with its place in the findings.
+    /// Unknown names already reported, each with the index of its finding.
     pub(super) told: BTreeMap<(&'static str, String), usize>,
     /// How smooth each signal is, and its name.
     pub(super) interpolation: Vec<(Interpolation, &'a str)>,
-    /// What occurs in some expression.
+    /// Quantities that occur in expressions.
     pub(super) used: Used,
-    /// The definitions that are being read.
+    /// The definitions that are being expanded.
     pub(super) reading: Reading,
 }
 
@@ -81,7 +81,7 @@ impl<'a> Resolver<'a> {
         }
     }
 
-    /// Line of a place, from 1.
+    /// Line of a position, from 1.
     pub(super) fn line(&self, span: &Span) -> usize {
         self.line_starts
             .partition_point(|start| *start <= span.start)

@@ -12,7 +12,7 @@ pub const BASE_UNITS: [&str; 7] = ["m", "kg", "s", "A", "K", "mol", "cd"];
 /// Largest numerator or denominator of an exponent.
 const MAX_PART: i32 = 1000;
 
-/// What a quantity measures; an angle is dimensionless.
+/// The dimension of a quantity; angles are dimensionless.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Dimension {
     exponents: [Exponent; 7],

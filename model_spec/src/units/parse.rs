@@ -26,17 +26,17 @@ pub enum UnitError {
     Unknown {
         /// The symbol.
         symbol: String,
-        /// Where it stands in the unit text.
+        /// Its position in the unit text.
         at: Range<usize>,
-        /// A unit that looks alike.
+        /// A similar unit.
         similar: Option<String>,
     },
     /// Invalid unit.
     #[error("{message}")]
     Syntax {
-        /// What is wrong.
+        /// The message.
         message: String,
-        /// Where in the unit text.
+        /// Its position in the unit text.
         at: Range<usize>,
     },
 }
@@ -282,7 +282,7 @@ impl Parser<'_> {
     fn symbol(&self, start: usize) -> Result<Product, UnitError> {
         let at = start..self.at;
         let symbol = self.text.get(at.clone()).unwrap_or_default();
-        // `kgm2` is a product without its signs.
+        // `kgm2` lacks the signs of multiplication and power.
         let rest = self.text.get(self.at..).unwrap_or_default();
         let digits = rest.strip_prefix('^').unwrap_or(rest);
         let count = digits.bytes().take_while(u8::is_ascii_digit).count();
@@ -377,7 +377,7 @@ fn factors(symbol: &str) -> Option<String> {
         .or_else(|| few([&any, &any], 2))
 }
 
-/// A unit that is written with other cases: of prefixes only that of `k` is without doubt.
+/// A unit in different case; of prefixes only `k` is unambiguous.
 fn in_other_case(symbol: &str) -> Option<String> {
     let same = |a: &str| {
         UNITS

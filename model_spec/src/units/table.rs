@@ -1,4 +1,4 @@
-//! The units that a spec may use, and the names of what they measure.
+//! The units of a spec, and the names of quantities.
 
 use std::fmt::Write as _;
 
@@ -19,7 +19,7 @@ pub struct UnitEntry {
     pub size: (i64, i64),
     /// Whether the size is to be multiplied by π.
     pub times_pi: bool,
-    /// Whether `k`, `m`, `u` and their kin may stand before it.
+    /// Whether it may have a prefix such as `k`, `m` and `u`.
     pub prefixed: bool,
 }
 
@@ -154,7 +154,7 @@ pub const UNITS: &[UnitEntry] = &[
     ),
 ];
 
-/// Names of dimensions, and the unit people write for them.
+/// Names of dimensions, and their usual units.
 const QUANTITIES: &[([i32; 7], &str, &str)] = &[
     (NONE, "a pure number or an angle", "1"),
     (LENGTH, "a length", "m"),
@@ -188,12 +188,12 @@ fn known(dimension: &Dimension) -> Option<&'static ([i32; 7], &'static str, &'st
         .find(|(powers, _, _)| Dimension::integers(*powers) == *dimension)
 }
 
-/// `a length`, where the dimension has a name.
+/// `a length`, if the dimension has a name.
 pub(super) fn quantity_word(dimension: &Dimension) -> Option<&'static str> {
     known(dimension).map(|(_, word, _)| *word)
 }
 
-/// The SI unit of a dimension as people write it.
+/// The SI unit of a dimension in its usual notation.
 pub(super) fn si_text(dimension: &Dimension) -> String {
     if let Some((_, _, unit)) = known(dimension) {
         return (*unit).to_owned();

@@ -1,5 +1,5 @@
 //! Messages of ROS 2: their definitions, and the numbers in their bytes (OMG, *Common Data
-//! Representation*: numbers stand at multiples of their own length).
+//! Representation*: numbers are aligned to multiples of their own length).
 
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -61,15 +61,15 @@ impl Definitions {
         Self { types }
     }
 
-    /// Tells every number of a message with the path that leads to it; nothing where the bytes do not
-    /// fit.
+    /// Passes every number of a message, with its path, to `tell`; `None` if the bytes do not fit the
+    /// definitions.
     pub(super) fn read(
         &self,
         bytes: &[u8],
         topic: &str,
         tell: &mut dyn FnMut(&str, f64),
     ) -> Option<()> {
-        // Four bytes say how the rest is written; the second one, which end comes first.
+        // The encapsulation header has four bytes; the second one gives the byte order.
         let (head, body) = bytes.split_at_checked(4)?;
         let mut reader = Reader {
             definitions: self,
@@ -98,7 +98,7 @@ impl Definitions {
 }
 
 impl Field {
-    /// `float64[3] position`; nothing for constants, lines between messages and what is no field.
+    /// `float64[3] position`; `None` for constants, separators of messages and other lines.
     fn of(line: &str) -> Option<Self> {
         let (kind, rest) = line.split_once(char::is_whitespace)?;
         let name = rest.split_whitespace().next()?;
@@ -214,7 +214,7 @@ impl<'a> Reader<'a> {
         })
     }
 
-    /// The bits of a number of so many bytes, at the next multiple of its length.
+    /// The bits of a number of a given length in bytes, at the next multiple of that length.
     fn take(&mut self, width: usize) -> Option<u64> {
         let start = self.at.next_multiple_of(width);
         let bytes = self.bytes.get(start..start + width)?;

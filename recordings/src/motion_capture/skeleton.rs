@@ -123,7 +123,7 @@ pub struct Segment {
     pub name: String,
     /// Mass in kg.
     pub mass: f64,
-    /// Place of the centre as a part of the way between the ends.
+    /// Position of the centre between the ends, as a fraction of their distance.
     pub centre: f64,
     /// Points of the two ends, by their index.
     pub ends: [Vec<usize>; 2],
@@ -138,16 +138,16 @@ pub struct Frame {
     pub origin: usize,
 }
 
-/// What a coordinate of the model is in the capture.
+/// A coordinate of the model, as computed from the capture.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Channel {
     /// Name of the coordinate.
     pub name: String,
-    /// What it is.
+    /// Its definition.
     pub kind: ChannelKind,
 }
 
-/// A place: a point, or the rider's centre of mass.
+/// A position: that of a point, or of the rider's centre of mass.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Place {
     /// A point, by its index.
@@ -156,10 +156,10 @@ pub enum Place {
     Centre,
 }
 
-/// What a channel is.
+/// Definition of a channel.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ChannelKind {
-    /// The way of a place along the frame's x axis.
+    /// The path length of a place along the frame's x axis.
     Path(Place),
     /// The pitch of a body.
     Pitch(usize),
@@ -295,7 +295,10 @@ impl Reader<'_, '_> {
         match units::parse(&text) {
             Ok(unit) if unit.dimension == wanted.dimension => Some(unit.scale),
             _ => {
-                let message = format!("`{}` is no unit of what is measured in {si}", shown(&text));
+                let message = format!(
+                    "`{}` is not a unit with the dimension of {si}",
+                    shown(&text)
+                );
                 self.fields.tell(Code::UnitMismatch, message, at, &help);
                 None
             }
@@ -578,7 +581,7 @@ impl Reader<'_, '_> {
 
     /// A value that has to be there.
     fn present<T>(&mut self, value: Option<T>, key: &str, whole: &Value<'_>) -> Option<T> {
-        // A value of another form has been told of already.
+        // A value of the wrong type has been reported already.
         let stands = whole
             .get_ref()
             .as_table()
@@ -632,7 +635,7 @@ impl Reader<'_, '_> {
     }
 }
 
-/// Keys and values as they stand in the file.
+/// Keys and values in the order of the file.
 fn in_order<'a, 'd>(table: &'a DeTable<'d>) -> Vec<(String, &'a Value<'d>)> {
     let mut entries: Vec<_> = table.iter().collect();
     entries.sort_by_key(|(key, _)| key.span().start);

@@ -12,7 +12,7 @@ use super::ride::Ride;
 
 /// Degree of the polynomials.
 const DEGREE: usize = 4;
-/// Rides, and frames from the middle of each, that tell the window; more tell no other one.
+/// Rides, and frames from the middle of each, from which the window is chosen; more do not change it.
 const RIDES: usize = 3;
 const FRAMES: usize = 600;
 

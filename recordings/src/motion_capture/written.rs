@@ -50,7 +50,7 @@ pub fn manifest(skeleton: &Skeleton, runs: &[String]) -> String {
     text
 }
 
-/// The text of a run: the channels, then what is derived.
+/// The text of a run: the channels, then the derived quantities.
 pub fn table(skeleton: &Skeleton, ride: &Ride, smoothed: &Smoothed) -> String {
     let channels = skeleton
         .channels

@@ -1,4 +1,4 @@
-//! `<compiler>`: how the file is to be read, and what is done to masses and inertias.
+//! `<compiler>`: settings of the reader, and adjustments of masses and inertias.
 
 use appell_spec::{Code, did_you_mean};
 
@@ -10,15 +10,15 @@ use super::orientation::Angles;
 /// Groups of geoms.
 const GROUPS: [f64; 2] = [0.0, 5.0];
 
-/// How the file is to be read.
+/// Settings of the reader.
 pub(crate) struct Compiler {
     pub(super) angles: Angles,
-    /// Whether a range makes a limit.
+    /// Whether a range implies a limit.
     pub(super) autolimits: bool,
     pub(super) inertia_from: InertiaFrom,
     /// First and last group of the geoms that have mass.
     pub(super) groups: [f64; 2],
-    /// Whether moments that no body has become equal.
+    /// Whether principal moments that violate the triangle inequality are set to their mean.
     balance: bool,
     least_mass: f64,
     least_moment: f64,
@@ -100,7 +100,7 @@ impl Compiler {
         }
     }
 
-    /// Mass and inertia of a body as the compiler leaves them.
+    /// Mass and inertia of a body after the adjustments.
     pub(super) fn corrected(&self, inertia: Inertia) -> Inertia {
         let mut inertia = inertia;
         inertia.mass = inertia.mass.max(self.least_mass);
@@ -114,7 +114,7 @@ impl Compiler {
     }
 }
 
-/// Which of some words an attribute is.
+/// The word of an attribute, out of several.
 pub(super) fn word_of(
     element: Element<'_>,
     key: &str,

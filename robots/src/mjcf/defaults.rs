@@ -1,4 +1,4 @@
-//! Defaults by class: what an element does not say, its class says, or the class around that.
+//! Defaults by class: missing attributes of an element are taken from its class, or from the enclosing classes.
 
 use std::collections::BTreeMap;
 
@@ -7,7 +7,7 @@ use roxmltree::Attribute;
 
 use crate::xml::{Element, Findings, children, tag};
 
-/// The class of what names none.
+/// The class of elements that name none.
 const MAIN: &str = "main";
 
 /// The classes of a file.
@@ -70,7 +70,7 @@ impl<'x> Defaults<'x> {
         self.classes.keys().copied()
     }
 
-    /// What a class says of an attribute of a kind of element.
+    /// The default of a class for an attribute of a kind of element.
     pub(super) fn attribute(
         &self,
         kind: &str,
@@ -80,7 +80,7 @@ impl<'x> Defaults<'x> {
         self.of_any(kind, class, key)
     }
 
-    /// What a class says of an attribute of any of some kinds of elements, separated by blanks.
+    /// The default of a class for an attribute of any of several kinds of elements, separated by blanks.
     pub(super) fn of_any(
         &self,
         kinds: &str,

@@ -12,7 +12,7 @@ use super::Reader;
 /// Most coefficients of a polynomial.
 const MOST: usize = 5;
 
-/// What `<equality>` demands.
+/// The constraints of `<equality>`.
 #[derive(Default)]
 pub(super) struct Equality {
     pub(super) couplings: Vec<Coupling>,
@@ -57,7 +57,7 @@ pub(super) fn read<'x>(
     read
 }
 
-/// `equality/connect` and `equality/weld`: two bodies meet at a point, or everywhere.
+/// `equality/connect` and `equality/weld`: two bodies share a point, or are fixed together.
 fn connection<'x>(
     element: Element<'x>,
     reader: &Reader<'x, '_>,
@@ -85,7 +85,7 @@ fn connection<'x>(
             return None;
         };
         let pose = other.then(own.inverse());
-        // A connection of sites lets them turn against each other as they like.
+        // A connection of sites leaves their relative orientation free.
         let pose = if weld {
             pose
         } else {
@@ -102,7 +102,7 @@ fn connection<'x>(
         None => [0.0; 3],
     };
     let drawn = drawn(&reader.links, [first, second]);
-    // What a weld says of the pose of the second in the first, at the anchor in the second.
+    // The relative pose of a weld: the second body in the first, at the anchor in the second.
     let relative = match element.attribute_node("relpose").filter(|_| weld) {
         Some(given) => {
             let [x, y, z, q @ ..]: [f64; 7] = exactly(
@@ -126,7 +126,7 @@ fn connection<'x>(
             connected((first, position), second, pose)
         }
         None if weld && !rigid => connected((first, drawn.inverse().of(anchor)), second, drawn),
-        // The same wherever it is anchored.
+        // Independent of the anchor.
         None if weld => connected((first, [0.0; 3]), second, drawn),
         None => connected((first, anchor), second, drawn),
     })
@@ -140,10 +140,10 @@ fn shifted(from: Vector, to: Vector) -> Pose {
     }
 }
 
-/// There is no body of a name, which is told.
+/// A body does not exist, which has been reported.
 struct Unknown;
 
-/// The link of a body that is named; none is the world, which is meant where no body is named.
+/// The link of a named body; `None` is the world, also if no body is named.
 fn body(
     element: Element<'_>,
     key: &str,
@@ -178,7 +178,7 @@ fn body(
 }
 
 impl<'x> Reader<'x, '_> {
-    /// `equality/joint`: a joint follows another one by a polynomial, or stands still.
+    /// `equality/joint`: a joint position is a polynomial of another one, or constant.
     fn coupled_joints(&self, element: Element<'x>, read: &mut Equality) -> Option<()> {
         let joint = self.joint_named(element, "joint1")?;
         let other = match element.attribute_node("joint2") {
@@ -193,7 +193,7 @@ impl<'x> Reader<'x, '_> {
         self.couple(element, sums, zeros, read)
     }
 
-    /// Adds the equation of two sums; without the second, the first keeps a value.
+    /// Adds the equation of two sums; without the second, the first is constant.
     pub(super) fn couple(
         &self,
         element: Element<'x>,
@@ -203,7 +203,7 @@ impl<'x> Reader<'x, '_> {
     ) -> Option<()> {
         let mut coefficients = vec![0.0, 1.0];
         if let Some(given) = element.attribute_node("polycoef") {
-            // Those that are not given are as they are by default.
+            // Missing coefficients have their defaults.
             let given = numbers(self.findings, &given)?;
             if given.len() > 1 {
                 coefficients = given;

@@ -12,7 +12,7 @@ use crate::xml::{Element, children, exactly, numbers, tag};
 use super::meshes::called;
 use super::{Held, Reader};
 
-/// Density of what has none, that of water.
+/// Default density, that of water.
 const DENSITY: f64 = 1000.0;
 const SHAPES: [&str; 9] = [
     "sphere",
@@ -27,7 +27,7 @@ const SHAPES: [&str; 9] = [
 ];
 
 impl<'x> Reader<'x, '_> {
-    /// The geoms of a body together, in its frame.
+    /// The combined inertia of the geoms of a body, in its frame.
     pub(super) fn of_geoms(&self, held: &[Held<'x>], matters: bool) -> Inertia {
         let geoms = held.iter().filter(|held| held.element.has_tag_name("geom"));
         geoms.fold(Inertia::NONE, |sum, held| {
@@ -39,7 +39,7 @@ impl<'x> Reader<'x, '_> {
         })
     }
 
-    /// Keeps the place of a geom that others could touch.
+    /// Records the position in the file of a geom that could collide.
     pub(super) fn touch(&mut self, geom: Element<'x>, class: Option<&'x str>) {
         let class = self.class(geom, "class").or(class);
         let touches = |key: &str| {
@@ -52,7 +52,7 @@ impl<'x> Reader<'x, '_> {
         }
     }
 
-    /// A geom about its own axes, and where it is.
+    /// The inertia of a geom about its own axes, and its pose.
     fn geom(
         &self,
         geom: Element<'x>,

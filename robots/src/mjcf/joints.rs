@@ -1,4 +1,4 @@
-//! Hinges, slides, balls, and bodies that are free.
+//! Hinge, slide, ball and free joints.
 
 use appell_spec::{Code, did_you_mean};
 use roxmltree::Attribute;
@@ -127,7 +127,7 @@ impl<'x> Reader<'x, '_> {
         })
     }
 
-    /// A joint without an axis; what has no counterpart there is warned of.
+    /// A joint without an axis; properties without a counterpart give warnings.
     fn without_axis(&self, joint: Joint, limited: bool) -> Joint {
         let [damping, higher @ ..] = joint.damping;
         for (what, is_there) in [

@@ -1,4 +1,4 @@
-//! The ways in which MJCF writes an orientation.
+//! The representations of orientations in MJCF.
 
 use appell_spec::Code;
 use roxmltree::Attribute;

@@ -1,5 +1,5 @@
-//! `<replicate>`: copies of what it holds, each placed from the one before, in its place in the text. Names get the number
-//! of the copy behind them, and what names them elsewhere is copied as well.
+//! `<replicate>`: replaced by copies of its children, each posed relative to the previous one. The number of the copy
+//! is appended to names, and elements of other sections that refer to them are copied as well.
 
 use std::collections::BTreeSet;
 
@@ -12,11 +12,11 @@ use crate::xml::{Element, Findings, Span, elements, exactly, inside, parse, tag}
 
 use super::compiler::Compiler;
 
-/// Most elements `replicate`.
+/// Largest number of `replicate` elements.
 const MOST: usize = 256;
-/// Most copies.
+/// Largest number of copies.
 const MOST_COPIES: f64 = 65_536.0;
-/// Sections that name what is copied.
+/// Sections that can refer to copied elements.
 const SECTIONS: [&str; 4] = ["equality", "tendon", "actuator", "contact"];
 
 /// The text with all copies written out, from the innermost `replicate` outwards.
@@ -111,7 +111,7 @@ fn copies(root: Element<'_>, element: Element<'_>, findings: &Findings) -> Vec<(
     let mut copies = Vec::new();
     let mut position = [0.0; 3];
     while (copies.len() as f64) < count {
-        // As MuJoCo 4.0 has it: angles add up, and offsets are along the axes of the copy before.
+        // As in MuJoCo 4.0: angles add up, and offsets are along the axes of the previous copy.
         let rotation = angles.euler(scaled(turns, copies.len() as f64));
         let number = format!("{separator}{:0width$}", copies.len());
         copies.push((Pose { rotation, position }, number));
@@ -127,7 +127,7 @@ fn edits(root: Element<'_>, element: Element<'_>, copies: &[(Pose, String)]) -> 
         .descendants()
         .filter_map(|inner| named(&inner))
         .collect();
-    // Each span of the text is replaced by copies of a part of it, with words before and after.
+    // Each span of the text is replaced by copies of a part of it, with a prefix and a suffix.
     let mut replaced: Vec<(Span, Vec<Edit>)> = Vec::new();
     let own = element.range();
     let mut within = Vec::new();

@@ -1,5 +1,5 @@
-//! What MJCF has, as of `MuJoCo` 4.0, and what becomes of it: read, without effect on the motion, or left out, with a
-//! sentence on how the motion differs. What is not in this table is no MJCF and refused.
+//! The elements and attributes of MJCF, as of `MuJoCo` 4.0, and their treatment: read, without effect on the motion, or
+//! left out, with a sentence on how the motion differs. Anything else is refused as invalid.
 
 use appell_spec::{Code, did_you_mean};
 
@@ -9,15 +9,15 @@ use crate::xml::{Element, Findings, elements, tag};
 /// An element, within some others.
 struct Row {
     element: &'static str,
-    /// Elements that hold it; `body` stands for all that holds bodies.
+    /// Possible parents; `body` stands for all elements that can contain bodies.
     within: &'static str,
     /// Attributes that are read.
     read: &'static str,
     /// Attributes without effect on the motion: of pictures, names, sensors, solvers and contacts.
     idle: &'static str,
-    /// Attributes that would change the motion, the value at which they do not, and how.
+    /// Attributes that would change the motion: name, neutral value, effect.
     left_out: &'static [(&'static str, &'static str, &'static str)],
-    /// Whether what it holds is looked at.
+    /// Whether its attributes and children are checked.
     open: bool,
     /// How the motion differs where the whole element is left out.
     effect: Option<&'static str>,
@@ -37,13 +37,13 @@ impl Row {
         }
     }
 
-    /// Elements without effect on the motion, whatever they hold.
+    /// Elements without effect on the motion, with all their contents.
     const fn idle_element(element: &'static str, within: &'static str) -> Self {
         let row = Self::read(element, within, "");
         Self { open: false, ..row }
     }
 
-    /// Elements that are left out, whatever they hold.
+    /// Elements that are left out with all their contents.
     const fn apart(element: &'static str, within: &'static str, effect: &'static str) -> Self {
         let row = Self::idle_element(element, within);
         Self {
@@ -74,7 +74,7 @@ const ALIGNED: &str = "coordinates of the free joint are those of the body's fra
                        centre of mass and principal axes";
 const YIELD: &str = "the spring does not yield";
 const TENDON: &str = "it resists nothing and bounds nothing";
-/// What geoms would do.
+/// Effect of contacts.
 pub(super) const TOUCH: &str = "bodies pass through each other";
 
 /// All elements with their attributes.
@@ -234,7 +234,7 @@ const TABLE: &[Row] = &[
     Row::apart(ACTUATORS, "actuator default", ACTUATOR),
 ];
 
-/// Tendons of both kinds, and what their defaults are.
+/// Tendons of both kinds, and their defaults.
 const TENDONS: Row = Row::read(
     "spatial",
     "tendon",
@@ -255,7 +255,7 @@ fn has(words: &str, word: &str) -> bool {
     words.split_ascii_whitespace().any(|own| own == word)
 }
 
-/// The kind of an element that holds others.
+/// The kind of an element as a parent.
 fn kind(holder: Element<'_>) -> &str {
     match holder.tag_name().name() {
         "worldbody" | "frame" | "replicate" => "body",
@@ -279,7 +279,7 @@ pub(super) fn effect(element: Element<'_>) -> Option<&'static str> {
     }
 }
 
-/// Refuses what is no MJCF, and lists attributes that are left out.
+/// Refuses elements and attributes that MJCF does not have, and lists attributes that are left out.
 pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<LeftOut>) {
     let mut open = vec![root];
     while let Some(element) = open.pop() {
@@ -338,14 +338,14 @@ pub(super) fn check(root: Element<'_>, findings: &Findings, left_out: &mut Vec<L
     }
 }
 
-/// Whether a value is one at which an attribute does nothing: one of several words, or zeros.
+/// Whether a value of an attribute is neutral: one of several words, or zeros.
 fn changes_nothing(value: &str, idle: &str) -> bool {
     let zero = |word: &str| word.parse::<f64>().is_ok_and(|number| number == 0.0);
     let mut words = value.split_ascii_whitespace();
     idle.split('|').any(|word| word == value) || (idle == "0" && words.all(zero))
 }
 
-/// Whether a flag of `option` disables what it names.
+/// Whether a feature is disabled by its flag in `option`.
 pub(super) fn disabled(root: Element<'_>, flag: &str) -> bool {
     let options = elements(root).filter(|section| section.has_tag_name("option"));
     let flags = options.flat_map(|option| elements(option).filter(|one| one.has_tag_name("flag")));

@@ -1,4 +1,4 @@
-//! Tendons that are sums of coordinates, and what drives add to joints and tendons.
+//! Tendons that are sums of coordinates, and properties of joints and tendons that actuators add.
 
 use std::collections::BTreeMap;
 
@@ -12,7 +12,7 @@ use crate::xml::{Element, children, elements, exactly, numbers, tag};
 use super::schema::{ACTUATORS, effect};
 use super::{Equality, Reader};
 
-/// What an attribute says that stands for the length where all springs are relaxed.
+/// Value of an attribute that means the length at which all springs are relaxed.
 const BY_JOINTS: f64 = -1.0;
 
 impl<'x> Reader<'x, '_> {
@@ -29,7 +29,7 @@ impl<'x> Reader<'x, '_> {
         tendons
     }
 
-    /// A path through space: listed where it does something.
+    /// A spatial tendon: listed as left out if it exerts a force.
     fn spatial_tendon(&mut self, element: Element<'x>) {
         let class = self.class(element, "class");
         let does = ["stiffness", "damping", "frictionloss", "armature", "range"];
@@ -213,7 +213,7 @@ impl<'x> Reader<'x, '_> {
         }
     }
 
-    /// `equality/tendon`: a tendon follows another one by a polynomial, or keeps its length.
+    /// `equality/tendon`: the length of a tendon is a polynomial of another one, or constant.
     pub(super) fn coupled_tendons(
         &self,
         element: Element<'x>,

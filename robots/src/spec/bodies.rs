@@ -101,7 +101,7 @@ impl Writer<'_> {
         written
     }
 
-    /// The frame of a body. One that does not turn against its parent has that of the parent.
+    /// The frame of a body. One that does not rotate relative to its parent has the frame of the parent.
     pub(super) fn frame(&mut self, index: usize) {
         let body = self.at(index);
         let called = self.called.links[body.link].clone();
@@ -138,7 +138,8 @@ impl Writer<'_> {
         self.called.frames.push(called);
     }
 
-    /// The frame of a body that turns about every axis, on one that stands still beside it if it is turned there.
+    /// The frame of a body with a ball joint or a free joint. If it is mounted at an angle, its parent is a frame fixed
+    /// at that angle.
     fn quaternion_frame(&mut self, index: usize, called: &str, parent: &str) {
         let turns = self.constant_turns(index, parent);
         let mut parent = parent.to_owned();
@@ -156,7 +157,7 @@ impl Writer<'_> {
         self.called.frames.push(called.to_owned());
     }
 
-    /// Turns of a body's frame that do not change, each an axis and an angle.
+    /// The constant turns of a body's frame, each an axis and an angle.
     fn constant_turns(&mut self, index: usize, parent: &str) -> Vec<(String, String)> {
         let body = self.at(index);
         let link = self.links[body.link].name.clone();
@@ -169,7 +170,7 @@ impl Writer<'_> {
                 } else {
                     (turn.angle, AXES[turn.axis].to_owned())
                 };
-            // A right angle is not a number that anyone measures.
+            // Right angles are not parameters.
             let by = if right_angles(value).is_some() {
                 quantity(value, "rad")
             } else {
@@ -343,7 +344,7 @@ impl Writer<'_> {
         self.bodies.add(&called, &item);
     }
 
-    /// Origins of links that the ground carries.
+    /// Origins of links that are fixed to the ground.
     pub(super) fn links_on_the_ground(&mut self) {
         for part in &self.tree.ground {
             if !is_zero(part.position) {
@@ -385,7 +386,7 @@ impl Writer<'_> {
         }
     }
 
-    /// Forces that carry a share of the weight of links.
+    /// Forces that compensate a fraction of the weight of links.
     pub(super) fn carried(&mut self, gravity: Vector, letters: &[String; 3]) {
         if is_zero(gravity) {
             return;
@@ -456,7 +457,7 @@ impl Writer<'_> {
         self.loads.add(name, &item);
     }
 
-    /// The furthest link that carries nothing, of each body that carries none.
+    /// Of each body without child bodies, the farthest link without child links.
     fn ends_of_chains(&self) -> impl Iterator<Item = &'_ Part> {
         let mut is_parent = vec![false; self.links.len()];
         for parent in self.links.iter().filter_map(|link| link.parent) {

@@ -1,4 +1,4 @@
-//! Points that meet where links close a loop.
+//! Coincident points of loop closures.
 
 use crate::letters::quantity;
 use crate::loops::Equations;
@@ -11,7 +11,7 @@ use super::Writer;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Writer<'_> {
-    /// The equations of what connects links.
+    /// Adds the equations of connections of links.
     pub(super) fn connections(&mut self, connections: &[Connection], equations: &Equations) {
         let mut names = crate::names::Names::default();
         for (connection, (name, meetings)) in connections.iter().zip(&equations.meetings) {

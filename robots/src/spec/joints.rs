@@ -1,4 +1,4 @@
-//! Coordinates, what drives and resists them, and what couples them.
+//! Coordinates with their inputs, passive forces and couplings.
 
 use crate::letters::plain;
 use crate::model::{Joint, Motion};
@@ -10,7 +10,7 @@ use super::units::Units;
 use super::{Writer, operand, sentence};
 
 impl Writer<'_> {
-    /// The coordinate of a joint, its speed, its input, and what resists it.
+    /// The coordinate of a joint with its pseudo-velocity, input and passive forces.
     pub(super) fn joint(&mut self, index: usize) {
         let joint = &self.tree.bodies[index].joint;
         if !joint.motion.has_axis() {
@@ -37,7 +37,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What drives a joint: an input along its coordinate.
+    /// The input of a joint, along its coordinate.
     fn drive(&mut self, joint: &Joint, q: &str, units: &Units) {
         let input = self.quantities.new_one(&format!(
             "{}_{q}",
@@ -67,12 +67,12 @@ impl Writer<'_> {
             .add(&format!("drive_{q}"), &item.text("force", &input));
     }
 
-    /// The coordinates of a body that turns about every axis, and moves anywhere or does not.
+    /// The coordinates of a body with a ball joint or a free joint.
     fn several_coordinates(&mut self, index: usize) {
         let body = &self.tree.bodies[index];
         let named = sentence(&format!("joint {}", body.joint.name));
         let is_free = body.joint.motion == Motion::Free;
-        // A ball joint begins as its file has it.
+        // The initial orientation of a ball joint is that of its file.
         let drawn = if is_free { body.start } else { Pose::IDENTITY };
         let start = match self.start {
             Some(start) => drawn.then(start.turned[body.link]),
@@ -93,8 +93,8 @@ impl Writer<'_> {
         }
     }
 
-    /// Their speeds: those of the place in the ground, and the angular velocity from what carries the joint, in the
-    /// frame of the body.
+    /// Their pseudo-velocities: the velocity components in the ground frame, and the angular velocity relative to the
+    /// parent, in the frame of the body.
     pub(super) fn several_speeds(&mut self, index: usize, followers: &[usize]) {
         let body = &self.tree.bodies[index];
         let q = self.called.coordinates[index].clone();
@@ -127,7 +127,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What drives and resists one of several speeds. Nothing drives a free body.
+    /// Input and passive forces along one of several pseudo-velocities. A free body has no input.
     fn along(&mut self, index: usize, axis: &str, speed: &str, units: &Units) {
         let joint = &self.tree.bodies[index].joint;
         let q = self.called.coordinates[index].clone();
@@ -153,7 +153,7 @@ impl Writer<'_> {
         self.friction(&owner, joint.friction, speed);
     }
 
-    /// Inertia of what turns with a ball joint alone, or moves with a free one.
+    /// Armature of a ball joint or a free joint.
     fn armature_of_several(&mut self, index: usize) {
         let joint = &self.tree.bodies[index].joint;
         let q = self.called.coordinates[index].clone();
@@ -205,7 +205,7 @@ impl Writer<'_> {
         self.coordinates.add(q, &item);
     }
 
-    /// Inertia of a drive that turns with its joint alone.
+    /// Armature: inertia of a rotor that moves with its joint only.
     fn armature(&mut self, joint: &Joint, q: &str, units: &Units) {
         let number = (
             joint.armature,

@@ -1,4 +1,4 @@
-//! Comments: where the spec comes from, what its file has besides.
+//! Comments of the spec: its source, and parts of the file without a counterpart.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
@@ -10,7 +10,7 @@ use crate::tree::Tree;
 /// Most names that a list gives.
 const MOST_NAMES: usize = 12;
 
-/// What stands above a spec.
+/// The comment at the beginning of a spec.
 pub(super) fn head(file: &str, kind: &str, robot: &Robot, tree: &Tree) -> String {
     let links = robot.links.iter().filter(|link| link.written).count();
     let mut head = format!(
@@ -34,7 +34,7 @@ pub(super) fn head(file: &str, kind: &str, robot: &Robot, tree: &Tree) -> String
     head
 }
 
-/// What stands below it.
+/// The comment at its end.
 pub(super) fn left_out(left_out: &[LeftOut], options: &Options, text: &mut String) {
     if !options.without.is_empty() {
         let without: Vec<&str> = options.without.iter().map(|one| one.word()).collect();
@@ -54,7 +54,7 @@ pub(super) fn left_out(left_out: &[LeftOut], options: &Options, text: &mut Strin
         kinds[at].1.extend(one.name.as_deref());
         kinds[at].2 += 1;
     }
-    // What changes the motion comes first.
+    // Omissions that change the motion come first.
     kinds.sort_by_key(|(one, ..)| one.effect.is_none());
     for (one, names, count) in kinds {
         let names = if names.is_empty() {

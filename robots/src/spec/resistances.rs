@@ -1,4 +1,4 @@
-//! What resists a coordinate, a speed or the length of a tendon: damping, springs, dry friction.
+//! Damping, springs and dry friction along a coordinate, a speed or the length of a tendon.
 
 use crate::letters::{Kind, Number, quantity};
 use crate::model::Polynomial;
@@ -11,14 +11,14 @@ use super::{Writer, operand, plus};
 /// Rates below which dry friction fades out.
 const SLOW: f64 = 0.01;
 
-/// What is resisted.
+/// The coordinate, speed or tendon on which such forces act.
 pub(super) struct Owner<'a> {
     /// Its name in the spec, and in the file.
     pub(super) called: &'a str,
     pub(super) of: &'a str,
     /// `joint` or `tendon`.
     pub(super) kind: &'a str,
-    /// The key of a load and its value: along what it acts.
+    /// The key and the value that give the direction of a load.
     pub(super) along: (&'a str, &'a str),
     pub(super) units: &'a Units,
 }
@@ -44,7 +44,7 @@ impl Writer<'_> {
         self.numbers.write(number, &mut self.quantities)
     }
 
-    /// A load along what is resisted.
+    /// Adds a load along the coordinate, speed or tendon.
     fn resist(&mut self, owner: &Owner<'_>, word: &str, force: &str) {
         let (key, along) = owner.along;
         let item = Item::default()
@@ -54,7 +54,7 @@ impl Writer<'_> {
         self.loads.add(&format!("{word}_{}", owner.called), &item);
     }
 
-    /// The force of a polynomial, by the powers of what it is taken of.
+    /// A resisting force as a polynomial, given the powers of its argument.
     fn opposing(
         &mut self,
         owner: &Owner<'_>,

@@ -1,4 +1,4 @@
-//! Sums of coordinates: tendons, and equations between them.
+//! Sums of coordinates: tendons and couplings.
 
 use crate::letters::{plain, quantity};
 use crate::loops::Equations;
@@ -11,7 +11,7 @@ use super::units::Units;
 use super::{Writer, operand, plus};
 
 impl Writer<'_> {
-    /// In which units a sum is: a length, where one of its joints slides.
+    /// The units of a sum: those of a length if one of its joints slides.
     fn units(&self, sum: &Sum) -> Units {
         let slides = |name: &String| {
             let body = self.tree.by_joint.get(name);
@@ -25,7 +25,7 @@ impl Writer<'_> {
         })
     }
 
-    /// A sum, of coordinates or of what is written for each.
+    /// A sum over coordinates, each written by `each`.
     fn sum(&self, sum: &Sum, units: &Units, each: impl Fn(&str) -> String) -> String {
         let mut written = "0".to_owned();
         for (name, factor) in &sum.terms {
@@ -49,7 +49,7 @@ impl Writer<'_> {
         written
     }
 
-    /// What resists the lengths of tendons.
+    /// The passive forces of tendons.
     pub(super) fn tendons(&mut self, tendons: &[Tendon]) {
         for tendon in tendons {
             let called = self.quantities.new_one(&crate::names::short(&tendon.name));
@@ -122,7 +122,7 @@ impl Writer<'_> {
         }
     }
 
-    /// What a sum is by another one.
+    /// The value of the dependent sum as a polynomial of the other one.
     fn polynomial(&self, coupling: &Coupling, own: &Units) -> String {
         if let Some(other) = coupling
             .other

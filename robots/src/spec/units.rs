@@ -1,8 +1,8 @@
-//! Units of what belongs to a joint.
+//! Units of quantities of a joint.
 
 use crate::model::Motion;
 
-/// Units of what belongs to a kind of joint.
+/// Units of quantities of a kind of joint.
 pub(super) struct Units {
     pub(super) coordinate: &'static str,
     pub(super) rate: &'static str,
@@ -24,7 +24,7 @@ impl Units {
                 stiffness: ["N*m"; 3],
                 inertia: "kg*m^2",
             },
-            // What has several coordinates has no unit of its own.
+            // A joint with several coordinates has no common unit.
             Motion::Sliding | Motion::Ball | Motion::Free => Self {
                 coordinate: "m",
                 rate: "m/s",

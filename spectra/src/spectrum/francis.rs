@@ -6,9 +6,9 @@ use nalgebra::Complex;
 use super::hessenberg::{balance, drop_negligible, reduce};
 use super::{SpectrumError, finite};
 
-/// Steps for one eigenvalue; a handful is usual.
+/// Maximum number of steps for one eigenvalue; a handful is usual.
 const MOST_STEPS: usize = 60;
-/// Steps after which what is small beside the matrix is zero.
+/// Steps after which a subdiagonal entry that is small relative to the norm of the matrix counts as zero.
 const CHAIN: usize = 2 * EXCEPTIONAL;
 /// Steps after which an exceptional shift breaks a cycle.
 const EXCEPTIONAL: usize = 10;
@@ -101,8 +101,8 @@ impl Eigenvalues {
         let mut first = last;
         while first > 0 {
             let beside = self.entry(first - 1, first - 1).abs() + self.entry(first, first).abs();
-            // A diagonal of zeros is compared with the matrix; so is one that stays small beside
-            // what couples it, as where a chain of zero eigenvalues lost its zeros to rounding.
+            // Where both diagonal entries are zero, the norm of the matrix is the reference; likewise after
+            // many steps, as for a Jordan chain of zero eigenvalues that is perturbed by rounding.
             let chain = steps > CHAIN;
             let beside = if beside == 0.0 || chain { norm } else { beside };
             if self.entry(first, first - 1).abs() <= f64::EPSILON * beside {

@@ -1,6 +1,6 @@
 //! Balancing and the Hessenberg form, both in place, row by row.
 
-/// Clears entries that are nothing beside the largest, and whose squares would underflow.
+/// Clears entries that are negligible relative to the largest one and whose squares would underflow.
 pub(super) fn drop_negligible(a: &mut [f64]) {
     const NOTHING: f64 = 1e-60;
     let largest = a.iter().map(|entry| entry.abs()).fold(0.0, f64::max);

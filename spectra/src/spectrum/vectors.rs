@@ -114,12 +114,12 @@ fn condition(
     1.0 / smallest.unwrap_or(0.0)
 }
 
-/// One vector per eigenvalue: what A − λ hardly stretches.
+/// One eigenvector per eigenvalue: the right singular vector of the smallest singular value of A − λ.
 fn vectors(a: &DMatrix<f64>, values: &[Complex<f64>], norm: f64) -> Vec<Vector> {
     let (n, a) = (values.len(), complex(a));
     let vector = |(i, &value): (usize, &Complex<f64>)| {
         let singular = Singular::of(&(&a - DMatrix::from_diagonal_element(n, n, value)));
-        // Of a repeated eigenvalue each takes another one, as long as there is.
+        // A repeated eigenvalue gets several vectors of the null space, as far as its dimension allows.
         let small = |&&size: &&f64| size <= SAME * norm;
         let own = singular.values.iter().rev().take_while(small).count();
         let earlier = cluster(values, i, norm).take_while(|&j| j < i).count();

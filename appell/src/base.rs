@@ -124,7 +124,7 @@ impl BaseParameters {
     pub fn to_text(&self) -> String {
         let structure = &self.structure;
         let mut text = format!(
-            "{} of {} parameters or combinations of them can be told from motions and forces\n\n",
+            "{} of {} parameters or combinations of them are identifiable from motions and forces\n\n",
             structure.base.len(),
             structure.parameters.len() + structure.without_effect.len(),
         );
@@ -192,7 +192,7 @@ impl BaseParameters {
         for (combination, estimate) in self.structure.base.iter().zip(&fit.estimates) {
             let [low, high] = estimate.interval95;
             let remark = match combination.nominal {
-                _ if !estimate.is_told() => "not told from zero",
+                _ if !estimate.is_told() => "not significantly different from zero",
                 nominal if nominal < low || nominal > high => "differs from the spec",
                 _ => "",
             };

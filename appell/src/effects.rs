@@ -138,7 +138,7 @@ impl Example {
         );
         let Some(shown) = &self.shown else {
             if !self.sites.is_empty() {
-                text += "\nNo input drives one of them through a constant lever, without which it cannot be told.\n";
+                text += "\nNo input drives one of them through a constant lever, without which it is not identifiable.\n";
             }
             return text;
         };

@@ -139,7 +139,7 @@ fn compiled(emitted: &Emitted) -> Result<Vec<u8>, Error> {
         files::write(&folder.0.join(name), text)?;
     }
     compile(emitted, &folder.0)?;
-    Ok(fs::read(folder.0.join(LIBRARY)).map_err(failed("read what was compiled"))?)
+    Ok(fs::read(folder.0.join(LIBRARY)).map_err(failed("read the compiled library"))?)
 }
 
 /// The name of the library while it is made.

@@ -314,7 +314,7 @@ impl Hypothesis {
             return "nominal model, its parameters fitted".to_owned();
         }
         if self.effects == ["unknown"] && self.changes.is_some() {
-            return "what no effect of the library explains, measured".to_owned();
+            return "a measured force that no effect of the library explains".to_owned();
         }
         self.effects.join(" + ")
     }

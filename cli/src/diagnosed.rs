@@ -264,7 +264,7 @@ fn how_far(report: &Report) -> String {
         let [low, high] = far.closed_ci95.map(percent);
         writeln!(
             text,
-            "            what is closed is not determined: the held-out runs leave it between {low} and {high}"
+            "            the closed share is not determined: the held-out runs leave it between {low} and {high}"
         )
     };
     if let Some(parts) = divided(report) {

@@ -124,7 +124,7 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     let report = appell::diagnose(&set, &options, |stage| spinner.set_message(stage));
     spinner.finish_and_clear();
     let report = report?;
-    let about = "what it lacks, and how far that closes the gap";
+    let about = "the missing effect, and how far it closes the gap";
     files::write(
         &written.place("gap.html", about),
         &appell_report::gap::page(&set, &report),

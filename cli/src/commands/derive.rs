@@ -165,7 +165,7 @@ impl Derive {
             return Err(Error::Usage(message.to_owned()));
         }
         if self.regressor && self.integrator {
-            let message = "--integrator needs the rates, which are not beside a regressor";
+            let message = "--integrator needs the rates, which a regressor does not include";
             return Err(Error::Usage(message.to_owned()));
         }
         if format != Output::C && (self.float || self.integrator) {

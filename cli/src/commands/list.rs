@@ -89,7 +89,7 @@ impl List {
         if let Some(columns) = output::columns() {
             fit(&mut rows, columns);
         }
-        let note = "`--json` has sources, names and costs; `appell effects` lists what a diagnosis looks for\n";
+        let note = "`--json` has sources, names and costs; `appell effects` lists the effects that a diagnosis looks for\n";
         output::print(&(table(&rows, 1..2) + note))
     }
 }

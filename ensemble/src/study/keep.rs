@@ -86,7 +86,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
         }
         let [form] = given[..] else {
             let message = match given[..] {
-                [] => format!("`{}` does not say what is kept", name.text),
+                [] => format!("`{}` names no quantity to keep", name.text),
                 _ => format!("`{}` keeps two things", name.text),
             };
             let help = format!("write one of {}", FORMS.join(", "));
@@ -127,7 +127,8 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
     }
     let keep = table.get("keep").map(|keep| keep.get_ref().as_table());
     if keep.is_none_or(|keep| keep.is_some_and(DeTable::is_empty)) {
-        let help = "write what is kept under `[keep]`, such as `reached = { end = \"x\" }`";
+        let help =
+            "write the quantities to keep under `[keep]`, such as `reached = { end = \"x\" }`";
         read.tell(Code::MissingSection, "nothing is kept", 0..0, help);
     }
     all

@@ -1,4 +1,4 @@
-//! `[keep]` and `[rare]`: what is kept of each motion, and which rare event is sought.
+//! `[keep]` and `[rare]`: the kept quantities of each motion, and the rare event.
 
 use appell_spec::{Code, shown};
 use toml::de::DeTable;
@@ -12,17 +12,17 @@ use crate::limits::MAX_PARTICLES;
 pub struct Keep {
     /// Its name, that of a column.
     pub name: Text,
-    /// What of a quantity is kept.
+    /// The statistic of the quantity that is kept.
     pub kept: Kept,
     /// The quantity: a name of the spec, or an expression; of an event a comparison such as `theta > 20[deg]`.
     pub of: Text,
-    /// Unit for people, in place of the one of the quantity.
+    /// Display unit, instead of that of the quantity.
     pub unit: Option<Text>,
     /// A sentence; may be empty.
     pub about: String,
 }
 
-/// What of a quantity is kept.
+/// The statistic of a quantity that is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kept {
     /// Its last value.
@@ -47,7 +47,7 @@ pub enum Kept {
 /// A rare event, whose probability importance splitting finds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rare {
-    /// Name of the kept event.
+    /// Name of the event, an entry of `[keep]`.
     pub event: Text,
     /// Particles.
     pub particles: Placed<u64>,
@@ -76,7 +76,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             .into_iter()
             .filter(|form| entry.get(*form).is_some())
             .collect();
-        // A word that is no key has been told.
+        // An unknown key has been reported already.
         if given.is_empty()
             && entry
                 .keys()

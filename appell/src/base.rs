@@ -1,4 +1,4 @@
-//! Base parameters: what the forces of motions depend on, and its values by recordings.
+//! Base parameters: the identifiable combinations of inertial and load parameters, and their estimates.
 
 use std::fmt::Write as _;
 
@@ -17,9 +17,9 @@ use crate::{Error, Model, Source, recording};
 pub struct BaseParameters {
     /// Name of the mechanism.
     pub mechanism: String,
-    /// What there is to be known.
+    /// The structure: base parameters and their combinations.
     pub structure: Structure,
-    /// What recordings tell, if any were given.
+    /// Estimates from recordings, if any were given.
     pub fit: Option<Fit>,
 }
 
@@ -120,7 +120,7 @@ impl BaseParameters {
         value
     }
 
-    /// As tables for people.
+    /// As text tables.
     pub fn to_text(&self) -> String {
         let structure = &self.structure;
         let mut text = format!(

@@ -1,4 +1,4 @@
-//! Base parameters: what the forces of motions depend on, and its values by recordings.
+//! Base parameters: the identifiable combinations of inertial and load parameters, and their estimates.
 
 use std::fmt::Write as _;
 
@@ -17,9 +17,9 @@ use crate::{Error, Model, Source, recording};
 pub struct BaseParameters {
     /// Name of the mechanism.
     pub mechanism: String,
-    /// What there is to be known.
+    /// The structure: base parameters and their combinations.
     pub structure: Structure,
-    /// What recordings tell, if any were given.
+    /// Estimates from recordings, if any were given.
     pub fit: Option<Fit>,
 }
 
@@ -120,11 +120,11 @@ impl BaseParameters {
         value
     }
 
-    /// As tables for people.
+    /// As text tables.
     pub fn to_text(&self) -> String {
         let structure = &self.structure;
         let mut text = format!(
-            "{} of {} parameters or combinations of them can be told from motions and forces\n\n",
+            "{} of {} parameters or combinations of them are identifiable from motions and forces\n\n",
             structure.base.len(),
             structure.parameters.len() + structure.without_effect.len(),
         );
@@ -192,7 +192,7 @@ impl BaseParameters {
         for (combination, estimate) in self.structure.base.iter().zip(&fit.estimates) {
             let [low, high] = estimate.interval95;
             let remark = match combination.nominal {
-                _ if !estimate.is_told() => "not told from zero",
+                _ if !estimate.is_told() => "not significantly different from zero",
                 nominal if nominal < low || nominal > high => "differs from the spec",
                 _ => "",
             };

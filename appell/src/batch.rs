@@ -10,7 +10,7 @@ use crate::inputs::controller::Controller;
 use crate::motion::{MOST_ROWS, Motion, Ready, Simulated};
 use crate::{Error, Field, Model, ModelInputs};
 
-/// As many motions are integrated together, and recorded before the next ones begin.
+/// Motions integrated together, and recorded before the next ones start.
 const TOGETHER: usize = 64;
 
 /// Maximum number of rows of all motions.
@@ -19,7 +19,7 @@ const MOST_ROWS_TOGETHER: f64 = 10.0 * MOST_ROWS;
 impl Model {
     /// The motions from many initial states in SI, one after the other in `starts`; the other initial values of the
     /// request do not matter. Each is, up to the rounding of elementary functions, the one that [`Model::simulate`]
-    /// gives. `go_on` is asked now and then.
+    /// gives. `go_on` is called regularly.
     ///
     /// ```
     /// use appell::{Model, Motion};

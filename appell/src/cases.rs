@@ -1,4 +1,4 @@
-//! Cases at which equations are evaluated; every mistake is reported with its place in the file.
+//! Cases at which equations are evaluated; every error is reported with its position in the file.
 
 use std::collections::BTreeSet;
 use std::fmt;
@@ -23,11 +23,11 @@ pub struct Case {
     pub u: Vec<Option<f64>>,
     /// Parameters.
     pub p: Vec<f64>,
-    /// Pseudo-accelerations whose inverse dynamics is asked for; omitted ones are zero.
+    /// Pseudo-accelerations for inverse dynamics, if requested; omitted ones are zero.
     pub accelerations: Option<Vec<f64>>,
 }
 
-/// The entries of a JSON object in the order of the text; values keep their places.
+/// The entries of a JSON object in the order of the text; values keep their positions.
 #[derive(Default)]
 struct Object<'a>(Vec<(String, &'a RawValue)>);
 
@@ -63,11 +63,11 @@ impl<'de> Deserialize<'de> for Object<'de> {
 /// Largest file of cases, in bytes.
 pub const MAX_BYTES: u64 = 1 << 28;
 
-/// Maximum number of mistakes reported for a file.
+/// Maximum number of errors reported for a file.
 const MOST: usize = 20;
 
-/// Cases that have been checked, as they stand in their file: each is read when it is wanted, so that their number costs
-/// no memory.
+/// Validated cases, as text of their file: each is parsed on request, so that memory does not grow with their
+/// number.
 pub struct Cases<'a> {
     text: &'a str,
     info: &'a ModelInfo,
@@ -76,7 +76,7 @@ pub struct Cases<'a> {
 
 impl<'a> Cases<'a> {
     /// Reads `{"cases": [{"parameters": {…}, "state": {…}, "inputs": {…}, "t": 0}, …]}`; a case may have
-    /// `"accelerations"` by pseudo-velocity. All mistakes are reported at once.
+    /// `"accelerations"` by pseudo-velocity. All errors are reported at once.
     pub fn read(file: &str, text: &'a str, info: &'a ModelInfo) -> Result<Self, Error> {
         let mut reader = Reader::new(text);
         let list = match serde_json::from_str(text) {
@@ -130,7 +130,7 @@ impl<'a> Reader<'a> {
             .map(str::len)
             .sum();
         let at = before + error.column().saturating_sub(1);
-        // In a text that ends too early the mistake follows the last character.
+        // In a truncated text the error follows the last character.
         let end = self.text.trim_end().len();
         let at = if error.is_eof() { end } else { at.min(end) };
         let message = error.to_string();
@@ -155,13 +155,13 @@ impl<'a> Reader<'a> {
         list.unwrap_or_default()
     }
 
-    /// The place of a value in the text.
+    /// The position of a value in the text.
     fn span(&self, raw: &RawValue) -> Span {
         let start = (raw.get().as_ptr() as usize).saturating_sub(self.text.as_ptr() as usize);
         start..(start + raw.get().len()).min(self.text.len())
     }
 
-    /// The first character of a value; a whole object would fill the screen.
+    /// The first character of a value, to keep excerpts short.
     fn head(&self, raw: &RawValue) -> Span {
         let span = self.span(raw);
         span.start..(span.start + 1).min(span.end)

@@ -45,7 +45,7 @@ impl Source {
 }
 
 impl Checked {
-    /// Warnings about what is valid but probably a mistake, and notes.
+    /// Warnings about valid but probably wrong entries, and notes.
     pub fn warnings(&self) -> &Report {
         &self.warnings
     }
@@ -98,7 +98,7 @@ pub fn findings(report: &Report) -> Vec<Value> {
     report.diagnostics().iter().map(finding).collect()
 }
 
-/// What a spec describes.
+/// Summary of a spec.
 struct Summary {
     title: String,
     speeds: Vec<String>,

@@ -1,4 +1,4 @@
-//! Equations of motion that somebody typed, against the derived ones.
+//! Comparison of equations of motion entered by the user with the derived ones.
 
 use std::fmt;
 

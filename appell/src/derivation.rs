@@ -45,7 +45,7 @@ impl Format {
 }
 
 impl Source {
-    /// The spec with items of other sections in place of its joints.
+    /// The spec with its joints expanded into items of other sections.
     ///
     /// ```
     /// let pendulum = appell::Source::shipped("pendulum")?;
@@ -82,7 +82,7 @@ impl Source {
         Ok(format.set(&page))
     }
 
-    /// The equations of motion alone, without the way to them.
+    /// The equations of motion alone, without their derivation.
     ///
     /// ```
     /// use appell::Source;
@@ -118,12 +118,12 @@ impl Source {
         Ok(format.set(&page))
     }
 
-    /// The functions that are emitted unless others are asked for: derivatives by parameters only up to 64 of these.
+    /// The functions that are emitted by default: derivatives by parameters only up to 64 of these.
     pub fn functions(&self) -> Result<Vec<FunctionKind>, Error> {
         Ok(FunctionKind::standard(self.mechanism()?.parameters.len()))
     }
 
-    /// The module that a build script includes, with some functions; a regressor stands alone.
+    /// The module that a build script includes, with the selected functions; a regressor excludes others.
     pub fn rust(&self, functions: &[FunctionKind]) -> Result<String, Error> {
         let program = self.program(functions)?;
         let emitted = if functions == [FunctionKind::Regressor] {

@@ -1,4 +1,4 @@
-//! The library of effects for readers: what each says, where it acts, and how a spec has it.
+//! The library of effects for readers: the law of each, its sites, and its form in a spec.
 
 use std::fmt::Write as _;
 
@@ -22,7 +22,7 @@ pub struct Example {
     pub sites: Vec<String>,
     /// The site of `items`: the first one where the effect can be written.
     pub shown: Option<String>,
-    /// What the effect adds to the spec there; empty where a spec cannot express it.
+    /// Items that the effect adds to the spec there; empty where a spec cannot express it.
     pub items: String,
 }
 
@@ -138,7 +138,7 @@ impl Example {
         );
         let Some(shown) = &self.shown else {
             if !self.sites.is_empty() {
-                text += "\nNo input drives one of them through a constant lever, without which it cannot be told.\n";
+                text += "\nNo input drives one of them through a constant lever, without which it is not identifiable.\n";
             }
             return text;
         };

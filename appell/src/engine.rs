@@ -1,4 +1,4 @@
-//! Three ways to evaluate the equations of a mechanism.
+//! Three implementations of the equations of a mechanism.
 
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
@@ -8,7 +8,7 @@ use appell_runtime::model::Model;
 use crate::source::Source;
 use crate::{Error, Field};
 
-/// What evaluates the equations. All three give the same results.
+/// Implementation of the equations. All give the same results.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Engine {
     /// Machine code, compiled in this process.
@@ -25,7 +25,7 @@ pub enum Equations {
     Shipped(&'static dyn Model),
     /// Derived in this process.
     Made {
-        /// What evaluates them.
+        /// Their implementation.
         model: Box<dyn Model + Send>,
         /// Why it is interpreted although machine code was requested.
         note: Option<String>,
@@ -56,7 +56,7 @@ impl Equations {
         Ok(Self::of(program, engine))
     }
 
-    /// A program as machine code, if that is wanted and possible, and else interpreted.
+    /// A program as machine code if requested and possible, else interpreted.
     pub(crate) fn of(program: Program, engine: Engine) -> Self {
         let mut note = None;
         if engine == Engine::Jit {

@@ -60,16 +60,16 @@ use layout::Layout;
 use reading::Reading;
 use variant::{Common, Variant};
 
-/// A study with everything that its cases share.
+/// A compiled study.
 pub struct Ensemble {
     study: Study,
     design: Design,
-    /// Of factors that choose between numbers, the numbers.
+    /// Values of the factors that choose between numbers.
     choices: Vec<Vec<f64>>,
     task: Task,
-    /// What the probability of a rare event asks of each motion.
+    /// Evaluation of the rare event in each motion.
     rare: Option<Task>,
-    /// One for each spec and law, laws running fastest.
+    /// One for each spec and law, laws varying fastest.
     variants: Vec<Variant>,
     /// Number of laws between which a factor chooses, or 1.
     laws: usize,
@@ -77,27 +77,27 @@ pub struct Ensemble {
     hash: String,
 }
 
-/// What of a motion is kept, and where.
+/// The kept quantities of a motion, and their columns.
 struct Task {
     keep: Vec<Keep>,
-    /// Places among the kept quantities of the study.
+    /// Indices among the kept quantities of the study.
     which: Vec<usize>,
     layout: Layout,
 }
 
-/// How the missing chunks of a study are run.
+/// Options for running the missing chunks of a study.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Running {
     /// Threads; by default one for each processor.
     pub jobs: Option<usize>,
-    /// The part of the chunks that is run; all of them by default.
+    /// The shard of the chunks; all of them by default.
     pub shard: Option<Shard>,
-    /// Cases of a chunk; by default as the study says, or as fits their number.
+    /// Cases of a chunk; by default set by the study, or by their number.
     pub chunk: Option<u64>,
 }
 
 impl Running {
-    /// The number of threads, if one was asked for and it is possible.
+    /// The number of threads, if requested and valid.
     fn threads(&self) -> Result<Option<usize>, Error> {
         match self.jobs {
             Some(jobs) if !(1..=MAX_JOBS).contains(&jobs) => {
@@ -109,7 +109,7 @@ impl Running {
     }
 }
 
-/// The fewest and the most cases of a chunk: chunks are files, and each of them is in memory as a whole.
+/// Limits on the cases of a chunk, which is a file and is held in memory.
 fn chunk_sizes(cases: u64, columns: usize) -> [u64; 2] {
     let own = columns + TAKEN.len();
     [
@@ -118,7 +118,7 @@ fn chunk_sizes(cases: u64, columns: usize) -> [u64; 2] {
     ]
 }
 
-/// Tells of more rows than chunks can hold, and of chunks that are too many or too large.
+/// Reports a number or a size of chunks beyond the limits.
 fn sizes(reading: &mut Reading<'_>, design: &Design, columns: usize) {
     let study = reading.study;
     let (cases, own) = (design.cases(), study.chunk.as_ref());
@@ -149,13 +149,13 @@ fn sizes(reading: &mut Reading<'_>, design: &Design, columns: usize) {
     }
 }
 
-/// Chunks of a study that does not say how large they are, and the fewest and the most cases of such a chunk.
+/// Default number of chunks of a study, and limits on their default size.
 const CHUNKS: u64 = 64;
 const LEAST_PER_CHUNK: u64 = 16;
 const MOST_PER_CHUNK: u64 = 4096;
 
 impl Ensemble {
-    /// The ensemble of a study file. Specs, laws and tables that it names lie beside it.
+    /// The ensemble of a study file. Specs, laws and tables that it names are in the same folder.
     pub fn from_file(path: &Path) -> Result<Self, Error> {
         let text = files::read(path, appell_spec::limits::MAX_FILE as u64)?;
         let folder = path.parent().unwrap_or(Path::new("."));
@@ -277,7 +277,7 @@ impl Ensemble {
         &self.task.layout.columns
     }
 
-    /// All chunks of cases, of a size that is asked for.
+    /// All chunks of cases, of the requested size.
     pub fn chunks(&self, size: Option<u64>) -> Result<Chunks, Error> {
         let [least, most] = chunk_sizes(self.design.cases(), self.columns().len());
         match size {
@@ -289,7 +289,7 @@ impl Ensemble {
         }
     }
 
-    /// All chunks of cases; of the size that the study says, or as fits their number.
+    /// All chunks of cases, of the size set by the study or by their number.
     fn sized(&self, size: Option<u64>) -> Chunks {
         let cases = self.design.cases();
         let [least, most] = chunk_sizes(cases, self.columns().len());
@@ -316,14 +316,14 @@ impl Ensemble {
         rows
     }
 
-    /// The chunks that a store lacks, or holds damaged.
+    /// The missing and damaged chunks of a store.
     pub fn missing(&self, store: &dyn Store, running: Running) -> Result<Missing, Error> {
         let chunks = self.chunks(running.chunk)?;
         let missing = chunks.unsound_or_missing(store, self.columns(), running.shard);
         missing.map_err(Error::computation)
     }
 
-    /// How many chunks, those of the rare event among them, a store has no object of, and how many there are.
+    /// Numbers of missing chunks in a store and of all chunks, those of the rare event included.
     pub fn left(&self, store: &dyn Store, chunk: Option<u64>) -> Result<[u64; 2], Error> {
         let mut counts = [0; 2];
         for chunks in [Some(self.chunks(chunk)?), self.replicates()]
@@ -337,7 +337,7 @@ impl Ensemble {
         Ok(counts)
     }
 
-    /// Chunks by their names, those of the rare event among them; an unknown name is an error.
+    /// Chunks by their names, those of the rare event included; an unknown name is an error.
     pub fn named(&self, names: &[String]) -> Result<[Vec<Chunk>; 2], Error> {
         let (cases, replicates) = (self.sized(None), self.replicates());
         let [mut own, mut rare] = [Vec::new(), Vec::new()];
@@ -356,7 +356,7 @@ impl Ensemble {
         Ok([own, rare])
     }
 
-    /// Runs chunks and writes each to the store when it is done. What is there already is not looked at.
+    /// Runs chunks and writes each to the store when it is complete. Existing ones are not read.
     pub fn fill(
         &self,
         store: &dyn Store,
@@ -369,7 +369,7 @@ impl Ensemble {
         run::run(self, &chunks, missing, store, jobs, watch).map_err(Error::computation)
     }
 
-    /// The statistics of the rows that a store holds.
+    /// The statistics of the rows in a store.
     pub fn summary(&self, store: &dyn Store) -> Result<Summary, Error> {
         let chunks = self.sized(None);
         let there = chunks.there(store).map_err(Error::computation)?;
@@ -394,7 +394,7 @@ impl Ensemble {
         }
     }
 
-    /// What a report of statistics is about.
+    /// Subject of a statistics report.
     pub fn about<'a>(&'a self, summary: &'a Summary) -> About<'a> {
         About {
             title: self.title(),
@@ -404,7 +404,7 @@ impl Ensemble {
         }
     }
 
-    /// Shows the rows of a store in the order of the cases.
+    /// Reads the rows of a store in the order of the cases.
     pub fn scan(&self, store: &dyn Store, mut see: impl FnMut(&Rows)) -> Result<(), Error> {
         let chunks = self.sized(None);
         let there = chunks.there(store).map_err(Error::computation)?;
@@ -413,7 +413,7 @@ impl Ensemble {
     }
 }
 
-/// Quantities that belong to the study alone: those with a unit.
+/// Quantities defined by the study: those with a unit.
 fn own(study: &Study) -> Vec<spec::Own<'_>> {
     let varied = study.vary.iter().map(|v| (&v.name, v.unit.as_ref()));
     let noises = study.noise.iter().map(|n| (&n.name, n.unit.as_ref()));
@@ -424,7 +424,7 @@ fn own(study: &Study) -> Vec<spec::Own<'_>> {
     own.collect()
 }
 
-/// The files between which an entry of `[vary]` chooses.
+/// The files among which an entry of `[vary]` chooses.
 fn chosen(study: &Study, name: &str) -> Vec<Text> {
     let vary = study.vary.iter().find(|vary| vary.name.text == name);
     match vary.map(|vary| &vary.varied) {
@@ -433,7 +433,7 @@ fn chosen(study: &Study, name: &str) -> Vec<Text> {
     }
 }
 
-/// A shipped spec, or a file beside the study.
+/// A shipped spec, or a file in the folder of the study.
 fn source(reading: &mut Reading<'_>, name: &Text, folder: &Path) -> Result<Option<Source>, Error> {
     if crate::source::Shipped::find(&name.text).is_some() {
         return Source::shipped(&name.text).map(Some);
@@ -456,10 +456,10 @@ fn source(reading: &mut Reading<'_>, name: &Text, folder: &Path) -> Result<Optio
     Ok(None)
 }
 
-/// Number of the way in which rows are computed and written; another one where either changes.
+/// Version of the computation and format of rows, to be changed with either.
 const ROWS: u32 = 2;
 
-/// What of a study its rows depend on, as a text.
+/// The parts of a study that determine its rows, as a text.
 fn meaning(study: &Study, design: &Design) -> String {
     let mut text = format!(
         "{} {ROWS} {:?} {} {:?} {:?} {:?} {:?} {:?}",

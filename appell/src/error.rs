@@ -28,21 +28,21 @@ pub enum Error {
     Request {
         /// The part that is wrong.
         field: Field,
-        /// What is wrong, and what to do.
+        /// The error and its remedy.
         message: String,
     },
     /// An expression of the request is wrong.
     #[error(transparent)]
     Expression(Box<ExpressionError>),
-    /// A file is wrong; the report shows the places.
+    /// A file is invalid; the report shows the positions.
     #[error("{}", .0.plain())]
     Report(Box<Report>),
-    /// A file is wrong as a whole.
+    /// A file as a whole is invalid.
     #[error("{}: {}", visible(file), visible(message))]
     Data {
         /// The file.
         file: String,
-        /// What is wrong, and what to do.
+        /// The error and its remedy.
         message: String,
     },
     /// A file cannot be read or written.
@@ -136,7 +136,7 @@ pub enum Class {
     Computation,
 }
 
-/// Mistakes in an expression of a request.
+/// Errors in an expression of a request.
 #[derive(Debug, Clone, thiserror::Error)]
 #[error("{}", self.report(&format!("{field} {name}")).plain())]
 pub struct ExpressionError {
@@ -146,12 +146,12 @@ pub struct ExpressionError {
     pub name: String,
     /// The expression.
     pub text: String,
-    /// The mistakes, with their places in the text.
+    /// The errors, with their positions in the text.
     pub diagnostics: Vec<Diagnostic>,
 }
 
 impl ExpressionError {
-    /// The report under a name for the place of the expression.
+    /// The report, with a name for the expression.
     pub fn report(&self, place: &str) -> Report {
         Report::new(place, self.text.clone(), self.diagnostics.clone())
     }
@@ -166,7 +166,7 @@ impl Error {
         }
     }
 
-    /// A file that is wrong as a whole.
+    /// A file as a whole is invalid.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "paths are displayed by temporary values"
@@ -201,7 +201,7 @@ impl Error {
         }
     }
 
-    /// Mistakes in an expression.
+    /// Errors in an expression.
     pub(crate) fn expression(
         field: Field,
         name: &str,
@@ -252,7 +252,7 @@ impl Error {
         }
     }
 
-    /// The part of the request that is wrong, where the error knows it.
+    /// The invalid part of the request, where known.
     pub fn field(&self) -> Option<Field> {
         match self {
             Self::Request { field, .. } => Some(*field),
@@ -328,7 +328,7 @@ fn of_diagnosis(error: &DiagnoseError) -> Class {
     }
 }
 
-/// What may help a failed estimation.
+/// Hint for a failed estimation.
 fn advice(error: &IdentifyError) -> &'static str {
     match error {
         IdentifyError::Estimate(EstimateError::Diverged { .. } | EstimateError::Stuck { .. }) => {

@@ -97,8 +97,8 @@ impl Evaluation<'_> {
         Values::at(self.model.equations(), at, accelerations)
     }
 
-    /// Writes the values of cases as JSON, one by one, with the names of what they belong to; numbers that are not finite are
-    /// `null`. `see` is shown each case with its number.
+    /// Writes the values of cases as JSON, one by one, with their names; non-finite numbers are `null`. `see` is called with
+    /// each case and its number.
     pub fn write(
         &self,
         cases: impl Iterator<Item = Case>,

@@ -1,4 +1,4 @@
-//! The parts of a request, by which errors name what is wrong.
+//! The parts of a request, named in errors.
 
 use std::fmt;
 

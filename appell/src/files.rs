@@ -17,7 +17,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), Error> {
     write_with(path, |to| to.write_all(text.as_bytes()))
 }
 
-/// Writes a file by way of a temporary file beside it; `-` is standard output. A pipe or a device is
+/// Writes a file by way of a temporary file in the same folder; `-` is standard output. A pipe or a device is
 /// written to directly.
 pub fn write_with(
     path: &Path,
@@ -49,12 +49,12 @@ pub fn write_with(
         .map_err(Error::writing(path))
 }
 
-/// Makes a folder that was asked for, with those above it.
+/// Creates a requested folder and its parents.
 pub fn make_folder(path: &Path) -> Result<(), Error> {
     fs::create_dir_all(path).map_err(Error::writing(path))
 }
 
-/// The target of a link, even if it does not exist yet: links are kept.
+/// The target of a link, even if it does not exist yet: links are preserved.
 fn behind_links(path: &Path) -> PathBuf {
     let beside = |target: PathBuf| path.parent().unwrap_or(path).join(target);
     fs::canonicalize(path)

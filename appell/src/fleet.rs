@@ -1,8 +1,8 @@
 //! Many rigs diagnosed: a report for each, and one table.
 //!
-//! Rigs are independent, so that they run side by side. A report tells what it is of: where a folder, its spec
-//! and the library are as they were, its report is taken as it is, and an interrupted fleet goes on where
-//! it was. A rig without a diagnosis is a row with the reason.
+//! Rigs are independent and run in parallel. A report has a fingerprint of its inputs: if the folder, its spec and the
+//! library are unchanged, the report is reused, so that an interrupted fleet can be resumed. A rig without a diagnosis
+//! is a row with the reason.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Component, Path, PathBuf};
@@ -17,7 +17,7 @@ use serde_json::Value;
 use crate::diagnosis::Library;
 use crate::{Error, Field, files, gap_report, recording};
 
-/// Folders that are diagnosed alike.
+/// Folders to be diagnosed with the same options.
 #[derive(Debug)]
 pub struct Fleet<'a> {
     /// A data set each.
@@ -26,22 +26,22 @@ pub struct Fleet<'a> {
     pub model: Option<&'a str>,
     /// The effects.
     pub library: &'a Library,
-    /// Where the reports are kept.
+    /// Folder of the reports.
     pub reports: &'a Path,
-    /// Whether pages are written beside them.
+    /// Whether pages are written with them.
     pub with_pages: bool,
-    /// Rigs at a time.
+    /// Number of rigs diagnosed in parallel.
     pub workers: usize,
 }
 
 /// A rig after its diagnosis.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rig {
-    /// Name of the folder; longer where several have the same.
+    /// Name of the folder, with parent folders if ambiguous.
     pub name: String,
-    /// What its report says, or why there is none.
+    /// The summary of its report, or why there is none.
     pub outcome: Result<Summary, String>,
-    /// Whether its report was there.
+    /// Whether its report was reused.
     pub is_known: bool,
 }
 
@@ -54,7 +54,7 @@ pub struct Summary {
     pub verdict: String,
     /// The hypotheses, the most probable first.
     pub which: Vec<Likely>,
-    /// Predictions of the runs that were held out; nothing where there are none.
+    /// Prediction errors on held-out runs; nothing without such runs.
     pub how_far: Option<Closed>,
 }
 
@@ -74,7 +74,7 @@ pub struct Closed {
     pub horizon_s: f64,
     /// Prediction error of the stated model, in units of the noise.
     pub nominal: f64,
-    /// The same with what was found.
+    /// The same with the diagnosed effect.
     pub with_effect: Option<f64>,
     /// Part of the gap that closes.
     pub closed: Option<f64>,
@@ -165,7 +165,7 @@ impl Fleet<'_> {
         Ok((serde_json::from_value(json)?, false))
     }
 
-    /// What a report is of: the files of the folder, the spec, the library, the engine.
+    /// Fingerprint of the inputs of a report: the files of the folder, the spec, the library, the engine.
     fn fingerprint(&self, folder: &Path, spec: &str) -> Result<String, Error> {
         let mut hash = Fnv::new();
         hash.add(&ENGINE.to_le_bytes());
@@ -272,7 +272,7 @@ fn quoted(text: &str) -> String {
     }
 }
 
-/// The last parts of the paths, as many as tell them apart.
+/// The shortest trailing parts of the paths that distinguish them.
 fn names(folders: &[PathBuf]) -> Vec<String> {
     let parts: Vec<Vec<String>> = folders
         .iter()
@@ -285,7 +285,7 @@ fn names(folders: &[PathBuf]) -> Vec<String> {
             };
             let whole = folder.canonicalize().unwrap_or_else(|_| folder.to_owned());
             let parts = whole.components().rev();
-            // The root of a file system has no name, and what goes up is none.
+            // The root has no name, and `..` is not one.
             let parts = parts.filter(|part| matches!(part, Component::Normal(_)));
             let own = parts.map(|part| part.as_os_str().to_string_lossy().into_owned());
             own.collect()
@@ -327,7 +327,7 @@ impl Fnv {
         for byte in bytes {
             self.0 = (self.0 ^ u64::from(*byte)).wrapping_mul(0x0100_0000_01b3);
         }
-        // What follows is another part.
+        // Separator between parts.
         self.0 = (self.0 ^ 0x1ff).wrapping_mul(0x0100_0000_01b3);
     }
 }

@@ -30,7 +30,7 @@ const FLAGS: [&str; 6] = [
     "-fvisibility=hidden",
 ];
 
-/// What an FMU holds.
+/// Contents of an FMU.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
     /// Leave the compilation to the tool that imports it.
@@ -126,7 +126,7 @@ impl Scratch {
 
 impl Drop for Scratch {
     fn drop(&mut self) {
-        // What remains lies among temporary files.
+        // On failure the rest stays among temporary files.
         let _ = fs::remove_dir_all(&self.0);
     }
 }
@@ -139,7 +139,7 @@ fn compiled(emitted: &Emitted) -> Result<Vec<u8>, Error> {
         files::write(&folder.0.join(name), text)?;
     }
     compile(emitted, &folder.0)?;
-    Ok(fs::read(folder.0.join(LIBRARY)).map_err(failed("read what was compiled"))?)
+    Ok(fs::read(folder.0.join(LIBRARY)).map_err(failed("read the compiled library"))?)
 }
 
 /// The name of the library while it is made.

@@ -79,7 +79,7 @@ impl Workbench {
     }
 }
 
-/// As many inputs and signals need no memory of their own.
+/// Up to this many inputs and signals are evaluated without allocation.
 const FEW_INPUTS: usize = 16;
 
 /// Expressions as one function of time, state and parameters.
@@ -200,8 +200,8 @@ impl StateFunction {
         derivatives.chain(self.signals.iter().map(|signal| (signal, 0)))
     }
 
-    /// Bounds along a stretch of a motion, written to the first entries of `values`; the inputs of the stretch do not
-    /// matter.
+    /// Bounds along a segment of a motion, written to the first entries of `values`; independent of the inputs of the
+    /// segment.
     pub(crate) fn bounds(&self, along: &Along<'_>, values: &mut [Enclosure]) {
         let since = along.t - Enclosure::constant(along.start);
         let mut u = vec![Enclosure::UNKNOWN; self.declared];

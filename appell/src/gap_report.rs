@@ -119,7 +119,7 @@ fn value(found: &appell_gap::diagnose::Value) -> Value {
     json!({ "name": found.name, "value": found.value, "std": found.std, "unit": found.unit })
 }
 
-/// A measured law: its curve with standard deviations, and forms that come near to it.
+/// A measured law: its curve with standard deviations, and the closest analytic forms.
 fn law(law: &Law) -> Value {
     let column = |of: fn(&[f64; 3]) -> f64| law.curve.iter().map(of).collect::<Vec<_>>();
     let forms = law.forms.iter().map(|form| {
@@ -135,7 +135,7 @@ fn law(law: &Law) -> Value {
     })
 }
 
-/// What differs from the recordings before, in SI.
+/// The difference from the previous recordings, in SI.
 fn change(change: &Change) -> Value {
     let (verdict, effects) = &change.before;
     let parameters = change.parameters.iter().map(
@@ -314,12 +314,12 @@ impl Hypothesis {
             return "nominal model, its parameters fitted".to_owned();
         }
         if self.effects == ["unknown"] && self.changes.is_some() {
-            return "what no effect of the library explains, measured".to_owned();
+            return "a measured force that no effect of the library explains".to_owned();
         }
         self.effects.join(" + ")
     }
 
-    /// The alternative model that it stands for, if any.
+    /// The alternative model that it represents, if any.
     fn alternative(&self) -> Option<&str> {
         self.effects.first()?.strip_prefix("alternative:")
     }

@@ -21,7 +21,7 @@ pub struct Improved<'a> {
 
 impl Source {
     /// The spec with a hypothesis of a gap report, numbered from 1; by default the most probable one.
-    /// Comments and layout are kept. The result is a valid spec; `file` is its name in error messages.
+    /// Comments and layout are preserved. The result is a valid spec; `file` is its name in error messages.
     pub fn improved<'a>(
         &self,
         report: &'a GapReport,
@@ -52,7 +52,7 @@ impl Source {
 }
 
 impl Improved<'_> {
-    /// What was written to the spec `file`, and what belongs elsewhere.
+    /// The changes written to the spec `file`, and those that belong elsewhere.
     pub fn summary(&self, file: &str) -> String {
         let (hypothesis, changes) = (self.hypothesis, &self.changes);
         let mut text = format!(

@@ -25,7 +25,7 @@
 //! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
-//! Types of the crates below that stand in signatures are re-exported. Pages are those of the crate
+//! Types of lower-level crates that occur in signatures are re-exported. Pages are those of the crate
 //! `appell-report`.
 
 pub mod base;

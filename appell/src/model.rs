@@ -37,7 +37,7 @@ pub struct Model {
     equations: engine::Equations,
     /// Whether the equations have the adjoints of estimation.
     adjoints: bool,
-    /// The operations of the rates, made when they are first asked for.
+    /// The operations of the rates, compiled on first use.
     rates: OnceLock<Operations>,
 }
 
@@ -191,7 +191,7 @@ impl Model {
         motion.simulate(self.equations(), &ready, run)
     }
 
-    /// Integrates the equations of motion as long as `go_on`, which is asked several times in each step.
+    /// Integrates the equations of motion as long as `go_on`, which is called several times in each step.
     ///
     /// ```
     /// use appell::{Model, Motion};

@@ -20,7 +20,7 @@ use crate::{Error, Field};
 /// Maximum number of rows of a trajectory.
 pub const MOST_ROWS: f64 = 2e6;
 
-/// Why a motion ends that was told to.
+/// Reason of the early end of a cancelled motion.
 const INTERRUPTED: &str = "the computation was interrupted";
 
 /// Source of a feedback law.
@@ -74,7 +74,7 @@ pub struct Motion {
     pub inputs: Vec<Assignment>,
     /// Inputs from a CSV file, or from a run of a data set, such as `rig/recording.toml:run1.csv`.
     pub recorded: Option<PathBuf>,
-    /// How the inputs of a CSV file run from row to row; held where nothing is stated.
+    /// Interpolation of the inputs of a CSV file; held by default.
     pub interpolation: Option<Interpolation>,
     /// Inputs as functions or tables of a program.
     pub driven: Vec<Driven>,
@@ -99,7 +99,7 @@ pub struct Simulated {
     pub undriven: bool,
     /// The time in s from which the last values of recorded inputs are held, if it comes before the end.
     pub held_from: Option<f64>,
-    /// What is doubtful about recorded inputs that are held because nothing was stated.
+    /// A remark on recorded inputs that are held by default.
     pub smooth: Option<String>,
 }
 
@@ -207,7 +207,7 @@ impl Motion {
         self.interval.unwrap_or(self.t_end / 1000.0)
     }
 
-    /// What the motion is made of, once it is found valid; `name` names the spec in messages.
+    /// The validated motion; `name` names the spec in messages.
     pub(crate) fn ready(
         &self,
         model: &dyn Model,
@@ -234,7 +234,7 @@ impl Motion {
             u.contains(&Enclosure::UNKNOWN)
         };
         if self.driven.iter().any(is_opaque) {
-            // Nothing tells what a program computes between two rows: no step is longer than these are apart.
+            // A program is not sampled between two rows: steps are at most as long as their interval.
             options.max_step = options.max_step.min(interval);
         }
         let held_from = plan
@@ -331,7 +331,7 @@ pub(crate) struct Ready {
 }
 
 impl Ready {
-    /// What came of the motion.
+    /// The result of the motion.
     pub(crate) fn simulated(
         &self,
         result: Result<Trajectory, SimulationError>,
@@ -364,7 +364,7 @@ impl Ready {
     }
 }
 
-/// A remark on inputs that look sampled from a continuous signal.
+/// A remark on inputs that seem to be sampled from a continuous signal.
 fn smooth_inputs(inputs: &[(String, f64)]) -> Option<String> {
     let one = |(name, late): &(String, f64)| format!("`{name}` by {:.2} %", 100.0 * late);
     let texts: Vec<String> = inputs.iter().map(one).collect();

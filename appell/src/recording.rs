@@ -45,7 +45,7 @@ pub fn read_frames(
     })
 }
 
-/// What columns without a description lack.
+/// Remedy for columns without a description.
 const UNNAMED: &str = "CSV files and data frames need the mechanism whose names their columns have; name a shipped one \
                        or a spec";
 
@@ -87,7 +87,7 @@ fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Erro
 
 /// The data set with warnings about units.
 fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
-    // Motions by a wrong clock tell nothing of units.
+    // With a wrong clock, motions do not reveal units.
     let is_slow = |finding: &Finding| finding.kind == FindingKind::SlowClock;
     if set.findings.iter().any(is_slow) {
         return Ok(set);
@@ -110,7 +110,7 @@ fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
     Ok(set)
 }
 
-/// Refuses recordings that nothing can be fitted to: those of a mechanism at rest, and those in doubtful units.
+/// Rejects recordings unsuitable for a fit: of a mechanism at rest, or in doubtful units.
 pub fn check(set: &DataSet) -> Result<(), Error> {
     let is_constant = |channel: &Channel| {
         let of_channel = |finding: &Finding| finding.channel.as_ref() == Some(&channel.column);
@@ -144,7 +144,7 @@ fn check_rows(set: &DataSet) -> Result<(), Error> {
     })
 }
 
-/// Refuses times that are hardly in seconds, and channels whose unit the motion contradicts.
+/// Rejects times that are probably not in seconds, and channels whose unit contradicts the motion.
 pub fn check_units(set: &DataSet) -> Result<(), Error> {
     let doubted = |finding: &&Finding| finding.kind == FindingKind::Unit;
     let slow = |finding: &&Finding| finding.kind == FindingKind::SlowClock;
@@ -169,7 +169,7 @@ pub fn check_units(set: &DataSet) -> Result<(), Error> {
     ))
 }
 
-/// The doubt at the place where the unit is stated.
+/// The doubt, at the position of the stated unit.
 fn doubt(set: &DataSet, finding: &Finding) -> Error {
     let column = finding.channel.as_deref().unwrap_or_default();
     let mut channels = set.channels.iter();
@@ -186,7 +186,7 @@ fn doubt(set: &DataSet, finding: &Finding) -> Error {
 /// Warnings about the data that may affect the conclusions, one sentence each.
 pub fn warnings(set: &DataSet) -> Vec<String> {
     let findings = set.findings.iter();
-    // How an input runs between rows decides what is found of the rig.
+    // The interpolation of an input affects the diagnosis.
     let grave = findings.filter(|finding| {
         finding.kind.severity() == Severity::Warning || finding.kind == FindingKind::SmoothInput
     });

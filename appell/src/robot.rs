@@ -43,7 +43,7 @@ fn told(failure: Failure) -> Error {
 }
 
 /// Reads a file with those that it includes, and the meshes that give bodies their inertia, and turns it into a spec.
-/// These files lie below `root`, or else below the folder of the file.
+/// These files are below `root`, or else below the folder of the file.
 pub fn read(path: &Path, root: Option<&Path>, options: &Options) -> Result<Imported, Error> {
     let text = files::read(path, MAX_FILE)?;
     let file = path.to_string_lossy().replace('\\', "/");
@@ -78,14 +78,14 @@ pub fn find(folder: &Path) -> Result<Vec<(PathBuf, Format)>, Error> {
         }
         let format = files::read(entry.path(), MAX_FILE).ok();
         let format = format.and_then(|text| Format::of(&text));
-        // A URDF that begins otherwise is told to be wrong.
+        // A URDF file with another root element is reported as invalid.
         let format = format.or(ends("urdf").then_some(Format::Urdf));
         found.extend(format.map(|format| (entry.into_path(), format)));
     }
     Ok(found)
 }
 
-/// What is told of an imported robot file, as JSON.
+/// The result of importing a robot file, as JSON.
 pub fn entry(file: &str, robot: &Imported) -> Value {
     let left_out = robot.left_out.iter();
     let left_out = left_out

@@ -1,4 +1,4 @@
-//! Recordings to try things with: those of a simulated rig whose spec lacks what moves it.
+//! Sample recordings: simulated rigs with effects that are missing from their specs.
 
 use std::fmt::Write as _;
 use std::path::Path;
@@ -15,7 +15,7 @@ const STEP: f64 = 0.01;
 /// Standard deviation of the noise of encoders, in m or rad.
 const NOISE: f64 = 1e-3;
 
-/// A rig as its owner has it, and what nobody told the owner.
+/// A rig: its spec and description, and the hidden effects.
 struct Rig {
     /// Name and text of the spec.
     spec: (&'static str, &'static str),
@@ -23,7 +23,7 @@ struct Rig {
     hidden: &'static str,
     measured: &'static [&'static str],
     inputs: &'static [&'static str],
-    /// What the inputs are at a time, by the two rates of a run.
+    /// The inputs at a time, by the two rates of a run.
     commands: fn(f64, [f64; 2]) -> Vec<f64>,
     rows: u32,
 }

@@ -52,7 +52,7 @@ impl std::str::FromStr for Assignment {
     }
 }
 
-/// A spec, its mechanism, and values in place of its own.
+/// A spec, its mechanism, and values that override those of the spec.
 pub struct Setup<'a> {
     /// Text of the spec.
     pub spec: &'a str,
@@ -249,7 +249,7 @@ fn meant(unit: &str) -> bool {
     }
 }
 
-/// Length in bytes of the number with which a text begins. An `e` without digits begins a unit.
+/// Length in bytes of the number at the start of a text. An `e` without digits begins a unit.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let digits = |from: usize| {

@@ -1,6 +1,6 @@
 //! Completion of commands, flags and models in a shell.
 //!
-//! The shell asks this program, so that the names are those of this version.
+//! The shell calls this program, so that the names are those of this version.
 
 use std::ffi::OsStr;
 use std::path::Path;
@@ -36,7 +36,7 @@ fn with_models(command: Command) -> Command {
         "input" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             names(typed, |info| own(&info.inputs[..info.declared_inputs]))
         })),
-        // Commands have lists of different things to go without.
+        // `--without` has different values in different commands.
         "without" if is_import => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             listed(typed, Without::ALL.map(Without::word))
         })),
@@ -51,7 +51,7 @@ fn with_models(command: Command) -> Command {
     })
 }
 
-/// Words that begin as one that is typed, each once.
+/// Words that begin with the typed one, each once.
 fn beginning<'w>(typed: &OsStr, words: impl Iterator<Item = &'w str>) -> Vec<CompletionCandidate> {
     let begins = typed.to_string_lossy();
     let mut words: Vec<&str> = words.filter(|word| word.starts_with(&*begins)).collect();
@@ -59,7 +59,7 @@ fn beginning<'w>(typed: &OsStr, words: impl Iterator<Item = &'w str>) -> Vec<Com
     words.into_iter().map(CompletionCandidate::new).collect()
 }
 
-/// Words of a list with commas: those that may follow what is typed of it.
+/// Comma-separated words: candidates for the last one.
 fn listed<const N: usize>(typed: &OsStr, words: [&str; N]) -> Vec<CompletionCandidate> {
     let typed = typed.to_string_lossy();
     let (before, last) = typed
@@ -78,7 +78,7 @@ fn own(quantities: &[Quantity]) -> Vec<String> {
     names.collect()
 }
 
-/// `NAME=` for the names that the model of the command line has.
+/// `NAME=` for the names of the model on the command line.
 fn names(typed: &OsStr, of: impl Fn(&ModelInfo) -> Vec<String>) -> Vec<CompletionCandidate> {
     let begins = typed.to_string_lossy();
     let is_spec = |word: &str| Path::new(word).extension().is_some_and(|end| end == "toml");

@@ -1,4 +1,4 @@
-//! Where the results of a command go: each to a place of its own, under a name that says what it is.
+//! Output files of a command: each a file of its own, with an extension that fits its format.
 
 use std::path::{Path, PathBuf};
 
@@ -7,7 +7,7 @@ use clap::ArgMatches;
 use crate::failure::Error;
 use appell::files;
 
-/// Flags that name a file to write, each with the extensions of what it holds.
+/// Flags that name an output file, each with the extensions of its format.
 const FLAGS: &[(&str, &[&str])] = &[
     ("json", &["json"]),
     ("csv", &["csv"]),
@@ -20,12 +20,12 @@ const FLAGS: &[(&str, &[&str])] = &[
     ("out", &[]),
 ];
 
-/// Extensions that promise a format.
+/// Extensions that imply a format.
 const PROMISES: &[&str] = &[
     "json", "csv", "html", "htm", "toml", "svg", "png", "pdf", "tex", "rs", "txt",
 ];
 
-/// Refuses two results for one file or stream, and a file whose name promises another format.
+/// Rejects two results for one file or stream, and a file whose extension implies another format.
 pub(crate) fn check(command: &ArgMatches) -> Result<(), Error> {
     let mut taken: Vec<(&str, PathBuf)> = Vec::new();
     for (flag, extensions) in FLAGS {

@@ -17,15 +17,15 @@ const WIDEST: usize = 60;
 /// Number of hypotheses in the summary.
 const LISTED: usize = 3;
 
-/// How what was found comes into the spec.
+/// The commands that write the diagnosed effect into the spec.
 pub(crate) struct Apply {
-    /// The command that writes the report, where none was written.
+    /// The command that writes the report, if none was written.
     pub(crate) before: Option<String>,
     /// The command that reads it.
     pub(crate) command: String,
 }
 
-/// Fits that did not converge, where they may have changed the verdict.
+/// Fits that did not converge, if they may have changed the verdict.
 fn failures(text: &mut String, report: &Report) {
     let is_listed = |effects: &[String]| {
         let mut listed = report.which.iter().take(LISTED);
@@ -194,7 +194,7 @@ pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
     let rows: Vec<[String; 6]> = std::iter::once(heading).chain(rows).collect();
     let wide = |column: usize| {
         let cells = rows.iter().map(|row| row[column].chars().count());
-        // An error has the room of the columns that follow.
+        // An error spans the columns that follow.
         cells.filter(|&cells| cells <= WIDEST).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..6).map(wide).collect();
@@ -220,7 +220,7 @@ pub(crate) fn table(rigs: &[Rig], reports: &Path) -> String {
     text
 }
 
-/// Errors of predictions, and what closes.
+/// Prediction errors, and the share of the gap that closes.
 fn how_far(report: &Report) -> String {
     let Some(far) = &report.how_far else {
         return "  how far   no run was held out\n".to_owned();
@@ -264,7 +264,7 @@ fn how_far(report: &Report) -> String {
         let [low, high] = far.closed_ci95.map(percent);
         writeln!(
             text,
-            "            what is closed is not determined: the held-out runs leave it between {low} and {high}"
+            "            the closed share is not determined: the held-out runs leave it between {low} and {high}"
         )
     };
     if let Some(parts) = divided(report) {

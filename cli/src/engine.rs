@@ -1,4 +1,4 @@
-//! `--engine`, and models made under a spinner.
+//! `--engine`, and models compiled under a spinner.
 
 use crate::failure::Error;
 use appell::Model;
@@ -28,7 +28,7 @@ impl From<Engine> for appell::engine::Engine {
     }
 }
 
-/// The model of a MODEL; without an engine that at hand.
+/// The model of a MODEL; without an engine, emitted code if shipped, else machine code.
 pub(crate) fn model(model: &str, engine: Option<Engine>) -> Result<Model, Error> {
     let source = Source::find(model)?;
     made(|| Model::of(source, engine.map(Into::into)))

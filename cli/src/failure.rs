@@ -14,7 +14,7 @@ pub(crate) enum Error {
     /// A request to the library fails.
     #[error("{}", worded(.0))]
     Library(#[from] appell::Error),
-    /// The command line is wrong.
+    /// The command line is invalid.
     #[error("{0}")]
     Usage(String),
     /// The computation failed.
@@ -45,7 +45,7 @@ pub(crate) fn status(error: &Error) -> u8 {
     }
 }
 
-/// Ends with what clap says of the arguments; those that hide something are shown without colours.
+/// Exits with clap's message about the arguments, without colours if they contain hidden characters.
 pub(crate) fn usage(error: &clap::Error) -> ! {
     let text = error.to_string();
     if let Cow::Owned(text) = visible(&text) {
@@ -105,12 +105,12 @@ fn name(field: Field) -> &'static str {
     flag(field).unwrap_or_else(|| field.name())
 }
 
-/// Writes to standard error, hidden characters of foreign texts visibly.
+/// Writes to standard error, with hidden characters of foreign texts escaped.
 pub(crate) fn tell(text: &str) {
     to_stderr(&visible(text));
 }
 
-/// Prints a note that changes no result.
+/// Prints a note that does not affect results.
 pub(crate) fn note(text: &str) {
     tell(&format!("note: {text}\n"));
 }
@@ -125,7 +125,7 @@ fn to_stderr(text: &str) {
     let _ = std::io::stderr().write_all(text.as_bytes());
 }
 
-/// A report, in colour on a terminal. It writes foreign texts visibly itself.
+/// A report, in colour on a terminal. It escapes hidden characters itself.
 fn shown(report: &Report) -> String {
     let wanted = std::io::stderr().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let text = if wanted {

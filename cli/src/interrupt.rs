@@ -1,16 +1,16 @@
-//! What Ctrl-C and the other signals that end a program do.
+//! Handling of Ctrl-C and other terminating signals.
 
 use std::sync::atomic::{AtomicBool, Ordering};
 
-/// Whether a computation looks at [`STOPPED`].
+/// Whether a computation checks [`STOPPED`].
 static IS_AWAITED: AtomicBool = AtomicBool::new(false);
 static STOPPED: AtomicBool = AtomicBool::new(false);
-/// What shells report of a program that Ctrl-C has ended.
+/// Exit status after Ctrl-C, as shells report it.
 const STATUS: i32 = 130;
 
-/// No half-written file stays behind.
+/// Removes temporary files.
 pub(crate) fn install() {
-    // Where the system has no signals, a draft may stay.
+    // On systems without signals, a draft may remain.
     let _ = ctrlc::set_handler(|| {
         let is_first = !STOPPED.swap(true, Ordering::Relaxed);
         if is_first && IS_AWAITED.load(Ordering::Relaxed) {
@@ -21,7 +21,7 @@ pub(crate) fn install() {
     });
 }
 
-/// Whether a signal has come. From the first call on it is the caller who ends; a second signal ends the program.
+/// Whether a signal has arrived. After the first call the caller must end the program; a second signal ends it at once.
 pub(crate) fn has_come() -> bool {
     IS_AWAITED.store(true, Ordering::Relaxed);
     STOPPED.load(Ordering::Relaxed)

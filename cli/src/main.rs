@@ -44,7 +44,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// A damaged file may show a slip of the library for Parquet, which is told as an error of the file.
+/// Suppresses panic messages of the Parquet library, which are reported as errors of the file.
 fn quiet_parquet() {
     let usual = std::panic::take_hook();
     std::panic::set_hook(Box::new(move |slip| {
@@ -59,7 +59,7 @@ fn run(given: &ArgMatches) -> Result<(), failure::Error> {
     if let Some((_, command)) = given.subcommand() {
         destinations::check(command)?;
     }
-    // What was matched by these arguments is one of them.
+    // The arguments have been parsed already.
     let arguments = Arguments::from_arg_matches(given).unwrap_or_else(|error| error.exit());
     commands::run(arguments.command)
 }

@@ -9,7 +9,7 @@ use console::Term;
 
 use crate::failure::tell;
 
-/// Writes to standard output, hidden characters of foreign texts visibly.
+/// Writes to standard output, with hidden characters of foreign texts escaped.
 pub(crate) fn print(text: &str) -> Result<(), Error> {
     Ok(files::to_stdout(|to| {
         to.write_all(visible(text).as_bytes())
@@ -32,7 +32,7 @@ pub(crate) fn columns() -> Option<usize> {
     Some(columns.into())
 }
 
-/// A word of a command, in quotes where a shell would take it apart or expand it.
+/// A word of a command, in quotes where a shell would split or expand it.
 pub(crate) fn shell(word: &str) -> String {
     let is_plain = |c: char| c.is_alphanumeric() || "_-./,:=+@%".contains(c);
     if !word.is_empty() && word.chars().all(is_plain) {

@@ -6,7 +6,7 @@ use crate::destinations::extension;
 use crate::failure::Error;
 use appell::files;
 
-/// What a figure is written as.
+/// File format of a figure.
 #[derive(Clone, Copy)]
 enum Format {
     Svg,
@@ -15,7 +15,7 @@ enum Format {
 }
 
 impl Format {
-    /// By the extension; a name without one, and standard output, is SVG.
+    /// By the extension; SVG without one, and for standard output.
     fn of(path: &Path) -> Result<Self, Error> {
         let Some(end) = extension(path) else {
             return Ok(Self::Svg);
@@ -31,7 +31,7 @@ impl Format {
     }
 }
 
-/// Writes a figure in the format of its name; `-` is standard output, as SVG.
+/// Writes a figure in the format of its extension; `-` is standard output, as SVG.
 pub(crate) fn write(path: &Path, svg: &str) -> Result<(), Error> {
     let bytes = match Format::of(path)? {
         Format::Svg => return Ok(files::write(path, svg)?),

@@ -14,7 +14,7 @@ pub(crate) fn spinner(doing: &str) -> ProgressBar {
 /// A bar over the simulated time, in milliseconds.
 pub(crate) fn clock(until_s: f64) -> ProgressBar {
     let bar = ProgressBar::new(milliseconds(until_s));
-    // The template is constant, so it parses; without it the bar only looks different.
+    // The template is constant, so that it parses; without it only the style differs.
     if let Ok(style) = ProgressStyle::with_template("{bar:40} {percent} %  {elapsed}") {
         bar.set_style(style);
     }

@@ -50,7 +50,7 @@ fn estimates(estimates: &[Estimate]) -> String {
     table(&rows, 1..5)
 }
 
-/// What the motions do not determine.
+/// A remark on parameters that the motions do not determine.
 fn remark(estimate: &Estimate) -> &'static str {
     match estimate.interval95 {
         [low, high] if low.is_infinite() && high.is_infinite() => "not determined by these motions",

@@ -1,4 +1,4 @@
-//! What happened in a simulation.
+//! Summary of a simulation.
 
 use appell_runtime::Trajectory;
 

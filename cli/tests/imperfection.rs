@@ -1,4 +1,4 @@
-//! What a sensor lacks: what no prediction shows is no cause, and is fitted beside every hypothesis.
+//! What a sensor lacks: what no prediction shows is no cause, and is fitted together with every hypothesis.
 
 use serde_json::json;
 

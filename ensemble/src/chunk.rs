@@ -97,8 +97,7 @@ impl Chunks {
         })
     }
 
-    /// Chunks with cases of this study that a store holds, by their first case; of any size. Their bytes are not
-    /// looked at.
+    /// Chunks with cases of this study in a store, by their first case; of any size. Their bytes are not read.
     pub fn there(&self, store: &dyn Store) -> Result<Vec<Chunk>, StoreError> {
         let names = store.names()?;
         let chunks = names.iter().filter_map(|name| self.named(name));
@@ -119,7 +118,7 @@ impl Chunks {
         own.map(|n| self.chunk(n)).filter(is_missing).collect()
     }
 
-    /// The chunks with a case that no sound chunk of the store holds. Only what the shard needs is read.
+    /// The chunks with a case that no undamaged chunk of the store has. Only the chunks of the shard are read.
     pub fn unsound_or_missing(
         &self,
         store: &dyn Store,
@@ -146,12 +145,12 @@ impl Chunks {
     }
 }
 
-/// What a store lacks.
+/// The chunks missing from a store.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Missing {
     /// The chunks to be run.
     pub chunks: Vec<Chunk>,
-    /// Names of objects that are there but are not what was written.
+    /// Names of damaged objects.
     pub damaged: Vec<String>,
 }
 

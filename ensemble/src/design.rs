@@ -1,4 +1,4 @@
-//! Which values the factors have in each case. A case knows its values by its number alone.
+//! Values of the factors in each case, determined by the number of the case alone.
 
 use crate::distribution::Distribution;
 use crate::limits::MAX_CASES;
@@ -48,7 +48,7 @@ pub enum Variation {
     Table(Vec<f64>),
 }
 
-/// What varies.
+/// Variation of a factor.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Factor {
     /// Its name, from which its random numbers follow.
@@ -63,7 +63,7 @@ pub enum DesignError {
     /// The correlations contradict each other.
     #[error("the correlations contradict each other: no joint distribution has them")]
     Correlations,
-    /// A correlation names what is not drawn.
+    /// A correlation names a factor that is not drawn.
     #[error("`{name}` is not drawn at random, so that it has no correlation")]
     NotDrawn {
         /// The factor.
@@ -72,7 +72,7 @@ pub enum DesignError {
     /// Sensitivity indices need independent draws.
     #[error("sensitivity indices need independent factors that are drawn: {reason}")]
     NotIndependent {
-        /// What is in the way.
+        /// The reason.
         reason: &'static str,
     },
     /// More factors than the sequence has dimensions.
@@ -86,12 +86,12 @@ pub enum DesignError {
     /// More cases than can be numbered.
     #[error("{found} cases are too many; at most {most} are possible with this sampling")]
     Cases {
-        /// Cases asked for.
+        /// Requested cases.
         found: u128,
         /// The most.
         most: u64,
     },
-    /// Nothing to do.
+    /// The design is empty.
     #[error("there is no case")]
     Empty,
 }
@@ -104,7 +104,7 @@ pub struct Design {
     /// Points; cases for each node of the grids.
     count: u64,
     cases: u64,
-    /// Places of the drawn factors.
+    /// The drawn factors.
     drawn: Vec<Drawn>,
     /// Rows of the Cholesky factor of the correlations; empty without any.
     mixing: Vec<Vec<f64>>,
@@ -158,7 +158,7 @@ impl Design {
                 stream,
                 permutation: Permutation::new(cases, stream),
                 coordinates: (dimensions > 0).then(|| {
-                    // Point B has the later dimensions, and a scramble of its own.
+                    // Point B has the later dimensions, with an independent scramble.
                     let other = Stream::new(seed, &format!("{name} (B)"));
                     let later = (dimension + d).min(sobol::MOST_DIMENSIONS - 1);
                     [
@@ -179,7 +179,7 @@ impl Design {
         })
     }
 
-    /// What varies.
+    /// Variation of the factors.
     pub fn factors(&self) -> &[Factor] {
         &self.factors
     }
@@ -371,11 +371,11 @@ fn mixing(
     factor(&matrix).ok_or(DesignError::Correlations)
 }
 
-/// What rounding leaves of a pivot that is zero.
+/// Rounding error of a zero pivot.
 const NO_PIVOT: f64 = 1e-12;
 
-/// The lower Cholesky factor of a symmetric matrix with ones on its diagonal; nothing where it is not positive
-/// semidefinite. What others determine has the pivot zero, and nothing else depends on it beyond rounding.
+/// The lower Cholesky factor of a correlation matrix; nothing if it is not positive semidefinite. A variable that
+/// depends linearly on earlier ones has a zero pivot, below which the column must vanish within rounding.
 fn factor(matrix: &[Vec<f64>]) -> Option<Vec<Vec<f64>>> {
     let n = matrix.len();
     let mut lower = vec![vec![0.0; n]; n];

@@ -15,7 +15,7 @@ pub enum Distribution {
     Triangular([f64; 3]),
     /// One of the numbers 0, 1, …, with the probability in proportion to its weight.
     Choice(Vec<f64>),
-    /// Another one without what lies beyond these ends.
+    /// Another one, truncated to these ends.
     Truncated(Box<Distribution>, [f64; 2]),
 }
 

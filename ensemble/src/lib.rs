@@ -2,14 +2,14 @@
 //!
 //! - [`study`]: the study file;
 //! - [`random`], [`distribution`], [`design`]: which values the factors have in each case, from its number alone;
-//! - [`rows`], [`chunk`], [`store`]: what is kept of each case, in pieces that are written as a whole;
-//! - [`mod@run`]: the missing pieces, on several threads, through the narrow trait [`run::Engine`];
-//! - [`summary`], [`statistics`]: what the rows say;
+//! - [`rows`], [`chunk`], [`store`]: rows of results, in chunks that are written atomically;
+//! - [`mod@run`]: runs the missing chunks on several threads, through the narrow trait [`run::Engine`];
+//! - [`summary`], [`statistics`]: statistics of the rows;
 //! - [`splitting`]: probabilities of rare events;
-//! - [`limits`]: how large a study may be.
+//! - [`limits`]: limits on the size of a study.
 //!
-//! A row depends on its case alone, and statistics see rows in the order of cases: no result depends on the number
-//! of threads, on the size of the chunks, or on who ran them.
+//! A row depends on its case alone, and statistics read rows in the order of cases: no result depends on the number
+//! of threads, on the size of the chunks, or on the machines.
 
 pub mod chunk;
 pub mod design;

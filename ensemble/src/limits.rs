@@ -1,10 +1,10 @@
-//! Limits of the size of a study, which may come from an untrusted source: of work, memory and files.
+//! Limits on work, memory and files of a study, which may come from an untrusted source.
 
 /// Most cases of a study.
 pub const MAX_CASES: u64 = 1_000_000_000;
 /// Most chunks of a study, each of them a file.
 pub const MAX_CHUNKS: u64 = 100_000;
-/// Most numbers of a chunk, which is in memory as a whole while it is run or read.
+/// Most numbers of a chunk, which is held in memory while it is computed or read.
 pub const MAX_NUMBERS: u64 = 1 << 23;
 /// Most columns of a row.
 pub const MAX_COLUMNS: usize = 50_000;
@@ -28,11 +28,11 @@ pub const MAX_SCORES: u64 = 1 << 24;
 pub const MAX_STEPS: u64 = 1_000_000_000;
 /// Longest and shortest motion, in s.
 pub const DURATIONS: [f64; 2] = [1e-9, 1e9];
-/// Coarsest tolerance: statistics of motions that are wrong in the second digit mean nothing.
+/// Coarsest tolerance: beyond it, motions are wrong in the second digit and their statistics meaningless.
 pub const MAX_TOLERANCE: f64 = 1e-2;
 /// Most threads of a run.
 pub const MAX_JOBS: usize = 1024;
 /// Largest table, in bytes.
 pub const MAX_TABLE: u64 = 1 << 28;
-/// Largest chunk as a file, in bytes: its numbers and what describes them.
+/// Largest file of a chunk, in bytes: its numbers and metadata.
 pub const MAX_CHUNK_BYTES: u64 = 1 << 28;

@@ -9,7 +9,7 @@ use url::Url;
 
 use crate::store::{Store, StoreError, check};
 
-/// Objects below a prefix of a store, which writes each of them as a whole.
+/// Objects below a prefix of an object store with atomic writes.
 #[derive(Debug)]
 pub struct Objects {
     store: Box<dyn ObjectStore>,
@@ -18,8 +18,8 @@ pub struct Objects {
 }
 
 impl Objects {
-    /// The objects below an address such as `s3://bucket/study`. Keys and regions come from the environment. Which
-    /// schemes there are, the features of the crate `object_store` say; `file` is always there.
+    /// The objects below an address such as `s3://bucket/study`. Keys and regions come from the environment. Features of
+    /// the crate `object_store` enable further schemes; `file` is always available.
     pub fn at(address: &str) -> Result<Self, StoreError> {
         let told =
             |cause: Box<dyn std::error::Error + Send + Sync>| StoreError::new(address, cause);

@@ -4,7 +4,7 @@
 
 /// Multipliers of a round.
 const MULTIPLIERS: [u32; 2] = [0xd251_1f53, 0xcd9e_8d57];
-/// What a round adds to the key.
+/// Increments of the key per round.
 const WEYL: [u32; 2] = [0x9e37_79b9, 0xbb67_ae85];
 const ROUNDS: u32 = 10;
 
@@ -70,7 +70,7 @@ impl Stream {
         uniform(self.bits(case, index))
     }
 
-    /// A whole number below `count`, which is not zero.
+    /// An integer below `count`, which is not zero.
     pub fn below(self, count: u64, case: u64, index: u64) -> u64 {
         let product = u128::from(self.bits(case, index)) * u128::from(count);
         // Below `count`.

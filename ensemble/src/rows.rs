@@ -1,6 +1,6 @@
-//! What is known of each case: a row of named columns.
+//! Results of each case: a row of named columns.
 
-/// What a column is.
+/// Role of a column.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Role {
     /// A factor; where it chooses between items, their names.
@@ -27,16 +27,16 @@ pub struct Column {
     pub name: String,
     /// A sentence.
     pub about: String,
-    /// Unit for people.
+    /// Display unit.
     pub unit: String,
     /// One of this unit in SI.
     pub scale: f64,
-    /// What it is.
+    /// Its role.
     pub role: Role,
 }
 
 impl Column {
-    /// A value in SI, in the unit for people.
+    /// A value in SI, in the display unit.
     pub fn to_unit(&self, si: f64) -> f64 {
         si / self.scale
     }

@@ -15,17 +15,17 @@ pub trait Engine: Sync {
     /// The columns of a row.
     fn columns(&self) -> &[Column];
 
-    /// Appends the rows of consecutive cases, in their order. Stops where the watch says so: the rows are then
-    /// thrown away.
+    /// Appends the rows of consecutive cases, in their order. Stops if the watch requires it: the rows are then
+    /// discarded.
     fn run(&self, cases: Range<u64>, watch: &Watch<'_>, rows: &mut Rows);
 }
 
-/// Whoever looks at the work.
+/// Callbacks for cancellation and progress.
 #[derive(Clone, Copy)]
 pub struct Watch<'a> {
-    /// Whether to go on; asked in every case.
+    /// Whether to continue; called in every case.
     pub go_on: &'a (dyn Fn() -> bool + Sync),
-    /// Told the number of cases that were done since the last call.
+    /// Receives the number of cases completed since the last call.
     pub done: &'a (dyn Fn(u64) + Sync),
 }
 
@@ -40,7 +40,7 @@ impl std::fmt::Debug for Watch<'_> {
 pub enum Ended {
     /// All were run.
     Done,
-    /// It was told to stop; what was finished is in the store.
+    /// Cancelled; completed chunks are in the store.
     Stopped,
 }
 
@@ -92,7 +92,7 @@ pub fn run(
         written?;
         Ok(Ended::Done)
     };
-    // The earliest chunks come first, whoever takes them.
+    // Chunks are started in order, on any thread.
     let next = std::sync::atomic::AtomicUsize::new(0);
     let workers: Vec<usize> = (0..pool.current_num_threads()).collect();
     let ends: Vec<Result<Ended, RunError>> = pool.install(|| {

@@ -69,7 +69,7 @@ fn directions(dimension: usize) -> [u32; BITS] {
     v
 }
 
-/// Each bit flipped by what stands above it, at random.
+/// Owen scrambling: each bit is flipped at random, depending on the higher bits.
 fn scrambled(x: u32, seed: u32) -> u32 {
     let mut x = x.reverse_bits();
     x = x.wrapping_add(seed);

@@ -1,8 +1,8 @@
-//! The probability of a rare event by adaptive multilevel splitting: particles climb from level to level, the lowest ones
-//! going on from where higher ones are (F. Cérou and A. Guyader, Stochastic Analysis and Applications 25, 2007; in a
-//! space of normal numbers S.-K. Au and J. L. Beck, Probabilistic Engineering Mechanics 16, 2001).
+//! The probability of a rare event by adaptive multilevel splitting: at each level the lowest particles are replaced
+//! by copies of higher ones (F. Cérou and A. Guyader, Stochastic Analysis and Applications 25, 2007; in standard
+//! normal space S.-K. Au and J. L. Beck, Probabilistic Engineering Mechanics 16, 2001).
 //!
-//! Independent replicates give the interval: the particles of one of them have common ancestors.
+//! Independent replicates give the interval: particles within a replicate have common ancestors.
 
 use crate::normal;
 use crate::random::Stream;
@@ -15,17 +15,17 @@ use std::ops::Range;
 pub trait Landscape: Sync {
     /// How many numbers.
     fn dimension(&self) -> usize;
-    /// The function at several places.
+    /// The function at several points.
     fn heights(&self, scores: &[Vec<f64>]) -> Vec<f64>;
 }
 
-/// Moves of a particle that goes on from another one.
+/// Metropolis steps of a copied particle.
 const MOVES: usize = 10;
-/// Part of the particles that goes on from others at a level: one of so many.
+/// Reciprocal of the fraction of particles replaced at a level.
 const LOWEST: usize = 4;
-/// Places that are asked for at once, between which a climb may be stopped.
+/// Points evaluated together, between which a replicate may be cancelled.
 const TOGETHER: usize = 64;
-/// Levels after which the climb is given up: the probability is then below 1e-100.
+/// Limit on levels; the probability is then below 1e-100.
 const MOST_LEVELS: usize = 1000;
 /// Replicates of a splitting.
 pub const REPLICATES: u64 = 10;
@@ -47,7 +47,7 @@ pub fn columns() -> Vec<Column> {
     ]
 }
 
-/// Replicates as cases: a row has its estimate and what it cost.
+/// Replicates as cases: a row has the estimate and the number of evaluations.
 pub struct Splitting<'a> {
     landscape: &'a dyn Landscape,
     particles: usize,
@@ -66,7 +66,7 @@ impl<'a> Splitting<'a> {
         }
     }
 
-    /// The estimate of a replicate and its evaluations; nothing where it was told to stop.
+    /// The estimate of a replicate and its evaluations; nothing if cancelled.
     fn climb(&self, replicate: u64, watch: &Watch<'_>) -> Option<[f64; 2]> {
         let mut draws = Draws {
             stream: self.stream,
@@ -102,7 +102,7 @@ impl<'a> Splitting<'a> {
             }
             let low = particles.partition_point(|particle| particle.0 <= level);
             if low == n {
-                // All stand on one plain: nobody knows the way up.
+                // All particles are at the same level: no progress is possible.
                 probability = 0.0;
                 break;
             }

@@ -1,4 +1,4 @@
-//! Where chunks are kept.
+//! Storage of chunks.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -34,7 +34,7 @@ impl StoreError {
     }
 }
 
-/// A place for named objects, each of which is there as a whole or not at all.
+/// A store of named objects with atomic writes.
 pub trait Store: Send + Sync {
     /// The names of all objects.
     fn names(&self) -> Result<Vec<String>, StoreError>;
@@ -42,7 +42,7 @@ pub trait Store: Send + Sync {
     fn read(&self, name: &str) -> Result<Bytes, StoreError>;
     /// Writes an object, or replaces it.
     fn write(&self, name: &str, bytes: Vec<u8>) -> Result<(), StoreError>;
-    /// Removes what interrupted writers left behind, and nothing of those that still write.
+    /// Removes leftovers of interrupted writers, but not the files of active ones.
     fn tidy(&self) -> Result<(), StoreError> {
         Ok(())
     }
@@ -87,7 +87,7 @@ impl Folder {
         names.collect()
     }
 
-    /// Writes beside the place, then renames: a killed writer leaves the place as it was.
+    /// Writes a temporary file in the same folder and renames it, so that an interrupted write changes nothing.
     fn replace(&self, name: &str, bytes: &[u8]) -> io::Result<()> {
         let place = self.path.join(name);
         let mut tried = 0;
@@ -135,7 +135,7 @@ pub struct Memory(Mutex<BTreeMap<String, Bytes>>);
 
 impl Memory {
     fn objects(&self) -> MutexGuard<'_, BTreeMap<String, Bytes>> {
-        // An object is put as a whole.
+        // Each insertion is complete, even if a writer has panicked since.
         self.0.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }

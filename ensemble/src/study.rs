@@ -1,4 +1,4 @@
-//! The study file: what is moved, what varies, what is kept.
+//! The study file: the motion, its factors, the kept quantities.
 //!
 //! ```toml
 //! [study]
@@ -9,13 +9,13 @@
 //! t_end_s = 5
 //!
 //! [vary]
-//! m = { normal = [5, 0.2] }         # a parameter, a state at the start, or a quantity of the study's own
+//! m = { normal = [5, 0.2] }         # a parameter, an initial state, or a quantity defined by the study
 //!
 //! [keep]
 //! reached = { end = "x" }
 //! ```
 //!
-//! Values are texts here: their names belong to specs, which this crate does not know.
+//! Values are texts here: their names belong to specs, which this crate does not read.
 
 mod keep;
 mod motion;
@@ -60,13 +60,13 @@ pub struct Study {
     pub correlations: Vec<Correlation>,
     /// The motion of each case.
     pub motion: Motion,
-    /// What varies.
+    /// Factors.
     pub vary: Vec<Vary>,
     /// Noise over time.
     pub noise: Vec<Noise>,
-    /// What is kept.
+    /// Kept quantities.
     pub keep: Vec<Keep>,
-    /// The rare event, if that is what is asked for.
+    /// The rare event, if requested.
     pub rare: Option<Rare>,
 }
 
@@ -85,7 +85,7 @@ const STUDY: [&str; 9] = [
 ];
 
 impl Study {
-    /// Reads a study file; `file` is its name in messages. All mistakes are told at once.
+    /// Reads a study file; `file` is its name in messages. All errors are reported at once.
     pub fn parse(file: &str, text: &str) -> Result<Self, Report> {
         let (mut fields, table) = Fields::new(file, text);
         let table = table.get_ref();
@@ -180,7 +180,7 @@ impl Study {
     }
 }
 
-/// Whether a factor has nodes of its own, whatever else is wrong with it.
+/// Whether a factor has grid values, even if its entry is otherwise invalid.
 fn has_grid(table: &DeTable<'_>) -> bool {
     let entries = table.get("vary").and_then(|vary| vary.get_ref().as_table());
     let mut entries = entries.into_iter().flatten();

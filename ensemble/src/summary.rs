@@ -1,4 +1,4 @@
-//! What the rows of a study say: statistics with intervals, in memory that does not grow with the number of cases.
+//! Statistics of the rows of a study with intervals, in memory that does not grow with the number of cases.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -42,7 +42,7 @@ pub struct Summary {
     pub points: Vec<Vec<f64>>,
     /// Whether the intervals hold for independent cases, or are wider than need be.
     pub sampling: Sampling,
-    /// The rare event with its probability, where one was asked for.
+    /// The rare event with its probability, if requested.
     pub rare: Option<(String, Probability)>,
 }
 
@@ -109,7 +109,7 @@ struct Seen {
     ranks: Vec<[Option<u64>; 4]>,
 }
 
-/// What one look at the rows tells.
+/// Results of one pass over the rows.
 struct Counts {
     done: u64,
     early: BTreeMap<String, u64>,
@@ -168,7 +168,7 @@ impl Counts {
         }
     }
 
-    /// Finds the quantiles of all columns, of some columns at a time: what counts their digits takes room.
+    /// Finds the quantiles of all columns, some columns at a time: the digit counts take memory.
     fn seek<E>(
         &mut self,
         columns: &[Column],
@@ -214,9 +214,9 @@ impl Counts {
 /// Columns whose quantiles are sought at a time: some ten kilobytes for each digit of each rank.
 const TOGETHER: usize = 256;
 
-/// Which columns a look at the rows asks for; the others may be empty.
+/// The columns that a pass needs; the others may be empty.
 pub type Wanted<'w> = &'w dyn Fn(usize) -> bool;
-/// Who looks at rows.
+/// Receiver of the rows in a pass.
 pub type See<'s> = &'s mut dyn FnMut(&Rows);
 
 fn is_course(column: &Column) -> bool {

@@ -20,14 +20,14 @@ use crate::chunk::{Chunk, Chunks};
 use crate::digest::hex;
 use crate::rows::{Column, Rows};
 
-/// Columns besides those of the study.
+/// Columns in addition to those of the study.
 const CASE: &str = "case";
 const END: &str = "t_end_s";
 const REASON: &str = "reason";
 /// Names that no column of a study may have.
 pub const TAKEN: [&str; 3] = [CASE, END, REASON];
 
-/// What a file says of itself: the hash of its study, and the checksum of all its bytes but its own.
+/// Metadata of a file: the hash of its study, and the checksum of all other bytes.
 const STUDY: &str = "appell.study";
 const CHECKSUM: &str = "appell.sha256";
 /// Digits of the checksum.
@@ -95,7 +95,7 @@ fn place_of_checksum(bytes: &[u8]) -> Result<Range<usize>> {
     place.ok_or_else(|| damaged("there is no checksum"))
 }
 
-/// SHA-256 of a file with zeros in the place of the checksum.
+/// SHA-256 of a file with the checksum set to zeros.
 fn checksum(bytes: &[u8], place: &Range<usize>) -> String {
     let mut hash = Sha256::new();
     hash.update(&bytes[..place.start]);
@@ -127,8 +127,8 @@ fn schema(columns: &[Column]) -> Result<TypePtr> {
     Ok(Arc::new(group.build()?))
 }
 
-/// Rows of a chunk of a study as they were [written]; of columns that are not wanted the lists are empty. A file is
-/// damaged if a bit of it has changed, or if it belongs to another study or to other cases.
+/// Rows of a chunk of a study as they were [written]; columns that are not wanted are empty. A file is damaged if a
+/// bit of it has changed, or if it belongs to another study or to other cases.
 pub(crate) fn read(
     bytes: Bytes,
     columns: &[Column],
@@ -140,7 +140,7 @@ pub(crate) fn read(
     if bytes[place.clone()] != *checksum(&bytes, &place).as_bytes() {
         return Err(damaged("the checksum is another one"));
     }
-    // A file that somebody else wrote may show a slip of the library; it is an error of the file here.
+    // The Parquet library may panic on a foreign file; here this is an error of the file.
     let read = catch_unwind(AssertUnwindSafe(|| {
         let file = SerializedFileReader::new(bytes)?;
         belongs(&file, columns, &chunks.study)?;

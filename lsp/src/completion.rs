@@ -1,5 +1,4 @@
-//! What may stand at a place inside a string: names, functions, units. Sections and keys are the
-//! business of the JSON schema.
+//! Candidates inside a string: names, functions, units. Sections and keys are completed by the JSON schema.
 
 use std::collections::BTreeSet;
 
@@ -13,7 +12,7 @@ use lsp_types::{CompletionItem, CompletionItemKind, Documentation, Position, Tex
 
 use crate::document::Document;
 
-/// The words that may stand at a place.
+/// The candidates at a position.
 pub(crate) fn completion(document: &Document, position: Position) -> Vec<CompletionItem> {
     let at = document.text.offset(position);
     let text = document.text.as_str();
@@ -35,7 +34,7 @@ pub(crate) fn completion(document: &Document, position: Position) -> Vec<Complet
             let before = document.text.part(&(string.span.start + 1..at));
             in_expression(document, string, before)
         }
-        // A word alone is no expression.
+        // A single word is not an expression.
         Form::Direction if is_in_list(text, string) => {
             let before = document.text.part(&(string.span.start + 1..at));
             in_expression(document, string, before)
@@ -58,7 +57,7 @@ fn item(label: &str, kind: CompletionItemKind, detail: impl Into<String>) -> Com
     }
 }
 
-/// The units of the table, then those with a prefix.
+/// The units of the table, then the prefixed ones.
 fn units() -> impl Iterator<Item = CompletionItem> {
     let plain = UNITS.iter().map(|unit| (String::new(), unit));
     let prefixed = PREFIXES.iter().flat_map(|(prefix, _)| {
@@ -71,7 +70,7 @@ fn units() -> impl Iterator<Item = CompletionItem> {
     })
 }
 
-/// The units that the spec has elsewhere, each for a whole string.
+/// The units used elsewhere in the spec, each for a whole string.
 fn written_units(document: &Document, content: &Span) -> impl Iterator<Item = CompletionItem> {
     let sections = document.reading.ast.sections.iter();
     let items = sections.flat_map(|section| &section.items);
@@ -85,7 +84,7 @@ fn written_units(document: &Document, content: &Span) -> impl Iterator<Item = Co
     })
 }
 
-/// The names that a reference may have; an item does not refer to itself.
+/// The names that a reference admits, without the item itself.
 fn named(document: &Document, target: Target, from: Option<&[String]>) -> Vec<CompletionItem> {
     let supplied = match target {
         Target::Frame => vec![item("ground", CompletionItemKind::STRUCT, "frame")],
@@ -119,7 +118,7 @@ fn defined(document: &Document, section: &str, word: &str) -> Vec<CompletionItem
         .collect()
 }
 
-/// `before` is the expression up to the place.
+/// `before` is the expression up to the cursor.
 fn in_expression(document: &Document, string: &Part, before: &str) -> Vec<CompletionItem> {
     if before.rfind('[') > before.rfind(']') {
         return units().collect();
@@ -181,7 +180,7 @@ fn in_expression(document: &Document, string: &Part, before: &str) -> Vec<Comple
     all
 }
 
-/// The function whose arguments a place is among, and how many of them stand before it.
+/// The function whose argument list contains the cursor, and the number of arguments before the cursor.
 fn call_around(before: &str) -> Option<(&str, usize)> {
     let (mut depth, mut place) = (0, 0);
     for (at, letter) in before.char_indices().rev() {
@@ -200,8 +199,7 @@ fn call_around(before: &str) -> Option<(&str, usize)> {
     None
 }
 
-/// Whether an expression may stand where a string stands. The checks of the spec answer: they alone
-/// know what each key allows.
+/// Whether an expression is valid in the string at the cursor, decided by the checks of the spec.
 fn is_allowed(document: &Document, string: &Part, expression: &str) -> bool {
     let (text, span) = (document.text.as_str(), &string.span);
     let (Some(before), Some(after)) = (text.get(..span.start), text.get(span.end..)) else {

@@ -1,4 +1,4 @@
-//! An open file: its newest text and what is known of it.
+//! An open file: its newest text, syntax tree and equations.
 
 use appell_spec::Reading;
 use appell_spec::language::SECTIONS;
@@ -12,9 +12,9 @@ use crate::text::Text;
 /// An open file.
 pub(crate) struct Document {
     pub(crate) uri: Uri,
-    /// The number that the editor gives the text.
+    /// Version number assigned by the editor.
     pub(crate) version: i32,
-    /// The number that the server gives it.
+    /// Revision number assigned by the server.
     pub(crate) revision: u64,
     pub(crate) text: Text,
     pub(crate) outline: Outline,
@@ -40,8 +40,8 @@ impl Document {
         }
     }
 
-    /// Whether the text is meant as a spec: it names its mechanism, or has sections of a spec and
-    /// no others but misspelt ones.
+    /// Whether the text is meant as a spec: it names its mechanism, or its sections are those of a spec, some
+    /// possibly misspelt.
     pub(crate) fn is_spec(&self) -> bool {
         let mut keys = self.outline.keys.iter().map(|key| key.path.as_slice());
         let names = || SECTIONS.iter().map(|section| section.name);
@@ -53,14 +53,14 @@ impl Document {
             || keys.clone().any(|path| is_section(&path)) && keys.all(is_alike)
     }
 
-    /// The name at a place, its end included.
+    /// The name at a position, its end included.
     pub(crate) fn name_at(&self, position: Position) -> Option<&Occurrence> {
         let at = self.text.offset(position);
         let mut all = self.occurrences.iter();
         all.find(|name| name.span.start <= at && at <= name.span.end)
     }
 
-    /// All places of a name, in the order of the text.
+    /// All occurrences of a name, in the order of the text.
     pub(crate) fn places<'a>(
         &'a self,
         namespace: Namespace,

@@ -12,7 +12,7 @@ use appell_spec::occurrences::Namespace;
 /// A sentence for each item.
 pub(crate) type Contributions = BTreeMap<(Namespace, String), String>;
 
-/// What each item contributes to. There is one equation of motion for each pseudo-velocity.
+/// The contributions of each item. There is one equation of motion for each pseudo-velocity.
 pub(crate) fn contributions(mechanism: &Mechanism, mut derivation: Derivation) -> Contributions {
     let mut told = Contributions::new();
     quantities(mechanism, &mut derivation, &mut told);
@@ -78,7 +78,7 @@ fn quantities(mechanism: &Mechanism, derivation: &mut Derivation, told: &mut Con
     }
 }
 
-/// What becomes of the rows of a constraint.
+/// The rows of a constraint: restricting, embedded or redundant.
 fn rows(derivation: &Derivation, id: ConstraintId) -> String {
     let named = |what: &str, wanted: &dyn Fn(&Row) -> bool| {
         let rows = derivation.constraints.rows.iter();

@@ -1,4 +1,4 @@
-//! What a name means, where it is used, and which equations it is in.
+//! Hover text: the meaning of a name, its uses, and the equations that contain it.
 
 use appell_spec::ast::{Entry, ItemAst, SpecAst, ValueAst};
 use appell_spec::expr::Span;
@@ -9,12 +9,12 @@ use lsp_types::{Hover, HoverContents, MarkupContent, MarkupKind, Position};
 use crate::document::Document;
 use crate::markdown::{block, code, prose};
 
-/// Uses that are listed; of more, the number is given.
+/// Limit on listed uses; beyond it, only their number is given.
 const MOST_USES: usize = 8;
-/// Longest value that is shown as it is written, in characters.
+/// Limit in characters on a value shown as written.
 const MOST_LETTERS: usize = 80;
 
-/// The words about the name at a place.
+/// The text about the name at a position.
 pub(crate) fn hover(document: &Document, position: Position) -> Option<Hover> {
     let name = document.name_at(position)?;
     let written = definition(&document.reading.ast, name);
@@ -35,7 +35,7 @@ pub(crate) fn hover(document: &Document, position: Position) -> Option<Hover> {
     })
 }
 
-/// The section of a name and what stands there.
+/// The section of a name, and its item.
 fn definition<'a>(ast: &'a SpecAst, name: &Occurrence) -> Option<(&'static str, &'a ItemAst)> {
     ast.sections.iter().find_map(|section| {
         let word = section.section.name;
@@ -46,7 +46,7 @@ fn definition<'a>(ast: &'a SpecAst, name: &Occurrence) -> Option<(&'static str, 
     })
 }
 
-/// What a joint makes: its title, and the joint.
+/// The origin of a name that a joint defines: its title, and the joint.
 fn made(document: &Document, name: &Occurrence) -> Option<Vec<String>> {
     let joint = joints::maker(&document.reading.ast, name.namespace, &name.name)?;
     let mut all = described(document, "joints", joint);
@@ -72,7 +72,7 @@ fn singular(section: &str) -> &str {
     }
 }
 
-/// The name with its value, the sentence about it, and what else its table says.
+/// The name with its value, its description, and the other keys of its table.
 fn described(document: &Document, section: &str, item: &ItemAst) -> Vec<String> {
     let written = |span: &Span| written(document, span);
     let plain = |span: &Span| prose(&written(span));
@@ -101,7 +101,7 @@ fn described(document: &Document, section: &str, item: &ItemAst) -> Vec<String> 
     [Some(title), about, rest].into_iter().flatten().collect()
 }
 
-/// A value as it is written, on one line.
+/// A value as written, on one line.
 fn written(document: &Document, span: &Span) -> String {
     let words = document.text.part(span).split_whitespace();
     let line = words.collect::<Vec<_>>().join(" ");

@@ -1,12 +1,12 @@
-//! The language server for specs: what `check` reports, while a spec is being written, and what its
-//! names mean.
+//! The language server for specs: the findings of `check` while a spec is edited, and the meaning of its
+//! names.
 //!
 //! ```text
 //! protocol --server--> Document (text, syntax tree, mechanism, names) --> diagnostics, hover, names, completion
 //!                          \--worker--> derivation --> warnings of the audit, equations of each item
 //! ```
 //!
-//! Answers come from the text alone. The derivation takes longer and runs beside the protocol.
+//! Requests are answered from the text alone. The slower derivation runs on a thread of its own.
 
 mod completion;
 mod diagnostics;
@@ -36,7 +36,7 @@ pub fn serve_streams(
 ) -> io::Result<()> {
     let (connection, writer) = stream::connect(from, to)?;
     serve(&connection)?;
-    // The writer ends when nobody can send any more.
+    // The writer ends when all senders are dropped.
     drop(connection);
     let written = writer.join();
     written.unwrap_or_else(|_| Err(io::Error::other("the writer has ended early")))

@@ -1,8 +1,8 @@
-//! Texts of a spec within Markdown: they are shown as they are and mean nothing.
+//! Texts of a spec within Markdown, escaped so that they appear verbatim.
 
 use appell_spec::visible;
 
-/// Characters that begin a mark, a link, an image, an entity or a tag within a line.
+/// Characters that begin emphasis, a link, an image, an entity or a tag within a line.
 const MARKS: &str = "\\`*_[]<>&#|~!$";
 
 /// A sentence, on one line.
@@ -12,7 +12,7 @@ pub(crate) fn prose(text: &str) -> String {
     let line = visible(&line);
     let mut escaped = String::with_capacity(line.len());
     let mut letters = line.chars().peekable();
-    // A line that begins so is a list, a heading or a rule.
+    // A line with such a start is a list, a heading or a rule.
     let mut begins = true;
     while let Some(letter) = letters.next() {
         let is_address = letter == ':' && letters.peek() == Some(&'/');
@@ -32,7 +32,7 @@ pub(crate) fn code(text: &str) -> String {
     if fence.len() == 1 {
         return format!("`{text}`");
     }
-    // A blank on either side is not shown.
+    // Markdown strips one blank on either side.
     format!("{fence} {text} {fence}")
 }
 
@@ -44,7 +44,7 @@ pub(crate) fn block(lines: &[String]) -> String {
     format!("{fence}toml\n{text}\n{fence}")
 }
 
-/// Number of backticks in a row.
+/// Longest run of backticks.
 fn longest_run(text: &str) -> usize {
     let runs = text.split(|letter| letter != '`').map(str::len);
     runs.max().unwrap_or(0)

@@ -1,4 +1,4 @@
-//! From a name to its definition and its uses, and to another name.
+//! Definition, references and renaming.
 
 use appell_spec::occurrences::Occurrence;
 use appell_spec::rename::{RenameError, rename};
@@ -25,7 +25,7 @@ pub(crate) fn definition(
     Some(GotoDefinitionResponse::Scalar(location(document, place)))
 }
 
-/// All uses of the name at a place, and its definition if that is wanted.
+/// All references to the name at a position, optionally with its definition.
 pub(crate) fn references(
     document: &Document,
     position: Position,
@@ -37,7 +37,7 @@ pub(crate) fn references(
     Some(wanted.map(|place| location(document, place)).collect())
 }
 
-/// The name at a place, if it can get another one.
+/// The name at a position, if it can be renamed.
 pub(crate) fn prepare(document: &Document, position: Position) -> Option<PrepareRenameResponse> {
     let name = document.name_at(position)?;
     let mut places = document.places(name.namespace, &name.name);
@@ -49,7 +49,7 @@ pub(crate) fn prepare(document: &Document, position: Position) -> Option<Prepare
         })
 }
 
-/// The edits that give the name at a place another one, or why that cannot be.
+/// The edits that rename the name at a position, or the reason why it cannot be renamed.
 pub(crate) fn renamed(
     document: &Document,
     position: Position,

@@ -27,10 +27,10 @@ use crate::text::Text;
 use crate::worker::{self, Job, What};
 use crate::{completion, diagnostics, hover, names};
 
-/// A request that makes sense and cannot be met, in the protocol's version 3.17.
+/// Code for a valid request that fails (LSP 3.17).
 const REQUEST_FAILED: i32 = -32803;
 
-/// What the server offers.
+/// The capabilities of the server.
 fn capabilities() -> Value {
     json!({
         "textDocumentSync": TextDocumentSyncKind::INCREMENTAL,
@@ -42,7 +42,7 @@ fn capabilities() -> Value {
     })
 }
 
-/// Where the protocol stands.
+/// The phase of the protocol.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Phase {
     /// Before `initialize`.
@@ -52,7 +52,7 @@ enum Phase {
     Closing,
 }
 
-/// Serves an editor until it leaves. What is not its turn is refused, and the next message is read.
+/// Serves an editor until it disconnects. Messages out of order are refused.
 pub fn serve(connection: &Connection) -> std::io::Result<()> {
     let (jobs, mut told) = worker::start()?;
     let mut server = Server {
@@ -79,7 +79,7 @@ pub fn serve(connection: &Connection) -> std::io::Result<()> {
     }
 }
 
-/// The protocol's code of a refusal, and the reason.
+/// The protocol's error code, and the reason.
 type Refusal = (i32, String);
 
 fn read<T: DeserializeOwned>(params: Value) -> Result<T, Refusal> {
@@ -96,7 +96,7 @@ struct Server {
     jobs: Sender<Job>,
     /// By their URIs.
     documents: BTreeMap<String, Document>,
-    /// Of the newest text; editors begin to count again when they open a file again.
+    /// Of the newest text; editors restart their version numbers when they reopen a file.
     revision: u64,
     phase: Phase,
 }
@@ -113,11 +113,11 @@ impl Server {
                 Response::new_err(id, ErrorCode::InternalError as i32, reason)
             }
         };
-        // An editor that has gone needs no answer.
+        // An editor that has disconnected needs no answer.
         let _ = self.messages.send(answer.into());
     }
 
-    /// The answer to a request in its phase of the protocol.
+    /// The answer to a request in the present phase of the protocol.
     fn in_turn(&mut self, method: &str, params: Value) -> Result<Value, Refusal> {
         match (self.phase, method) {
             (Phase::New, Initialize::METHOD) => {
@@ -140,7 +140,7 @@ impl Server {
         }
     }
 
-    /// The answer to a question about a place; nothing where no spec is open.
+    /// The answer to a request at a position; nothing if no spec is open.
     fn answer(&self, method: &str, params: Value) -> Result<Value, Refusal> {
         let offered = [
             HoverRequest::METHOD,
@@ -213,7 +213,7 @@ impl Server {
         Ok(())
     }
 
-    /// Takes a new text: tells what reading it tells, and has its equations derived.
+    /// Takes a new text: publishes the findings of the parser and requests the derivation.
     fn open(&mut self, uri: Uri, version: i32, text: Text) {
         self.revision += 1;
         let mut document = Document::new(uri.clone(), version, text);
@@ -221,7 +221,7 @@ impl Server {
         let key = uri.as_str().to_owned();
         let is_valid = document.is_spec() && document.reading.is_valid();
         if !is_valid && let Some(before) = self.documents.remove(&key) {
-            // Those of the newest valid text.
+            // The contributions of the newest valid text.
             document.contributions = before.contributions;
         }
         let findings = if document.is_spec() {
@@ -232,7 +232,7 @@ impl Server {
         if is_valid {
             let text = document.text.as_str().to_owned();
             let uri = key.clone();
-            // Without the worker there are the findings of reading.
+            // Without the worker only the findings of the parser appear.
             let revision = self.revision;
             let _ = self.jobs.send(Job {
                 uri,
@@ -244,7 +244,7 @@ impl Server {
         self.publish(uri, Some(version), findings);
     }
 
-    /// Takes what the derivation tells, if it is about the newest text.
+    /// Takes a result of the derivation, if it belongs to the newest text.
     fn learn(&mut self, told: worker::Told) {
         let Some(document) = self.documents.get_mut(&told.uri) else {
             return;
@@ -280,7 +280,7 @@ impl Server {
 
     fn tell<N: Told>(&self, params: N::Params) {
         let notification = Notification::new(N::METHOD.to_owned(), params);
-        // An editor that has gone hears nothing.
+        // Sending fails only if the editor has disconnected.
         let _ = self.messages.send(notification.into());
     }
 }

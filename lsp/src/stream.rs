@@ -1,4 +1,4 @@
-//! Messages over streams: their frames, within bounds. What cannot be read is answered and skipped.
+//! Messages over streams: framing, with limits on lengths. Malformed messages are answered and skipped.
 
 use std::io::{self, BufRead, Read as _, Write};
 use std::sync::{Arc, Mutex, PoisonError};
@@ -8,12 +8,12 @@ use crossbeam_channel::{Receiver, Sender, bounded};
 use lsp_server::{Connection, ErrorCode, Message};
 use serde_json::{Value, json};
 
-/// Longest message, in bytes: many times that of a text of a spec with every character escaped.
+/// Limit on a message in bytes: many times that of a spec with every character escaped.
 const LONGEST: u64 = 32 << 20;
-/// Longest line of a header, in bytes.
+/// Limit on a header line, in bytes.
 const LONGEST_LINE: u64 = 1 << 10;
 
-/// A connection over two streams, and the thread that writes; it ends when nobody can send any more.
+/// A connection over two streams, and the writer thread, which ends when all senders are dropped.
 pub(crate) fn connect(
     from: impl BufRead + Send + 'static,
     to: impl Write + Send + 'static,
@@ -37,7 +37,7 @@ fn write(messages: &Receiver<Message>, to: &Mutex<impl Write>) -> io::Result<()>
     Ok(())
 }
 
-/// Why there is no message: the code and the reason, with the number of the request where it is known.
+/// Why a message is refused: code and reason, with the number of the request where it is known.
 struct Refusal {
     code: ErrorCode,
     reason: String,
@@ -60,9 +60,9 @@ struct Reader<R, W> {
 }
 
 impl<R: BufRead, W: Write> Reader<R, W> {
-    /// Reads until the stream ends or nobody listens.
+    /// Reads until the stream ends or the receiver is dropped.
     fn read(mut self, tell: &Sender<Message>) -> io::Result<()> {
-        // Between two headers that can be read, one refusal is enough.
+        // One refusal for each run of malformed headers.
         let mut lost = false;
         loop {
             let refusal = match self.length()? {
@@ -87,7 +87,7 @@ impl<R: BufRead, W: Write> Reader<R, W> {
         }
     }
 
-    /// The length that a header states; nothing at the end of the stream.
+    /// The length stated by the header; nothing at the end of the stream.
     fn length(&mut self) -> io::Result<Option<Result<u64, String>>> {
         let mut length = None;
         loop {
@@ -115,7 +115,7 @@ impl<R: BufRead, W: Write> Reader<R, W> {
         }
     }
 
-    /// The message of so many bytes. One that is too long is passed over.
+    /// The message of this length. One beyond the limit is skipped.
     fn message(&mut self, length: u64) -> io::Result<Result<Message, Refusal>> {
         let mut body = (&mut self.from).take(length);
         if length > LONGEST {
@@ -146,7 +146,7 @@ fn message(bytes: &[u8]) -> Result<Message, Refusal> {
         .filter(|id| id.is_number() || id.is_string());
     let id = id.cloned().unwrap_or_default();
     match serde_json::from_value(value) {
-        // With a number, it is a request whose number is none of the protocol.
+        // A notification with an identifier is a request whose identifier is invalid.
         Ok(message) if id.is_null() || !matches!(message, Message::Notification(_)) => Ok(message),
         _ => Err(Refusal {
             id,

@@ -1,9 +1,9 @@
-//! A text and the places in it: bytes here, lines and UTF-16 units in the protocol.
+//! A text and positions in it: bytes here, lines and UTF-16 units in the protocol.
 
 use appell_spec::expr::Span;
 use lsp_types::{Position, Range, TextDocumentContentChangeEvent};
 
-/// A text with the starts of its lines.
+/// A text with the offsets of its lines.
 #[derive(Debug, Clone)]
 pub(crate) struct Text {
     whole: String,
@@ -28,7 +28,7 @@ impl Text {
         &self.whole
     }
 
-    /// What stands at a place; nothing where it is none of this text.
+    /// The text of a range; nothing if the range is not within the text.
     pub(crate) fn part(&self, span: &Span) -> &str {
         self.whole.get(span.clone()).unwrap_or_default()
     }
@@ -44,7 +44,7 @@ impl Text {
         Range::new(self.position(span.start), self.position(span.end))
     }
 
-    /// The byte of a position; beyond the end of a line it is the end of the line.
+    /// Byte offset of a position; one beyond the end of a line counts as the end of the line.
     pub(crate) fn offset(&self, position: Position) -> usize {
         let line = position.line as usize;
         let Some(&start) = self.starts.get(line) else {
@@ -62,7 +62,7 @@ impl Text {
         start + line.trim_end_matches(['\r', '\n']).len()
     }
 
-    /// The text after a change of the editor.
+    /// The text after an edit.
     pub(crate) fn changed(&self, change: TextDocumentContentChangeEvent) -> Self {
         let Some(range) = change.range else {
             return Self::new(change.text);

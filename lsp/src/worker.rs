@@ -1,4 +1,4 @@
-//! The derivation, beside the protocol: the newest text of a document wins.
+//! The derivation on a thread of its own; only the newest text of a document is processed.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -10,17 +10,17 @@ use crossbeam_channel::{Receiver, Sender, unbounded};
 
 use crate::equations::{Contributions, contributions};
 
-/// As much as the command line has on its main thread.
+/// Stack size, that of the command line's main thread.
 const STACK: usize = 8 << 20;
 
-/// A valid text whose equations are wanted.
+/// A valid text whose equations are requested.
 pub(crate) struct Job {
     pub(crate) uri: String,
     pub(crate) revision: u64,
     pub(crate) text: String,
 }
 
-/// What the derivation of a text tells.
+/// A result of the derivation of a text.
 pub(crate) struct Told {
     pub(crate) uri: String,
     pub(crate) revision: u64,
@@ -28,15 +28,15 @@ pub(crate) struct Told {
 }
 
 pub(crate) enum What {
-    /// Everything that `check` reports.
+    /// All findings of `check`.
     Findings(Vec<Diagnostic>),
     /// The equations of each item.
     Equations(Contributions),
-    /// A mistake in the derivation itself.
+    /// The derivation has panicked.
     Panicked,
 }
 
-/// Starts the thread; it ends when nobody sends jobs any more.
+/// Starts the thread, which ends when all senders of jobs are dropped.
 pub(crate) fn start() -> std::io::Result<(Sender<Job>, Receiver<Told>)> {
     let (jobs, wanted) = unbounded();
     let (tell, told) = unbounded();
@@ -62,7 +62,7 @@ fn work(wanted: &Receiver<Job>, tell: &Sender<Told>, derive: impl Fn(&Job, &dyn 
         };
         let tell = |what| {
             let (uri, revision) = (uri.clone(), job.revision);
-            // Nobody listens any more when the server is ending.
+            // Sending fails only while the server ends.
             let _ = tell.send(Told {
                 uri,
                 revision,
@@ -101,7 +101,7 @@ mod tests {
         }
     }
 
-    /// Revisions that are told, for jobs that are all there from the beginning.
+    /// Reported revisions, for jobs that are all queued at the start.
     fn told(jobs: Vec<Job>, derive: impl Fn(&Job, &dyn Fn(What))) -> Vec<(u64, bool)> {
         let (send, wanted) = unbounded();
         let (tell, told) = unbounded();

@@ -1,4 +1,4 @@
-//! Arrays from Python: a single place, or one a row.
+//! Arrays from Python: a single point, or one per row.
 
 use appell::{EquationsOfMotion, ModelInputs};
 use appell_runtime::inputs::ZeroInputs;
@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 
 type Array<'py> = Bound<'py, PyArrayDyn<f64>>;
 
-/// What Python gives: one row, or several.
+/// An array argument: one row, or several.
 struct Rows<'py> {
     array: PyReadonlyArrayDyn<'py, f64>,
     width: usize,
@@ -17,7 +17,7 @@ struct Rows<'py> {
 }
 
 impl<'py> Rows<'py> {
-    /// Rows of one of some widths. Arrays that are contiguous are not copied.
+    /// Rows of one of some widths. Contiguous arrays are not copied.
     fn new(value: &Bound<'py, PyAny>, widths: &[usize], name: &str) -> PyResult<Self> {
         let array = contiguous(value)?;
         let shape = array.shape();
@@ -62,7 +62,7 @@ fn contiguous<'py>(value: &Bound<'py, PyAny>) -> PyResult<Array<'py>> {
     Ok(made.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// Arguments of a call; those that are left out are the values of the spec.
+/// Arguments of a call; omitted ones have the values of the spec.
 pub(crate) struct Places<'a, 'py> {
     pub(crate) x: Option<&'a Bound<'py, PyAny>>,
     pub(crate) u: Option<&'a Bound<'py, PyAny>>,
@@ -84,7 +84,7 @@ pub(crate) struct Defaults {
 struct Column<'a> {
     numbers: &'a [f64],
     width: usize,
-    /// How far the next row is; zero for a single one.
+    /// Stride between rows; zero for a single one.
     step: usize,
 }
 
@@ -115,12 +115,12 @@ pub(crate) struct Call<'a, 'py> {
     pub(crate) model: &'a dyn EquationsOfMotion,
     pub(crate) defaults: &'a Defaults,
     pub(crate) places: Places<'a, 'py>,
-    /// Arrays that take the results.
+    /// Arrays for the results.
     pub(crate) out: Option<Vec<Bound<'py, PyAny>>>,
 }
 
 impl<'py> Call<'_, 'py> {
-    /// Evaluates a function at one place or at each of N. `shapes` are the shapes of its results at one place.
+    /// Evaluates a function at one point or at each of N. `shapes` are the shapes of its results at one point.
     pub(crate) fn evaluate<const R: usize>(
         self,
         shapes: [&[usize]; R],
@@ -129,7 +129,7 @@ impl<'py> Call<'_, 'py> {
         self.evaluate_moving(shapes, move |at, _, results| function(at, results))
     }
 
-    /// [`Self::evaluate`] for a function that takes pseudo-accelerations; those that are left out are zero.
+    /// [`Self::evaluate`] for a function of pseudo-accelerations; omitted ones are zero.
     pub(crate) fn evaluate_moving<const R: usize>(
         self,
         shapes: [&[usize]; R],
@@ -218,7 +218,7 @@ impl<'py> Call<'_, 'py> {
         };
         match count {
             Some(_) => py.detach(compute),
-            // Shorter than it takes to leave the lock and to get it back.
+            // Shorter than releasing and reacquiring the lock.
             None => compute(),
         }
         drop(writers);
@@ -226,7 +226,7 @@ impl<'py> Call<'_, 'py> {
     }
 }
 
-/// The number of rows that all have that have rows.
+/// The common number of rows of all arguments with several rows.
 fn common(counts: impl Iterator<Item = (&'static str, Option<usize>)>) -> PyResult<Option<usize>> {
     let mut first: Option<(&str, usize)> = None;
     for (name, count) in counts {
@@ -244,7 +244,7 @@ fn common(counts: impl Iterator<Item = (&'static str, Option<usize>)>) -> PyResu
 
 /// A new array.
 fn zeros(py: Python<'_>, shape: Vec<usize>) -> PyResult<Array<'_>> {
-    /// More numbers may be more than there is memory, which `numpy` tells.
+    /// `numpy` reports if there is not enough memory.
     const MANY: usize = 1 << 24;
     if shape
         .iter()
@@ -257,7 +257,7 @@ fn zeros(py: Python<'_>, shape: Vec<usize>) -> PyResult<Array<'_>> {
     Ok(made.cast_into::<PyArrayDyn<f64>>()?)
 }
 
-/// New arrays, or those that are given.
+/// New arrays, or the given ones.
 fn results<'py>(
     py: Python<'py>,
     count: Option<usize>,

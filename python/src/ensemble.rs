@@ -1,4 +1,4 @@
-//! Ensembles: a study, its chunks and what their rows say.
+//! Ensembles: a study, its chunks and the statistics of their rows.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -12,7 +12,7 @@ use pyo3::prelude::*;
 use crate::errors::Raise;
 use crate::watched::watched;
 
-/// A study with everything that its cases share, and where its rows are kept.
+/// A compiled study, and the store of its rows.
 #[pyclass(frozen)]
 pub(crate) struct Study {
     ensemble: Arc<Ensemble>,
@@ -79,7 +79,7 @@ impl Study {
         Ok(names(chunks.chain(rare).collect()).collect())
     }
 
-    /// Names of the chunks that are not there.
+    /// Names of the missing chunks.
     #[pyo3(signature = (shard = None, chunk = None))]
     fn missing(
         &self,
@@ -96,7 +96,7 @@ impl Study {
             .collect())
     }
 
-    /// Runs chunks by their names, or those that are missing.
+    /// Runs chunks by their names, or the missing ones.
     #[pyo3(signature = (chunks = None, jobs = None, shard = None, chunk = None, progress = None))]
     fn run(
         &self,

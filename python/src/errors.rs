@@ -1,4 +1,4 @@
-//! Errors as exceptions of the package, which know the places of what is wrong.
+//! Errors as exceptions of the package, with the positions of the findings.
 
 use appell::check::findings;
 use appell::{Class, Error, Field, Report};
@@ -28,7 +28,7 @@ pub(crate) fn exception(py: Python<'_>, error: &Error) -> PyErr {
     made(py, class, (text, found, field))
 }
 
-/// The argument by which Python gives a part of a request.
+/// The Python argument of a part of a request.
 fn argument(field: Field) -> &'static str {
     match field {
         Field::Set | Field::Letters => "parameters",
@@ -45,7 +45,7 @@ fn found_in(report: &Report) -> String {
     serde_json::Value::from(findings(report)).to_string()
 }
 
-/// What is wrong on our side.
+/// An internal error.
 pub(crate) fn mistake(py: Python<'_>) -> PyErr {
     let message = "a mistake in appell: this cannot be computed";
     made(

@@ -1,4 +1,4 @@
-//! A mechanism: its names, its equations, and what is asked of them.
+//! A mechanism: its names, its equations and computations.
 
 use std::sync::Arc;
 

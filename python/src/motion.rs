@@ -1,4 +1,4 @@
-//! Motions: what is asked for, and what comes of it.
+//! Motions: requests and results.
 
 use std::cell::Cell;
 use std::path::PathBuf;
@@ -27,7 +27,7 @@ pub(crate) struct Simulated {
     simulated: appell::Simulated,
 }
 
-/// An input that Python computes. The first exception is kept; the motion ends there.
+/// An input computed by Python. The first exception is kept; the motion ends there.
 struct Callable {
     input: usize,
     function: Py<PyAny>,
@@ -49,7 +49,7 @@ impl InputSource for Callable {
 }
 
 fn lock<T>(value: &Mutex<T>) -> std::sync::MutexGuard<'_, T> {
-    // An error is written whole.
+    // Each assignment is complete, even if a thread has panicked since.
     value.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
@@ -220,8 +220,8 @@ pub(crate) fn simulate(
     Ok(simulated.into_iter().map(one).collect())
 }
 
-/// What a motion is made of: times, rows of columns, parameters, which extra columns there are, why it ended, what is
-/// undefined, from when on inputs are held, its cost.
+/// Contents of a motion: times, rows of columns, parameters, extra columns, cause of an early end and undefined
+/// columns, start of held inputs, cost.
 type Parts<'py> = (
     Bound<'py, PyArray1<f64>>,
     Bound<'py, PyArray2<f64>>,
@@ -259,7 +259,7 @@ pub(crate) fn restored(
         .outer_iter()
         .flat_map(|row| row.to_vec().into_iter().take(n))
         .collect();
-    // Rows are asked for in their order.
+    // Rows are requested in order.
     let next = Cell::new(0);
     let fill = |_: f64, _: &[f64], u: &mut [f64]| {
         let row = rows.row(next.get());
@@ -307,7 +307,7 @@ pub(crate) fn restored(
 
 #[pymethods]
 impl Simulated {
-    /// What it is made of; see [`restored`].
+    /// Its contents; see [`restored`].
     fn parts<'py>(&self, py: Python<'py>) -> PyResult<Parts<'py>> {
         let simulated = &self.simulated;
         let trajectory = &simulated.trajectory;
@@ -363,7 +363,7 @@ impl Simulated {
         self.simulated.failure.as_deref()
     }
 
-    /// Which inputs, outputs and energies are no numbers.
+    /// The first non-finite inputs, outputs and energies.
     #[getter]
     fn undefined(&self) -> Option<&str> {
         self.simulated.undefined.as_deref()

@@ -1,4 +1,4 @@
-//! Recordings, and what is concluded from them.
+//! Recordings, identification and diagnosis.
 
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -37,7 +37,7 @@ pub(crate) struct Gap {
 }
 
 impl DataSet {
-    /// The recordings, for a thread of their own.
+    /// The recordings, for another thread.
     pub(crate) fn shared(&self) -> Arc<appell::DataSet> {
         Arc::clone(&self.0)
     }
@@ -243,7 +243,7 @@ impl Gap {
             .map_err(|error| exception(py, &error.into()))
     }
 
-    /// What was found, in one sentence.
+    /// The diagnosis in one sentence.
     fn sentence(&self) -> String {
         appell_report::gap::sentence(&self.report)
     }
@@ -252,19 +252,19 @@ impl Gap {
         appell_report::gap::page(&self.set, &self.report)
     }
 
-    /// The inputs that the next experiment should have, as CSV.
+    /// The inputs proposed for the next experiment, as CSV.
     fn experiment(&self) -> Option<String> {
         let experiment = self.report.experiment.as_ref()?;
         Some(appell::diagnosis::experiment_inputs(&self.set, experiment))
     }
 
-    /// Text and file of the spec that was diagnosed.
+    /// Text and file of the diagnosed spec.
     fn _spec(&self) -> (&str, &str) {
         (&self.set.spec.file, &self.set.spec.text)
     }
 }
 
-/// The spec with a hypothesis of a gap report, and what was changed.
+/// The spec with a hypothesis of a gap report applied, and a summary of the changes.
 #[pyfunction]
 #[pyo3(signature = (spec, text, report, hypothesis, out))]
 pub(crate) fn apply(

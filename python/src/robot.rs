@@ -10,7 +10,7 @@ use pyo3::prelude::*;
 use crate::errors::Raise;
 use crate::watched::watched;
 
-/// The spec of a robot file, and what is told of it as JSON.
+/// The spec of a robot file, and a report of the import as JSON.
 #[pyfunction]
 #[expect(clippy::too_many_arguments, reason = "called from Python alone")]
 pub(crate) fn import_robot(

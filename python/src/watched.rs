@@ -1,4 +1,4 @@
-//! Long computations: the interpreter goes on beside them, hears how far they are, and may leave them.
+//! Long computations: the interpreter continues meanwhile, receives their progress, and may abandon them.
 
 use std::panic::resume_unwind;
 use std::sync::Arc;
@@ -12,38 +12,38 @@ use pyo3::prelude::*;
 
 use crate::errors::mistake;
 
-/// How often the interpreter is asked for an interruption.
+/// Interval of checks for an interruption.
 const LOOK: Duration = Duration::from_millis(50);
-/// As much as the command line has on its main thread.
+/// Stack size, that of the command line's main thread.
 const STACK: usize = 8 << 20;
 
-/// What a computation tells, and whether it should go on.
+/// Progress of a computation, and its cancellation.
 pub(crate) struct Watch {
     stages: Sender<&'static str>,
     left: Arc<AtomicBool>,
 }
 
-/// What unwinds a computation that nobody waits for.
+/// Payload of the panic that ends an abandoned computation.
 struct Left;
 
 impl Watch {
-    /// Whether somebody waits for it.
+    /// Whether the computation should continue.
     pub(crate) fn goes_on(&self) -> bool {
         !self.left.load(Ordering::Relaxed)
     }
 
-    /// Tells of a stage. A computation that nobody waits for ends here.
+    /// Reports a stage. An abandoned computation ends here.
     pub(crate) fn stage(&self, stage: &'static str) {
         if !self.goes_on() {
             resume_unwind(Box::new(Left));
         }
-        // Nobody hears it once the interpreter has given up.
+        // Sending fails only if the interpreter has abandoned the computation.
         let _ = self.stages.send(stage);
     }
 }
 
-/// Computes on another thread without the lock of the interpreter. `progress` is called with each stage; an exception
-/// in it, and an interruption from the keyboard, are raised at once, and the computation ends at its next stage.
+/// Computes on another thread without the interpreter lock. `progress` is called with each stage; an exception
+/// in it, and a keyboard interruption, are raised at once, and the computation ends at its next stage.
 pub(crate) fn watched<T: Send + 'static>(
     py: Python<'_>,
     progress: Option<&Bound<'_, PyAny>>,
@@ -52,8 +52,8 @@ pub(crate) fn watched<T: Send + 'static>(
     run(py, progress, false, compute)
 }
 
-/// The same of a computation that calls Python: an interruption is raised once it has ended, since no thread may call
-/// an interpreter that is shut down.
+/// The same for a computation that calls Python: an interruption is raised once it has ended, since no thread may
+/// call an interpreter that has shut down.
 pub(crate) fn awaited<T: Send + 'static>(
     py: Python<'_>,
     compute: impl FnOnce(&Watch) -> T + Send + 'static,
@@ -74,7 +74,7 @@ fn run<T: Send + 'static>(
         left: Arc::clone(&left),
     };
     let thread = thread::Builder::new().stack_size(STACK);
-    // The end of the computation closes the channel.
+    // The channel closes when the computation ends.
     let worker = thread.spawn(move || compute(&watch));
     let worker = worker.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
     loop {

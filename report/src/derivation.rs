@@ -64,7 +64,7 @@ pub fn page(
     Ok(shorter.unwrap_or(as_derived))
 }
 
-/// Of a page with more characters in its formulas, generalised velocities that are quotients keep their letters.
+/// In a page with more formula characters, generalised velocities that are quotients keep their letters.
 const LONGEST_TO_READ: usize = 5_000;
 
 fn page_of(
@@ -77,8 +77,8 @@ fn page_of(
     Ok(written(mechanism, &mut writer, sections))
 }
 
-/// Writes what the derivation of a mechanism ends with: the equations of motion alone. Quantities that
-/// a [`page`] has defined before have their letters.
+/// Writes the equations of motion alone, the end of the derivation. Quantities that a [`page`] has defined
+/// before keep their letters.
 pub fn equations_of_motion(mechanism: &Mechanism, derivation: &mut Derivation) -> Page {
     let mut writer = Writer::new(mechanism, derivation);
     let sections = sections::equations_of_motion(&mut writer);

@@ -89,7 +89,7 @@ const CHARACTER: f64 = 6.6;
 /// Colours before the order repeats with dashes.
 const COLOURS: usize = 6;
 
-/// Style of paper, grid, frame, text and lines (`c0` to `c5`), for any drawing beside the figures.
+/// Style of paper, grid, frame, text and lines (`c0` to `c5`), for any drawing that accompanies the figures.
 pub const STYLE: &str = "\
 .paper{fill:#fff}.grid{stroke:#e3e3e3}.frame{stroke:#777;fill:none}
 text{fill:#222;font:12px system-ui,sans-serif}.title{font-size:15px;font-weight:600}

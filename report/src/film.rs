@@ -2,17 +2,17 @@
 //!
 //! [`data`] writes the data of the page; the scripts draw it for any mechanism:
 //!
-//! | script | what it knows |
+//! | script | contents |
 //! |---|---|
 //! | `vectors.js` | vectors, affine maps, boxes |
 //! | `film.js`, `colours.js` | the data at any time; light and dark |
-//! | `gl.js`, `painter.js` | programs and buffers of WebGL 2; the passes of a picture, in their order |
-//! | `shapes.js`, `solids.js` | cylinder, ball, ring …; the pass that draws them in their light |
+//! | `gl.js`, `painter.js` | programs and buffers of WebGL 2; the render passes in their order |
+//! | `shapes.js`, `solids.js` | cylinder, ball, ring …; the pass that draws them with lighting |
 //! | `traces.js`, `ground.js` | the passes of traces and of the squares on the ground |
-//! | `parts.js`, `stage.js` | wheels, springs, arrows … of shapes; all of them where they are at a time |
-//! | `camera.js`, `names.js` | the eye and its pointers; names of points over the picture |
+//! | `parts.js`, `stage.js` | wheels, springs, arrows … composed of shapes; all of them posed at a time |
+//! | `camera.js`, `names.js` | the camera and its controls; labels of points over the picture |
 //! | `panel.js`, `player.js` | legend, values, plot; time, keys and buttons |
-//! | `live.js` | motions that a page around it sends |
+//! | `live.js` | motions sent by an embedding page |
 
 mod data;
 
@@ -27,10 +27,10 @@ pub use crate::drawing::film::FilmMaker;
 use crate::page_shell::PageShell;
 
 const STYLE: &str = include_str!("film/style.css");
-/// Only the picture and the time, where the page around shows the rest.
+/// Shows the picture and the time only; the embedding page shows the rest.
 const LIVE: &str = include_str!("film/live.css");
 const BODY: &str = include_str!("film/body.html");
-/// In the order in which they use each other.
+/// In dependency order.
 const SCRIPTS: [&str; 16] = [
     include_str!("film/vectors.js"),
     include_str!("film/film.js"),
@@ -62,12 +62,12 @@ pub fn page(
     ending: Option<&str>,
 ) -> Outcome<String> {
     let data = data(&FilmMaker::new(mechanism)?, model, motion, ending);
-    // The text of a spec is escaped: without `<` in the data nothing can end the element.
+    // The text of a spec is escaped: without `<` in the data it cannot end the element.
     let data = data.to_string().replace('<', "\\u003c");
     Ok(around(&mechanism.title, STYLE, &data))
 }
 
-/// The data of the page of a motion, which a [`live_page`] is sent.
+/// The data of a motion for a [`live_page`].
 pub fn data(
     maker: &FilmMaker,
     model: &dyn Model,
@@ -77,8 +77,8 @@ pub fn data(
     data::json(maker, model, motion, ending)
 }
 
-/// The page without a motion, for a frame in another page that sends it the [`data`] of one motion after
-/// the other, all of one mechanism.
+/// The page without a motion, for a frame in another page that sends it the [`data`] of several motions of one
+/// mechanism.
 pub fn live_page() -> String {
     around("Motion", &[STYLE, LIVE].concat(), "null")
 }

@@ -1,8 +1,8 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`headline`] says what it comes to, [`page()`] sets [`words`], [`plots`] and [`elements`]; [`budget`] divides the gap, [`forces`] tells it where
-//! forces judge, [`law`] shows what was
-//! measured of the rest, [`doubt`] suspects unit errors, [`numbers`] writes values with their uncertainty.
+//! [`headline`] summarises the result, [`page()`] arranges [`words`], [`plots`] and [`elements`]; [`budget`] divides
+//! the gap, [`forces`] does so for recorded forces, [`law`] shows the measured law of the rest, [`doubt`] suspects unit
+//! errors, [`numbers`] writes values with their uncertainty.
 
 mod budget;
 mod doubt;

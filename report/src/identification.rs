@@ -26,7 +26,7 @@ const WORSE: f64 = 1.2;
 const BENT: &str = "On the held-out runs the fitted model predicts worse than the nominal one, one \
 second ahead: an effect missing from the model has biased the parameters. `appell diagnose` searches \
 for it.";
-/// Prediction errors in units of the noise that are as good as can be, and that disturbances may explain.
+/// Prediction errors in units of the noise: up to the first a good fit, up to the second explicable by disturbances.
 const GOOD: f64 = 1.5;
 const FAIR: f64 = 10.0;
 /// Posterior standard deviation, in units of the prior one, above which a direction is undetermined.
@@ -366,7 +366,7 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
     part
 }
 
-/// What forbids to rely on the values, for the first lines.
+/// Warnings against relying on the values, for the first lines.
 fn warnings(answer: &Answer) -> Vec<String> {
     let mut warnings = Vec::new();
     if !answer.is_optimum {
@@ -397,7 +397,7 @@ fn ahead(answer: &Answer) -> Option<(&HeldOut, String)> {
     Some((ahead, size(ahead.fitted)))
 }
 
-/// What that error means where [`warnings`] do not say so.
+/// The meaning of that error, if [`warnings`] does not cover it.
 fn verdict(answer: &Answer) -> Option<String> {
     let (error, times) = ahead(answer)?;
     let when = horizon(error.horizon);

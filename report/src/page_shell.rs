@@ -1,4 +1,4 @@
-//! The document around all pages. Files are self-contained; a server has more than one address.
+//! The document around all pages. Files are self-contained; pages of a server may link to style sheets.
 
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 
@@ -13,7 +13,7 @@ pub struct PageShell<'a> {
     pub sheet: Option<&'a str>,
     /// Content security policy, if any.
     pub policy: Option<&'a str>,
-    /// Name space of the elements, for readers of XML.
+    /// Name space of the elements, for XML parsers.
     pub namespace: Option<&'a str>,
 }
 

@@ -77,8 +77,8 @@ pub fn text([x, y]: [f64; 2]) -> Element {
 const TITLE_SIZE: f64 = 15.0;
 const SMALLEST_TITLE: f64 = 10.0;
 
-/// A title that ends within its room: one that is long has smaller letters; of one that is longer, the beginning is
-/// shown, and the whole as a tooltip.
+/// A title within its width: a long one in smaller letters; a longer one truncated, with the whole title as a
+/// tooltip.
 pub fn title(place: [f64; 2], room: f64, content: &str) -> String {
     /// The font may be bold.
     const BOLD: f64 = 1.1;
@@ -92,7 +92,7 @@ pub fn title(place: [f64; 2], room: f64, content: &str) -> String {
     shortened(text, content, size, room / BOLD)
 }
 
-/// A text that ends within its room: of a longer one, the beginning is shown, and the whole as a tooltip.
+/// A text within its width: truncated if longer, with the whole text as a tooltip.
 pub fn shortened(element: Element, content: &str, size: f64, room: f64) -> String {
     if width(content, size) <= room {
         return element.text(content);

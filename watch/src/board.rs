@@ -1,4 +1,4 @@
-//! What the page shows: the newest of each part, and the last good model.
+//! The content of the page: the newest version of each part, and the last valid model.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
@@ -16,11 +16,11 @@ pub(crate) enum Part {
     Findings,
     /// The equations of motion with the lines that they depend on.
     Equations,
-    /// The whole derivation, where somebody wants to read it.
+    /// The whole derivation, on request.
     Derivation,
     /// The mechanism at its initial state.
     Drawing,
-    /// That there is a model for motions, with its sliders.
+    /// The availability of a model for simulations, with its sliders.
     Model,
 }
 
@@ -37,7 +37,7 @@ impl Part {
     }
 }
 
-/// A part as it was written last.
+/// The latest version of a part.
 #[derive(Debug, Clone)]
 pub(crate) struct Entry {
     /// Grows with every change of any part.
@@ -47,13 +47,13 @@ pub(crate) struct Entry {
     pub(crate) json: Arc<str>,
 }
 
-/// The model of the last good text.
+/// The model of the last valid text.
 #[derive(Clone)]
 pub(crate) struct Good {
     /// The number of its text.
     pub(crate) version: u64,
     pub(crate) model: Arc<Model>,
-    /// Shows its motions.
+    /// Renders its simulations as animations.
     pub(crate) films: Arc<FilmMaker>,
 }
 
@@ -81,7 +81,7 @@ impl Default for Board {
 
 impl Board {
     fn lock(&self) -> MutexGuard<'_, Written> {
-        // Every change is whole, whatever happened to the writer afterwards.
+        // Each change is complete, even if the writer has panicked since.
         self.written.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -97,7 +97,7 @@ impl Board {
         self.news.send_replace(stamp);
     }
 
-    /// Keeps a model for motions.
+    /// Stores a model for simulations.
     pub(crate) fn keep(&self, good: Good) {
         self.lock().good = Some(good);
     }
@@ -113,7 +113,7 @@ impl Board {
         newer.cloned().collect()
     }
 
-    /// Tells the stamp of the newest change.
+    /// Signals the stamp of the newest change.
     pub(crate) fn subscribe(&self) -> watch::Receiver<u64> {
         self.news.subscribe()
     }

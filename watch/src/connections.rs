@@ -1,4 +1,4 @@
-//! Connections: whoever says nothing is let go, and a crowd does not keep the page out.
+//! Connections: idle ones time out, and their number is limited without locking out the page.
 
 use std::collections::VecDeque;
 use std::sync::Arc;
@@ -12,11 +12,11 @@ use hyper_util::service::TowerToHyperService;
 use tokio::net::{TcpListener, TcpStream};
 use tokio::task::AbortHandle;
 
-/// Whoever takes longer for the head of a request is let go.
+/// Timeout for the head of a request.
 const HEAD: Duration = Duration::from_secs(5);
-/// Open connections.
+/// Limit on open connections.
 const MOST: usize = 128;
-/// After an error of the operating system, such as too many open files.
+/// Pause after an error of the operating system, such as too many open files.
 const PAUSE: Duration = Duration::from_millis(100);
 
 /// Whether a request on a connection has shown the secret.
@@ -38,7 +38,7 @@ struct Connection {
     admitted: Admitted,
 }
 
-/// Answers connections until the process ends. Of too many, the oldest gives way that has not shown the secret.
+/// Serves connections until the process ends; at the limit, closes the oldest without the secret.
 pub(crate) async fn accept(listener: &TcpListener, routes: &Router) {
     let mut open = VecDeque::new();
     loop {
@@ -64,7 +64,7 @@ pub(crate) async fn accept(listener: &TcpListener, routes: &Router) {
 async fn serve(stream: TcpStream, routes: Router) {
     let mut http = http1::Builder::new();
     http.timer(TokioTimer::new()).header_read_timeout(HEAD);
-    // A connection that breaks concerns nobody else.
+    // An error on one connection does not affect the others.
     let _ = http
         .serve_connection(TokioIo::new(stream), TowerToHyperService::new(routes))
         .await;

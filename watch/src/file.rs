@@ -10,37 +10,37 @@ use appell_spec::limits::MAX_FILE;
 use notify::event::{AccessKind, AccessMode, EventKind};
 use notify::{RecommendedWatcher, RecursiveMode, Watcher};
 
-/// A save is several events, which come together.
+/// A save causes several events; those within this time count as one.
 const TOGETHER: Duration = Duration::from_millis(3);
 /// Some editors empty a file before they write it.
 const WRITING: Duration = Duration::from_millis(40);
-/// What the operating system does not tell is seen after this time.
+/// Polling interval, for changes without an event from the operating system.
 const LOOK: Duration = Duration::from_millis(500);
 
-/// The text of the file, or why there is none.
+/// The text of the file, or the reason why it cannot be read.
 pub(crate) type Text = Result<String, String>;
 
-/// Sends the text now and whenever it changes, until nobody wants it; the path is absolute.
+/// Sends the text now and at every change until the receiver is dropped; the path is absolute.
 pub(crate) fn follow(path: &Path, texts: Inbox) -> std::io::Result<()> {
     let path = path.to_owned();
     let (tell, told) = channel();
     let watcher = watcher(&path, tell.clone());
     let name = "file of the spec".to_owned();
     thread::Builder::new().name(name).spawn(move || {
-        // It tells as long as it lives; the sender keeps the channel open where there is none.
+        // Keeps the watcher alive; the sender keeps the channel open if there is no watcher.
         let _alive = (watcher, tell);
         read_again(&path, &told, &texts);
     })?;
     Ok(())
 }
 
-/// Watches the folder, since many editors put a new file in place of the old one.
+/// Watches the folder, since many editors replace the file by a new one.
 fn watcher(path: &Path, tell: Sender<()>) -> Option<RecommendedWatcher> {
     let (folder, name) = (path.parent()?, path.file_name()?.to_owned());
     let told = move |event: notify::Result<notify::Event>| {
         let concerns = event.as_ref().is_ok_and(|event| {
             let is_it = |path: &std::path::PathBuf| path.file_name() == Some(&name);
-            // Reading is no change, and is what follows one.
+            // Read access is no change, and each reload causes it.
             let is_reading = match event.kind {
                 EventKind::Access(AccessKind::Close(AccessMode::Write)) => false,
                 EventKind::Access(_) => true,
@@ -49,7 +49,7 @@ fn watcher(path: &Path, tell: Sender<()>) -> Option<RecommendedWatcher> {
             !is_reading && (event.paths.is_empty() || event.paths.iter().any(is_it))
         });
         if concerns || event.is_err() {
-            // The reader has ended when the server has.
+            // Sending fails only after the server has ended.
             let _ = tell.send(());
         }
     };
@@ -80,7 +80,7 @@ fn read_again(path: &Path, told: &Receiver<()>, texts: &Inbox) {
     }
 }
 
-/// Waits for a change; false when there will be none.
+/// Waits for a change; false if the channel is closed.
 fn changed(path: &Path, told: &Receiver<()>, seen: Option<(u64, SystemTime)>) -> bool {
     loop {
         match told.recv_timeout(LOOK) {
@@ -96,7 +96,7 @@ fn changed(path: &Path, told: &Receiver<()>, seen: Option<(u64, SystemTime)>) ->
     }
 }
 
-/// How long the file is, and when it was written.
+/// Length and modification time of the file.
 fn looks(path: &Path) -> Option<(u64, SystemTime)> {
     let about = std::fs::metadata(path).ok()?;
     Some((about.len(), about.modified().ok()?))

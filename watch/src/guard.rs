@@ -1,4 +1,4 @@
-//! Who may ask: whoever knows the secret in the address, from the page itself.
+//! Access control: a request needs the secret of the address and must come from the page itself.
 
 use axum::http::header::{HOST, ORIGIN};
 use axum::http::{HeaderMap, StatusCode};
@@ -6,7 +6,7 @@ use axum::http::{HeaderMap, StatusCode};
 /// Bytes of the secret.
 const SECRET: usize = 24;
 
-/// What a request has to show.
+/// The secret and the port that a request is checked against.
 #[derive(Clone)]
 pub(crate) struct Guard {
     token: String,
@@ -32,8 +32,7 @@ impl Guard {
         self.port
     }
 
-    /// Refuses requests without the secret, and those that another site had a browser send: their host or
-    /// origin is a name of that site.
+    /// Rejects requests without the secret, and cross-site requests: their host or origin is a foreign name.
     pub(crate) fn check(&self, path: &str, headers: &HeaderMap) -> Result<(), StatusCode> {
         let own = [
             format!("127.0.0.1:{}", self.port),
@@ -65,7 +64,7 @@ impl Guard {
     }
 }
 
-/// Takes the same time wherever secrets of one length differ.
+/// Compares in constant time, for secrets of one length.
 fn is_same(a: &[u8], b: &[u8]) -> bool {
     let differences = a.iter().zip(b).fold(0, |all, (a, b)| all | (a ^ b));
     a.len() == b.len() && std::hint::black_box(differences) == 0

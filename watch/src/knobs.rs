@@ -1,9 +1,9 @@
-//! What can be set on the page: parameters, the initial state, inputs, in the units of the spec.
+//! The settings of the page: parameters, initial state and inputs, in the units of the spec.
 
 use appell::{ModelInfo, Quantity};
 use serde_json::{Value, json};
 
-/// A slider of a quantity without limits goes to this multiple of its value.
+/// Upper end of the slider of a quantity without limits, as a multiple of its value.
 const WIDE: f64 = 2.0;
 
 /// The sliders of a model.
@@ -16,7 +16,7 @@ pub(crate) fn knobs(info: &ModelInfo) -> Value {
     })
 }
 
-/// The derivation relies on the sign of a parameter, unless its limits admit both.
+/// The derivation assumes the sign of a parameter unless its limits admit both.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Sign {
     Kept,
@@ -45,7 +45,7 @@ fn knob(quantity: &Quantity, sign: Sign) -> Value {
     })
 }
 
-/// From where to where a slider goes: to the limits where there are any.
+/// Range of a slider: the limits where they are finite.
 fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2] {
     let width = match unit {
         "rad" => std::f64::consts::PI,
@@ -71,7 +71,7 @@ fn reach(value: f64, [least, most]: [f64; 2], unit: &str, sign: Sign) -> [f64; 2
     } else {
         beyond(value < 0.0)
     };
-    // A limit may lie beyond what the other end reaches.
+    // A limit may lie outside the range about the value.
     [low.min(value), high.max(value).max(low)]
 }
 

@@ -5,14 +5,14 @@
 //! model --motions--> motion with the values of the sliders --> page
 //! ```
 //!
-//! | file | what it knows |
+//! | file | contents |
 //! |---|---|
-//! | `file.rs` | when the file is saved, and its text |
-//! | `worker.rs`, `places.rs`, `knobs.rs` | what the page shows of a text; places in it; sliders |
-//! | `board.rs` | the newest of everything, the last good model too |
-//! | `motions.rs` | motions with the values of the sliders, within bounds |
-//! | `server.rs`, `guard.rs` | answers to the page, and to nobody else |
-//! | `connections.rs` | connections, within bounds |
+//! | `file.rs` | watches the file and reads its text |
+//! | `worker.rs`, `places.rs`, `knobs.rs` | parts of the page from a text; positions in it; sliders |
+//! | `board.rs` | the newest version of each part, and the last valid model |
+//! | `motions.rs` | simulations with the values of the sliders, within limits |
+//! | `server.rs`, `guard.rs` | the HTTP server and its access control |
+//! | `connections.rs` | connections, limited in number |
 
 mod board;
 mod connections;
@@ -65,7 +65,7 @@ pub struct Watch {
 impl Watch {
     /// Follows a spec and listens on a port of the loopback address; 0 is any free one.
     pub fn start(spec: &Path, port: u16) -> Result<Self, Error> {
-        // Another kind of file could keep a reader waiting.
+        // Opening another kind of file, such as a pipe, may block.
         let is_file = std::fs::metadata(spec).and_then(|about| {
             let no_file = || std::io::Error::other("this is no file");
             about.is_file().then_some(()).ok_or_else(no_file)
@@ -96,7 +96,7 @@ impl Watch {
         (Ipv4Addr::LOCALHOST, self.guard.port()).into()
     }
 
-    /// The address of the page. Its secret admits to the server.
+    /// The address of the page, with the secret that grants access.
     pub fn url(&self) -> String {
         format!("http://{}/{}/", self.address(), self.guard.token())
     }

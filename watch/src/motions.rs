@@ -1,5 +1,5 @@
-//! Motions with the values of the sliders. Each window waits for its newest request alone, and no
-//! motion takes longer than its bounds.
+//! Simulations with the values of the sliders. Only the newest request of each window is answered, within
+//! limits on time and steps.
 
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -19,28 +19,28 @@ use tokio::sync::oneshot;
 
 use crate::board::Board;
 
-/// Longest motion, in s.
+/// Longest simulated time, in s.
 const LONGEST: f64 = 600.0;
-/// Pictures of a motion.
+/// Frames of an animation.
 const ROWS: f64 = 400.0;
-/// Steps of the integrator, rejected ones included.
+/// Limit on integrator steps, rejected ones included.
 const MOST_STEPS: usize = 50_000;
-/// Longest computation of a motion.
+/// Limit on computing time.
 const PATIENCE: Duration = Duration::from_secs(2);
-/// Windows that may wait at the same time.
+/// Limit on windows with a pending request.
 const MOST_WINDOWS: usize = 16;
-/// Values in a request.
+/// Limit on values in a request.
 const MOST_VALUES: usize = 1000;
-/// As much as the command line has on its main thread.
+/// Stack size, that of the command line's main thread.
 const STACK: usize = 8 << 20;
 
-/// What a window asks for; values are texts, as the command line takes them.
+/// A request of a window; values are texts, as on the command line.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub(crate) struct Request {
-    /// A number that the window has chosen for itself.
+    /// Identifier chosen by the window.
     window: u64,
-    /// End of the motion in s.
+    /// End time of the simulation in s.
     end: f64,
     #[serde(default)]
     parameters: BTreeMap<String, String>,
@@ -50,12 +50,12 @@ pub(crate) struct Request {
     inputs: BTreeMap<String, String>,
 }
 
-/// Why there is no motion.
+/// Why there is no simulation.
 #[derive(Debug)]
 pub(crate) enum Refusal {
-    /// Too many windows wait.
+    /// Too many windows have a pending request.
     Busy,
-    /// Something in the request is wrong, or nothing can be computed from it.
+    /// The request is invalid, or the simulation failed.
     Wrong(String),
 }
 
@@ -63,18 +63,18 @@ type Answer = Result<Value, Refusal>;
 
 struct Job {
     request: Request,
-    /// Closed where a newer request has come.
+    /// Dropped when a newer request arrives.
     answer: oneshot::Sender<Answer>,
 }
 
-/// The requests that wait, by window.
+/// Pending requests, by window.
 pub(crate) struct Motions {
     waiting: Mutex<BTreeMap<u64, Job>>,
     come: Condvar,
 }
 
 impl Motions {
-    /// Starts the thread that computes.
+    /// Starts the worker thread.
     pub(crate) fn start(board: &Arc<Board>) -> std::io::Result<Arc<Self>> {
         let motions = Arc::new(Self {
             waiting: Mutex::default(),
@@ -89,11 +89,11 @@ impl Motions {
     }
 
     fn lock(&self) -> MutexGuard<'_, BTreeMap<u64, Job>> {
-        // Every change is whole, whatever happened to the writer afterwards.
+        // Each change is complete, even if the writer has panicked since.
         self.waiting.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// Puts a request in the place of an older one of the same window; that gets no answer.
+    /// Queues a request in exchange for an older one of the same window, which gets no answer.
     pub(crate) fn ask(&self, request: Request) -> Result<oneshot::Receiver<Answer>, Refusal> {
         let (answer, answered) = oneshot::channel();
         let mut waiting = self.lock();
@@ -127,7 +127,7 @@ impl Motions {
                 ))
             });
             if is_wanted() {
-                // Nobody listens any more where the window was closed.
+                // Sending fails if the window was closed.
                 let _ = answer.send(moved);
             }
         }
@@ -163,7 +163,7 @@ fn motion(board: &Board, request: &Request, go_on: impl Fn() -> bool) -> Answer 
     }))
 }
 
-/// An error on one line, without the picture of its place: the page has a field of that name.
+/// An error on one line, without the source excerpt: the page has a field of that name.
 fn line(error: &appell::Error) -> String {
     match error {
         appell::Error::Expression(error) => {

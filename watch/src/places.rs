@@ -1,4 +1,4 @@
-//! Places in a text as the page counts them: lines from 1, columns from 0 in units of UTF-16.
+//! Positions in a text as the page counts them: lines from 1, columns from 0 in UTF-16 units.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use appell_spec::expr::Span;
 use appell_spec::outline::Outline;
 use serde_json::{Value, json};
 
-/// A text with the starts of its lines.
+/// A text with the offsets of its lines.
 pub(crate) struct Places<'a> {
     text: &'a str,
     starts: Vec<usize>,
@@ -28,12 +28,12 @@ impl<'a> Places<'a> {
         [line, before.unwrap_or_default().encode_utf16().count()]
     }
 
-    /// First and last position of a part.
+    /// First and last position of a span.
     pub(crate) fn range(&self, span: &Span) -> Value {
         json!([self.position(span.start), self.position(span.end)])
     }
 
-    /// By the first line of each item: its last one, where it has several.
+    /// Last line of each item of several lines, by its first line.
     pub(crate) fn items(&self) -> BTreeMap<usize, usize> {
         let outline = Outline::new(self.text);
         let mut items: BTreeMap<&[String], [usize; 2]> = BTreeMap::new();

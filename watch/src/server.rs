@@ -1,4 +1,4 @@
-//! Answers to the page.
+//! The HTTP server of the page.
 
 use std::convert::Infallible;
 use std::net::TcpListener;
@@ -29,11 +29,11 @@ use crate::guard::Guard;
 use crate::motions::{Motions, Refusal};
 use crate::worker::Inbox;
 
-/// Bytes of a request.
+/// Limit on the size of a request, in bytes.
 const LARGEST: usize = 64 << 10;
-/// Whoever takes longer to send a request or to be answered gets nothing.
+/// Timeout for receiving and for answering a request.
 const PATIENCE: Duration = Duration::from_secs(30);
-/// Windows that follow the spec.
+/// Limit on windows that follow the spec.
 const MOST_WINDOWS: usize = 32;
 
 const STYLE: &str = include_str!("page/style.css");
@@ -46,11 +46,11 @@ const SCRIPTS: [&str; 5] = [
     include_str!("page/page.js"),
 ];
 
-/// The page asks nobody but this server, and runs no script but its own.
+/// The page connects to this server only and runs its own scripts only.
 const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; connect-src 'self'; \
                       img-src data:; frame-src 'self'; base-uri 'none'; form-action 'none'; \
                       frame-ancestors 'none'";
-/// The frame of the motion gets data and asks nobody: the sandbox makes it a stranger to the server.
+/// The frame of the animation has no network access; the sandbox gives it an opaque origin.
 const FRAME_POLICY: &str = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; \
                             base-uri 'none'; form-action 'none'; frame-ancestors 'self'; \
                             sandbox allow-scripts";
@@ -101,7 +101,7 @@ pub(crate) fn serve(
     })
 }
 
-/// Admits a request and answers it in time.
+/// Checks a request and answers it within the timeout.
 async fn guarded(
     State(shared): State<Shared>,
     Extension(admitted): Extension<Admitted>,
@@ -187,13 +187,13 @@ fn json(text: String) -> Response {
     typed("application/json", text)
 }
 
-/// Each part when it changes, the newest of all parts at first.
+/// A stream of events: all parts at first, then each part when it changes.
 async fn events(State(shared): State<Shared>) -> Response {
     let Ok(permit) = Arc::clone(&shared.windows).try_acquire_owned() else {
         return StatusCode::SERVICE_UNAVAILABLE.into_response();
     };
     let news = changes(&shared.board);
-    // The place is free again when the window is closed.
+    // Released when the window is closed.
     let news = stream::unfold((Box::pin(news), permit), |(mut news, permit)| async move {
         use futures_util::StreamExt as _;
         Some((news.next().await?, (news, permit)))
@@ -217,7 +217,7 @@ fn changes(board: &Arc<Board>) -> impl Stream<Item = Result<Event, Infallible>> 
     })
 }
 
-/// Has the derivation written; it comes as an event.
+/// Requests the derivation; it arrives as an event.
 async fn derivation(State(shared): State<Shared>) -> StatusCode {
     shared.inbox.want_derivation();
     StatusCode::ACCEPTED
@@ -238,7 +238,7 @@ async fn motion(State(shared): State<Shared>, body: Bytes) -> Response {
             (StatusCode::UNPROCESSABLE_ENTITY, message).into_response()
         }
         Ok(Err(Refusal::Busy)) => StatusCode::SERVICE_UNAVAILABLE.into_response(),
-        // A newer request has come.
+        // Superseded by a newer request.
         Err(_) => StatusCode::CONFLICT.into_response(),
     }
 }

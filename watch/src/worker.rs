@@ -1,5 +1,5 @@
-//! From each saved text to what the page shows of it. The newest text wins, and each part is told as
-//! soon as it is ready.
+//! Computes the parts of the page from each saved text. Only the newest text is processed, and each part is
+//! published as soon as it is ready.
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
@@ -22,28 +22,28 @@ use crate::file::Text;
 use crate::knobs::knobs;
 use crate::places::Places;
 
-/// As much as the command line has on its main thread.
+/// Stack size, that of the command line's main thread.
 const STACK: usize = 8 << 20;
 
-/// Where texts are put, and wishes.
+/// Sender of texts and requests to the worker.
 #[derive(Clone)]
 pub(crate) struct Inbox(Sender<Message>);
 
 enum Message {
     Text(Text),
-    /// Somebody wants to read the whole derivation of the last good text.
+    /// Request for the whole derivation of the last valid text.
     Derivation,
 }
 
 impl Inbox {
-    /// Puts a text; false when nobody reads any more.
+    /// Sends a text; false if the worker has ended.
     pub(crate) fn put(&self, text: Text) -> bool {
         self.0.send(Message::Text(text)).is_ok()
     }
 
-    /// Asks for the derivation, which becomes a part of the board.
+    /// Requests the derivation, which becomes a part of the board.
     pub(crate) fn want_derivation(&self) {
-        // Nobody reads any more when the thread could not go on.
+        // Sending fails only if the worker thread has ended.
         let _ = self.0.send(Message::Derivation);
     }
 }
@@ -62,7 +62,7 @@ pub(crate) fn start(spec: &Path, board: &Arc<Board>) -> std::io::Result<Inbox> {
     Ok(Inbox(send))
 }
 
-/// The last good text, until its derivation has been written.
+/// The last valid text, until its derivation has been written.
 struct Unread {
     version: u64,
     derived: Derived,
@@ -122,13 +122,13 @@ impl Job<'_> {
         self.board.write(part, &value);
     }
 
-    /// A finding without a place in the text.
+    /// A finding without a position in the text.
     fn refuse(&self, message: &str) {
         let finding = json!({ "severity": "error", "message": message, "places": [] });
         self.write(Part::Findings, json!({ "broken": true, "list": [finding] }));
     }
 
-    /// A mistake in the derivation ends neither the thread nor the page.
+    /// A panic in the derivation ends neither the thread nor the page.
     fn guarded<R>(&self, work: impl FnOnce() -> R) -> Option<R> {
         let done = catch_unwind(AssertUnwindSafe(work));
         if done.is_err() {
@@ -137,7 +137,7 @@ impl Job<'_> {
         done.ok()
     }
 
-    /// Shows a text; its derivation, if there is one.
+    /// Shows a text; returns its derivation if there is one.
     fn show(&self, text: &str) -> Option<Derived> {
         let items = Places::new(text).items();
         let shown = json!({ "file": self.file, "text": text, "items": items });
@@ -151,8 +151,7 @@ impl Job<'_> {
         }
     }
 
-    /// The model on this thread, what is there to read on another; then what takes longer than the rest is
-    /// worth waiting for.
+    /// Compiles the model on this thread and writes the equations on another; the slower audit follows.
     fn show_derived(&self, text: &str, derived: Derived) -> Derived {
         self.findings(text, &derived.warnings, false);
         let mut copy = derived.clone();
@@ -185,7 +184,7 @@ impl Job<'_> {
         }
     }
 
-    /// From the frames to the energies.
+    /// The complete derivation, from the frames to the energies.
     fn derivation(&self, mut derived: Derived) {
         let (mechanism, derivation) = (&derived.mechanism, &mut derived.derivation);
         if let Ok(page) = derivation::page(mechanism, derivation, Stage::Equations) {
@@ -237,7 +236,7 @@ impl Job<'_> {
     }
 }
 
-/// Has those functions compiled that a motion uses last, while it computes with those that it uses first.
+/// Compiles the functions used last in a simulation while it runs with those used first.
 fn prepare(model: &Model) {
     let (equations, info) = (model.equations(), model.info());
     let at = At {

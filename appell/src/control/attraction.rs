@@ -183,7 +183,7 @@ impl Explored<'_> {
         );
         let safe = self.fates.safe_part();
         let reach = self.fates.axes.iter().zip(&self.fates.centre);
-        // The grid may lie on one side of the motion, or beside it: no more is claimed than was simulated.
+        // The grid need not surround the motion: only the simulated range is claimed.
         let reach = reach.map(|(axis, centre)| {
             let quantity = self.quantity(axis);
             let away = || axis.values.iter().map(|value| value - centre);

@@ -83,7 +83,7 @@ pub struct DesignedGains {
 }
 
 impl DesignedGains {
-    /// Closed-loop poles that do not decay, which a designer may ask for by a missing sign.
+    /// Closed-loop poles that do not decay, perhaps for want of a sign.
     pub fn growing(&self) -> usize {
         let grows = |pole: &&Complex<f64>| match self.sampling {
             None => pole.re >= 0.0,
@@ -208,7 +208,7 @@ fn turns(setup: &Setup<'_>, equations: &MotionEquations, place: usize) -> Error 
     Error::request(Field::Outputs, message)
 }
 
-/// A controllable set of states with closed equations, by their places among those of the equations.
+/// A controllable set of states with closed equations, by their indices among those of the equations.
 fn closed_choice(
     setup: &Setup<'_>,
     equations: &MotionEquations,
@@ -239,7 +239,7 @@ fn closed_choice(
     Ok(chosen)
 }
 
-/// The requested outputs, by their places among the states of the equations.
+/// The requested outputs, by their indices among the states of the equations.
 fn places(
     setup: &Setup<'_>,
     equations: &MotionEquations,

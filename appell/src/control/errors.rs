@@ -14,9 +14,9 @@ use crate::field::Field;
 #[derive(Debug, thiserror::Error)]
 #[error("{}{message}", field.map(|field| format!("{field}: ")).unwrap_or_default())]
 pub struct DesignError {
-    /// The part of the request that is wrong; none if the computation failed.
+    /// The invalid part of the request; none if the computation failed.
     pub field: Option<Field>,
-    /// What is wrong, and what to do, in the names of the mechanism.
+    /// The error and its remedy, in the names of the mechanism.
     pub message: String,
     /// The cause.
     #[source]

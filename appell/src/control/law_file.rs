@@ -41,7 +41,7 @@ pub(crate) fn text(design: &Design, setup: &Setup<'_>, model: &str) -> String {
     let given = info.initial_state();
     #[expect(
         clippy::float_cmp,
-        reason = "what is as in the spec need not be written"
+        reason = "values equal to those of the spec are omitted"
     )]
     let moved = (0..design.x.len()).filter(|&s| design.x[s] != given[s]);
     let moved = moved.map(|s| (s, format!("{:?}", info.states[s].to_unit(design.x[s]))));
@@ -144,7 +144,7 @@ fn flags(design: &Design, info: &ModelInfo, varied: Option<&str>) -> String {
     let others = info.parameters.iter().zip(&design.p);
     #[expect(
         clippy::float_cmp,
-        reason = "what is as in the spec need not be written"
+        reason = "values equal to those of the spec are omitted"
     )]
     let others = others.filter(|(parameter, value)| {
         parameter.value != **value && varied != Some(&*parameter.name)

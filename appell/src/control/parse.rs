@@ -17,8 +17,8 @@ pub(crate) type GivenInputs = Vec<(usize, f64)>;
 /// Maximum number of intervals of a range.
 const MOST_STEPS: usize = 10_000;
 
-/// The steady motion: states go to the setup, inputs are returned. A rate or an output determines the
-/// other states, beside the value of a scheduling variable.
+/// The steady motion: states go to the setup, inputs are returned. A rate or an output determines the other
+/// states, given the value of a scheduling variable.
 pub(crate) fn point(
     model: &dyn Model,
     setup: &mut Setup<'_>,
@@ -84,7 +84,7 @@ fn motion(
         }
         problem.solve_isolated(STARTS)
     })?;
-    // The nearest comes first.
+    // The nearest one is first.
     let point = found.into_iter().next().map(|motion| motion.point);
     let point = point.unwrap_or_else(|| problem.base().clone());
     setup.initial = point.x;

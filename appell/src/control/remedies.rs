@@ -1,4 +1,4 @@
-//! What to do about a design that fails, in the names of the mechanism.
+//! Remedies for a failed design, in the names of the mechanism.
 
 use appell_analysis::control::operating_point::MotionEquations;
 use appell_report::text::number;

@@ -12,7 +12,7 @@ use crate::{Error, Field};
 pub struct Schedule {
     /// The scheduling variable.
     pub over: Quantity,
-    /// Whether a law can measure it: an input is what the law sets.
+    /// Whether a law can measure it: inputs are set by the law instead.
     pub measurable: bool,
     /// Its values in SI, each with the design there.
     pub designs: Vec<(f64, Design)>,
@@ -73,7 +73,7 @@ impl Schedule {
         Ok(law_file::schedule(&self.over, &self.designs, setup, model))
     }
 
-    /// A scheduled law follows constant steady values, and cannot feed back what selects them.
+    /// A scheduled law follows constant steady values, and cannot feed back the scheduling variable.
     fn is_readable(&self, setup: &Setup<'_>) -> Result<(), Error> {
         for (_, design) in &self.designs {
             for &state in &design.outputs {

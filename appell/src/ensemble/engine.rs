@@ -26,10 +26,10 @@ use super::variant::Variant;
 use super::{Ensemble, Task};
 use crate::inputs::closed_loop::ClosedLoop;
 
-/// Cases that are set up together, from which blocks of the same spec and law are made: fewer where each of them has a
-/// long list of times at which noise switches, but a block.
+/// Cases that are set up together and grouped into blocks of the same spec and law: fewer if each has many switching
+/// times of noise, but at least a block.
 const TOGETHER: u64 = 64;
-/// Times of all of them.
+/// Limit on the switching times of all of them.
 const TIMES: u64 = 1 << 20;
 
 impl Engine for Ensemble {
@@ -50,7 +50,7 @@ impl Engine for Ensemble {
             let draws: Vec<Draws<'_>> = some.clone().map(Draws::Case).collect();
             let motions = self.motions(&self.task, &draws, &mut solvers, watch.go_on);
             if !(watch.go_on)() {
-                // Motions may have been broken off.
+                // Motions may have been interrupted.
                 return;
             }
             for mut row in motions {
@@ -72,10 +72,10 @@ struct Solvers {
     dopri5: BlockSolver<Dopri5>,
 }
 
-/// What came of a case.
+/// Result of a case.
 pub(super) struct Row {
     pub(super) values: Vec<f64>,
-    /// When the motion ended, in s.
+    /// End time of the motion, in s.
     end: f64,
     /// Why it ended early.
     reason: String,
@@ -87,13 +87,13 @@ impl Row {
     }
 }
 
-/// What a case begins with.
+/// Initial conditions of a case.
 struct Start {
     parameters: Vec<f64>,
     initial: Vec<f64>,
 }
 
-/// A case that has its start.
+/// A case with its initial conditions.
 struct Ride<'r> {
     draws: Draws<'r>,
     start: Start,
@@ -101,7 +101,7 @@ struct Ride<'r> {
 }
 
 impl Ensemble {
-    /// Runs motions with work arrays of their own.
+    /// Runs motions with new work arrays.
     pub(super) fn rows_of(&self, task: &Task, draws: &[Draws<'_>]) -> Vec<Row> {
         self.motions(task, draws, &mut Solvers::default(), &|| true)
     }
@@ -164,15 +164,15 @@ impl Ensemble {
         model * self.laws + law
     }
 
-    /// Of a motion that ended early nobody knows the numbers of the whole: its courses until then and the events that
-    /// happened are left.
+    /// Clears values that a motion with an early end does not determine; its courses until then and the events that
+    /// happened remain.
     fn forget(&self, row: &mut [f64]) {
         let mut is_unknown = false;
         for (value, column) in row.iter_mut().zip(&self.task.layout.columns) {
             is_unknown = match column.role {
                 Role::Value => true,
                 Role::Event => *value == 0.0,
-                // Of the number or event before it.
+                // That of the number or event before it.
                 Role::When => is_unknown,
                 Role::Factor(_) | Role::Course { .. } => false,
             };
@@ -225,7 +225,7 @@ impl Ensemble {
             simulations.push(self.simulation(variant, start, source, events.is_over));
             awaited.push(events);
         }
-        // Those that have a start, and which these are.
+        // Motions with initial conditions, and their indices.
         let (mut prepared, mut which) = (Vec::new(), Vec::new());
         for (place, (simulation, inputs)) in simulations.iter().zip(&inputs).enumerate() {
             match Prepared::new(simulation, inputs) {
@@ -370,7 +370,7 @@ impl Ensemble {
 /// A number of each of eight motions.
 type Block = [f64; LANES];
 
-/// What drives the motions of a block from outside.
+/// External inputs of a block of motions.
 struct OutsideInputs<'r> {
     sources: &'r [&'r Noisy<'r>],
     is_driven: bool,
@@ -408,16 +408,16 @@ impl<'r> OutsideInputs<'r> {
     }
 }
 
-/// The events that a motion may still show.
+/// Events that have not happened yet.
 struct Awaited {
-    /// Places among what is kept, and in the row.
+    /// Indices among the kept quantities, and in the row.
     places: Vec<(usize, usize)>,
-    /// Whether one that ends the motion has happened at the start.
+    /// Whether a stopping event has happened at the start.
     is_over: bool,
 }
 
 impl Awaited {
-    /// Writes what has happened at the start.
+    /// Writes the events at the start.
     fn new(task: &Task, gauge: &RefCell<Gauge<'_>>, x: &[f64], row: &mut [f64]) -> Self {
         let (mut places, mut is_over) = (Vec::new(), false);
         for (index, keep) in task.keep.iter().enumerate() {
@@ -454,7 +454,7 @@ impl Awaited {
         self.places.iter().map(event).collect()
     }
 
-    /// Writes which events happened, and when first.
+    /// Writes which events happened, and their first times.
     fn happened(&self, observed: &Observed, row: &mut [f64]) {
         for hit in &observed.events {
             let (_, column) = self.places[hit.event];
@@ -466,7 +466,7 @@ impl Awaited {
     }
 }
 
-/// Parameters and initial values of a case; or why it has none.
+/// Parameters and initial values of a case, or why it has none.
 fn start(variant: &Variant, factors: &[f64]) -> Result<Start, String> {
     let mut parameters = variant.parameters.clone();
     let mut initial = variant.initial.clone();
@@ -504,7 +504,7 @@ fn start(variant: &Variant, factors: &[f64]) -> Result<Start, String> {
     })
 }
 
-/// Why a motion ended early, in words that many cases share; empty where it did not.
+/// Why a motion ended early, as one of few texts; empty if it did not.
 fn reason(observed: &Observed, info: &ModelInfo) -> String {
     let cause = match &observed.ending {
         Ok(Ending::Finished | Ending::Event(_)) => return String::new(),
@@ -526,7 +526,7 @@ fn reason(observed: &Observed, info: &ModelInfo) -> String {
     }
 }
 
-/// Why a motion does not begin, without its numbers.
+/// Why a motion cannot start, without its numbers.
 fn told(error: &SimulationError, variant: &Variant) -> String {
     let info = variant.model.info();
     match error {

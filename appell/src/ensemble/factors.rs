@@ -16,7 +16,7 @@ use super::reading::Reading;
 use crate::Error;
 use crate::setup::Setup;
 
-/// What a factor sets.
+/// Target of a factor.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Target {
     Parameter(usize),
@@ -27,7 +27,7 @@ pub(super) enum Target {
     Feedback,
 }
 
-/// Where the names of factors are in a spec; unknown ones are told.
+/// The targets of factors in a spec; unknown names are reported.
 pub(super) fn targets(reading: &mut Reading<'_>, setup: &Setup<'_>, table: &Table) -> Vec<Target> {
     let study = reading.study;
     let mut targets = Vec::new();
@@ -99,12 +99,12 @@ pub(super) struct Table {
     pub(super) names: Vec<String>,
     /// In the units of the spec.
     pub(super) columns: Vec<Vec<f64>>,
-    /// Hash of its bytes, of which results are made.
+    /// Hash of its bytes, part of the hash of the study.
     pub(super) hash: String,
 }
 
 impl Table {
-    /// The table of a study, which may have none; nothing where it is wrong, which is told.
+    /// The optional table of a study; nothing if it is invalid, which is reported.
     pub(super) fn read(reading: &mut Reading<'_>, folder: &Path) -> Result<Self, Error> {
         let study = reading.study;
         let Some(name) = &study.table else {
@@ -206,7 +206,7 @@ pub(super) fn design(
     if !reading.findings.is_empty() {
         return None;
     }
-    // Without factors noise alone varies.
+    // Without factors only noise varies.
     let sampling = if factors.is_empty() {
         Sampling::Random
     } else {
@@ -301,7 +301,7 @@ fn column(setup: &Setup<'_>, vary: &Vary, target: Target) -> Column {
     }
 }
 
-/// How a factor varies, in SI; of a choice the numbers between which it chooses.
+/// Distribution of a factor, in SI; for a choice the numbers among which it chooses.
 fn variation(
     reading: &mut Reading<'_>,
     setup: &Setup<'_>,

@@ -1,4 +1,4 @@
-//! Where the numbers of a motion go in its row.
+//! Columns of a row.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use appell_spec::{Code, shown, units};
 use super::reading::Reading;
 use super::spec::Quantity as Kind;
 
-/// A number that is kept at a time.
+/// A value that is kept at a given time.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Moment {
     pub(super) t: f64,
@@ -27,16 +27,16 @@ pub(super) struct Layout {
     pub(super) columns: Vec<Column>,
     /// The first column of each kept quantity.
     pub(super) first: Vec<usize>,
-    /// By their times.
+    /// Sorted by time.
     pub(super) moments: Vec<Moment>,
-    /// Interval of courses in s: what lasts as long is seen by all that is kept.
+    /// Sampling interval of courses in s, the shortest duration that every kept quantity resolves.
     pub(super) interval: f64,
 }
 
 /// Times of a course without an interval.
 const TIMES: f64 = 100.0;
 
-/// The columns that a study keeps.
+/// The columns of a study.
 pub(super) fn layout(
     reading: &mut Reading<'_>,
     factors: Vec<Column>,
@@ -54,7 +54,7 @@ pub(super) fn layout(
         moments: Vec::new(),
         interval,
     };
-    // Courses come last: there are many of their columns.
+    // Courses come last, as they have many columns.
     let mut courses = Vec::new();
     for (index, (keep, source)) in keep.iter().zip(kept).enumerate() {
         let quantity = match *source {
@@ -140,7 +140,7 @@ pub(super) fn layout(
     layout
 }
 
-/// Unit of a kept quantity: that of the study, if it fits, or its own.
+/// Unit of a kept quantity: that of the study, if it fits, or that of the quantity.
 fn unit(reading: &mut Reading<'_>, keep: &Keep, quantity: &Quantity) -> (String, f64) {
     let own = (quantity.unit.to_string(), quantity.scale);
     let Some(wanted) = &keep.unit else {
@@ -167,7 +167,7 @@ fn unit(reading: &mut Reading<'_>, keep: &Keep, quantity: &Quantity) -> (String,
     (wanted.text.clone(), unit.scale)
 }
 
-/// Multiples of an interval up to the end, which is one of them where rounding alone keeps it from being one.
+/// Multiples of an interval up to the end, which counts as one within rounding.
 fn times(t_end: f64, interval: f64) -> impl Iterator<Item = f64> {
     let time = move |k: u32| {
         let t = f64::from(k) * interval;
@@ -180,7 +180,7 @@ fn times(t_end: f64, interval: f64) -> impl Iterator<Item = f64> {
     (0..).map(time).take_while(move |t| *t <= t_end)
 }
 
-/// What a column is, without a sentence of the study's own.
+/// Description of a column for which the study has none.
 fn sentence(keep: &Keep) -> String {
     let of = &keep.of.text;
     match keep.kept {
@@ -213,7 +213,7 @@ fn unique(reading: &mut Reading<'_>, columns: &[Column]) {
     }
 }
 
-/// Whether the columns of all courses together are few enough; more are told.
+/// Whether the columns of all courses together are within the limit; more are reported.
 fn are_bounded(
     reading: &mut Reading<'_>,
     keep: &[Keep],

@@ -1,5 +1,5 @@
-//! Noise over time: independent normal numbers, each held for a while. A number follows from seed, name, case and
-//! its place in time.
+//! Noise over time: independent normal numbers, each held for an interval. A number is determined by seed, name, case
+//! and its index in time.
 
 use std::cell::Cell;
 
@@ -31,7 +31,7 @@ impl Noise {
         }
     }
 
-    /// How many numbers have come at a time. At a multiple of the interval the next one is there, just before not.
+    /// Count of numbers up to a time: at a multiple of the interval the next one counts, just before it does not.
     fn place(&self, t: f64) -> u64 {
         // A time of a motion.
         #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
@@ -45,12 +45,12 @@ impl Noise {
         place
     }
 
-    /// How many numbers a motion up to a time needs.
+    /// Count of numbers for a motion up to a time.
     pub(super) fn count(&self, until: f64) -> usize {
         usize::try_from(self.place(until)).map_or(usize::MAX, |last| last.saturating_add(1))
     }
 
-    /// The value at a time; `from` is where its scores begin.
+    /// The value at a time; `from` is the index of its first score.
     fn value(&self, draws: Draws<'_>, from: usize, t: f64) -> f64 {
         let place = self.place(t);
         let score = match draws {
@@ -66,7 +66,7 @@ impl Noise {
     }
 }
 
-/// Where random numbers come from.
+/// Source of random numbers.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Draws<'a> {
     /// From the number of the case.
@@ -80,10 +80,10 @@ pub(super) struct Noisy<'a> {
     pub(super) controller: Controller<'a>,
     pub(super) noises: &'a [Noise],
     pub(super) draws: Draws<'a>,
-    /// Number of factors that are drawn, whose scores come first.
+    /// Number of drawn factors, whose scores are first.
     pub(super) drawn: usize,
     pub(super) until: f64,
-    /// State and parameters, kept to be written anew.
+    /// Buffers for state and parameters.
     pub(super) scratch: Cell<[Vec<f64>; 2]>,
 }
 
@@ -98,7 +98,7 @@ impl Noisy<'_> {
         })
     }
 
-    /// Writes the noises of a time to parameters.
+    /// Writes the noises at a time to parameters.
     pub(super) fn parameters_at(&self, t: f64, p: &mut [f64]) {
         for (onto, value) in self.values(t) {
             if let Onto::Parameter(parameter) = onto {
@@ -107,7 +107,7 @@ impl Noisy<'_> {
         }
     }
 
-    /// Calls a function with the parameters and the state that laws see.
+    /// Calls a function with the parameters and the state as laws measure them.
     fn with_seen(&self, t: f64, x: &[f64], call: impl FnOnce(&[f64], &[f64])) {
         let parameters = self.controller.parameters();
         if self.noises.is_empty() {
@@ -129,7 +129,7 @@ impl Noisy<'_> {
         self.scratch.set([measured, seen]);
     }
 
-    /// The inputs of the closed loop: those from outside, then the noises.
+    /// The inputs of the closed loop: external ones, then the noises.
     pub(super) fn fill_outside(&self, t: f64, x: &[f64], u: &mut [f64]) {
         let (outside, noises) = u.split_at_mut(u.len() - self.noises.len());
         self.with_seen(t, x, |p, x| self.controller.fill_outside(p, t, x, outside));

@@ -1,4 +1,4 @@
-//! Sees the steps of a motion and keeps what a study wants.
+//! Observes the steps of a motion and records the kept quantities.
 
 use std::cell::RefCell;
 use std::ops::ControlFlow;
@@ -13,7 +13,7 @@ use super::layout::{Layout, Moment};
 use super::noise::Noisy;
 use super::spec::Quantity;
 
-/// The kept quantities at a time and state, of which the last ones are remembered.
+/// The kept quantities at a time and state, with a cache of the last evaluation.
 pub(super) struct Gauge<'a> {
     model: &'a dyn Model,
     inputs: &'a ModelInputs<'a>,
@@ -30,7 +30,7 @@ pub(super) struct Gauge<'a> {
     bounds: Bounds,
 }
 
-/// Bounds on the outputs over a stretch of time.
+/// Bounds on the outputs over an interval of time.
 #[derive(Default)]
 struct Bounds {
     span: Option<[f64; 2]>,
@@ -69,8 +69,8 @@ impl<'a> Gauge<'a> {
         }
     }
 
-    /// Whether a kept quantity may do more in a piece of a step than its values there show, unless enough is known of it
-    /// from its bounds.
+    /// Whether a kept quantity may vary within a piece of a step more than its sampled values show, unless its bounds
+    /// exclude that.
     pub(super) fn hides(
         &mut self,
         keep: usize,
@@ -138,26 +138,26 @@ impl<'a> Gauge<'a> {
     }
 }
 
-/// Error of a mean, and what a top may be missed by, relative to the largest value of the quantity, for each step.
+/// Error of a mean and of an extremum for each step, relative to the largest value of the quantity.
 const TOLERANCE: f64 = 1e-7;
 
-/// A quantity that is followed all the time.
+/// A quantity that is observed during the whole motion.
 struct Followed {
     keep: usize,
     kept: Kept,
-    /// The best value so far, counted so that larger is better, and its time; of a mean the integral.
+    /// The largest value so far, with the sign changed for a minimum, and its time; for a mean the integral.
     best: f64,
     when: f64,
     /// The value at the start, which is the mean of a motion without duration.
     first: f64,
     /// The largest absolute value so far.
     size: f64,
-    /// Whether it was no number at some time.
+    /// Whether it was not finite at some time.
     is_undefined: bool,
 }
 
 impl Followed {
-    /// A value that may be the best one.
+    /// Updates the largest value.
     fn raise(&mut self, t: f64, value: f64) {
         if value > self.best {
             (self.best, self.when) = (value, t);
@@ -165,7 +165,7 @@ impl Followed {
     }
 }
 
-/// Sees the steps.
+/// Observes the steps.
 pub(super) struct Keeper<'a> {
     gauge: &'a RefCell<Gauge<'a>>,
     moments: &'a [Moment],
@@ -173,12 +173,12 @@ pub(super) struct Keeper<'a> {
     followed: Vec<Followed>,
     start: f64,
     x: Vec<f64>,
-    /// The longest time on which quantities are taken for polynomials.
+    /// The longest interval over which quantities are approximated by polynomials.
     longest: f64,
     walk: Walk,
-    /// Whether to go on, asked at every step.
+    /// Whether to continue, called at every step.
     go_on: &'a (dyn Fn() -> bool + Sync),
-    /// The row, whose columns of moments are written on the way.
+    /// The row; values at given times are written during the motion.
     pub(super) row: &'a mut [f64],
 }
 
@@ -230,14 +230,14 @@ impl<'a> Keeper<'a> {
         keeper
     }
 
-    /// Writes the next moment.
+    /// Writes the next value at a given time.
     fn record(&mut self, t: f64, x: &[f64]) {
         let moment = self.moments[self.next];
         self.row[moment.column] = self.gauge.borrow_mut().value(moment.keep, t, x);
         self.next += 1;
     }
 
-    /// Writes what was followed up to a time; returns the row.
+    /// Writes the observed quantities at the final time; returns the row.
     pub(super) fn finish(self, layout: &Layout, t: f64) -> &'a mut [f64] {
         for followed in &self.followed {
             let column = layout.first[followed.keep];
@@ -268,7 +268,7 @@ impl<'a> Keeper<'a> {
     }
 
     fn follow(&mut self, step: &Step<'_>, interior: &DenseOutput) {
-        // An input may jump where the step ends.
+        // An input may jump at the end of the step.
         let span = [step.t_old, step.t.next_down()];
         let mut following = Following {
             step,
@@ -281,7 +281,7 @@ impl<'a> Keeper<'a> {
     }
 }
 
-/// The followed quantities during a step.
+/// The observed quantities during a step.
 struct Following<'f, 'g> {
     step: &'f Step<'f>,
     interior: &'f DenseOutput,
@@ -290,7 +290,7 @@ struct Following<'f, 'g> {
     followed: &'f mut [Followed],
 }
 
-/// The state at a time of a step that is shown up to just before its end.
+/// The state within a step, up to just before its end.
 fn state<'x>(step: &Step<'x>, interior: &DenseOutput, x: &'x mut [f64], t: f64) -> &'x [f64] {
     if t <= step.t_old {
         step.x_old
@@ -318,7 +318,7 @@ impl Sought for Following<'_, '_> {
         let followed = &self.followed[which];
         let (size, [least, most]) = (followed.size.max(piece.size()), piece.ends());
         let (spread, [from, to]) = (most - least, piece.span());
-        // What is not finite has no mean and no top.
+        // A non-finite value has neither mean nor extremum.
         if !piece.is_finite() {
             return true;
         }

@@ -17,7 +17,7 @@ use super::spec::Quantity;
 use super::{Ensemble, Running, Task, layout};
 use crate::Error;
 
-/// What each motion is asked for: how far the comparison of the event comes.
+/// Evaluation in each motion: the maximum of the comparison of the event.
 pub(super) fn task(
     reading: &mut Reading<'_>,
     rare: &Rare,
@@ -63,7 +63,7 @@ pub(super) fn task(
     })
 }
 
-/// How far the comparison comes in a motion.
+/// The maximum of the comparison in a motion.
 struct Peak<'e> {
     ensemble: &'e Ensemble,
     task: &'e Task,
@@ -84,7 +84,7 @@ impl Landscape for Peak<'_> {
 }
 
 impl Ensemble {
-    /// Replicates of the rare event as chunks; none where the study has no such event.
+    /// Replicates of the rare event as chunks; none if the study has no rare event.
     pub fn replicates(&self) -> Option<Chunks> {
         self.rare.as_ref().map(|_| {
             let particles = self
@@ -100,7 +100,7 @@ impl Ensemble {
         })
     }
 
-    /// The replicates that a store lacks.
+    /// The replicates missing from a store.
     pub fn missing_replicates(
         &self,
         store: &dyn Store,
@@ -113,7 +113,7 @@ impl Ensemble {
         missing.map_err(Error::computation)
     }
 
-    /// Runs replicates and writes each to the store when it is done; the watch counts replicates.
+    /// Runs replicates and writes each to the store when it is complete; the watch counts replicates.
     pub fn fill_replicates(
         &self,
         store: &dyn Store,

@@ -1,4 +1,4 @@
-//! Values of a study file with the names of a spec, and what is wrong with them.
+//! Values of a study file with the names of a spec, and its findings.
 
 use std::path::{Path, PathBuf};
 
@@ -10,9 +10,9 @@ use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula, shown};
 use crate::Error;
 use crate::setup::{Setup, bracketed};
 
-/// What stands somewhere in a study file.
+/// An entry of a study file with its position.
 pub(super) trait Place {
-    /// Where.
+    /// Its position.
     fn span(&self) -> Span;
 }
 
@@ -28,7 +28,7 @@ impl<T> Place for Placed<T> {
     }
 }
 
-/// A study file with what is wrong in it.
+/// A study file with its findings.
 pub(super) struct Reading<'s> {
     pub(super) study: &'s Study,
     pub(super) findings: Vec<Diagnostic>,
@@ -52,13 +52,13 @@ impl<'s> Reading<'s> {
         let diagnostic = Diagnostic::error(code, message).at(at.span(), "");
         let help = (!help.is_empty()).then(|| help.to_owned());
         let diagnostic = diagnostic.maybe_help(help);
-        // Several specs show the same mistake.
+        // Several specs cause the same finding.
         if !self.findings.contains(&diagnostic) {
             self.findings.push(diagnostic);
         }
     }
 
-    /// What is known only by an error is told at a place of the study; a report about another file is an error.
+    /// Reports an error of a value at its position in the study; a report about another file is returned as an error.
     pub(super) fn at<T>(
         &mut self,
         at: &impl Place,
@@ -78,7 +78,7 @@ impl<'s> Reading<'s> {
         }
     }
 
-    /// The path of a regular file that the study names: one of its own folder or below.
+    /// The path of a regular file that the study names, in the folder of the study or below.
     pub(super) fn file(&mut self, folder: &Path, name: &Text) -> Option<PathBuf> {
         let path = appell_files::below(folder, &name.text);
         let opened = path.and_then(|path| appell_files::open(&path, u64::MAX).map(|_| path));

@@ -1,4 +1,4 @@
-//! The spec of a study: that of the mechanism with the quantities of the study's own as parameters, and the kept
+//! The spec of a study: that of the mechanism, with the quantities defined by the study as parameters and the kept
 //! expressions as outputs.
 
 use std::fmt::Write as _;
@@ -15,16 +15,16 @@ use crate::engine::Engine;
 use crate::source::Source;
 use crate::{Error, Model};
 
-/// Where a kept quantity comes from.
+/// Source of a kept quantity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Quantity {
     State(usize),
     Input(usize),
-    /// Its place, and whether it may rise and fall faster than the state.
+    /// Its index, and whether it may vary faster than the state.
     Output(usize, bool),
 }
 
-/// A quantity of the study's own.
+/// A quantity defined by the study.
 pub(super) struct Own<'s> {
     pub(super) name: &'s Text,
     pub(super) unit: &'s Text,
@@ -37,7 +37,7 @@ pub(super) struct Extended {
     pub(super) kept: Arc<Vec<Quantity>>,
 }
 
-/// Extends a spec; nothing where the study is wrong, which is told.
+/// Extends a spec; nothing if the study is invalid, which is reported.
 pub(super) fn extended(
     reading: &mut Reading<'_>,
     source: &Source,
@@ -127,7 +127,7 @@ pub(super) fn extended(
     }))
 }
 
-/// Whether an expression may rise and fall faster than what it is made of.
+/// Whether an expression may vary faster than its operands.
 fn is_fast_of(expr: &Expr) -> bool {
     match &expr.kind {
         ExprKind::Number(_) => false,
@@ -146,7 +146,7 @@ fn is_fast_of(expr: &Expr) -> bool {
     }
 }
 
-/// Whether an expression has no value but one for a motion.
+/// Whether an expression is constant in a motion.
 fn is_constant(expr: &Expr) -> bool {
     let mut is_constant = true;
     expr.visit(&mut |quantity| is_constant &= matches!(quantity, Named::Parameter(_)));
@@ -159,14 +159,14 @@ fn extend(composition: &Composition, fragment: &str) -> Result<String, Error> {
     Ok(next.text())
 }
 
-/// An expression with the number of bytes of the study file before each of its parts.
+/// An expression with the positions of its parts in the study file.
 struct Expression {
     text: String,
-    /// Places in the text, and in the value of the study file, from which on characters agree.
+    /// Offsets in the text and in the value of the study file from which on the characters agree.
     parts: Vec<(usize, usize)>,
 }
 
-/// The expression of a kept quantity; a comparison becomes the difference that is positive where it holds.
+/// The expression of a kept quantity; a comparison becomes a difference that is positive where it is true.
 fn expression(reading: &mut Reading<'_>, keep: &Keep) -> Option<Expression> {
     let text = keep.of.text.as_str();
     if !matches!(keep.kept, Kept::When { .. }) {
@@ -203,7 +203,7 @@ fn expression(reading: &mut Reading<'_>, keep: &Keep) -> Option<Expression> {
     })
 }
 
-/// Whether an extended spec is right; if not, it is told at the place of the study file.
+/// Whether an extended spec is valid; errors are reported at their positions in the study file.
 fn take(
     reading: &mut Reading<'_>,
     spec: &str,
@@ -220,7 +220,7 @@ fn take(
         let item = spec.rfind(name)?;
         Some(item + spec[item..].find('"')? + 1)
     });
-    // Between the quotes, unless escapes make the text another one.
+    // Between the quotes, unless there are escapes.
     let inner = at.at.start + 1;
     let same = reading.study.text.get(inner..inner + at.text.len()) == Some(at.text.as_str());
     let place = |span: &Span| -> Span {

@@ -1,4 +1,4 @@
-//! A spec under a law: everything that its cases share, set up once.
+//! A spec with a law, set up once for all its cases.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -34,13 +34,13 @@ pub(super) struct Variant {
     pub(super) set: Vec<(usize, StateFunction)>,
     /// Initial values that follow from parameters.
     pub(super) start: Vec<(usize, StateFunction)>,
-    /// What each factor sets.
+    /// Target of each factor.
     pub(super) targets: Vec<Target>,
     pub(super) noises: Vec<Noise>,
     pub(super) kept: Arc<Vec<Quantity>>,
 }
 
-/// What several variants of a study have in common.
+/// Common parts of several variants of a study.
 pub(super) struct Common<'a> {
     pub(super) folder: &'a Path,
     pub(super) targets: &'a [Target],
@@ -96,7 +96,7 @@ pub(super) fn nominal<'m>(
     Ok((setup, derived))
 }
 
-/// A value that follows from parameters, and where the study gives it or its file.
+/// A value that follows from parameters, and its position in the study or its file.
 type Following = (usize, Expr, Text);
 
 /// Values that follow from parameters.
@@ -106,7 +106,7 @@ pub(super) struct Derived {
     start: Vec<Following>,
 }
 
-/// A spec under the law of a choice, if there is one; nothing where the study is wrong, which is told.
+/// A spec with the law of a choice, if there is one; nothing if the study is invalid, which is reported.
 pub(super) fn variant(
     reading: &mut Reading<'_>,
     extended: &Extended,
@@ -129,7 +129,7 @@ pub(super) fn variant(
         start.extend(initial.map(|(state, expr)| (*state, expr.clone(), file.clone())));
         reading.at(file, plan.feedback(law))?;
     }
-    // What the study gives comes after what laws give.
+    // Values of the study override those of laws.
     for (index, expr, _) in &derived.start {
         setup.initial[*index] = setup.constant(expr).unwrap_or(f64::NAN);
     }
@@ -191,7 +191,7 @@ pub(super) fn variant(
     }))
 }
 
-/// The noise of a study on what laws measure, and on parameters.
+/// The noise of a study on measurements of laws, and on parameters.
 fn noises(reading: &mut Reading<'_>, setup: &Setup<'_>) -> Vec<Noise> {
     let study = reading.study;
     let (mut noises, mut held) = (Vec::new(), 0.0);

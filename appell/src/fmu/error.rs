@@ -22,7 +22,7 @@ pub enum FmuError {
     Compiler {
         /// Its name.
         compiler: String,
-        /// What it told, a line each.
+        /// Its messages, a line each.
         told: String,
     },
     /// There are no binaries for this platform.
@@ -36,7 +36,7 @@ pub enum FmuError {
     /// Files of the compilation cannot be made or read.
     #[error("cannot {doing}: {cause}")]
     Scratch {
-        /// What.
+        /// The failed operation.
         doing: &'static str,
         /// The error of the operating system.
         #[source]

@@ -1,9 +1,9 @@
 //! Inputs that a law computes from the equations of motion.
 //!
 //! Appell's equations are linear in the inputs, M ω̇ + b − Π₀ = E u. Gravity compensation solves them for the
-//! inputs of rest, ω = ω̇ = 0; computed torque for those of desired accelerations (B. R. Markiewicz, 1973;
-//! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, 1980). Accelerations that nobody desires are unknowns as the
-//! inputs are; where there are fewer inputs than equations for them, least squares decide.
+//! inputs at rest, ω = ω̇ = 0; computed torque for those of desired accelerations (B. R. Markiewicz, 1973;
+//! J. Y. S. Luh, M. W. Walker, R. P. C. Paul, 1980). Accelerations without a desired value are unknowns like the
+//! inputs; an overdetermined system is solved by least squares.
 
 use appell_analysis::control::sampled::Sampling;
 use appell_estimate::inverse::InputEquations;
@@ -21,8 +21,8 @@ pub(super) struct ModelLaw {
 }
 
 impl ModelLaw {
-    /// Its inputs beside `at.u`, which holds those of others and the signals. `desired` are the followed coordinates
-    /// with their first and second derivatives. Where the equations do not determine the inputs they are not finite.
+    /// Its inputs, given the other inputs and the signals in `at.u`. `desired` has the controlled coordinates with their
+    /// first and second derivatives. Inputs that the equations do not determine are not finite.
     pub(super) fn asked(&self, model: &dyn Model, at: At<'_>, desired: &[[f64; 3]]) -> Vec<f64> {
         let mut p = at.p.to_vec();
         for &(parameter, value) in &self.believed {

@@ -1,29 +1,29 @@
-//! Equations of motion with their inputs put in, for eight motions at once.
+//! Equations of motion with their inputs substituted, for eight motions at once.
 
 use appell_codegen::jit::{Elementary, JitError, Sizes, Target, VectorFunction};
 use appell_codegen::operations::{Seen, closed_loop};
 use appell_codegen::schedule::Schedule;
 
-/// What a disturbance of the law's view acts on.
+/// Target of a disturbance in the measurements of laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Onto {
-    /// A state, as laws and inputs measure it: the disturbance is added.
+    /// A measured state: the disturbance is added.
     Measured(usize),
-    /// A parameter of laws alone: the disturbance takes its place.
+    /// A parameter of laws alone: the disturbance replaces it.
     Parameter(usize),
 }
 
-/// What drives a closed loop from outside.
+/// External inputs of a closed loop.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Outside {
-    /// How many inputs there are.
+    /// Number of inputs.
     pub(super) inputs: usize,
-    /// Whether one of them is ever different from zero.
+    /// Whether any of them is ever nonzero.
     pub(super) is_there: bool,
 }
 
-/// The equations under expressions and laws. They call the elementary functions of the runtime, so that they have the
-/// same bits on every machine.
+/// The equations with expressions and laws. They call the elementary functions of the runtime, so that results agree
+/// bit by bit on every machine.
 pub(crate) struct ClosedLoop {
     pub(crate) rates: VectorFunction,
     inputs: usize,
@@ -55,19 +55,19 @@ impl ClosedLoop {
         })
     }
 
-    /// How many inputs it has: those from outside, then the disturbances of what laws see.
+    /// Number of its inputs: external ones, then disturbances of the measurements.
     pub(crate) fn inputs(&self) -> usize {
         self.inputs
     }
 
-    /// Whether one of the inputs is ever different from zero.
+    /// Whether any of the inputs is ever nonzero.
     pub(crate) fn is_driven(&self) -> bool {
         self.is_driven
     }
 }
 
 impl Onto {
-    /// The disturbance as an input of the whole.
+    /// The disturbance as an input of the closed loop.
     fn seen(self, by: usize) -> Seen {
         let by = index(by);
         match self {

@@ -36,14 +36,14 @@ pub struct Controller<'w> {
     parameters: Vec<f64>,
     /// Measurements of the discrete-time laws with gains.
     samplers: Vec<Sampler>,
-    /// The same of laws by the equations of motion; nothing for one in continuous time.
+    /// The same for laws by inverse dynamics; nothing for one in continuous time.
     model_samplers: Vec<Option<Sampler>>,
     switching_times: Vec<f64>,
-    /// Values of the function, kept to be written anew.
+    /// Buffer for the values of the function.
     values: Cell<Vec<f64>>,
 }
 
-/// What all motions under the same expressions, laws and recordings share.
+/// The common parts of all motions under the same expressions, laws and recordings.
 pub struct Wiring {
     /// One value per entry of `slots`.
     function: StateFunction,
@@ -54,7 +54,7 @@ pub struct Wiring {
     scheduled: Vec<ScheduledLaw>,
     by_model: Vec<ModelLaw>,
     switching_times: Vec<f64>,
-    /// What switches the expressions.
+    /// Switching functions of the expressions.
     switches: Option<InputSwitches>,
 }
 
@@ -65,7 +65,7 @@ struct SampledLaw {
     pending_gains: Vec<Vec<f64>>,
 }
 
-/// Inputs that a program computes, and which these are.
+/// Inputs computed by a program, with their indices.
 type DrivenInputs = (Vec<usize>, Arc<dyn InputSource + Send + Sync>);
 
 /// Collects the sources of the inputs.
@@ -115,7 +115,7 @@ impl Plan {
         self.recorded.as_ref().map(|table| table.until)
     }
 
-    /// Recorded inputs that change smoothly though they are held, see [`Table::smooth`].
+    /// Recorded inputs that change smoothly although they are held, see [`Table::smooth`].
     pub fn recorded_smooth(&self) -> Option<&[(String, f64)]> {
         self.recorded.as_ref().map(|table| table.smooth.as_slice())
     }
@@ -174,7 +174,7 @@ impl Plan {
         Ok(())
     }
 
-    /// Adds inputs that a program computes.
+    /// Adds inputs computed by a program.
     pub fn driven(&mut self, driven: &Driven, setup: &Setup<'_>) -> Result<(), Error> {
         let mut inputs = Vec::new();
         for name in &driven.inputs {
@@ -341,8 +341,8 @@ impl Wiring {
         law::schedule(&self.function, &self.slots, &self.scheduled, info)
     }
 
-    /// The equations of motion with expressions and laws put in; `rates` are the model's. `seen` is what laws see,
-    /// by inputs after those of [`Controller::fill_outside`].
+    /// The equations of motion with expressions and laws substituted; `rates` are the model's. `seen` are the measurements
+    /// of laws, as inputs after those of [`Controller::fill_outside`].
     pub(crate) fn closed_loop(
         &self,
         rates: &Schedule,
@@ -372,7 +372,7 @@ impl Wiring {
 }
 
 impl Controller<'_> {
-    /// Adds what discrete-time laws hold between samples to `count` inputs.
+    /// Adds the held values of discrete-time laws to `count` inputs.
     fn add_held(
         &self,
         t: f64,
@@ -395,7 +395,7 @@ impl Controller<'_> {
         }
     }
 
-    /// Adds what laws compute from the equations of motion to the declared inputs.
+    /// Adds the inputs of laws by inverse dynamics to the declared inputs.
     fn add_by_model(&self, p: &[f64], t: f64, x: &[f64], values: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
         if wiring.by_model.is_empty() {
@@ -428,7 +428,7 @@ impl Controller<'_> {
         u.copy_from_slice(&all[..u.len()]);
     }
 
-    /// What recordings and programs give.
+    /// Inputs from recordings and programs.
     fn fill_given(&self, t: f64, x: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
         match &wiring.recorded {
@@ -446,8 +446,8 @@ impl Controller<'_> {
         }
     }
 
-    /// What drives the [`ClosedLoop`] of the wiring from outside: recordings, held inputs, signals. The parameters
-    /// and the state are those that laws see.
+    /// External inputs of the [`ClosedLoop`] of the wiring: recordings, held inputs, signals. The parameters and the state
+    /// are those that laws measure.
     pub(crate) fn fill_outside(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
         let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
@@ -462,7 +462,7 @@ impl Controller<'_> {
         wiring.function.fill_signals(t, signals);
     }
 
-    /// The inputs with other parameters, as long as those of the motion, in the expressions.
+    /// The inputs with other parameters in the expressions, as many as those of the motion.
     pub fn inputs_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
         self.fill_given(t, x, u);

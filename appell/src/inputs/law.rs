@@ -38,7 +38,7 @@ pub(super) struct ScheduledLaw {
     pub(super) states: Vec<usize>,
 }
 
-/// The inputs of a model, in its order: what drives it from outside, plus expressions, less feedback.
+/// The inputs of a model, in its order: external inputs plus expressions minus feedback.
 pub(super) fn schedule(
     function: &StateFunction,
     slots: &[Slot],
@@ -90,7 +90,7 @@ impl Writer {
     /// A new value.
     fn define(&mut self, tree: Tree) -> Tree {
         let place = self.0.names.len();
-        // Laws are short.
+        // Laws have few values.
         let value = Value(u32::try_from(place).unwrap_or(u32::MAX));
         self.0.names.push(format!("law_{place}"));
         self.0.steps.push(Step::Let { value, tree });

@@ -1,4 +1,4 @@
-//! What switches inputs that are expressions.
+//! Switching functions of inputs that are expressions.
 
 use appell_codegen::mechanics::switches::{Switches, switches};
 use appell_codegen::schedule::enclose;
@@ -20,7 +20,7 @@ pub(super) struct InputSwitches {
 }
 
 impl InputSwitches {
-    /// Those of some expressions, if anything switches them.
+    /// Those of some expressions, if these have any.
     pub(super) fn new(
         bench: &Workbench,
         info: &ModelInfo,

@@ -27,8 +27,7 @@ pub struct Table {
     pub given: Vec<usize>,
     /// The last time in s, after which the last values are held.
     pub until: f64,
-    /// Inputs that change smoothly though they are held, with the part of their size by which that is wrong; only where
-    /// nothing says whether they were held.
+    /// Held inputs that change smoothly, with the relative error of holding them; only if the interpolation is not stated.
     pub smooth: Vec<(String, f64)>,
 }
 
@@ -165,7 +164,7 @@ fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Colu
         let message = "no channel is an input; write `input = \"…\"` in `[channels]`";
         return Err(Error::data(description, message));
     }
-    // A motion begins with its run, whatever the clock of the logger said.
+    // Time is counted from the start of the run, whatever the logger's clock.
     let start = run.times.first().copied().unwrap_or(0.0);
     let times = run.times.iter().map(|t| t - start).collect();
     Ok(Columns { times, inputs })

@@ -7,12 +7,12 @@ use appell::files;
 use crate::failure::Error;
 use crate::{engine, output, progress};
 
-/// Tells which combinations of masses, inertias and load parameters motions can tell, and estimates them.
+/// Finds the identifiable combinations of masses, inertias and load parameters, and estimates them.
 ///
-/// Inverse dynamics is linear in these parameters. What depends on others at every motion is one
-/// combination with them, a base parameter; some parameters no motion notices at all. With recordings of a
-/// motion and of all inputs, weighted least squares give the values with intervals, and what is left of the
-/// forces in training and test runs.
+/// Inverse dynamics is linear in these parameters. Those with linearly dependent effects in every motion are
+/// combined into a base parameter; some parameters affect no motion. With recordings of a motion and of all
+/// inputs, weighted least squares give the values with intervals, and the residual forces in training and test
+/// runs.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -14,8 +14,8 @@ use crate::{output, progress};
 /// Validates specs and summarises the mechanisms they describe.
 ///
 /// Names, units, frames, constraints, pseudo-velocities and inertias are checked; all errors are
-/// reported at once, each with its line and a remedy. An audit of the equations warns of what is valid
-/// but probably a mistake, and notes what is worth knowing.
+/// reported at once, each with its line and a remedy. An audit of the equations warns of valid
+/// but probably wrong entries, and adds notes.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

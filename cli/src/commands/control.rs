@@ -112,7 +112,7 @@ impl Control {
         output::print_beside(&text, &[&self.json, &self.write, &self.plot])
     }
 
-    /// A design, its region of attraction if asked for, and its files.
+    /// A design, its region of attraction if requested, and its files.
     fn designed(&self, model: &Model) -> Result<(String, Value), Error> {
         let design = model.control(&self.request())?;
         if let Some(path) = &self.write {
@@ -190,7 +190,7 @@ impl Control {
     }
 }
 
-/// A law whose command to try it names its own file.
+/// The law with its own file in the command to try it.
 fn in_file(law: &str, path: &Path) -> String {
     law.replacen("FILE.toml", &shell(&path.to_string_lossy()), 1)
 }

@@ -18,7 +18,7 @@ use crate::{engine, output, progress, summary};
 /// The lane change of the paper at 5 m/s.
 const LANE_CHANGE: &str = include_str!("../../feedback/lane_change_5_m_s.toml");
 
-/// Derives the unicycle, lets it change lanes under feedback, and finds what a rig has that its spec lacks.
+/// Derives the unicycle, lets it change lanes under feedback, and diagnoses a rig whose spec lacks an effect.
 ///
 /// The last part is `appell sample rig` and `appell diagnose`.
 #[derive(Debug, clap::Args)]
@@ -44,7 +44,7 @@ impl Demo {
     }
 }
 
-/// What has been written, with a line for each file.
+/// The written files, with a line for each.
 struct Written<'a> {
     folder: &'a Path,
     list: String,
@@ -108,7 +108,7 @@ fn lane_change(written: &mut Written<'_>) -> Result<String, Error> {
     }
 }
 
-/// A rig that its spec does not explain, and what is found; returns the verdict.
+/// A simulated rig and its diagnosis; returns the verdict.
 fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     let about = "recordings of a simulated rig, and a spec that lacks something";
     let folder = written.place("rig", about);
@@ -124,7 +124,7 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     let report = appell::diagnose(&set, &options, |stage| spinner.set_message(stage));
     spinner.finish_and_clear();
     let report = report?;
-    let about = "what it lacks, and how far that closes the gap";
+    let about = "the missing effect, and how far it closes the gap";
     files::write(
         &written.place("gap.html", about),
         &appell_report::gap::page(&set, &report),

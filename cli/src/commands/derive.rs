@@ -33,7 +33,7 @@ pub(crate) struct Derive {
     #[arg(long, value_parser = one_of(&FORMATS))]
     format: Option<Output>,
     /// Last stage of the page. Each stage includes all earlier ones, except `equations`, the handout,
-    /// which leaves out what it does not need. Rust is always complete
+    /// which omits unnecessary quantities. Rust is always complete
     #[arg(long, default_value = "equations", value_parser = one_of(&EXTENTS))]
     stage: Extent,
     /// Values in the steady motion, for `--stage linear`: `theta=0, dot(psi)=0`. States, rates and
@@ -104,12 +104,12 @@ const FORMATS: [Choice<Output>; 7] = [
     ),
     (
         "spec",
-        "The spec with other sections in place of `[joints]`",
+        "The spec with `[joints]` expanded into other sections",
         Output::Spec,
     ),
 ];
 
-/// What a file holds by its extension.
+/// Formats by file extension.
 const ENDS: [(&str, Output); 9] = [
     ("txt", Output::Page(Format::Text)),
     ("md", Output::Page(Format::Text)),
@@ -165,7 +165,7 @@ impl Derive {
             return Err(Error::Usage(message.to_owned()));
         }
         if self.regressor && self.integrator {
-            let message = "--integrator needs the rates, which are not beside a regressor";
+            let message = "--integrator needs the rates, which a regressor does not include";
             return Err(Error::Usage(message.to_owned()));
         }
         if format != Output::C && (self.float || self.integrator) {
@@ -238,7 +238,7 @@ impl Derive {
         ))
     }
 
-    /// The format that is asked for, by its name or by that of the file.
+    /// The format, stated or by the file extension.
     fn format(&self) -> Result<Output, Error> {
         let extension = self.out.as_deref().and_then(extension);
         let promised = extension.as_ref().map(|extension| {
@@ -249,7 +249,7 @@ impl Derive {
             (format, None) => Ok(format.unwrap_or(Output::Page(Format::Text))),
             (None, Some(Some(promised))) => Ok(promised),
             (Some(format), Some(Some(promised))) if format == promised => Ok(format),
-            // An extension of one's own promises nothing.
+            // An unknown extension implies no format.
             (Some(format), Some(None)) => Ok(format),
             _ => Err(Error::Usage(format!(
                 "a derivation as `.{}`: choose a name that ends in .txt (text), .tex (LaTeX), .html, .rs (Rust), .c, .py (Python) or .toml (spec), \

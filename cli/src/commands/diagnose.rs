@@ -36,7 +36,7 @@ pub(crate) struct Diagnose {
     /// diagnosed one by one and give a table
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
     data: Vec<PathBuf>,
-    /// Recordings of the same rig before: the report tells what has changed since
+    /// Earlier recordings of the same rig: the report states the changes since then
     #[arg(long, num_args = 1.., value_name = "DIR")]
     against: Vec<PathBuf>,
     /// Files with additional effects, tried together with those of the library
@@ -55,16 +55,16 @@ pub(crate) struct Diagnose {
     /// Write the report as a self-contained HTML page with drawings, force laws and traces
     #[arg(long, value_name = "FILE.html")]
     html: Option<PathBuf>,
-    /// Output file of the proposed experiment if hypotheses are tied [default: experiment.csv beside
-    /// the gap report, or experiment-2.csv if another file has that name]
+    /// Output file of the proposed experiment if hypotheses are tied [default: experiment.csv in
+    /// the folder of the gap report, or experiment-2.csv if another file has that name]
     #[arg(long, value_name = "FILE.csv")]
     experiment: Option<PathBuf>,
     /// Limits of an input or measured channel in that experiment, in the unit of its column [default:
     /// those of the recordings]
     #[arg(long, value_name = "NAME=FROM..TO", allow_hyphen_values = true)]
     limit: Vec<Span>,
-    /// Horizon of the predictions by which the gap is divided, in s [default: 1, or what the held-out runs
-    /// allow]
+    /// Horizon of the predictions by which the gap is divided, in s [default: 1, or the longest that the
+    /// held-out runs allow]
     #[arg(long, value_name = "S")]
     horizon_s: Option<f64>,
     /// Part of the gap, after parameters are re-fitted, below which an effect names no cause [default: 0.02]
@@ -224,9 +224,9 @@ impl Diagnose {
         output::print_beside(&diagnosed::table(&rigs, fleet.reports), &[&self.table])
     }
 
-    /// The file of the proposed experiment: beside the gap report, if that is a file. Only the table
-    /// proposed by the previous gap report is overwritten; a recording of that experiment under the
-    /// same name is recognised by its additional columns.
+    /// The file of the proposed experiment: in the folder of the gap report, if that is a file. Only the table
+    /// proposed by the previous gap report is overwritten; a recording of that experiment under the same name is
+    /// recognised by its additional columns.
     fn next(&self, table: &str) -> Option<PathBuf> {
         if self.experiment.is_some() {
             return self.experiment.clone();
@@ -252,7 +252,7 @@ impl Diagnose {
         free.map(|name| report.with_file_name(name))
     }
 
-    /// The command that writes what was found into the spec, after the one that writes the report.
+    /// The command that writes the diagnosed effect into the spec, after the one that writes the report.
     fn apply(&self, set: &DataSet) -> Apply {
         let mut shipped = appell_models::ALL.iter();
         let is_shipped = shipped.any(|shipped| shipped.spec == set.spec.text);

@@ -11,7 +11,7 @@ use crate::output;
 
 /// Lists the effects that a diagnosis looks for, or explains one of them.
 ///
-/// An explanation has the law with a picture, the sites at which the effect can act, and what it looks like in a spec.
+/// An explanation has the law with a picture, the sites at which the effect can act, and its form in a spec.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

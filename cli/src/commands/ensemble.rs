@@ -12,11 +12,11 @@ use appell::{files, json};
 use crate::failure::{Error, note};
 use crate::{interrupt, output, progress};
 
-/// Runs many motions whose parameters, starts, inputs, laws or specs vary, and tells their statistics.
+/// Runs many motions whose parameters, starts, inputs, laws or specs vary, and computes their statistics.
 ///
-/// A study file says what is moved, what varies and what is kept (docs/ensembles.md). The rows of the cases go to the
-/// folder as Parquet, in chunks that are written as a whole: what was interrupted goes on where it was, by the same
-/// command. No result depends on the number of threads, on chunks or shards.
+/// A study file defines the motion, its factors and the kept quantities (docs/ensembles.md). The rows of the cases go to
+/// the folder as Parquet, in chunks that are written atomically: the same command resumes an interrupted study.
+/// No result depends on the number of threads, on chunks or shards.
 #[derive(Debug, clap::Args)]
 #[command(name = "ensemble")]
 #[command(after_long_help = "\
@@ -33,7 +33,7 @@ pub(crate) struct EnsembleCommand {
     /// Threads [default: one for each processor]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Run the K-th of N parts, as on a cluster; whoever comes last tells the statistics
+    /// Run the K-th of N parts, as on a cluster; the last one prints the statistics
     #[arg(long, value_name = "K/N")]
     shard: Option<Shard>,
     /// Cases of a chunk [default: the study's, or a 64th of the cases, at most 4096]
@@ -89,7 +89,7 @@ impl EnsembleCommand {
         self.tell(&ensemble, store, &summary?)
     }
 
-    /// Runs what is missing, under a bar, until Ctrl-C.
+    /// Runs the missing chunks until Ctrl-C, with a progress bar.
     fn fill(
         &self,
         ensemble: &Ensemble,
@@ -117,9 +117,9 @@ impl EnsembleCommand {
                 whole - cases
             ));
         }
-        // Chunks that are finished stay.
+        // Completed chunks are preserved.
         let go_on = || !interrupt::has_come();
-        // Asked before the first chunk: a signal ends it no more.
+        // Installed before the first chunk: from here on a signal does not end the process.
         go_on();
         let mut ended = Ended::Done;
         if cases > 0 {
@@ -145,7 +145,7 @@ impl EnsembleCommand {
         Ok(ended)
     }
 
-    /// Runs what is missing on a cluster.
+    /// Runs the missing chunks on a cluster.
     fn spread(
         &self,
         ensemble: &Ensemble,
@@ -162,7 +162,7 @@ impl EnsembleCommand {
         if left > 0 {
             on_ray::run(&self.study, &self.out, address, running, left as u64)?;
         }
-        // A rare event has few replicates, and they are run here.
+        // The few replicates of a rare event are run here.
         self.fill(ensemble, store, running)
     }
 
@@ -188,7 +188,7 @@ impl EnsembleCommand {
     }
 }
 
-/// Whether a place is that of an object store and not a folder.
+/// Whether a path is the address of an object store.
 fn is_address(place: &Path) -> bool {
     place.to_str().is_some_and(|place| place.contains("://"))
 }

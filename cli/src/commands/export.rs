@@ -80,7 +80,7 @@ impl Export {
     }
 }
 
-/// What an FMU holds.
+/// Contents of an FMU.
 fn about(fmu: &Fmu) -> String {
     let count = |count: usize, what: &str| {
         let end = if count == 1 { "" } else { "s" };

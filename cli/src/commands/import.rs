@@ -39,7 +39,7 @@ pub(crate) struct Import {
     /// The other numbers are written out, so that zeros and right angles simplify the equations.
     #[arg(long, value_name = "WHICH", default_value = "none")]
     parameters: String,
-    /// What is left out, separated by commas
+    /// Items to omit, separated by commas
     ///
     /// One or several of `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`, `compensation`, `points`
     /// (those at the origins of links that nothing uses).
@@ -47,13 +47,13 @@ pub(crate) struct Import {
     without: Vec<Without>,
     /// Make a joint rigid, at a value in rad or m, or as the file draws it; can be repeated
     ///
-    /// What it carries is fixed there: a model with fewer coordinates.
+    /// The links that it carries are fixed there: a model with fewer coordinates.
     #[arg(long, value_name = "JOINT[=VALUE]", value_parser = Lock::from_str, allow_hyphen_values = true)]
     lock: Vec<Lock>,
     /// Take angles within 1e-4 rad of a right angle for right angles
     #[arg(long)]
     snap: bool,
-    /// Let the root of a URDF float; an MJCF says itself what does
+    /// Let the root of a URDF float; an MJCF states its floating bodies
     #[arg(long)]
     floating: bool,
 }
@@ -104,7 +104,7 @@ impl Import {
         output::print_beside(&told, &[&Some(out.clone())])
     }
 
-    /// Warnings, what was left out, and angles that might be right ones.
+    /// Prints warnings, omitted items, and angles that are nearly right.
     fn tell(&self, robot: &Imported) {
         for warnings in &robot.warnings {
             let mut findings = warnings.diagnostics().iter();

@@ -89,7 +89,7 @@ impl List {
         if let Some(columns) = output::columns() {
             fit(&mut rows, columns);
         }
-        let note = "`--json` has sources, names and costs; `appell effects` lists what a diagnosis looks for\n";
+        let note = "`--json` has sources, names and costs; `appell effects` lists the effects that a diagnosis looks for\n";
         output::print(&(table(&rows, 1..2) + note))
     }
 }
@@ -113,7 +113,7 @@ fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) ->
         }
         Err(error) => {
             let told = error.to_string();
-            // Warnings may stand before what is wrong.
+            // Warnings may precede the error.
             let wrong = told.lines().find(|line| line.starts_with("error["));
             let first = wrong.or(told.lines().next()).unwrap_or_default().to_owned();
             let none = || "-".to_owned();
@@ -126,7 +126,7 @@ fn row(file: String, format: Format, robot: &Result<Imported, appell::Error>) ->
 fn fit(rows: &mut [Vec<String>], columns: usize) {
     /// Between two columns of a table.
     const GAP: usize = 2;
-    /// A title that is shorter says nothing.
+    /// A shorter title is useless.
     const LEAST: usize = 12;
     let Some(last) = rows.first().and_then(|row| row.len().checked_sub(1)) else {
         return;

@@ -93,7 +93,7 @@ impl Sample {
     }
 }
 
-/// What is said of a rig.
+/// Report on a written rig.
 fn recorded(folder: &Path, files: &[&str]) -> String {
     let (files, at) = (files.join(", "), shell(&folder.to_string_lossy()));
     format!(

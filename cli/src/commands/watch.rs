@@ -34,7 +34,7 @@ impl Watch {
     fn failure(&self, error: appell_watch::Error) -> Error {
         let name = self.spec.to_string_lossy();
         match error {
-            // What is followed is a file.
+            // Only a file can be followed.
             appell_watch::Error::File { .. } if source::names().any(|shipped| shipped == name) => {
                 Error::Usage(format!(
                     "`{name}` is a shipped mechanism, and a page follows a file that you edit: write its spec first\n  \

@@ -247,7 +247,7 @@ fn event(asked: &Resolved<'_>, special: &Special) -> String {
     }
 }
 
-/// What eigenvalues do at a critical point.
+/// Behaviour of the eigenvalues at a critical point.
 pub(crate) fn change_text(change: Change) -> String {
     match change {
         Change::RealZero => "a real eigenvalue passes through zero".to_owned(),

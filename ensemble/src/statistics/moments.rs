@@ -1,4 +1,4 @@
-//! Mean and deviation of numbers that come one after the other.
+//! Running mean and standard deviation.
 
 use super::beta::student_95;
 

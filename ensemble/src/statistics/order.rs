@@ -11,17 +11,17 @@ pub const PASSES: usize = DIGITS.len();
 /// Numbers of given ranks.
 #[derive(Debug, Clone)]
 pub struct Selection {
-    /// Digits that are known.
+    /// Digits already determined.
     pass: usize,
     sought: Vec<Sought>,
-    /// Numbers that begin with a prefix, by their next digit.
+    /// Numbers with a prefix, by their next digit.
     counts: Vec<(u64, Vec<u64>)>,
 }
 
 #[derive(Debug, Clone)]
 struct Sought {
     prefix: u64,
-    /// Rank among the numbers that begin so.
+    /// Rank among the numbers with this prefix.
     rank: u64,
 }
 

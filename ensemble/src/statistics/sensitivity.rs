@@ -33,11 +33,11 @@ pub struct Indices {
 pub struct Sums {
     factors: usize,
     points: u64,
-    /// What is subtracted from all values, so that sums of products keep their digits.
+    /// Offset subtracted from all values, to avoid cancellation in sums of products.
     shift: f64,
     /// For each group: number, sum, sum of squares of A and B, then both numerators of each factor.
     groups: Vec<Vec<f64>>,
-    /// Points that lack a value.
+    /// Points with a missing value.
     pub missing: u64,
 }
 

@@ -1,4 +1,4 @@
-//! `[keep]` and `[rare]`: what is kept of each motion, and which rare event is sought.
+//! `[keep]` and `[rare]`: the kept quantities of each motion, and the rare event.
 
 use appell_spec::{Code, shown};
 use toml::de::DeTable;
@@ -12,17 +12,17 @@ use crate::limits::MAX_PARTICLES;
 pub struct Keep {
     /// Its name, that of a column.
     pub name: Text,
-    /// What of a quantity is kept.
+    /// The statistic of the quantity that is kept.
     pub kept: Kept,
     /// The quantity: a name of the spec, or an expression; of an event a comparison such as `theta > 20[deg]`.
     pub of: Text,
-    /// Unit for people, in place of the one of the quantity.
+    /// Display unit, instead of that of the quantity.
     pub unit: Option<Text>,
     /// A sentence; may be empty.
     pub about: String,
 }
 
-/// What of a quantity is kept.
+/// The statistic of a quantity that is kept.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Kept {
     /// Its last value.
@@ -47,7 +47,7 @@ pub enum Kept {
 /// A rare event, whose probability importance splitting finds.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Rare {
-    /// Name of the kept event.
+    /// Name of the event, an entry of `[keep]`.
     pub event: Text,
     /// Particles.
     pub particles: Placed<u64>,
@@ -76,7 +76,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
             .into_iter()
             .filter(|form| entry.get(*form).is_some())
             .collect();
-        // A word that is no key has been told.
+        // An unknown key has been reported already.
         if given.is_empty()
             && entry
                 .keys()
@@ -86,7 +86,7 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
         }
         let [form] = given[..] else {
             let message = match given[..] {
-                [] => format!("`{}` does not say what is kept", name.text),
+                [] => format!("`{}` names no quantity to keep", name.text),
                 _ => format!("`{}` keeps two things", name.text),
             };
             let help = format!("write one of {}", FORMS.join(", "));
@@ -127,7 +127,8 @@ pub(super) fn read(read: &mut Reader<'_>, table: &DeTable<'_>) -> Vec<Keep> {
     }
     let keep = table.get("keep").map(|keep| keep.get_ref().as_table());
     if keep.is_none_or(|keep| keep.is_some_and(DeTable::is_empty)) {
-        let help = "write what is kept under `[keep]`, such as `reached = { end = \"x\" }`";
+        let help =
+            "write the quantities to keep under `[keep]`, such as `reached = { end = \"x\" }`";
         read.tell(Code::MissingSection, "nothing is kept", 0..0, help);
     }
     all

@@ -21,7 +21,7 @@ pub enum Method {
 pub struct Motion {
     /// Final time in s.
     pub t_end: f64,
-    /// Interval of kept courses in s.
+    /// Sampling interval of kept courses in s.
     pub interval: Option<Placed<f64>>,
     /// The integrator.
     pub method: Method,
@@ -43,7 +43,7 @@ pub struct Motion {
     pub feedback: Vec<Text>,
 }
 
-/// Tolerances of the integration: an error of some 1e-9 after ten seconds, which no statistic sees.
+/// Tolerances of the integration: an error of some 1e-9 after ten seconds, negligible in statistics.
 const TOLERANCE: f64 = 1e-9;
 
 impl Default for Motion {

@@ -11,7 +11,7 @@ use super::value::{Correlation, Entry, Placed, Text};
 use crate::design::Sampling;
 use crate::limits::{MAX_ENTRIES, MAX_LIST};
 
-/// The text of the file with what is wrong in it.
+/// The text of the file with its findings.
 pub(super) struct Reader<'t> {
     pub(super) fields: Fields<'t>,
     pub(super) document: &'t str,
@@ -22,7 +22,7 @@ impl Reader<'_> {
         self.fields.tell(code, message, at, help);
     }
 
-    /// Refuses characters that cannot be seen or that reorder what is seen.
+    /// Rejects invisible characters and those that reorder the visible ones.
     pub(super) fn characters(&mut self) {
         let hidden = self
             .document
@@ -61,7 +61,7 @@ impl Reader<'_> {
         self.plain(Text { text, at })
     }
 
-    /// A text of one line without what cannot be seen, which escapes may hide.
+    /// A text of one line without invisible characters, which escapes may contain.
     fn plain(&mut self, text: Text) -> Option<Text> {
         let Some(c) = text
             .text
@@ -117,7 +117,7 @@ impl Reader<'_> {
         None
     }
 
-    /// A whole number that may be absent and is not negative.
+    /// An optional non-negative integer.
     pub(super) fn whole(&mut self, table: &DeTable<'_>, key: &str) -> Option<Placed<u64>> {
         let value = table.get(key)?;
         let DeValue::Integer(integer) = value.get_ref() else {
@@ -140,7 +140,7 @@ impl Reader<'_> {
         }
     }
 
-    /// A whole number from 1 to a largest one that may be absent.
+    /// An optional integer from 1 to a maximum.
     pub(super) fn count(
         &mut self,
         table: &DeTable<'_>,

@@ -1,4 +1,4 @@
-//! Values with their places.
+//! Values with their positions.
 
 use appell_spec::expr::Span;
 
@@ -7,7 +7,7 @@ use appell_spec::expr::Span;
 pub struct Text {
     /// The text; of a number its digits.
     pub text: String,
-    /// Where it stands, quotes included.
+    /// Its position, quotes included.
     pub at: Span,
 }
 
@@ -22,7 +22,7 @@ impl std::fmt::Debug for Text {
 pub struct Placed<T> {
     /// The value.
     pub value: T,
-    /// Where it stands.
+    /// Its position.
     pub at: Span,
 }
 

@@ -1,4 +1,4 @@
-//! `[vary]` and `[noise]`: what varies, and how.
+//! `[vary]` and `[noise]`: factors with their distributions, and noise over time.
 
 use appell_spec::Code;
 use toml::de::DeTable;
@@ -15,13 +15,13 @@ pub const FEEDBACK: &str = "feedback";
 /// An entry of `[vary]`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Vary {
-    /// A parameter or a state of the spec, a quantity of the study's own, or [`MODEL`] or [`FEEDBACK`].
+    /// A parameter or a state of the spec, a quantity defined by the study, or [`MODEL`] or [`FEEDBACK`].
     pub name: Text,
     /// How it varies.
     pub varied: Varied,
-    /// Ends beyond which nothing is drawn.
+    /// Truncation limits of the distribution.
     pub truncate: Option<[Text; 2]>,
-    /// Unit of a quantity of the study's own.
+    /// Unit of a quantity defined by the study.
     pub unit: Option<Text>,
     /// A sentence; may be empty.
     pub about: String,
@@ -55,16 +55,16 @@ impl Varied {
     }
 }
 
-/// Noise over time: independent normal numbers, each held for a while.
+/// Noise over time: independent normal numbers, each held for an interval.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Noise {
-    /// A state, which laws and inputs then measure with the noise, or a quantity of the study's own.
+    /// A state, which laws and inputs then measure with the noise, or a quantity defined by the study.
     pub name: Text,
     /// Standard deviation.
     pub deviation: Text,
-    /// How long each number is held, in s.
+    /// Hold interval, in s.
     pub every: Placed<f64>,
-    /// Unit of a quantity of the study's own.
+    /// Unit of a quantity defined by the study.
     pub unit: Option<Text>,
 }
 
@@ -127,7 +127,7 @@ fn form(read: &mut Reader<'_>, entry: &DeTable<'_>, name: &Text) -> Option<Varie
         .into_iter()
         .filter(|form| entry.get(*form).is_some())
         .collect();
-    // A word that is no key has been told.
+    // An unknown key has been reported already.
     if given.is_empty()
         && entry
             .keys()

@@ -1,11 +1,11 @@
-"""Calls on a Ray cluster. Whoever loses a worker or a machine repeats its calls; nobody else notices."""
+"""Calls on a Ray cluster. Calls lost with a worker or a machine are repeated."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Sequence
 from typing import Any
 
-# A call in the queue of each processor beside the one that it runs.
+# Calls queued for each processor in addition to the running one.
 AHEAD = 2
 
 
@@ -43,7 +43,7 @@ def spread(
     running: dict[Any, int] = {}
 
     def fill() -> None:
-        # Machines come and go while calls run.
+        # Machines may join and leave while calls run.
         room = max(1, int(AHEAD * ray.cluster_resources().get("CPU", 1) / cpus))
         for number, arguments in queue:
             running[remote.remote(*arguments)] = number

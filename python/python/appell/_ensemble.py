@@ -1,4 +1,4 @@
-"""Ensembles: many motions of a study, in chunks that anybody may run."""
+"""Ensembles: many motions of a study, in independent chunks."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ from ._cluster import spread
 from ._notebook import Page, framed
 
 
-# Chunks of one call on a cluster, and calls that there should at least be.
+# Chunks in one call on a cluster, and the minimum number of calls.
 GROUP, FEWEST_CALLS = 16, 64
 
 
 class Ensemble:
-    """The rows of a study, as far as they are there; a page in a notebook.
+    """The rows of a study, as far as they are computed; a page in a notebook.
 
     It can be sent to other processes, which then find the rows where they are kept.
     """
@@ -46,7 +46,7 @@ class Ensemble:
         return self._native.chunks(chunk)
 
     def missing(self, *, shard: str | None = None, chunk: int | None = None) -> list[str]:
-        """Names of the chunks that are not there."""
+        """Names of the missing chunks."""
         return self._native.missing(shard, chunk)
 
     def run(
@@ -58,7 +58,7 @@ class Ensemble:
         chunk: int | None = None,
         progress: Callable[[str], Any] | None = None,
     ) -> Ensemble:
-        """Runs chunks by their names, or those that are missing, on `jobs` threads."""
+        """Runs chunks by their names, or the missing ones, on `jobs` threads."""
         self._native.run(None if chunks is None else list(chunks), jobs, shard, chunk, progress)
         self._forget()
         return self
@@ -71,7 +71,7 @@ class Ensemble:
         chunk: int | None = None,
         progress: Callable[[str], Any] | None = None,
     ) -> Ensemble:
-        """Runs the chunks that are missing on a Ray cluster, see `appell.spread`.
+        """Runs the missing chunks on a Ray cluster, see `appell.spread`.
 
         Rows do not pass through this process: every worker writes the chunks that it finishes to `out`, a folder that
         all machines see under this path, as they see the study. A chunk whose worker or machine is lost is run again.
@@ -80,7 +80,7 @@ class Ensemble:
         if out is None:
             raise ValueError("a cluster needs a folder for the rows, `out`, that all machines see")
         missing = self.missing(shard=shard, chunk=chunk)
-        # A call is as many chunks as last some seconds, and there are several for each processor.
+        # A call has chunks for some seconds, and each processor gets several calls.
         group = max(1, min(GROUP, len(missing) // FEWEST_CALLS))
         groups = [missing[first : first + group] for first in range(0, len(missing), group)]
         done = 0
@@ -106,7 +106,7 @@ class Ensemble:
 
     @property
     def columns(self) -> list[str]:
-        """Names of the factors and of what is kept; `course` has the courses."""
+        """Names of the factors and of the kept quantities; `course` has the courses."""
         return [name for name, _, _, _, course in self._native.columns() if course is None]
 
     @property
@@ -132,17 +132,17 @@ class Ensemble:
 
     @property
     def case(self) -> np.ndarray:
-        """Numbers of the cases whose rows are there."""
+        """Numbers of the completed cases."""
         return self._rows[0].astype(np.int64)
 
     @property
     def t_end(self) -> np.ndarray:
-        """When each motion ended, in s."""
+        """End time of each motion in s."""
         return self._rows[2]
 
     @property
     def reasons(self) -> list[str]:
-        """Why each motion ended early; empty where it did not."""
+        """Why each motion ended early; empty if it did not."""
         return self._rows[3]
 
     @cached_property
@@ -162,12 +162,12 @@ class Ensemble:
         return self._all[1]
 
 
-# The ensembles that a worker has compiled, the last one alone.
+# The ensemble that a worker compiled last.
 _compiled: dict[tuple[Any, ...], Ensemble] = {}
 
 
 def _run(made: tuple[str, str | None, str | None], names: Sequence[str], chunk: int | None) -> int:
-    """Runs chunks in a worker, but for those that a lost worker finished; returns how many."""
+    """Runs chunks in a worker, except those completed by a lost worker; returns how many."""
     if made not in _compiled:
         _compiled.clear()
         _compiled[made] = _restored(*made)

@@ -1,4 +1,4 @@
-"""Exceptions; each tells the places of what is wrong."""
+"""Exceptions, with the positions of the findings."""
 
 from __future__ import annotations
 
@@ -15,24 +15,24 @@ class Diagnostic:
     code: str | None
     message: str
     help: str | None
-    """What to write instead."""
+    """The suggested correction."""
     line: int
     column: int
 
 
 class Error(Exception):
-    """A request that has no answer."""
+    """A request that cannot be answered."""
 
     def __init__(self, message: str, diagnostics: str = "[]", field: str | None = None):
         super().__init__(message)
         self.diagnostics: list[Diagnostic] = [Diagnostic(**found) for found in json.loads(diagnostics)]
-        """The findings, with their places."""
+        """The findings, with their positions."""
         self.field = field
-        """The part of the request that is wrong."""
+        """The invalid part of the request."""
 
 
 class SpecError(Error):
-    """A spec, an effect or a description is wrong; `diagnostics` has the places."""
+    """A spec, an effect or a description is invalid; `diagnostics` has the positions."""
 
 
 class RequestError(Error, ValueError):
@@ -40,7 +40,7 @@ class RequestError(Error, ValueError):
 
 
 class DataError(Error):
-    """A file is wrong or cannot be read."""
+    """A file is invalid or cannot be read."""
 
 
 class ComputationError(Error):

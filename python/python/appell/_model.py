@@ -96,7 +96,7 @@ class Model(_appell.Model):
 
     @property
     def source(self) -> str:
-        """Where the model comes from."""
+        """Source of the model."""
         return self._about()[2]
 
     @cached_property
@@ -228,7 +228,7 @@ class Model(_appell.Model):
         return InverseDynamics(*self._evaluate("inverse_dynamics_jacobians", x, u, p, t, results, accelerations))
 
     def energies(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Energies:
-        """Kinetic, potential and acceleration energy, and the power of what has no potential; numbers or (N,)."""
+        """Kinetic, potential and acceleration energy, and the power of the non-conservative loads; numbers or (N,)."""
         values = self._evaluate("energies", x, u, p, t, None)
         return Energies(*(value if value.ndim else value.item() for value in values))
 
@@ -245,7 +245,7 @@ class Model(_appell.Model):
         return self._evaluate("constraint_forces", x, u, p, t, None if out is None else [out])[0]
 
     def linearise(self, x: Any = None, u: Any = None, p: Any = None, t: Any = None) -> Linear:
-        """The linear equations about a place, or about a `SteadyMotion`."""
+        """The linear equations about a point of the state space, or about a `SteadyMotion`."""
         if isinstance(x, SteadyMotion):
             x, u, p = x.x, x.u if u is None else u, x.p if p is None else p
         count = len(self.inputs)
@@ -357,7 +357,7 @@ class Model(_appell.Model):
         return lambda t, x: _number(function(t, labelled(x, states)))
 
     def _functions(self, function: Callable[[float, Vector], Any]) -> list[tuple[str, Callable[[float, np.ndarray], float]]]:
-        """One function of all inputs, asked once at a place."""
+        """One function of all inputs, called once per state."""
         last: tuple[Any, Any] = (None, None)
         states, count = self.states, len(self.inputs)
 

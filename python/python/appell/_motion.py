@@ -35,7 +35,7 @@ class Motion:
         self._summary: str | None = None
         told = native.columns()
         self.columns: tuple[str, ...] = tuple(name for name, *_ in told)
-        """Names of the columns: states, inputs, outputs, energies and what was asked for besides."""
+        """Names of the columns: states, inputs, outputs, energies and requested extra columns."""
         self.units: dict[str, str] = {name: unit for name, _, unit, _ in told}
         """Units of the spec, by column."""
         self.about: dict[str, str] = {name: about for name, about, _, _ in told}
@@ -59,7 +59,7 @@ class Motion:
 
     @property
     def undefined(self) -> str | None:
-        """Which inputs, outputs and energies are no numbers, and from when on; None if all are."""
+        """The first non-finite inputs, outputs and energies, with their times; None if all are finite."""
         return self._native.undefined
 
     @property

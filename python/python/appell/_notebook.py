@@ -1,4 +1,4 @@
-"""What a notebook shows."""
+"""Pages and pictures in a notebook."""
 
 from __future__ import annotations
 
@@ -14,10 +14,10 @@ Progress = Callable[[str], Any]
 
 
 def framed(page: str, height: int = 480) -> str:
-    """A page in a frame of a notebook. A page that moves has the height that is given; one to read is as tall as what
-    it holds, up to that height."""
+    """A page in a frame of a notebook. An animated page has the given height; a static one is as tall as its content,
+    up to that height."""
     if "<script" in page:
-        # Scripts have no access to the notebook around them.
+        # Scripts have no access to the notebook.
         kind = 'sandbox="allow-scripts"'
     else:
         tall = f"Math.min({height}, this.contentDocument.body.offsetHeight + 48)"
@@ -29,7 +29,7 @@ def framed(page: str, height: int = 480) -> str:
 
 
 class Page:
-    """A page for a browser, which a notebook shows in a frame."""
+    """A page for a browser, shown in a frame by a notebook."""
 
     def __init__(self, text: str, height: int = 480):
         self.text = text
@@ -39,7 +39,7 @@ class Page:
         return framed(self.text, self._height)
 
     def save(self, path: str | Path) -> None:
-        """Writes the page, which is one self-contained file."""
+        """Writes the page as one self-contained file."""
         Path(path).write_text(self.text, encoding="utf-8")
 
     def __repr__(self) -> str:
@@ -64,7 +64,7 @@ class Picture:
 
 
 class Reporter:
-    """Tells the stages of a computation: in one line of a terminal or of a notebook's output."""
+    """Reports the stages of a computation on one line of a terminal or of a notebook's output."""
 
     def __init__(self) -> None:
         self._start = time.monotonic()
@@ -100,7 +100,7 @@ class Reporter:
 
 
 class Silent(Reporter):
-    """Tells a function of one's own, or nobody."""
+    """Reports the stages to a user's function, or not at all."""
 
     def __init__(self, tell: Progress | None):
         super().__init__()
@@ -112,7 +112,7 @@ class Silent(Reporter):
 
 
 def reporter(progress: Progress | bool) -> Reporter:
-    """Shows the progress where people would see it, tells a function, or is silent."""
+    """Progress on screen, to a user's function, or none."""
     if callable(progress):
         return Silent(progress)
     return Reporter() if progress else Silent(None)

@@ -1,4 +1,4 @@
-"""What `appell ensemble --ray` calls: `python -m appell._on_ray STUDY FOLDER ADDRESS SHARD CHUNK`.
+"""Entry point of `appell ensemble --ray`: `python -m appell._on_ray STUDY FOLDER ADDRESS SHARD CHUNK`.
 
 Tells a line at a time: `version`, then `chunk K of N` as they are finished; `error` and why it ends.
 """

@@ -1,4 +1,4 @@
-"""Recordings of a rig, and what follows from them."""
+"""Recordings of a rig: identification and diagnosis."""
 
 from __future__ import annotations
 
@@ -53,7 +53,7 @@ class Recordings(_appell.DataSet):
 
     @property
     def runs(self) -> list[str]:
-        """Names of the runs; `told["findings"]` has all that was noticed about them."""
+        """Names of the runs; `told["findings"]` has the findings about them."""
         return [run["run"] for run in self.told["runs"]]
 
     @property
@@ -129,13 +129,13 @@ class Diagnosis:
 
     @property
     def sentence(self) -> str:
-        """What was found, with its probability and the alternatives."""
+        """The diagnosis in one sentence, with its probability and the alternatives."""
         return self._native.sentence()
 
     @property
     def hypotheses(self) -> list[dict[str, Any]]:
         """Hypotheses, the most probable one first, each with `effects`, `probability`, `log_bayes_factor` and
-        `parameters`. The effect `unknown` stands for what no effect of the library explains."""
+        `parameters`. The effect `unknown` stands for the part that no effect of the library explains."""
         return self.told["which"]
 
     @property
@@ -145,15 +145,15 @@ class Diagnosis:
 
     @property
     def experiment(self) -> str | None:
-        """Inputs of the experiment that would tell most, as CSV."""
+        """Inputs of the most informative next experiment, as CSV."""
         return self._native.experiment()
 
     def apply(self, hypothesis: int | None = None) -> Model:
-        """The model with the effect that was found, or with another hypothesis, numbered from 1."""
+        """The model with the leading hypothesis applied, or with another one, numbered from 1."""
         return Model(self.improved(hypothesis)[0], text=True)
 
     def improved(self, hypothesis: int | None = None, file: str = "improved.toml") -> tuple[str, str]:
-        """The text of the spec with that effect, and what was changed in it."""
+        """The text of the spec with that effect, and a summary of the changes."""
         if hypothesis is not None and hypothesis < 1:
             raise ValueError("hypotheses are numbered from 1")
         spec, text = self._native._spec()
@@ -199,7 +199,7 @@ def identify(
 
 
 def base_parameters(model: Model | str | Path, data: Recordings | Data | None = None) -> dict[str, Any]:
-    """The combinations of inertial and load parameters on which forces of motions depend at all, as
+    """The identifiable combinations of inertial and load parameters, as
     `appell base --json` writes them; with recordings of a motion and of all inputs, their values with intervals.
 
     >>> import appell
@@ -304,7 +304,7 @@ def _columns(frame: Any) -> list[tuple[str, np.ndarray]]:
 
 
 def _numbers(column: Any) -> np.ndarray | None:
-    """The numbers of a column, dates in s from the first one on; nothing for texts."""
+    """The numbers of a column, dates in s from the first one on; None for texts."""
     values = np.asarray(column)
     if values.dtype.kind in "mM":
         unit = np.timedelta64(1, "ns")

@@ -45,7 +45,7 @@ class InverseDynamics(NamedTuple):
 
 
 class Energies(NamedTuple):
-    """Kinetic and potential energy in J, power in W of what changes their sum, acceleration energy in W/s."""
+    """Kinetic and potential energy in J, power in W of the non-conservative loads, acceleration energy in W/s."""
 
     kinetic: Any
     potential: Any
@@ -75,11 +75,11 @@ class SteadyMotion:
 
     def __init__(self, told: dict[str, Any], names: tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]):
         self.told = told
-        """All that is known of it, as `appell steady --json` writes it."""
+        """All results, as `appell steady --json` writes them."""
         states, inputs, parameters = names
         values = told["state"]
         self.x: Vector = labelled([values[name] for name in states], states)
-        """The state; what a steady motion leaves open has the value of the spec."""
+        """The state; components that the steady motion leaves free have the value of the spec."""
         self.u: Vector = labelled([told["inputs"][name] for name in inputs], inputs)
         """The declared inputs."""
         self.p: Vector = labelled([told["parameters"][name] for name in parameters], parameters)
@@ -110,7 +110,7 @@ class Design:
 
     def __init__(self, told: dict[str, Any], law: str | None):
         self.told = told
-        """All that is known of it, as `appell control --json` writes it."""
+        """All results, as `appell control --json` writes them."""
         self.law = law
         """The law as the text of a feedback file, for `simulate(feedback=...)`."""
 

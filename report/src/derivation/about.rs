@@ -1,8 +1,8 @@
-//! What an equation is about, from which follows on which lines of the spec it depends.
+//! The subject of an equation, which determines the lines of the spec that it depends on.
 
 use appell_spec::mechanism::{BodyId, ConstraintId, CoordinateId, FrameId, LoadId, PointId};
 
-/// What an equation is about, beyond what its letters tell.
+/// The subject of an equation, in addition to its letters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum About {
     /// Acceleration energy of a body.

@@ -5,8 +5,8 @@ use appell_codegen::symbolic::{Expr, Function, Graph, Node, Rational};
 /// The power of each key in a product; keys are given by their index.
 pub(super) type Monomial = Vec<(usize, i32)>;
 
-/// A sum as `Σ coefficient · monomial`, ordered by monomial: high degrees in early keys first, what
-/// is free of all keys last. Keys inside functions and denominators stay in the coefficients.
+/// A sum as `Σ coefficient · monomial`, ordered by monomial: high degrees in early keys first, the terms
+/// without any key last. Keys inside functions and denominators stay in the coefficients.
 pub(super) fn collect(graph: &mut Graph, expr: Expr, keys: &[Expr]) -> Vec<(Monomial, Expr)> {
     let terms: Vec<(Expr, Rational)> = match graph.node(expr) {
         Node::Sum(terms) => terms

@@ -9,7 +9,7 @@ pub struct Equation {
     pub left: Math,
     /// Right-hand side.
     pub right: Math,
-    /// What it is about, beyond what its letters tell.
+    /// Its subject, in addition to its letters.
     pub about: Option<About>,
     /// The lines of the spec that it depends on, once they are [located](super::locate).
     pub lines: Vec<usize>,
@@ -26,7 +26,7 @@ impl Equation {
         }
     }
 
-    /// The same, about something.
+    /// The same, with its subject.
     #[must_use]
     pub fn about(self, about: About) -> Self {
         Self {

@@ -44,8 +44,8 @@ pub fn html(page: &Page) -> String {
 /// Style of the equations and tables of a page.
 pub const EQUATIONS: &str = include_str!("equations.css");
 
-/// A section to stand in a page around it. Equations and rows of tables tell the lines of the spec that
-/// they depend on, as `data-lines`, and can be chosen.
+/// A section to embed in another page. Equations and table rows list the lines of the spec that they depend on
+/// as `data-lines`, and can be selected.
 pub fn clickable(section: &Section) -> String {
     let markup = markup! {
         h2 { (spans(&section.heading)) }
@@ -54,14 +54,14 @@ pub fn clickable(section: &Section) -> String {
     markup.into_string()
 }
 
-/// What a page is for.
+/// Purpose of a page.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Use {
     Reading,
     Choosing,
 }
 
-/// The attribute `data-lines`, where equations are chosen.
+/// The attribute `data-lines`, where equations can be selected.
 fn located(purpose: Use, lines: &[usize]) -> Option<String> {
     let lines = || lines.iter().map(usize::to_string).collect::<Vec<_>>();
     (purpose == Use::Choosing && !lines().is_empty()).then(|| lines().join(" "))
@@ -118,7 +118,7 @@ fn table(table: &Table, purpose: Use) -> Markup {
             @for row in &table.rows {
                 @let lines = located(purpose, &[row.line]);
                 @match row.cells.as_slice() {
-                    // A long formula would leave its description a word a line.
+                    // A long formula would squeeze its description to one word a line.
                     [formula, about] if width(formula) > LONGEST_CELL && !about.is_empty() => {
                         tr data-lines=[lines.clone()] {
                             td colspan="2" { (spans(formula)) }

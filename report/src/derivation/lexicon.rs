@@ -88,7 +88,7 @@ impl Lexicon {
         lexicon
     }
 
-    /// Generalised velocities that are quotients, with what they bring about.
+    /// Generalised velocities that are quotients, with their partial derivatives and accelerations.
     fn keep_dependent(&mut self, mechanism: &Mechanism, derivation: &Derivation) {
         for &q in &derivation.dependent.system.coordinates {
             let q = &mechanism.coordinates[CoordinateId::new(q)].label.name;

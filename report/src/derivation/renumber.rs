@@ -2,8 +2,8 @@
 
 use super::{Block, Equation, Letter, Section, Span};
 
-/// Numbers what has one of the letters `bases` in the order of the definitions; what is used without
-/// one follows.
+/// Numbers the letters with one of these `bases` in the order of their definitions; letters used without a
+/// definition follow.
 pub(super) fn by_definition(sections: &mut [Section], bases: [&str; 2]) {
     for base in bases {
         let mut order: Vec<String> = Vec::new();
@@ -32,8 +32,8 @@ fn number_of<'a>(letter: &'a Letter, base: &str) -> Option<&'a String> {
     (letter.base == base && is_number).then_some(first)
 }
 
-/// All letters of the sections, or those that equations define: on their left, or in the whole of an
-/// equation that tells no value.
+/// All letters of the sections, or only those that equations define: on the left, or anywhere in an implicit
+/// equation.
 fn each_letter(
     sections: &mut [Section],
     definitions_only: bool,

@@ -1,7 +1,7 @@
 //! Which lines of the spec the equations of a page depend on.
 //!
-//! A section tells what an equation is about; letters lead to the quantities that they stand for, and
-//! to the equations that define them.
+//! A section states the subject of an equation; letters refer to quantities, and to the equations that define
+//! them.
 
 use std::collections::BTreeSet;
 
@@ -14,7 +14,7 @@ use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{About, Block as PageBlock, Equation, Page};
 
-/// Tells every equation of a page on which lines of the spec it depends; `page` is that of the derivation.
+/// Assigns to every equation the lines of the spec that it depends on; `page` is that of the derivation.
 pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivation) {
     let sources = Sources {
         loads: contributions::of_loads(derivation),
@@ -63,7 +63,7 @@ fn letters(mechanism: &Mechanism) -> FxHashMap<Letter, usize> {
     letters
 }
 
-/// What one equation tells by itself.
+/// The dependencies of one equation by itself.
 struct Own {
     /// The letter that it defines.
     defines: Option<Letter>,
@@ -95,7 +95,7 @@ impl Sources<'_> {
         for letter in &letters {
             lines.extend(self.letters.get(letter));
         }
-        // The ground and what the language supplies have no line.
+        // The ground and predefined names have no line.
         lines.remove(&0);
         let defines = match &equation.left {
             Math::Letter(letter) => Some(letter.clone()),
@@ -205,7 +205,7 @@ impl Sources<'_> {
         }
     }
 
-    /// A point with those that it is placed from.
+    /// A point with its chain of reference points.
     fn point(&self, point: PointId, lines: &mut BTreeSet<usize>) {
         let mut next = Some(point);
         while let Some(point) = next {
@@ -216,7 +216,7 @@ impl Sources<'_> {
         }
     }
 
-    /// A frame with those that it is turned from.
+    /// A frame with its chain of parent frames.
     fn frame(&self, frame: FrameId, lines: &mut BTreeSet<usize>) {
         let mut next = Some(frame);
         while let Some(frame) = next {

@@ -11,7 +11,7 @@ use appell_spec::foreign::one_line;
 const WIDTH: usize = 100;
 /// Indentation of displayed equations.
 const INDENT: usize = 4;
-/// Columns of the right margin, where the lines of the spec stand.
+/// Width of the right margin with the lines of the spec, in columns.
 const MARGIN: usize = 6;
 
 /// The page as Unicode text.
@@ -140,7 +140,7 @@ fn table(out: &mut String, table: &Table) {
     }
 }
 
-/// A row that is as wide as a page, in several lines beside the margin.
+/// A row as wide as a page, broken into several lines left of the margin.
 fn broken(text: &str) -> Vec<String> {
     if columns(text) + MARGIN <= WIDTH {
         return vec![text.to_owned()];

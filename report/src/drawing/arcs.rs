@@ -9,7 +9,7 @@ use super::link;
 use super::scene::Scene;
 use super::space::{Matrix, Vector, add, cross, dot, length, scaled};
 
-/// Radius of an arc that no link carries, and the largest one, relative to the drawing.
+/// Radius of an arc without a link, and the largest one, relative to the drawing.
 const RADIUS: f64 = 0.13;
 /// Radius relative to the link that has turned.
 const ALONG_LINK: f64 = 0.8;
@@ -19,14 +19,14 @@ const SMALLEST: f64 = 0.02;
 const NO_LENGTH: f64 = 1e-9;
 /// Parts of an arc.
 const PARTS: u32 = 32;
-/// How far the direction from which an angle counts is drawn, in radii.
+/// Length of the drawn reference direction of an angle, in radii.
 const BEYOND: f64 = 1.3;
 
 /// A marked angle.
 pub(super) struct Arc {
     /// From the direction in the parent to that in the frame.
     pub(super) corners: Vec<Vector>,
-    /// The direction from which the angle counts.
+    /// The reference direction of the angle.
     pub(super) from: [Vector; 2],
     /// Name and value in degrees.
     pub(super) name: String,
@@ -51,8 +51,8 @@ pub(super) fn arcs(mechanism: &Mechanism, scene: &Scene, extent: f64) -> Vec<Arc
     arcs
 }
 
-/// Centre of an arc and its radius at the begin: along the link that the frame turns, or beside the axis of
-/// the turn where the frame is drawn.
+/// Centre of an arc and its initial radius: along the link that the frame rotates, else across the rotation axis
+/// at the point where the frame is drawn.
 fn arm(
     mechanism: &Mechanism,
     scene: &Scene,
@@ -80,7 +80,7 @@ fn arm(
         [centre, scaled(radius / length(along), along)]
     };
     let only = mechanism.frames[frame].turns.len() == 1;
-    // The link has turned already.
+    // The link is rotated already.
     let link = link.map(|[centre, along]| [centre, turned(along, about, -angle)]);
     let beside = || {
         let seat = link::seat(mechanism, frame)?;
@@ -92,7 +92,7 @@ fn arm(
 }
 
 fn arc([centre, begin]: [Vector; 2], about: Vector, angle: f64, name: String) -> Option<Arc> {
-    // Whole turns look like none.
+    // Whole turns are not visible.
     let angle = angle % TAU;
     if angle.is_nan() || angle.abs() < SMALLEST {
         return None;
@@ -106,7 +106,7 @@ fn arc([centre, begin]: [Vector; 2], about: Vector, angle: f64, name: String) ->
     })
 }
 
-/// The value of an angle in degrees, with the name of the coordinate that it is.
+/// The value of an angle in degrees, with the name of its coordinate.
 fn named(mechanism: &Mechanism, turn: &Turn, value: f64) -> String {
     let coordinate = |kind: &ExprKind| match kind {
         ExprKind::Quantity(Quantity::Coordinate(id)) => Some(*id),

@@ -91,7 +91,7 @@ pub enum ForceKind {
     Weight,
 }
 
-/// The places and forces of a mechanism as expressions: derived once, evaluated for every motion.
+/// Positions and forces of a mechanism as expressions: derived once, evaluated for every motion.
 pub struct FilmMaker {
     pub(crate) mechanism: Mechanism,
     graph: Graph,
@@ -454,7 +454,7 @@ mod tests {
 
     const ROUNDING: f64 = 1e-14;
 
-    /// Axes turned about z, then about their own x, then about their own z.
+    /// Axes turned about z, then about the new x, then about the new z.
     fn turned([a, b, c]: [f64; 3]) -> Matrix {
         let [(sa, ca), (sb, cb), (sc, cc)] = [a, b, c].map(f64::sin_cos);
         let x = [ca * cc - sa * cb * sc, sa * cc + ca * cb * sc, sb * sc];

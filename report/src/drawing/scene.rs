@@ -13,13 +13,13 @@ use appell_codegen::mechanics::initial::InitialState;
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::symbolic::{Graph, SymbolId};
 
-/// Values in place of those of the spec, in SI.
+/// Values that replace those of the spec, in SI.
 pub struct Moment {
     /// Parameters.
     pub parameters: Vec<f64>,
     /// The state.
     pub states: Vec<f64>,
-    /// What was given, for the caption.
+    /// The given values, for the caption.
     pub given: String,
 }
 

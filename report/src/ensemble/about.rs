@@ -3,7 +3,7 @@
 use appell_ensemble::rows::Column;
 use appell_ensemble::summary::Summary;
 
-/// What a report is about.
+/// Subject of a report.
 #[derive(Debug, Clone, Copy)]
 pub struct About<'a> {
     /// Its title.

@@ -8,7 +8,7 @@ use super::parts::labelled;
 use crate::figure::{Histogram, Layer, Lever, Look, Plot, Scatter, Series, Tornado};
 use crate::text::short;
 
-/// A figure with what it is about.
+/// A figure with its name and heading.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Named {
     /// Name of its file, without extension.
@@ -19,8 +19,8 @@ pub struct Named {
     pub svg: String,
 }
 
-/// All figures: bands over time, then for each kept number and event its histogram, the levers, and the cases over
-/// its two longest levers.
+/// All figures: bands over time, then for each kept number and event its histogram, the sensitivities, and the
+/// cases over its two most influential factors.
 pub fn figures(about: &About<'_>) -> Vec<Named> {
     let mut all: Vec<Named> = Vec::new();
     for course in &about.summary.courses {

@@ -14,9 +14,9 @@ use crate::text::short;
 pub struct Part {
     /// Its heading.
     pub heading: &'static str,
-    /// Its rows, the first one being the heads of the columns.
+    /// Its rows, the first one with the column headings.
     pub rows: Vec<Vec<String>>,
-    /// What is to be known.
+    /// Notes below the table.
     pub notes: Vec<String>,
 }
 
@@ -91,7 +91,7 @@ fn row(column: &Column, number: &Number) -> Vec<String> {
 }
 
 fn factors(about: &About<'_>) -> Part {
-    let heading = "What varies";
+    let heading = "Factors";
     let mut rows = vec![heads(&["", "mean", "deviation", "5 %", "median", "95 %"])];
     let mut notes = Vec::new();
     for number in &about.summary.numbers {
@@ -153,7 +153,7 @@ fn numbers(about: &About<'_>) -> Part {
         );
     }
     Part {
-        heading: "What is kept",
+        heading: "Kept quantities",
         rows,
         notes,
     }

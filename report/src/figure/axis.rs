@@ -109,7 +109,7 @@ pub(super) fn number(value: f64, step: f64) -> String {
     }
 }
 
-/// The digits that tell neighbouring ticks apart, with an exponent.
+/// The digits that distinguish neighbouring ticks, with an exponent.
 fn short_exponent(value: f64, step: f64) -> String {
     let order = |x: f64| x.abs().log10().floor();
     let needed = order(value) - order(step);

@@ -1,4 +1,4 @@
-//! How often numbers occur, as bars.
+//! Histograms.
 
 use super::axis::Axis;
 use super::{Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, WIDTH};
@@ -10,7 +10,7 @@ use std::fmt::Write as _;
 pub struct Histogram {
     /// Name and unit of the numbers.
     pub label: String,
-    /// What is counted.
+    /// Name of the counted items.
     pub counted: String,
     /// Ends of the first and of the last bar.
     pub ends: [f64; 2],

@@ -83,7 +83,7 @@ enum Sample<'a> {
 }
 
 impl Sample<'_> {
-    /// The sample, with the middle of its left end at a place.
+    /// The sample, with the middle of its left end at a point.
     fn at(&self, [x, y]: [f64; 2]) -> String {
         match self {
             Self::Kind(kind) => element(*kind, &format!("M{x:.1} {:.1}h16v10h-16z", y - 5.0)),
@@ -208,7 +208,7 @@ impl Stroke {
         path(self.class(), line).empty()
     }
 
-    /// A spot about a place.
+    /// A spot at a point.
     fn spot(self, [x, y]: [f64; 2]) -> String {
         match self {
             Self::Squares => format!("M{:.1} {:.1}h10v10h-10z", x - 5.0, y - 5.0),

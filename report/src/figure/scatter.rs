@@ -11,11 +11,11 @@ use crate::svg::{Document, path, text};
 pub struct Scatter {
     /// Name and unit of the horizontal and of the vertical axis.
     pub labels: [String; 2],
-    /// What the colours tell.
+    /// Meaning of the colours.
     pub about: String,
-    /// Names of the classes, at most five, from low to high; an empty class is drawn all the same.
+    /// Names of the classes, at most five, from low to high; an empty class is drawn too.
     pub classes: Vec<String>,
-    /// Places and classes of the points; those of a class that does not exist are left out.
+    /// Positions and classes of the points; a point of a class that does not exist is omitted.
     pub points: Vec<([f64; 2], usize)>,
 }
 

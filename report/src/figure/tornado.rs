@@ -1,4 +1,4 @@
-//! What moves a number how far: one bar a factor, the longest on top.
+//! Tornado diagram of the sensitivities of a number: one bar a factor, the longest on top.
 
 use super::axis::{Axis, number};
 use super::{FOOTER_HEIGHT, RIGHT, STYLE, WIDTH, centred};
@@ -21,18 +21,18 @@ pub struct Tornado {
     pub label: String,
     /// Names of the two ends.
     pub legend: [String; 2],
-    /// Where all bars meet.
+    /// The common base of all bars.
     pub centre: f64,
     /// The bars, in any order.
     pub levers: Vec<Lever>,
 }
 
-/// Room for names.
+/// Width for names.
 const NAMES: f64 = 150.0;
 const HEAD: f64 = 26.0;
 const ROW: f64 = 26.0;
 const BAR: f64 = 16.0;
-/// The most bars.
+/// Largest number of bars.
 const MOST: usize = 15;
 const TORNADO_STYLE: &str = "\
 .low{fill:#d55e00;fill-opacity:.7}.high{fill:#0072b2;fill-opacity:.7}

@@ -1,8 +1,8 @@
-// The eye: it looks at a target from a direction and a distance, moved by pointers.
+// The camera: looks at a target from a direction and a distance, moved by pointers.
 
-/** From the bottom of the picture to its top, in degrees. */
+/** Vertical field of view, in degrees. */
 const FIELD = 35;
-/** Half the height of the picture, one metre before the eye. */
+/** Half the height of the picture, one metre in front of the camera. */
 const HALF = Math.tan((FIELD / 2) * (Math.PI / 180));
 
 class Eye {
@@ -16,14 +16,14 @@ class Eye {
     this.listen();
   }
 
-  /** Looks from the start; where it follows, as near as the mechanism is large. */
+  /** Resets the view; if the camera follows the mechanism, at a distance proportional to its size. */
   reset(follows) {
     const { right, up, flat } = film.view;
     const { vertical, floor: [a, b] } = this.stage;
     const towards = cross(right, up);
     this.elevation = Math.asin(Math.min(Math.max(dot(towards, vertical), -1), 1));
     this.azimuth = Math.atan2(dot(towards, a), -dot(towards, b));
-    // Straight at a plane nothing shows that this is space.
+    // A view normal to the plane would not show depth.
     if (flat) [this.azimuth, this.elevation] = [this.azimuth + 0.35, Math.min(this.elevation + 0.22, 0.9)];
     const radius = follows ? 0.9 * this.stage.size : this.stage.whole.diagonal / 2;
     this.distance = (0.95 * radius) / Math.sin(Math.atan(HALF));
@@ -31,7 +31,7 @@ class Eye {
     this.changed = true;
   }
 
-  /** Looks, for a picture of so many pixels: fixes place, directions and `clip`. */
+  /** Updates position, directions and `clip` for a picture of this size in pixels. */
   look(width, height) {
     const { vertical, floor: [a, b], step } = this.stage;
     const level = Math.cos(this.elevation);
@@ -42,7 +42,7 @@ class Eye {
     const right = unit(cross(vertical, back));
     const up = cross(back, right);
     const aspect = Math.max(width, 1) / Math.max(height, 1);
-    // What is narrower than high is seen from farther away.
+    // A portrait picture is seen from farther away.
     const distance = this.distance / Math.min(1, aspect);
     const middle = plus(this.target, this.shift);
     this.place = plus(middle, back, distance);
@@ -52,7 +52,7 @@ class Eye {
     this.changed = false;
   }
 
-  /** Column by column, from places as seen from the eye to the cube of the picture. */
+  /** View-projection matrix, column by column, from camera space to clip space. */
   projection(near, far) {
     const { right, up, back, aspect } = this;
     const deep = (far + near) / (near - far);
@@ -60,7 +60,7 @@ class Eye {
     return new Float32Array([...columns.flat(), 0, 0, (2 * far * near) / (near - far), 0]);
   }
 
-  /** Where a place is in the picture, from 0 at the top left to 1; nothing if it is not before the eye. */
+  /** Position of a point in the picture, from 0 at the top left to 1; nothing if it is behind the camera. */
   sees(place) {
     const from = minus(place, this.place);
     const depth = -dot(from, this.back);

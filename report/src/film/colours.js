@@ -1,4 +1,4 @@
-// Colours of Okabe and Ito, which people with any colour vision can tell apart, light and dark.
+// Colours of Okabe and Ito, distinguishable with any colour vision, light and dark.
 
 const PALETTES = {
   light: {
@@ -16,7 +16,7 @@ const PALETTES = {
 /** Red, green and blue of a colour 0xrrggbb, from 0 to 1. */
 const channels = (colour) => [16, 8, 0].map((shift) => ((colour >> shift) & 255) / 255);
 
-/** The colours in use; whoever draws in them asks to be told when they change. */
+/** The colours in use; followers are called when they change. */
 const colours = {
   theme: matchMedia("(prefers-color-scheme: dark)").matches ? "dark" : "light",
   followers: [],

@@ -1,8 +1,8 @@
-// The film: what there is, and where it is at any time.
+// The film: the data of the animation, interpolated in time.
 
 const film = {};
 
-/** Takes the data of a motion in place of those before. */
+/** Replaces the data of the motion. */
 function take(data) {
   Object.assign(film, data);
   for (const name of ["times", "positions", "turns", "arrows", "values"]) {
@@ -14,7 +14,7 @@ function take(data) {
   film.end = film.rows ? film.times[film.rows - 1] : 0;
 }
 
-/** The rows on both sides of a time, and how far it is from the first to the second. */
+/** The rows on both sides of a time, and the interpolation fraction. */
 function instantAt(t) {
   let [low, high] = [0, film.rows - 1];
   while (high - low > 1) {
@@ -27,10 +27,10 @@ function instantAt(t) {
   return { low, high, part };
 }
 
-/** A number between two rows; `width` numbers make a row. */
+/** Interpolates numbers between two rows; `width` numbers make a row. */
 function numberAt(numbers, width, column, { low, high, part }) {
   const [a, b] = [numbers[low * width + column], numbers[high * width + column]];
-  // At a row its value stands, even where the next one is not finite.
+  // At a row its value counts, even if the next one is not finite.
   return part === 0 ? a : a + part * (b - a);
 }
 
@@ -43,7 +43,7 @@ const placeAt = (point, instant) => vectorAt(film.positions, film.points.length,
 const arrowAt = (force, instant) => vectorAt(film.arrows, film.forces.length, force, instant);
 const valueAt = (column, instant) => numberAt(film.values, film.columns.length, column, instant);
 
-/** The turn of a frame, a unit quaternion: on the shorter way from one row to the next. */
+/** The rotation of a frame, a unit quaternion: along the shorter arc between two rows. */
 function turnAt(frame, { low, high, part }) {
   const width = 4 * film.frames.length;
   const of = (row, k) => film.turns[row * width + 4 * frame + k];
@@ -61,7 +61,7 @@ function roundNumber(value) {
   return [5, 2].map((step) => step * power).find((step) => step <= value) ?? power;
 }
 
-/** A number for people. */
+/** A number for display. */
 function shown(value) {
   if (!Number.isFinite(value)) return "—";
   const size = Math.abs(value);

@@ -1,4 +1,4 @@
-// What the passes of a picture share: programs and buffers of WebGL 2.
+// Programs and buffers of WebGL 2 for all passes.
 
 class Program {
   constructor(gl, vertex, fragment) {
@@ -9,7 +9,7 @@ class Program {
       gl.shaderSource(shader, `#version 300 es\nprecision highp float;\n${text}`);
       gl.compileShader(shader);
       gl.attachShader(this.program, shader);
-      // It lives as long as the program does.
+      // It exists as long as the program.
       gl.deleteShader(shader);
     }
     gl.linkProgram(this.program);
@@ -17,7 +17,7 @@ class Program {
     this.places = new Map();
   }
 
-  /** Draws with this program from now on, with these uniforms. */
+  /** Makes this program current, with these uniforms. */
   use(uniforms) {
     const { gl, program, places } = this;
     gl.useProgram(program);
@@ -39,7 +39,7 @@ function filled(gl, target, numbers) {
   return buffer;
 }
 
-/** Lets an attribute of floats read the buffer that is bound; lengths are in bytes. */
+/** Binds a float attribute to the current buffer; lengths are in bytes. */
 function attribute(gl, location, width, { stride = 0, offset = 0, perInstance = false } = {}) {
   gl.enableVertexAttribArray(location);
   gl.vertexAttribPointer(location, width, gl.FLOAT, false, stride, offset);

@@ -3,7 +3,7 @@
 /** Lines on each side of the middle. */
 const REACH = 30;
 const LINES = 2 * REACH + 1;
-/** A line comes in so many pieces: some drivers lose one that begins behind the eye. */
+/** Pieces of a line: some drivers lose one that begins behind the camera. */
 const PIECES = 12;
 
 const GROUND_CORNERS = `

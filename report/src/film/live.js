@@ -1,6 +1,6 @@
-// The page within another one, which sends it one motion after the other.
+// The page embedded in another one, which sends it one motion after the other.
 
-/** Shows the motions that the page around sends; all of them move the same parts. */
+/** Shows the motions sent by the embedding page; all have the same parts. */
 function listen() {
   let player = null;
   colours.use(colours.theme);

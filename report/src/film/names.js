@@ -1,4 +1,4 @@
-// Names of points over the picture; those seen at one place are told together.
+// Labels of points over the picture; coincident points share a label.
 
 /** Names closer than this are written together, in pixels. */
 const CLOSE = 9;
@@ -15,7 +15,7 @@ class Names {
     return points.map((point) => told(film.points[point])).join(", ");
   }
 
-  /** The points in the picture, those seen at one place together. */
+  /** The visible points, coincident ones together. */
   groups(instant, eye, width, height) {
     const groups = [];
     for (const point of this.points) {

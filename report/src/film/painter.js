@@ -1,7 +1,7 @@
 // Draws the stage with WebGL 2, pass by pass.
 
 class Painter {
-  /** What draws in space here, by its name; nothing where nothing does. */
+  /** Name of the WebGL renderer; nothing without one. */
   static name() {
     const gl = document.createElement("canvas").getContext("webgl2");
     const names = gl?.getExtension("WEBGL_debug_renderer_info");
@@ -12,12 +12,12 @@ class Painter {
 
   constructor(canvas, name, { lost, restored }) {
     this.canvas = canvas;
-    // Smooth edges take a graphics processor.
+    // Antialiasing needs a graphics processor.
     const antialias = !/swiftshader|llvmpipe|software|basic render/i.test(name);
     this.gl = canvas.getContext("webgl2", { alpha: false, antialias, powerPreference: "high-performance" });
     this.prepare();
     canvas.addEventListener("webglcontextlost", (event) => {
-      // Without this it never comes back.
+      // Without this the context is never restored.
       event.preventDefault();
       lost();
     });
@@ -37,7 +37,7 @@ class Painter {
     gl.blendFunc(gl.SRC_ALPHA, gl.ONE_MINUS_SRC_ALPHA);
   }
 
-  /** A picture so wide and high in pixels of the page, drawn with so many of the screen for each. */
+  /** Sets the size of the picture in page pixels, and the device pixels for each. */
   fit(width, height, ratio) {
     this.pixel = Math.max(1, 1 / ratio);
     [this.canvas.width, this.canvas.height] = [width, height].map((side) => Math.floor(side * ratio));
@@ -58,7 +58,7 @@ class Painter {
     gl.disable(gl.CULL_FACE);
     this.traces.draw(stage.traces, eye, 0.0066 * stage.size, this.pixel * eye.pixel, palette.trace);
 
-    // What one sees through changes no depth.
+    // Transparent parts do not write depth.
     gl.enable(gl.BLEND);
     gl.depthMask(false);
     this.ground.draw(stage.ground, eye, palette);

@@ -1,4 +1,4 @@
-// Beside the picture: legend, values, one quantity over time.
+// The side panel: legend, values, one quantity over time.
 
 const at = (id) => document.getElementById(id);
 
@@ -9,7 +9,7 @@ function element(parent, tag, text = "") {
   return made;
 }
 
-/** What the colours mean, and how large things are. */
+/** The meaning of the colours, and the scale of lengths. */
 function fillLegend(stage) {
   const entry = (role, text) => {
     const row = document.createElement("li");
@@ -32,7 +32,7 @@ function fillLegend(stage) {
   entry(null, `an arrow of 1 m is ${+stage.force.metre.toPrecision(1)} N`);
 }
 
-/** All columns with their values now; a click shows one over time. */
+/** All columns with their present values; a click plots one over time. */
 class Values {
   constructor(choose) {
     this.cells = [];

@@ -1,17 +1,17 @@
 // Parts of the mechanism, made of shapes: rods, wheels, balls, springs, arrows, axes.
 
-/** A shape in the colour of a role, laid in its part by a map. */
+/** A shape in the colour of a role, placed in its part by a map. */
 const piece = (shape, role, map = SAME, opacity = 1) => ({ shape, role, map, opacity });
 
 /** Pieces that move together. */
 const part = (...pieces) => ({ pieces, map: SAME, shown: true });
 
-/** Where a shape goes that is made from 0 to 1 along y: along a unit vector, so thick and so long. */
+/** Maps a shape made from 0 to 1 along y onto a unit vector, with this thickness and length. */
 const bar = (direction, thick, long, from = ZERO) => stretched(upright(direction, from), [thick, long, thick]);
 
 const ball = (radius) => stretched(SAME, [radius, radius, radius]);
 
-/** Lays a part that is made along y from one place to another; hides it where these are one. */
+/** Places a part made along y between two points; hides it if they coincide. */
 function span(part, from, to) {
   const step = minus(to, from);
   const length = lengthOf(step);
@@ -32,7 +32,7 @@ function damper(size) {
 /** A body of small size at a point. */
 const dotOf = (role, radius) => part(piece("dot", role, ball(radius)));
 
-/** A disc with a tyre, and spokes of which one is marked so that its turning is seen. */
+/** A disc with a tyre and spokes, one of them marked to make rotation visible. */
 function wheel({ hub, axis, radius }) {
   const seat = upright(axis, hub);
   const rim = radius / (1 + TYRE);
@@ -49,7 +49,7 @@ function wheel({ hub, axis, radius }) {
   );
 }
 
-/** A ball with stripes, so that its turning is seen. */
+/** A ball with stripes to make rotation visible. */
 function stripedBall({ radius }) {
   return part(...Array.from({ length: 8 }, (_, k) => {
     const [x, z] = [circle(k / 8), circle(k / 8 + 1 / 4)];
@@ -69,7 +69,7 @@ const LINKS = { rod, spring, damper };
 
 const arrow = (role) => part(piece("cylinder", role), piece("cone", role));
 
-/** Lays an arrow with its tail at a place; hides it where it is too short to be seen. */
+/** Places an arrow with its tail at a point; hides it if it is too short to be seen. */
 function aim(arrow, from, vector, size) {
   const length = lengthOf(vector);
   arrow.shown = isFiniteVector(from) && Number.isFinite(length) && length > 0.02 * size;
@@ -86,8 +86,8 @@ const triad = (size) =>
   part(...["x", "y", "z"].map((axis) => piece("cylinder", axis, bar(SAME[axis], 0.007 * size, 0.28 * size))));
 
 /**
- * The trace of a point, row by row: two corners of a band, each a place and the direction there. Where
- * a row has no place, that of the row before stands, at first that of the next.
+ * The trace of a point, row by row: two corners of a band, each a position and the direction there. A row without
+ * a position repeats the previous one, at the start the next one.
  */
 function trace(point, size) {
   const places = Array.from({ length: film.rows }, (_, row) => placeAt(point, { low: row, high: row, part: 0 }));

@@ -1,13 +1,13 @@
-// The player: time, keys and buttons, one picture after the other.
+// The player: time, keys, buttons and the rendering loop.
 
 const SPEEDS = [0.1, 0.25, 0.5, 1, 2, 4];
-/** A picture that comes later than this is a pause, in s. */
+/** A longer interval between frames counts as a pause, in s. */
 const LONGEST = 0.25;
-/** Numbers that change faster than this are not read, in s. */
+/** Refresh interval of displayed numbers, in s. */
 const READABLE = 0.1;
-/** Fewer pictures than this in a second look jerky. */
+/** A lower frame rate looks jerky. */
 const SLOW = 50;
-/** Pixels of the picture to those of the screen, at least. */
+/** Lower bound on the resolution relative to the screen. */
 const COARSEST = 0.5;
 
 class Player {
@@ -30,7 +30,7 @@ class Player {
     colours.use(colours.theme);
   }
 
-  /** The picture in space; without WebGL the rest of the page works. */
+  /** The picture in space; without WebGL the rest of the page still works. */
   prepareSpace() {
     const without = "Values and plots are shown without it.";
     const name = Painter.name();
@@ -61,7 +61,7 @@ class Player {
     colours.follow(() => (this.changed = true));
   }
 
-  /** Shows another motion of the same parts from where the eye and the time are. */
+  /** Shows another motion of the same parts with the same view and time. */
   renew() {
     if (!film.rows) return;
     if (this.stage) {
@@ -84,7 +84,7 @@ class Player {
     if (film.contacts.length) choice("trace", "contacts", "contacts");
     choice("trace", "none", "none");
     film.points.forEach(({ name }, point) => choice("trace", name, point));
-    // Without a contact, the point at the end of the description is the most curious one.
+    // Without a contact, the trace is that of the last point of the description.
     if (!film.contacts.length) at("trace").value = film.points.length - 1;
     at("trace").addEventListener("change", () => this.trace());
     this.trace();
@@ -153,7 +153,7 @@ class Player {
       "-": () => this.eye?.zoom(1 / 0.85),
       f: () => at("follow").click(),
     };
-    // A focused button or box keeps its own space bar.
+    // A focused button or box handles the space bar itself.
     if (event.key === " " && event.target.closest?.("button, input[type=checkbox]") === null) {
       actions[" "] = () => this.play(!this.playing);
     }
@@ -167,13 +167,13 @@ class Player {
 
   fit() {
     [this.width, this.height] = [at("stage").clientWidth, at("stage").clientHeight];
-    // What stands still may take its time.
+    // A still picture is drawn at full resolution.
     const fineness = this.playing ? this.fineness : 1;
     this.painter.fit(this.width, this.height, Math.min(devicePixelRatio, 2) * fineness);
     this.changed = true;
   }
 
-  /** Time goes on by the seconds since the last picture. */
+  /** Advances the time by the seconds since the last frame. */
   advance(seconds) {
     if (!this.playing) return;
     this.time += seconds * Number(at("speed").value);
@@ -212,7 +212,7 @@ class Player {
     at("slider").setAttribute("aria-valuetext", `${this.time.toFixed(2)} s`);
   }
 
-  /** Counts the pictures of the last second; a slow machine gets coarser ones. */
+  /** Measures the frame rate; a slow machine gets a coarser resolution. */
   count(now) {
     this.pictures += 1;
     this.recent.push(now);
@@ -227,7 +227,7 @@ class Player {
   }
 }
 
-/** The column that is shown first: an input or else a coordinate that changes. */
+/** The column plotted first: an input, else a coordinate that changes. */
 function mostCurious() {
   const changes = (column) => {
     const value = (row) => film.values[row * film.columns.length + column];
@@ -237,7 +237,7 @@ function mostCurious() {
   return Math.max(0, ["inputs", "coordinates"].map(of).find((column) => column >= 0) ?? 0);
 }
 
-/** Shows the page, and tells scripts the time shown, whether it plays, pictures, places of points. */
+/** Shows the page, and gives scripts access to the time, the playing state, the frame rate and point positions. */
 function start() {
   if (!film.rows) {
     colours.use(colours.theme);
@@ -256,7 +256,7 @@ function start() {
     get pictures() {
       return player.pictures;
     },
-    /** Pictures of the last second. */
+    /** Frames in the last second. */
     get rate() {
       return player.recent.length - 1;
     },

@@ -1,13 +1,13 @@
-// The shapes that parts are made of, in their own units: triangles with normals.
+// The shapes of which parts are composed, in unit dimensions: triangles with normals.
 
-/** How thick a tyre is, to the radius of its middle. */
+/** Thickness of a tyre, relative to its mean radius. */
 const TYRE = 0.047;
-/** A spring is made so long, in the lengths that its other measures are told in. */
+/** Length of a spring, in the units of its other dimensions. */
 const COIL = 0.5;
 
 /**
- * A surface over a grid: `point` tells place and normal where both parameters go from 0 to 1.
- * Triangles turn their front to where the normals point.
+ * A surface over a grid: `point` gives position and normal for both parameters from 0 to 1.
+ * Triangles face the normals.
  */
 function sheet(columns, rows, point) {
   const places = [];
@@ -46,13 +46,13 @@ function joined(...sheets) {
   return all;
 }
 
-/** The point of the unit circle about y, for a part of a turn. */
+/** The point of the unit circle about y at a fraction of a turn. */
 function circle(part) {
   const angle = 2 * Math.PI * part;
   return [Math.cos(angle), 0, Math.sin(angle)];
 }
 
-/** A disc about y that is seen from one side. */
+/** A disc about y, visible from one side. */
 const plate = (sides, radius, height, normal) =>
   sheet(sides, 1, (u, v) => [plus([0, height, 0], circle(u), radius * v), normal]);
 

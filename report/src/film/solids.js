@@ -1,4 +1,4 @@
-// The pass that draws solids: all pieces of one shape at once, in the light of sky and sun.
+// The pass that draws solids: all instances of a shape at once, lit by sky and sun.
 
 const SOLID_CORNERS = `
 layout(location = 0) in vec3 place;
@@ -12,7 +12,7 @@ uniform mat4 clip;
 out vec3 facing;
 out vec4 colour;
 void main() {
-  // The cofactors of a map turn normals as the map itself turns faces.
+  // Normals transform by the cofactor matrix.
   facing = mat3(cross(y, z), cross(z, x), cross(x, y)) * normal;
   colour = paint;
   gl_Position = clip * vec4(mat3(x, y, z) * place + at, 1);
@@ -30,19 +30,19 @@ void main() {
   vec3 sky = 0.7 * mix(GROUND, vec3(1), 0.5 + 0.5 * dot(normal, vertical));
   float sun = 0.446 * max(dot(normal, SUN), 0.0);
   vec3 linear = colour.rgb * (sky + sun);
-  // From light to what a screen expects, sRGB.
+  // From linear light to sRGB.
   vec3 bright = 1.055 * pow(linear, vec3(1.0 / 2.4)) - 0.055;
   shown = vec4(mix(bright, 12.92 * linear, lessThan(linear, vec3(0.0031308))), colour.a);
 }`;
 
-/** The light of a colour 0xrrggbb that is given as sRGB. */
+/** Linear light of a colour 0xrrggbb given as sRGB. */
 function lightOf(colour) {
   const light = (c) => (c < 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055) ** 2.4);
   return channels(colour).map(light);
 }
 
 class Solids {
-  /** Numbers of a piece: four vectors of its map, colour, opacity. */
+  /** Numbers of an instance: four vectors of its map, colour, opacity. */
   static WIDTH = 16;
 
   constructor(gl) {
@@ -64,7 +64,7 @@ class Solids {
     return { array, count: faces.length };
   }
 
-  /** Collects what these parts show: solid pieces by shape, glass from the farthest to the nearest. */
+  /** Collects the instances of these parts: solid ones by shape, transparent ones from far to near. */
   lay(parts, eye, palette) {
     const solid = new Map();
     const glass = [];
@@ -72,7 +72,7 @@ class Solids {
       if (!part.shown) continue;
       for (const { shape, role, opacity, map } of part.pieces) {
         const { x, y, z, at } = composed(part.map, map);
-        // Near the eye single precision is fine, wherever the mechanism goes.
+        // Relative to the camera single precision suffices, however far the mechanism travels.
         const from = minus(at, eye.place);
         const numbers = [...x, ...y, ...z, ...from, ...lightOf(palette[role]), opacity];
         if (opacity < 1) glass.push({ shape, numbers, distance: lengthOf(from) });
@@ -89,7 +89,7 @@ class Solids {
     gl.bufferData(gl.ARRAY_BUFFER, new Float32Array(runs.flatMap(({ pieces }) => pieces.flat())), gl.STREAM_DRAW);
   }
 
-  /** Draws the solid pieces that were laid, or those of glass. */
+  /** Draws the collected solid instances, or the transparent ones. */
   draw(solid, eye, vertical) {
     const { gl } = this;
     this.program.use({ clip: eye.clip, vertical });

@@ -1,6 +1,6 @@
-// The mechanism in space: every part of the film, laid where it is at an instant.
+// The mechanism in space: the pose of every part at an instant.
 
-/** Points that belong to the mechanism, not only to its description. */
+/** Points of the mechanism, without construction points. */
 function ownPoints() {
   const linked = film.links.filter(({ kind }) => kind !== "way").flatMap(({ ends }) => ends);
   const centres = film.points.flatMap((point, id) => (point.body ? [id] : []));
@@ -17,7 +17,7 @@ function boxOf(points, rows) {
   return box;
 }
 
-/** How long a force of 1 N is drawn, in m: the largest but a few as long as the mechanism. */
+/** Newtons per metre of an arrow, from the 98 % quantile of the forces. */
 function forceScale(size) {
   const forces = film.arrows.length / 3;
   const sizes = [];
@@ -38,7 +38,7 @@ class Stage {
     this.build();
   }
 
-  /** How large the mechanism is, and how far it goes. */
+  /** Size of the mechanism, and the extent of its motion. */
   measure() {
     this.own = ownPoints();
     this.tracked = film.points.flatMap((point, id) => (point.body ? [id] : []));
@@ -56,7 +56,7 @@ class Stage {
     this.force = forceScale(this.size);
   }
 
-  /** The height of the ground: that of the contacts, else below everything. */
+  /** The height of the ground: that of the contacts, else the lowest point. */
   groundLevel(rows) {
     const touching = film.contacts.length > 0;
     const box = touching ? boxOf(film.contacts, [0]) : boxOf(this.own, rows);
@@ -88,7 +88,7 @@ class Stage {
     return [bodies, links, dots, arrows, axes].flat().map(({ part }) => part);
   }
 
-  /** Draws the traces of these points from now on. */
+  /** Selects the points whose traces are drawn. */
   draw(points) {
     this.traces = points.map((point) => trace(point, this.size));
   }
@@ -100,7 +100,7 @@ class Stage {
     return scaled(sum, 1 / (places.length || 1));
   }
 
-  /** Lays every part where it is. */
+  /** Poses every part. */
   show(instant, { forces, axes }) {
     for (const { part, at, frame } of [...this.bodies, ...this.axes]) {
       part.map = turned(turnAt(frame, instant), placeAt(at, instant));
@@ -120,7 +120,7 @@ class Stage {
     for (const trace of this.traces) trace.rows = 1 + (instant.part > 0.5 ? instant.high : instant.low);
   }
 
-  /** Keeps the squares of the ground around a place, and lets them fade towards the horizon. */
+  /** Centres the squares of the ground at a point and lets them fade towards the horizon. */
   spread(around, distance) {
     const { floor: [a, b], step } = this;
     const period = 5 * step;

@@ -1,4 +1,4 @@
-// The pass that draws the traces of points: bands that face the eye and never get thinner than a pixel.
+// The pass that draws the traces of points: bands that face the camera, at least a pixel wide.
 
 const TRACE_CORNERS = `
 layout(location = 0) in vec3 place;
@@ -6,7 +6,7 @@ layout(location = 1) in vec3 along;
 uniform mat4 clip;
 uniform vec3 eye;
 uniform float radius;
-/** The least width, one metre before the eye. */
+/** Minimum width, one metre in front of the camera. */
 uniform float pixel;
 void main() {
   vec3 from = place - eye;
@@ -15,7 +15,7 @@ void main() {
   vec3 aside = cross(along, from);
   float apart = length(aside);
   if (apart > 0.0) from += ((gl_VertexID & 1) == 0 ? broad : -broad) / apart * aside;
-  // As near as the side of a tube that the eye sees.
+  // At the depth of the visible side of a tube.
   if (distance > 4.0 * broad) from *= 1.0 - broad / distance;
   gl_Position = clip * vec4(from, 1);
 }`;
@@ -28,7 +28,7 @@ void main() {
 }`;
 
 class Traces {
-  /** Bytes of a place and the direction there. */
+  /** Bytes of a position and the direction there. */
   static STRIDE = 24;
 
   constructor(gl) {
@@ -38,7 +38,7 @@ class Traces {
     this.buffers = new Map();
   }
 
-  /** Buffers for these traces and for no others. */
+  /** Replaces the buffers by those of these traces. */
   keep(traces) {
     const { gl, buffers } = this;
     for (const [old, buffer] of buffers) {

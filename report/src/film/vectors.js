@@ -1,4 +1,4 @@
-// Vectors are arrays of three numbers; a map is where the three axes and the origin go.
+// Vectors are arrays of three numbers; an affine map is three axes and an origin.
 
 const plus = (a, b, times = 1) => [a[0] + times * b[0], a[1] + times * b[1], a[2] + times * b[2]];
 const minus = (a, b) => plus(a, b, -1);
@@ -14,7 +14,7 @@ const SAME = { x: [1, 0, 0], y: [0, 1, 0], z: [0, 0, 1], at: ZERO };
 
 const directed = ({ x, y, z }, v) => plus(plus(scaled(x, v[0]), y, v[1]), z, v[2]);
 
-/** First the inner map, then the outer one. */
+/** Composition: first the inner map, then the outer one. */
 const composed = (outer, inner) => ({
   x: directed(outer, inner.x),
   y: directed(outer, inner.y),
@@ -22,10 +22,10 @@ const composed = (outer, inner) => ({
   at: plus(outer.at, directed(outer, inner.at)),
 });
 
-/** A map that first stretches along its axes. */
+/** A map preceded by a scaling along its axes. */
 const stretched = ({ x, y, z, at }, [a, b, c]) => ({ x: scaled(x, a), y: scaled(y, b), z: scaled(z, c), at });
 
-/** The turn by a unit quaternion x, y, z, w. */
+/** The rotation by a unit quaternion x, y, z, w. */
 function turned([x, y, z, w], at) {
   return {
     x: [1 - 2 * (y * y + z * z), 2 * (x * y + w * z), 2 * (x * z - w * y)],
@@ -35,15 +35,15 @@ function turned([x, y, z, w], at) {
   };
 }
 
-/** The shortest turn that lays the y axis along a unit vector. */
+/** The shortest rotation that maps the y axis to a unit vector. */
 function upright([a, b, c], at = ZERO) {
-  // Straight down every turn is as short as any other: this one is about x.
+  // Straight down the shortest rotation is not unique: this one is about x.
   if (b < -0.999999) return { x: [1, 0, 0], y: [0, -1, 0], z: [0, 0, -1], at };
   const k = 1 / (1 + b);
   return { x: [1 - k * a * a, -a, -k * a * c], y: [a, b, c], z: [-k * a * c, -c, 1 - k * c * c], at };
 }
 
-/** The smallest box about places, with sides along the axes. */
+/** The axis-aligned bounding box of points. */
 class Box {
   constructor() {
     this.low = [Infinity, Infinity, Infinity];

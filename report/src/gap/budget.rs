@@ -29,7 +29,7 @@ pub fn divided(report: &Report) -> Option<String> {
     (!all.is_empty()).then_some(all)
 }
 
-/// What a part is called.
+/// Display name of a part.
 fn name(part: &Share) -> &str {
     if part.is_refit() {
         "re-fitted parameters"
@@ -71,7 +71,7 @@ pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
                 }
                 " on the held-out runs, beyond the noise. The share of an effect is the mean over all orders in which the effects can be added."
                 @if far.budget.iter().any(is_against_others) {
-                    " A share below zero: beside the others the effect makes predictions worse."
+                    " A share below zero: together with the others the effect makes predictions worse."
                 }
             }
         }
@@ -92,7 +92,7 @@ pub(super) fn closes(far: &HowFar) -> Markup {
     }
 }
 
-/// Whether a part makes predictions worse, beyond doubt.
+/// Whether a part makes predictions significantly worse.
 fn is_against_others(part: &Share) -> bool {
     part.is_effect() && part.interval[1] < 0.0
 }

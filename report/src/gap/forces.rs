@@ -1,4 +1,4 @@
-//! How far a gap closes that was judged by the forces of recorded motions.
+//! The share of the gap that closes, judged by the forces of recorded motions.
 
 use appell_gap::diagnose::{HowFar, Report};
 use maud::{Markup, html};

@@ -7,17 +7,17 @@ use super::numbers::{bounded, is_determined, percent, share};
 use super::words::{leading, moved, needs_refit, parameter, refit_sentence, refitted, sentence};
 use crate::text::{horizon, short, with_unit};
 
-/// What stands above everything else.
+/// The top of the report.
 pub struct Headline {
     /// The cause, in a sentence.
     pub cause: String,
     /// Sizes, each with its 95 % interval; parameters with their stated values.
     pub sizes: Vec<String>,
-    /// What to change.
+    /// The recommended change.
     pub change: String,
     /// The number of the hypothesis to apply, if one is.
     pub applied: Option<usize>,
-    /// Errors of the model as stated and with the cause; nothing where no run was held out.
+    /// Errors of the model as stated and with the cause; nothing without held-out runs.
     pub error: Option<String>,
 }
 
@@ -43,13 +43,13 @@ fn cause(report: &Report) -> String {
     sentence(report)
 }
 
-/// Those of the leading effects, and parameters that moved where predictions need them.
+/// Values of the leading effects, and significantly changed parameters where predictions need them.
 fn sizes(report: &Report) -> Vec<String> {
     let mut budget_effects = report.how_far.iter().flat_map(|far| &far.budget);
     let is_named = match report.verdict {
         GapVerdict::Explained | GapVerdict::Ambiguous => true,
         GapVerdict::NoGap => false,
-        // Those that stand in the sentence beside what the library lacks.
+        // Effects named together with the part that the library does not explain.
         GapVerdict::Unexplained => budget_effects.any(|part| part.is_effect() && part.is_material),
     };
     let budget = report.how_far.iter().flat_map(|far| &far.budget);
@@ -60,7 +60,7 @@ fn sizes(report: &Report) -> Vec<String> {
     let Some(first) = first else {
         return refit_sentence(report).into_iter().collect();
     };
-    // A wrong parameter stands among those that moved.
+    // A wrong parameter is among the changed ones.
     let parameters = if needs_refit(report) {
         moved(Some(first))
     } else {
@@ -106,7 +106,7 @@ fn size(hypothesis: &Hypothesis, value: &Value) -> String {
     format!("{}{site} = {number}", short.replace('_', " "))
 }
 
-/// What the verdict asks for.
+/// The change that the verdict calls for.
 fn change(report: &Report, applied: Option<usize>) -> String {
     let first = report.which.first();
     let is_alternative = |one: &Hypothesis| {
@@ -132,16 +132,14 @@ fn change(report: &Report, applied: Option<usize>) -> String {
         }
         GapVerdict::Explained => explained(first),
         GapVerdict::Unexplained => {
-            let own = "describe what is missing as an effect of your own, and diagnose with it";
+            let own = "describe the missing effect yourself, and diagnose with it";
             let command = match applied {
                 None => return own.to_owned(),
                 Some(1) => "`appell apply`".to_owned(),
                 Some(number) => format!("`appell apply`, given hypothesis {number},"),
             };
             if written(report) == applied {
-                format!(
-                    "{command} writes the measured force into the spec; look for what it comes from"
-                )
+                format!("{command} writes the measured force into the spec; look for its cause")
             } else {
                 format!("{command} writes the fitted parameters into the spec; {own}")
             }
@@ -182,7 +180,7 @@ fn explained(first: Option<&Hypothesis>) -> String {
         return what.to_owned();
     }
     let what = if adds {
-        "add to the spec what a spec can hold"
+        "add to the spec the effects that it can express"
     } else {
         "nothing in the equations"
     };
@@ -191,7 +189,7 @@ fn explained(first: Option<&Hypothesis>) -> String {
     format!("{what}; {names} {belong} elsewhere, `appell apply` says where")
 }
 
-/// Before and after, and what closes.
+/// Errors before and after, and the share that closes.
 fn error(report: &Report, far: &HowFar) -> String {
     let what = if report.is_by_forces {
         "forces missed on held-out runs".to_owned()
@@ -226,7 +224,7 @@ fn error(report: &Report, far: &HowFar) -> String {
     text
 }
 
-/// Whether nothing is added to re-fitted parameters.
+/// Whether the model differs from the stated one in re-fitted parameters alone.
 fn is_refit_alone(far: &HowFar) -> bool {
     !far.budget
         .iter()

@@ -1,4 +1,4 @@
-//! A measured law: a figure with its band, the forms that come near to it, and a sentence.
+//! A measured law: a figure with its band, the closest analytic forms, and a sentence.
 
 use appell_gap::diagnose::{Hypothesis, Law, Report, Share};
 use maud::{Markup, html};
@@ -35,8 +35,8 @@ pub fn law_sentence(report: &Report) -> Option<String> {
     ))
 }
 
-/// The number of the hypothesis with which `appell apply` writes the measured law, where it does and nothing speaks
-/// against it.
+/// The number of the hypothesis with which `appell apply` writes the measured law, if it does and the law does not
+/// make predictions worse.
 pub(super) fn written(report: &Report) -> Option<usize> {
     let betters = part(report).is_none_or(|part| part.closed > 0.0);
     report.law.as_ref().filter(|_| betters)?;

@@ -31,7 +31,7 @@ pub fn share(part: f64, interval: [f64; 2]) -> String {
     format!("{} [{low}, {high}]", percent(part))
 }
 
-/// `97.6 %`. Predictions may end below the noise floor that was expected: nothing is more than all there is.
+/// `97.6 %`, at most 100 %: predictions may end below the expected noise floor.
 pub fn percent(part: f64) -> String {
     if part.is_nan() {
         return "an unknown part".to_owned();
@@ -42,14 +42,14 @@ pub fn percent(part: f64) -> String {
     format!("{:.1} %", thousandths / 10.0)
 }
 
-/// Whether a part with its interval says anything: beyond this width everything is possible.
+/// Whether a share is determined by its interval.
 pub fn is_determined(part: f64, [low, high]: [f64; 2]) -> bool {
-    /// Twice all there is.
+    /// Twice the gap.
     const WIDEST: f64 = 2.0;
     (low..=high).contains(&part) && high - low <= WIDEST
 }
 
-/// The same of what noise bounds: predictions may end below the floor that was expected.
+/// The same as a sentence part, with `nothing` and `all` for shares within rounding of 0 and 1.
 pub(super) fn part_of_all(part: f64) -> String {
     /// Half of the last digit.
     const LEAST: f64 = 5e-4;

@@ -26,7 +26,7 @@ use crate::text::{horizon, short, with_unit};
 const STYLE: &str = include_str!("page.css");
 /// Relative improvement of predictions below which an effect is of no practical importance.
 const MATTERS: f64 = 0.05;
-/// Hypotheses that are less probable are folded away.
+/// Less probable hypotheses are folded away.
 const TOLD: f64 = 0.001;
 
 /// The page.
@@ -82,7 +82,7 @@ fn reading(report: &Report) -> Markup {
     }
 }
 
-/// What speaks against the leading hypothesis on held-out runs.
+/// Warnings about the leading hypothesis from held-out runs.
 fn worth(far: &HowFar) -> Option<&'static str> {
     if far.is_worse {
         return Some(
@@ -253,8 +253,8 @@ fn hypotheses(report: &Report, list: &[&Hypothesis]) -> Markup {
             None => html! { "no effect: the model with its parameters within tolerance" },
             Some("unknown") => {
                 let beside = said(report, hypothesis);
-                let beside = beside.split_once(" beside ").map(|(_, effects)| code(effects));
-                html! { "none of the library" @if let Some(effects) = beside { ", beside " (effects) } }
+                let beside = beside.split_once(" in addition to ").map(|(_, effects)| code(effects));
+                html! { "none of the library" @if let Some(effects) = beside { ", in addition to " (effects) } }
             }
             Some(_) => code(&joined(&hypothesis.effects)),
         };
@@ -305,7 +305,7 @@ fn which(report: &Report) -> Markup {
         @if let Some(named) = imperfections(report) {
             p { b { "Sensors." } " " (capital(&named)) "." }
         }
-        // A law that was measured has a section of its own.
+        // A measured law has its own section.
         @if let Some(left) = report.left.as_ref().filter(|left| left.is_there() && report.law.is_none()) {
             p {
                 b { "Left." } " In addition to the first hypothesis, the recordings support "

@@ -130,14 +130,14 @@ pub(super) fn law(law: &ForceLaw) -> String {
     plot.to_svg()
 }
 
-/// The range of forces that is drawn: where a channel jumps there are points far beyond.
+/// The range of forces that is drawn: jumps of a channel cause outliers.
 fn drawn(law: &ForceLaw) -> [f64; 2] {
-    /// Part of the points at each end that the range need not hold, and its margin.
+    /// Fraction of the points at each end that may lie outside, and the margin.
     const BEYOND: f64 = 0.1;
     const MARGIN: f64 = 1.0;
     let mut forces: Vec<f64> = law.points.iter().map(|[_, force]| *force).collect();
     forces.sort_by(f64::total_cmp);
-    // Points are few.
+    // Too few points for quantiles.
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let outside = (BEYOND * forces.len() as f64) as usize;
     let inside = forces

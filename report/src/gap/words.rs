@@ -31,7 +31,7 @@ pub fn sentence(report: &Report) -> String {
 
 /// `; the search of a, b did not converge, so that these are not ruled out`
 fn not_found(failed: &[(Vec<String>, String)]) -> String {
-    /// Longer lists are for the page.
+    /// Longer lists are shown on the page only.
     const MOST: usize = 3;
     let failed = failed.iter().filter(|(effects, _)| !effects.is_empty());
     let mut names: Vec<String> = failed.map(|(effects, _)| joined(effects)).collect();
@@ -67,9 +67,9 @@ fn values(hypothesis: &Hypothesis) -> String {
     values.collect()
 }
 
-/// `m = 1.35 ± 0.02 kg (stated 1 kg)`: parameters that differ from what is stated beyond doubt.
+/// `m = 1.35 ± 0.02 kg (stated 1 kg)`: parameters that differ significantly from their stated values.
 pub(super) fn moved(hypothesis: Option<&Hypothesis>) -> Vec<String> {
-    /// Standard deviations beyond which a parameter has moved.
+    /// Standard deviations beyond which a difference is significant.
     const BEYOND: f64 = 3.0;
     let changes = hypothesis.and_then(|one| one.changes.as_ref());
     let parameters = changes.iter().flat_map(|changes| &changes.parameters);
@@ -91,7 +91,7 @@ fn as_written(value: f64) -> String {
     rounded.to_string()
 }
 
-/// The parameters that moved, where predictions need them.
+/// The significantly changed parameters, where predictions need them.
 pub fn refit_sentence(report: &Report) -> Option<String> {
     let plain = report.which.iter().find(|one| one.effects.is_empty());
     let moved = moved(plain);
@@ -104,7 +104,7 @@ pub(super) fn needs_refit(report: &Report) -> bool {
     far.is_none_or(|far| refitted(&far.budget).is_some())
 }
 
-/// The parameter that an effect is the wrong value of, if it is one.
+/// The parameter whose wrong value the effect describes, if it is one.
 pub(super) fn parameter<'e>(hypothesis: &Hypothesis, effect: &'e str) -> Option<&'e str> {
     let (_, site) = effect.split_once('@')?;
     let changes = hypothesis.changes.as_ref()?;
@@ -112,8 +112,8 @@ pub(super) fn parameter<'e>(hypothesis: &Hypothesis, effect: &'e str) -> Option<
     parameters.any(|one| one.name == site).then_some(site)
 }
 
-/// Where several hypotheses may be true: the probability of the leading one, those that say the same of every motion,
-/// and those that cannot be ruled out.
+/// Where several hypotheses may be true: the probability of the leading one, those indistinguishable from it, and
+/// those that cannot be ruled out.
 pub(super) fn alternatives(report: &Report) -> Option<(f64, Vec<String>, Vec<String>)> {
     let is_named = matches!(
         report.verdict,
@@ -176,7 +176,7 @@ pub(super) fn statement(report: &Report) -> String {
         GapVerdict::Unexplained => {
             let law = law_share(report).unwrap_or_default();
             match shares(report) {
-                // The law stands among the shares.
+                // The law is listed among the shares.
                 Some(shares) if !law.is_empty() => {
                     let left = report.left.as_ref().map_or("", |left| &left.about);
                     format!("{shares}; the law, which no effect of the library has, is {left}")
@@ -195,7 +195,7 @@ fn refitted_share(report: &Report) -> Option<String> {
     Some(format!("re-fitted parameters close {closed} of the gap"))
 }
 
-/// What no effect of the library explains, beside the parts that something closes.
+/// The part of the gap that no effect of the library explains, after the shares of the others.
 fn unnamed(report: &Report, shares: Option<String>) -> String {
     let left = report.left.as_ref();
     let is_sure = left.is_none_or(Left::is_there);
@@ -237,8 +237,8 @@ pub(super) fn refitted(budget: &[Share]) -> Option<&Share> {
     budget.find(|part| part.is_refit() && part.is_material)
 }
 
-/// What re-fitted parameters and the material effects close of the gap, the largest share first, and what stays: all of
-/// them parts of the same whole, the gap of the model as stated.
+/// The shares of the gap closed by re-fitted parameters and by the material effects, the largest first, and the
+/// rest: all relative to the gap of the model as stated.
 fn shares(report: &Report) -> Option<String> {
     let budget = &report.how_far.as_ref()?.budget;
     let (mut material, others): (Vec<&Share>, Vec<&Share>) =
@@ -303,9 +303,9 @@ fn shares(report: &Report) -> Option<String> {
     Some(text)
 }
 
-/// A small part of a gap may still be a large error, where a model without the effects is lost at once.
+/// A small part of the gap may still be a large error, if the model without the effects diverges.
 fn far_from_floor(far: &HowFar) -> Option<String> {
-    /// Part of the gap that is told as nothing, and times of the floor that are too many.
+    /// Share of the gap that prints as nothing, and the multiple of the floor that is notable.
     const SMALL: f64 = 5e-4;
     const MANY: f64 = 2.0;
     let rest = far.budget.iter().find(|part| part.is_rest())?;
@@ -314,7 +314,7 @@ fn far_from_floor(far: &HowFar) -> Option<String> {
     is_far.then(|| format!(", yet errors are {times:.1} times the noise floor"))
 }
 
-/// What an interval that bounds a share hardly or not at all means.
+/// A remark on an interval that hardly bounds a share.
 fn unsettled([low, high]: [f64; 2]) -> &'static str {
     if low <= 0.0 {
         ", an interval in which the held-out runs leave it open whether it closes anything"
@@ -325,7 +325,7 @@ fn unsettled([low, high]: [f64; 2]) -> &'static str {
     }
 }
 
-/// What the recordings before told: effects that the model has now, and how many parameters.
+/// The diagnosis of the previous recordings: effects that the model now has, and how many parameters.
 pub fn before_sentence(change: &Change) -> String {
     let (_, effects) = &change.before;
     let had = match effects.as_slice() {
@@ -344,7 +344,7 @@ pub fn before_sentence(change: &Change) -> String {
     format!("{had}, {count} parameters fitted{differing}")
 }
 
-/// What differs from the recordings before.
+/// The difference from the previous recordings.
 fn changed(report: &Report, change: &Change, about: &[&str]) -> String {
     if !change.is_changed {
         return "nothing changed that matters for predictions".to_owned();
@@ -388,7 +388,7 @@ pub(super) fn leading(report: &Report) -> Option<&Hypothesis> {
     report.which.iter().find(|one| one.effects != ["unknown"])
 }
 
-/// Names of the hypotheses that say the same as the leading one.
+/// Names of the hypotheses indistinguishable from the leading one.
 fn twins(report: &Report) -> Vec<String> {
     let first = leading(report).map(|first| &first.effects);
     let same = report
@@ -432,7 +432,7 @@ fn hinted(hint: &Hint) -> String {
     )
 }
 
-/// What speaks against statements of the data set: channels that the model lacks, tolerances, inputs between rows.
+/// Evidence against statements of the data set: channels missing from the model, tolerances, inputs between rows.
 pub fn hints(report: &Report) -> Vec<String> {
     let tolerances = report.tolerances.iter().map(|found| {
         format!(
@@ -456,7 +456,7 @@ pub fn hints(report: &Report) -> Vec<String> {
 
 /// Windows that no hypothesis predicts, if any.
 pub fn events(report: &Report) -> Option<String> {
-    /// Longer lists are for the page.
+    /// Longer lists are shown on the page only.
     const MOST: usize = 4;
     let windows = report.place.windows.iter();
     let mut events: Vec<String> = windows
@@ -495,7 +495,7 @@ pub fn left_out(report: &Report) -> Option<String> {
     })
 }
 
-/// What channels lack that changes no prediction, if anything.
+/// Imperfections of channels that change no prediction, if any.
 pub fn imperfections(report: &Report) -> Option<String> {
     let named = report.imperfections.iter().map(|value| {
         let number = with_unit(&measured(value.value, value.std), &value.unit);
@@ -505,13 +505,13 @@ pub fn imperfections(report: &Report) -> Option<String> {
     let named: Vec<String> = named.collect();
     (!named.is_empty()).then(|| {
         format!(
-            "{}: in the recordings, but too small to change predictions; fitted beside every hypothesis",
+            "{}: in the recordings, but too small to change predictions; fitted together with every hypothesis",
             named.join(", ")
         )
     })
 }
 
-/// What a hypothesis says. Beside what the library lacks stand the effects that close a part of the gap.
+/// The effects of a hypothesis; for an unexplained rest, also the effects that close a part of the gap.
 pub fn said(report: &Report, hypothesis: &Hypothesis) -> String {
     let named = joined(&hypothesis.effects);
     if !hypothesis.is_unknown() {
@@ -523,7 +523,7 @@ pub fn said(report: &Report, hypothesis: &Hypothesis) -> String {
     if beside.is_empty() {
         named
     } else {
-        format!("{named} beside {}", beside.join(" + "))
+        format!("{named} in addition to {}", beside.join(" + "))
     }
 }
 

@@ -25,12 +25,12 @@ class Equations {
     });
   }
 
-  /** What a spec is written for comes at once. */
+  /** Shows the equations of motion at once. */
   show({ sections }) {
     sections.forEach((section, index) => this.put("equations", index, section));
   }
 
-  /** The derivation may be long; it comes while nothing else is to be done. */
+  /** Adds the sections of the derivation, which may be long, in idle time. */
   derive({ sections, version }) {
     this.version = version;
     const next = (index) => {
@@ -44,7 +44,7 @@ class Equations {
     next(0);
   }
 
-  /** A section that says the same stays as it is. */
+  /** An unchanged section is not replaced. */
   put(panel, index, text) {
     const id = `${panel}-${index}`;
     if (this.texts.get(id) === text) return;
@@ -52,13 +52,13 @@ class Equations {
     const section = at(id) ?? Object.assign(element(at(panel), "section"), { id });
     section.innerHTML = text;
     for (const row of section.querySelectorAll("[data-lines]")) {
-      // An equation of several lines is one stop of the keyboard.
+      // An equation of several lines is one tab stop.
       if (row.matches("tr, .first")) row.tabIndex = 0;
     }
     this.mark(this.lines, { within: section });
   }
 
-  /** The headings of the derivation, to go to. */
+  /** Lists the headings of the derivation and removes surplus sections. */
   list(count) {
     for (let index = count; at(`derivation-${index}`); index += 1) {
       at(`derivation-${index}`).remove();
@@ -71,7 +71,7 @@ class Equations {
     at("section").value = options[value] ? value : 0;
   }
 
-  /** Marks the equations that depend on one of these lines, or one with all its lines. Tells how many. */
+  /** Marks the equations that depend on one of these lines, or one with all its lines; returns their number. */
   mark(lines, { only = null, scroll = false, within = at("shown") } = {}) {
     this.lines = only ? new Set() : lines;
     const own = only && sameAs(only);
@@ -85,7 +85,7 @@ class Equations {
     return chosen.filter((row) => row.matches("mtr.first")).length;
   }
 
-  /** Shows one of these in the panel that is open, unless one is seen already. */
+  /** Scrolls to one of these in the open panel, unless one is visible already. */
   scrollTo(rows) {
     const panel = this.panels.find(({ hidden }) => !hidden);
     const here = rows.filter((row) => panel?.contains(row));

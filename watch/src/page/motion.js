@@ -1,6 +1,6 @@
-// Motions: asked for one at a time, shown in the frame and as plots.
+// Simulations: requested one at a time, shown as an animation and as plots.
 
-/** An older request is given up after this time, in ms. */
+/** A pending request is aborted after this time, in ms. */
 const SLOW = 400;
 
 class Motion {
@@ -21,13 +21,13 @@ class Motion {
     });
   }
 
-  /** An empty frame; it tells when it is ready. */
+  /** Loads an empty frame, which signals when it is ready. */
   load() {
     this.ready = false;
     this.frame.src = "motion.html";
   }
 
-  /** Asks for the motion with the values now; one that is under way is waited for, but not for long. */
+  /** Requests the simulation with the present values; a pending request is aborted only if it is slow. */
   async ask() {
     if (this.asking && performance.now() - this.since < SLOW) {
       this.again = true;
@@ -58,7 +58,7 @@ class Motion {
   }
 
   show({ version, ending, film, figure }) {
-    // The state at the end is for whoever asks.
+    // The final state is in the tooltip.
     at("ending").textContent = ending ? `The motion ends early: ${ending.split("; state:")[0]}` : "";
     at("ending").title = ending ?? "";
     at("motion").classList.remove("stale");
@@ -72,18 +72,18 @@ class Motion {
     this.plot();
   }
 
-  /** Plots take time to set; where nobody looks there are none. */
+  /** Plots are drawn only while their panel is open. */
   plot() {
     if (this.figure && !at("plots").hidden) at("plots").querySelector("img").src = imageOf(this.figure);
   }
 
   send() {
-    // The sandbox gives the frame an origin without a name.
+    // The sandboxed frame has an opaque origin.
     if (this.film) this.frame.contentWindow.postMessage(this.film, "*");
   }
 }
 
-/** What a frame is built for. Sizes and places may change in it. */
+/** The structure that a frame is built for; sizes and positions may change in it. */
 function partsOf({ title, points, frames, links, bodies, forces, contacts, columns, view }) {
   const kinds = bodies.map(({ name, centre, frame, shape }) => [name, centre, frame, shape.kind]);
   return JSON.stringify([title, points, frames, links, kinds, forces, contacts, columns, view.flat]);

@@ -1,6 +1,6 @@
-// The page: it follows the server, and joins its parts.
+// The page: receives the events of the server and connects its parts.
 
-/** What is shown, and when it came, for whoever measures: by part, its version and the time in ms since 1970. */
+/** Parts shown, for measurements: by part, its version and its time of arrival in ms since 1970. */
 const seen = {};
 
 function see(part, version) {
@@ -75,7 +75,7 @@ const shows = {
   },
 };
 
-/** Asks for the derivation of the newest model where somebody reads it; the rest does not wait for it. */
+/** Requests the derivation of the newest model when its panel is open; the other parts do not wait for it. */
 function read() {
   if (at("derivation").hidden || state.asked === state.model) return;
   state.asked = state.model;

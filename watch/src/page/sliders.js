@@ -1,7 +1,7 @@
-// Sliders of parameters, the initial state and inputs. Values that nobody has changed follow the spec.
+// Sliders of parameters, initial state and inputs. Values that were not changed by hand follow the spec.
 
 const GROUPS = { parameters: "parameters", initial: "initial state", inputs: "inputs" };
-/** Digits of a value that a slider gives. */
+/** Digits of a value set by a slider. */
 const DIGITS = 3;
 
 class Sliders {
@@ -45,7 +45,7 @@ class Sliders {
     at(focused)?.focus();
   }
 
-  /** A slider with a field beside it; inputs take expressions in t, states and parameters as well. */
+  /** A slider with an input field; inputs also accept expressions in t, states and parameters. */
   knob(parent, group, { name, about, unit, value, low, high }) {
     const key = `${group}.${name}`;
     const row = element(parent, "div", "", "knob");
@@ -86,7 +86,7 @@ class Sliders {
     return { put, value: String(value) };
   }
 
-  /** What differs from the spec, by group. */
+  /** Values that differ from the spec, by group. */
   values() {
     const values = { parameters: {}, initial: {}, inputs: {} };
     for (const [key, text] of this.own) {

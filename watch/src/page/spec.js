@@ -1,4 +1,4 @@
-// The text of the spec, with findings at their places and the lines that are chosen.
+// The text of the spec, with findings at their positions and the selected lines.
 
 const at = (id) => document.getElementById(id);
 
@@ -10,7 +10,7 @@ function element(parent, tag, text = "", name = "") {
   return made;
 }
 
-/** More lines than this are not shown; nobody reads them here. */
+/** Limit on the lines shown. */
 const MOST_LINES = 5000;
 
 class Spec {
@@ -52,7 +52,7 @@ class Spec {
     this.list.scrollTop = place;
   }
 
-  /** Errors, warnings and notes: a list above the text that leads to the lines, and each below its line. */
+  /** Errors, warnings and notes: in a list above the text with links to the lines, and each below its line. */
   find(list) {
     at("findings").replaceChildren();
     const marks = new Map();
@@ -81,7 +81,7 @@ class Spec {
     });
   }
 
-  /** An entry of the list; a click on it leads to its line. */
+  /** An entry of the list; a click scrolls to its line. */
   entry(finding, line) {
     const entry = element(at("findings"), "li");
     if (!line) {
@@ -96,7 +96,7 @@ class Spec {
     button.addEventListener("click", () => this.lead(line));
   }
 
-  /** Scrolls to a line and what is said below it. */
+  /** Scrolls to a line and the findings below it. */
   lead(line) {
     const row = this.rows[line - 1];
     if (!row) return;
@@ -151,12 +151,12 @@ function written(line, marks) {
     if (from >= comment) part.classList.add("comment");
     else if (/^\s*\[/.test(line)) part.classList.add("heading");
   });
-  // What ends where the line does has nothing to mark.
+  // A finding at the end of the line has no character to mark: a blank is added.
   if (marks.length && !code.querySelector("mark")) element(code, "mark", " ", marks[0].severity);
   return code;
 }
 
-/** Where the comment of a line begins. */
+/** Column at which the comment of a line begins. */
 function commentOf(line) {
   const found = /^(?:[^"'#]|"(?:[^"\\]|\\.)*"|'[^']*')*#/.exec(line);
   return found ? found[0].length - 1 : line.length;

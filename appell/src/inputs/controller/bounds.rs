@@ -1,4 +1,4 @@
-//! Bounds on the inputs along a stretch of a motion.
+//! Bounds on the inputs along a segment of a motion.
 
 use appell_runtime::inputs::InputSource;
 use appell_runtime::model::Along;
@@ -8,7 +8,7 @@ use super::Controller;
 use crate::inputs::law::Slot;
 
 impl Controller<'_> {
-    /// Bounds on the inputs; none where laws are sampled, scheduled or made of the equations of motion.
+    /// Bounds on the inputs; none for laws that are sampled, scheduled or by inverse dynamics.
     pub(super) fn bounds_along(&self, along: &Along<'_>, u: &mut [Enclosure]) {
         let wiring = self.wiring;
         let is_law = !wiring.sampled.is_empty() || !wiring.scheduled.is_empty();

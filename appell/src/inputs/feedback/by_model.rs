@@ -22,16 +22,16 @@ use super::reading::{Reader, Value};
 /// A law that computes its inputs from the equations of motion.
 #[derive(Debug)]
 pub struct ModelLaw {
-    /// What it does.
+    /// Its type.
     pub aim: Aim,
     /// Parameters of its model that differ from those of the motion, in SI.
     pub believed: Vec<(usize, f64)>,
 }
 
-/// What a law makes of the equations of motion.
+/// Control law by inverse dynamics.
 #[derive(Debug)]
 pub enum Aim {
-    /// Inputs that would hold the mechanism at rest where it is.
+    /// Inputs that would hold the mechanism at rest in its present position.
     GravityCompensation,
     /// Inputs that let coordinates follow desired motions: `q̈ = q̈_d − 2ζω (q̇ − q̇_d) − ω² (q − q_d)`.
     ComputedTorque {

@@ -11,7 +11,7 @@ use crate::setup::{Setup, bracketed, instead};
 
 pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
-/// What is read of a file, with what is wrong in it.
+/// Reader of a file, with its findings.
 pub(super) struct Reader<'r> {
     pub(super) file: &'r str,
     pub(super) text: &'r str,
@@ -152,7 +152,7 @@ impl Reader<'_> {
         read.into_iter().collect()
     }
 
-    /// A list under a key; nothing where the key or an element is missing or wrong.
+    /// A list under a key; nothing if the key is missing or an element is invalid.
     pub(super) fn list<T>(
         &mut self,
         table: &DeTable<'_>,
@@ -173,7 +173,7 @@ impl Reader<'_> {
         read.into_iter().collect()
     }
 
-    /// Expressions by the name of a state, with the place of each.
+    /// Expressions by the name of a state, with the position of each.
     pub(super) fn by_state(
         &mut self,
         table: &DeTable<'_>,
@@ -258,7 +258,7 @@ impl Reader<'_> {
         self.find(&name, "state", &self.states(), at)
     }
 
-    /// Position of a name; tells where it is unknown.
+    /// Index of a name; an unknown one is reported.
     pub(super) fn find(
         &mut self,
         name: &str,

@@ -9,10 +9,10 @@ use appell::ensemble::Running;
 use crate::failure::Error;
 use crate::progress;
 
-/// The interpreter of Python with the package, unless this variable names another one.
+/// Environment variable with the Python interpreter that has the package.
 const PYTHON: &str = "APPELL_PYTHON";
 
-/// Runs the chunks that are missing; `left` is how many these are.
+/// Runs the missing chunks, `left` of them.
 pub(super) fn run(
     study: &Path,
     out: &Path,

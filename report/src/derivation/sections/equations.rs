@@ -46,7 +46,7 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
         ""
     } else {
         {
-            "Given rates stand in place of the equations of their pseudo-velocities: drives bring whatever is left of these."
+            "Prescribed rates replace the equations of their pseudo-velocities: drives supply the required forces."
         }
     };
     let blocks = with(w, lead, equations);

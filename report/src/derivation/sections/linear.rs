@@ -78,7 +78,7 @@ pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
             continue;
         }
         let mut equations = Vec::new();
-        // A single column is not worth a display of its own.
+        // A single column needs no display.
         let whole = (2..=MOST_COLUMNS).contains(&columns) && rows.len() <= MOST_COLUMNS;
         let mut cells = Vec::with_capacity(rows.len());
         for (i, row) in rows.iter().enumerate() {

@@ -12,7 +12,7 @@ use crate::symbolic::{Expr, evaluate};
 /// Maximum Newton steps; each is halved until the residual decreases.
 const STEPS: usize = 50;
 const HALVINGS: i32 = 30;
-/// Residual relative to the first one, or residual of a negligible step, that counts as zero.
+/// Relative tolerance for the residual, and for steps without effect.
 const SOLVED: f64 = 1e-9;
 /// Relative change of a coordinate that is not reported: initial values are guesses.
 const GUESSED: f64 = 0.25;

@@ -13,7 +13,7 @@ use super::types::{Types, result_struct};
 use crate::program::{Function, Space, Term};
 use crate::schedule::{Argument, OperationCount, Schedule};
 
-/// What the rows and columns of a plain array are, where no struct tells it.
+/// Meanings of the rows and columns of a plain array that has no struct.
 fn rows_and_columns(function: &Function) -> Vec<String> {
     let [array] = function.results.as_slice() else {
         return Vec::new();
@@ -33,7 +33,7 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     }
 }
 
-/// What the names of values mean, where they occur, in the body or in the equations `told` over it.
+/// Meanings of the names in the body or in the equations above it, `told`.
 fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<String> {
     let occurs = |term: &&Term| {
         let mut names = schedule.names.iter().chain(told);
@@ -123,7 +123,7 @@ pub(super) fn function(
     let [parameters_type, state_type, inputs_type] =
         [Space::Parameters, Space::State, Space::Inputs]
             .map(|space| types.vector(space, &quote!(T)));
-    // What is not inlined into a loop over lanes has no lanes.
+    // Only functions inlined into a loop over lanes are vectorised.
     let inline = if lanes && in_lanes(function.kind) {
         quote!(#[inline(always)])
     } else {

@@ -1,4 +1,4 @@
-//! The steps of a schedule as statements, with names for its arguments.
+//! Converts the steps of a schedule to statements, with names for its arguments.
 
 use std::collections::BTreeSet;
 
@@ -15,19 +15,19 @@ use crate::symbolic::{Rational, Relation};
 /// The array of all values.
 pub(super) const ARRAY: &str = "v";
 
-/// How a function holds what it computes with.
+/// Storage of a function's arguments and values.
 pub(super) enum Places<'a> {
     /// Arguments and values are locals.
     Locals(&'a ArgumentNames),
-    /// Values are entries of the array `v`: compilers cannot take thousands of locals, each in the scope of the one
-    /// before. Arguments are read where they are used.
+    /// Values are entries of the array `v`, since compilers cannot handle thousands of locals in nested scopes.
+    /// Arguments are read at each use.
     Array {
         /// An argument.
         argument: &'a dyn Fn(Argument) -> Expr,
     },
 }
 
-/// The statements of a function on their way.
+/// The statements of a function under construction.
 pub(super) struct Statements<'a> {
     places: Places<'a>,
     schedule: &'a Schedule,
@@ -83,7 +83,7 @@ impl<'a> Statements<'a> {
         }
     }
 
-    /// A value, to be read or written.
+    /// A value as a place expression.
     fn place(&self, Value(value): Value) -> Expr {
         match self.places {
             Places::Locals(_) => s::name(self.value(Value(value))),
@@ -91,7 +91,7 @@ impl<'a> Statements<'a> {
         }
     }
 
-    /// Values are told; those that nothing uses are left out.
+    /// Defines values that are used; others are omitted.
     fn define(&mut self, pattern: syn::Pat, places: Expr, tree: Expr) {
         match self.places {
             Places::Locals(_) => self.push(pattern, tree),
@@ -159,7 +159,7 @@ impl<'a> Statements<'a> {
         }
     }
 
-    /// Name of a factorisation, not that of a value.
+    /// Name of a factorisation, distinct from values.
     fn factors(&self, factorisation: u32) -> String {
         let mut name = format!("lu_{}", factorisation + 1);
         let taken = |name: &String| {
@@ -175,7 +175,7 @@ impl<'a> Statements<'a> {
         name
     }
 
-    /// Values that something uses.
+    /// Values that are used.
     fn used(&self) -> BTreeSet<Value> {
         let entries = self
             .schedule
@@ -251,7 +251,7 @@ fn trees(steps: &[Step]) -> impl Iterator<Item = &Tree> {
     })
 }
 
-/// What a tree is made of.
+/// The direct subtrees of a tree.
 fn parts(tree: &Tree) -> Vec<&Tree> {
     match tree {
         Tree::Value(_) | Tree::Argument(_) | Tree::Constant(_) => Vec::new(),
@@ -273,7 +273,7 @@ fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
     }
 }
 
-/// The number as Rust computes it: rounded once.
+/// The number as a Rust expression that rounds it once.
 fn constant(value: &Rational) -> Expr {
     const EXACT: u64 = 1 << 53;
     // Clippy rejects the digits of π.

@@ -83,7 +83,7 @@ impl Derived {
     }
 }
 
-/// Reads a spec and makes the program with the functions `kinds`.
+/// Reads a spec and derives the program with the functions `kinds`.
 pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
     derived(file, text)?.program(text, kinds)
 }

@@ -79,13 +79,13 @@ pub struct Arguments {
     pub inputs: Vec<SymbolId>,
     /// Parameters.
     pub parameters: Vec<SymbolId>,
-    /// Weights of [`FunctionKind::Adjoint`], where the program has it.
+    /// Weights of [`FunctionKind::Adjoint`], if the program has it.
     pub weights: Vec<SymbolId>,
-    /// Weights of [`FunctionKind::OutputAdjoint`], where the program has it.
+    /// Weights of [`FunctionKind::OutputAdjoint`], if the program has it.
     pub output_weights: Vec<SymbolId>,
     /// Given pseudo-accelerations.
     pub accelerations: Vec<SymbolId>,
-    /// The number π, where expressions may contain it.
+    /// The number π, if expressions may contain it.
     pub pi: Option<SymbolId>,
 }
 

@@ -41,9 +41,8 @@ use crate::program::{self, Program};
 /// The operations of one function of a program, their number minimised heuristically.
 ///
 /// # Panics
-///
-/// If an expression contains a symbol that is not an argument of the program, which the derivation
-/// must not let happen.
+/// If an expression contains a symbol that is not an argument of the program, which would be a bug of the
+/// derivation.
 pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
     schedule_tuned(program, function, Tuning::default())
 }

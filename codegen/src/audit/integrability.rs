@@ -17,7 +17,7 @@ use crate::symbolic::{Expr, Graph, Substitution};
 const MOST_FIELDS: usize = 24;
 /// Longer velocities are skipped: their brackets are more expensive than the equations.
 const MOST_OPERATIONS: usize = 250;
-/// The search ends after creating so many expressions.
+/// Number of new expressions at which the search ends.
 const MOST_EXPRESSIONS: usize = 20_000;
 
 /// A motion that is admissible at every position.

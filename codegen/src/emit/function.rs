@@ -33,7 +33,7 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     }
 }
 
-/// Meanings of the names in the body or in the equations above it, `told`.
+/// Meanings of the names in the body of a function or in its displayed equations.
 fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<String> {
     let occurs = |term: &&Term| {
         let mut names = schedule.names.iter().chain(told);

@@ -83,7 +83,7 @@ fn signals(text: &mut String, program: &Program) {
             .flat_map(|signal| of(signal).to_vec())
             .collect()
     };
-    // The signals of a spec are functions of time.
+    // The tables of a checked spec are functions of time.
     let tables: Vec<Signal> = (info.signals.iter())
         .filter_map(|table| Signal::new(table).ok())
         .collect();

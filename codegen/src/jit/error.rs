@@ -76,7 +76,7 @@ pub enum JitError {
         /// How many there are.
         len: usize,
     },
-    /// The program lacks a function that its sizes ask for.
+    /// The program lacks a function that its sizes require.
     #[error("the program has no function {kind:?}")]
     MissingFunction {
         /// Which one.

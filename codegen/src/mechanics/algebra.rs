@@ -277,8 +277,8 @@ impl Algebra {
         Some(self.graph.nest(expanded))
     }
 
-    /// A quotient as `whole + over / under` without common factors, with `parts` substituted: `[whole, over,
-    /// under]`. `None` if the expansion has too many terms.
+    /// A quotient as `whole + over / under` without common factors, with `parts` substituted:
+    /// `[whole, over, under]`. `None` if the expansion has too many terms.
     pub fn cancelled(
         &mut self,
         numerator: Expr,

@@ -108,8 +108,8 @@ impl FactorizedBlock {
         self.speeds.iter().copied().zip(self.pivots.iter().copied())
     }
 
-    /// Solution of `M x = right` for the speeds of the block. `name` is called on the solution `z` of `L z =
-    /// right`.
+    /// Solution of `M x = right` for the speeds of the block. `name` is called on the solution `z` of
+    /// `L z = right`.
     pub fn solve(
         &self,
         algebra: &mut Algebra,

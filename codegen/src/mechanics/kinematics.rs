@@ -42,7 +42,7 @@ pub enum Effort<'a> {
 pub struct RollingContact {
     /// The rolling body.
     pub body: BodyId,
-    /// Where it touches the ground.
+    /// The contact point.
     pub point: PointId,
 }
 

@@ -21,8 +21,7 @@ pub struct Equation {
 pub struct OpenSystem {
     /// Coordinates whose rates it determines.
     pub coordinates: Vec<usize>,
-    /// Symbols of these rates; in place of the vector part of a quaternion's rate they denote the angular
-    /// velocity.
+    /// Symbols of these rates; those of the vector part of a quaternion denote the angular velocity instead.
     pub unknowns: Vec<Expr>,
     /// The constraint row of each equation; `None` for the definition of a pseudo-velocity.
     pub rows: Vec<Option<usize>>,

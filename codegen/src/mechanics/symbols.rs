@@ -42,7 +42,7 @@ pub struct Symbols {
 }
 
 impl Symbols {
-    /// Makes the symbols; parameters first, so that canonical products start with them.
+    /// Creates the symbols; parameters first, so that canonical products start with them.
     pub fn new(graph: &mut Graph, mechanism: &Mechanism) -> Self {
         let mut all = |names: &mut dyn Iterator<Item = String>| -> Vec<Expr> {
             names.map(|name| graph.symbol(&name)).collect()

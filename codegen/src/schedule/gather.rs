@@ -1,6 +1,5 @@
-//! Factoring and distribution with available expressions. If `l x` is available, `h l x - h y`
-//! becomes `h (l x - y)`; if `m a` and `m b` are available, `m (a + b) + c` becomes `m a + m b +
-//! c`.
+//! Factoring and distribution with available expressions. If `l x` is available, `h l x - h y` becomes
+//! `h (l x - y)`; if `m a` and `m b` are available, `m (a + b) + c` becomes `m a + m b + c`.
 //!
 //! [`super::factor`] opens only single-use products. Here `h l` may be shared: the quotient has to
 //! be available, which is looked up by its value number.

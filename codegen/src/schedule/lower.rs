@@ -11,8 +11,8 @@ use crate::symbolic::{Expr, Graph, Node, Rational, SymbolId};
 ///
 /// # Panics
 ///
-/// If an expression contains a symbol that is not an argument of the program, which the derivation
-/// must not let happen.
+/// If an expression contains a symbol that is not an argument of the program, which would be a bug of the
+/// derivation.
 pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     let roots: Vec<Expr> = function
         .results

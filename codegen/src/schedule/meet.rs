@@ -1,6 +1,5 @@
-//! Global value numbering modulo commutativity, associativity and distributivity: merges `sin θ (m
-//! a - n b)` and `m a sin θ - n b sin θ`, which different passes produce, and restores the names of
-//! the derivation.
+//! Global value numbering modulo commutativity, associativity and distributivity: merges `sin θ (m a - n b)`
+//! and `m a sin θ - n b sin θ`, which different passes produce, and restores the names of the derivation.
 //!
 //! Value numbers are evaluations at two random points of a prime field of 61 bits. Different sums
 //! and products of degree `d` collide with probability at most `(d/p)²`; other functions are

@@ -107,7 +107,7 @@ pub enum Tree {
         relation: Relation,
         /// Left and right side of the relation.
         compared: Box<[Tree; 2]>,
-        /// Value where it holds, value elsewhere.
+        /// Value if it holds, value otherwise.
         branches: Box<[Tree; 2]>,
     },
 }

@@ -56,7 +56,7 @@ impl Graph {
         divisors.len()
     }
 
-    /// Brings an expression over a common denominator, operands before users.
+    /// Converts an expression to a single fraction, operands before users.
     fn together(&mut self, expr: Expr, limit: usize) -> Option<Fraction> {
         let mut known: FxHashMap<Expr, Fraction> = FxHashMap::default();
         for part in self.in_order(&[expr]) {

@@ -9,13 +9,13 @@
 //!
 //! - **Sine and cosine.** An angle is split into atoms, `Σ coefficient · atom`. The *value* of an atom
 //!   determines a pseudo-random point of the unit circle; equal atoms get equal points in whatever form they
-//!   are written. The circle is a cyclic group of `p + 1 = 48 q` elements. The point drawn represents `atom /
-//!   2304`; a coefficient `n / d` multiplies it by `2304 n / d`, where the part of `d` that does not divide
-//!   2304 is inverted modulo the group's order. That is a homomorphism from the angles to the circle, hence
-//!   all addition theorems and all formulas for multiples and fractions of angles are exact. A coefficient
-//!   with `n d > 2^24`, or with more factors 2 and 3 in `d` than 2304 has, becomes part of its atom; the
-//!   angle is then unrelated to other multiples of the atom. Angles are not expanded: `x (y + z)` and `x y +
-//!   x z` are different atoms. If the symbol of π is given, multiples of `π/24` have their exact values,
+//!   are written. The circle is a cyclic group of `p + 1 = 48 q` elements. The point drawn represents
+//!   `atom / 2304`; a coefficient `n / d` multiplies it by `2304 n / d`, where the part of `d` that does not
+//!   divide 2304 is inverted modulo the group's order. That is a homomorphism from the angles to the circle,
+//!   hence all addition theorems and all formulas for multiples and fractions of angles are exact. A
+//!   coefficient with `n d > 2^24`, or with more factors 2 and 3 in `d` than 2304 has, becomes part of its
+//!   atom; the angle is then unrelated to other multiples of the atom. Angles are not expanded: `x (y + z)` and
+//!   `x y + x z` are different atoms. If the symbol of π is given, multiples of `π/24` have their exact values,
 //!   consistent with `√2` and `√3`.
 //! - **exp, sinh, cosh, tanh.** The same with the multiplicative group and multiples of `1/720`.
 //! - **Square root.** The root that is a square itself. Where the radicand is not a square, the point is
@@ -250,8 +250,8 @@ impl IdentityTest {
     /// degrees, two different arguments have the same value with probability at most `m A / s`, and otherwise
     /// `e` vanishes with probability at most `D / s`. Here `s = p / 48` is the number of values that a drawn
     /// element takes when angles and exponents are integer multiples. Each of `k` square roots at most halves
-    /// the defined points and doubles the degree. So a trial errs with probability at most `4^k (D + m A) /
-    /// s`, and two trials with its square.
+    /// the defined points and doubles the degree. So a trial errs with probability at most `4^k (D + m A) / s`,
+    /// and two trials with its square.
     pub fn error_bound(&self, g: &Graph, e: Expr) -> f64 {
         bound::per_trial(g, e, &self.quaternions)
             .powi(i32::try_from(TRIALS).unwrap_or(1))

@@ -1,4 +1,4 @@
-//! Expressions for people: Unicode text, `LaTeX` and `MathML`.
+//! Typesets expressions as Unicode text, `LaTeX` and `MathML`.
 //!
 //! A [`Setter`] converts an expression to a formula: it orders terms and factors, forms quotients and inserts
 //! brackets. [`text()`], [`latex()`] and [`mathml()`] write a formula.

@@ -130,7 +130,7 @@ impl Rational {
         }
     }
 
-    /// Integer power. `None` for zero to a negative exponent and where the result would be too long.
+    /// Integer power. `None` for zero to a negative exponent, or if the result would be too long.
     pub fn checked_pow(&self, exponent: i32) -> Option<Self> {
         if exponent == 1 || self.is_one() {
             return Some(self.clone());

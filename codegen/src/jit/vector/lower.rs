@@ -344,6 +344,6 @@ impl Lowering {
 
 fn push(nodes: &mut Vec<Node>, node: Node) -> Id {
     nodes.push(node);
-    // The checked limits keep the number of values far below.
+    // The checked limits keep the number of values far below this.
     Id(u32::try_from(nodes.len() - 1).unwrap_or(u32::MAX))
 }

@@ -263,8 +263,8 @@ impl Articulated {
         }
     }
 
-    /// Moves the reference point; the present one is at `d` from the new one: `K + d× M` and `J − K d× + d× (K
-    /// + d× M)ᵀ`.
+    /// Moves the reference point; the present one is at `d` from the new one: `K + d× M` and
+    /// `J − K d× + d× (K + d× M)ᵀ`.
     fn shifted(&self, graph: &mut Graph, d: Vec3) -> Self {
         let mut coupling = self.coupling;
         for column in 0..3 {

@@ -156,8 +156,8 @@ pub(super) fn per_trial(g: &Graph, root: Expr, quaternions: &[[SymbolId; 4]]) ->
     (4f64.powf(roots.len() as f64) * (degree + drawn * arguments) / values).min(1.0)
 }
 
-/// The coefficients of an angle or an exponent in multiples of the expression's common unit: `Σ |coefficient|
-/// · unit`, at least 1.
+/// The coefficients of an angle or an exponent in multiples of the expression's common unit:
+/// `Σ |coefficient| · unit`, at least 1.
 fn multiples(g: &Graph, argument: Expr, unit: f64) -> f64 {
     let sum: f64 = coefficients(g, argument)
         .iter()

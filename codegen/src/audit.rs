@@ -1,9 +1,8 @@
-//! Warnings about specs that are valid but probably mistaken, found in the equations and stated in
-//! physical terms.
+//! Warnings about specs that are valid but probably mistaken, found in the equations and stated in physical
+//! terms.
 //!
-//! The derivation refuses what has no equations of motion. The audit reads the equations of what it
-//! accepts; each file is one question about them. Only findings that are proven, or shown by an
-//! example, are reported.
+//! The derivation rejects mechanisms without equations of motion. The audit examines the equations of accepted
+//! ones; each file is one check. Only findings that are proven, or shown by an example, are reported.
 
 mod bench;
 mod contact;
@@ -61,8 +60,8 @@ pub fn audit(mechanism: &Mechanism, derivation: &Derivation) -> Audit {
     told
 }
 
-/// What may be the reason why a mechanism has no equations of motion: contacts that take a velocity
-/// more than their author thought.
+/// Possible reasons why a mechanism has no equations of motion: contacts that remove one velocity more than
+/// intended.
 pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
     if !refused.iter().any(|f| counts_velocities(f.code)) {
         return Vec::new();
@@ -74,7 +73,7 @@ pub fn reasons(mechanism: &Mechanism, refused: &[Finding]) -> Vec<Finding> {
     contact::findings(&mut algebra, mechanism, &symbols)
 }
 
-/// Whether a refusal comes of how many velocities the constraints leave.
+/// Whether an error may result from the number of velocities that the constraints leave free.
 pub fn counts_velocities(code: Code) -> bool {
     matches!(
         code,

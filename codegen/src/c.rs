@@ -1,7 +1,7 @@
-//! Equations as C99: one header and one source, without allocation, with the names and units of the spec.
+//! Equations in C99: one header and one source, without allocation, with the names and units of the spec.
 //!
-//! Operations and their order are those of the schedule, hence of the emitted Rust: compiled without contraction,
-//! the results are the same bits.
+//! Operations and their order are those of the schedule, hence of the emitted Rust: compiled without
+//! contraction, the results are bit-identical.
 
 mod adapters;
 mod types;
@@ -25,14 +25,14 @@ pub enum Real {
     /// 64 bits.
     #[default]
     Double,
-    /// 32 bits, with the functions of `math.h` that end in `f`.
+    /// 32 bits, with the functions of `math.h` with suffix `f`.
     Float,
 }
 
-/// What to emit.
+/// Options of the emission.
 #[derive(Debug, Clone)]
 pub struct Options {
-    /// The functions; those that the program lacks are left out.
+    /// The functions; those that the program lacks are skipped.
     pub functions: Vec<FunctionKind>,
     /// The type of all numbers.
     pub real: Real,
@@ -41,7 +41,7 @@ pub struct Options {
 }
 
 impl Default for Options {
-    /// The functions that emitted Rust has, in double precision.
+    /// The functions of emitted Rust, in double precision.
     fn default() -> Self {
         Self {
             functions: FunctionKind::STANDARD.to_vec(),
@@ -62,7 +62,7 @@ pub struct Emitted {
     pub source: String,
 }
 
-/// Words that are no names in C, and names of `math.h` that are macros or objects somewhere.
+/// Keywords of C, and names of `math.h` that some implementations define as macros or objects.
 const KEYWORDS: &[&str] = &[
     "auto",
     "break",
@@ -189,7 +189,7 @@ impl Real {
         }
     }
 
-    /// A number as the emitted Rust computes it: as a quotient of doubles, rounded once.
+    /// A number as in the emitted Rust: as a quotient of doubles, rounded once.
     fn number(self, value: &Rational) -> String {
         if let Some((1, 1)) = parts_of_pi(value) {
             return self.literal(std::f64::consts::PI);
@@ -269,12 +269,12 @@ fn heading(program: &Program) -> String {
     )
 }
 
-/// An array without entries is no object in C.
+/// An array without entries is not allowed in C.
 fn is_empty(program: &Program, array: &Array) -> bool {
     shape(program, array.layout).contains(&0)
 }
 
-/// What a function computes, and its results.
+/// Description of a function and its results.
 fn comment(program: &Program, function: &Function) -> String {
     let about = sentence(&function.kind.about().replace(['[', ']', '`'], ""));
     let mut text = format!("/* {about}\n");
@@ -291,7 +291,7 @@ fn comment(program: &Program, function: &Function) -> String {
     text + " */\n"
 }
 
-/// Static functions that bodies call.
+/// Static functions used in bodies.
 fn helpers(real: Real, bodies: &str) -> String {
     let number = real.name();
     let mut text = String::new();
@@ -310,7 +310,7 @@ fn helpers(real: Real, bodies: &str) -> String {
     text
 }
 
-/// The operations of `appell_runtime::dense` in their order.
+/// The operations of `appell_runtime::dense` in the same order.
 const LU: &str = "\
 /* P A = L U with partial pivoting, n by n, row by row. */
 static void lu_factor(int n, REAL *a, unsigned char *exchanged) {
@@ -464,7 +464,7 @@ fn statement(text: &mut String, infix: &Infix<'_, Real>, real: &str, step: &Step
                 infix.free(&format!("moved_{f}")),
             );
             let size = values.len();
-            // The first unknown names the list, as each is defined once.
+            // The list is named after the first unknown, since each is defined once.
             let first = values
                 .first()
                 .map(|value| infix.value(*value))

@@ -1,4 +1,4 @@
-//! From the text of a spec to its program, with every mistake told at its place in the text.
+//! Compiles the text of a spec to its program; all errors are reported at their positions in the text.
 
 use appell_spec::mechanism::Mechanism;
 use appell_spec::{Code, Diagnostic, Report, Severity};
@@ -15,7 +15,7 @@ pub struct Derived {
     pub mechanism: Mechanism,
     /// The derivation, stage by stage.
     pub derivation: Derivation,
-    /// What looks unintended in the spec.
+    /// Constructs in the spec that are probably unintended.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -44,8 +44,8 @@ pub fn derived(file: &str, text: &str) -> Result<Derived, Report> {
     }
 }
 
-/// [`derived`], with what an [audit](crate::audit) of the equations tells among the warnings. Notes
-/// stand there as well.
+/// [`derived`], with the results of an [audit](crate::audit) of the equations as further warnings, notes
+/// included.
 pub fn audited(file: &str, text: &str) -> Result<Derived, Report> {
     let mut derived = derived(file, text)?;
     derived.audit(text);
@@ -64,14 +64,14 @@ impl Derived {
             .map_err(|findings| report(&mechanism, text, &findings))
     }
 
-    /// Adds what an [audit](crate::audit) of the equations tells to the warnings; `text` is that of
-    /// the spec.
+    /// Adds the results of an [audit](crate::audit) of the equations to the warnings; `text` is that of the
+    /// spec.
     pub fn audit(&mut self, text: &str) {
         let Audit { warnings, notes } = audit(&self.mechanism, &self.derivation);
         let findings = warnings.iter().map(|finding| (finding, Severity::Warning));
         for (finding, severity) in findings.chain(notes.iter().map(|note| (note, Severity::Note))) {
             let diagnostic = diagnostic(&self.mechanism, text, finding, severity);
-            // What nothing uses has no effect either.
+            // An unused item has no effect either.
             let place = |d: &Diagnostic| d.labels.first().map(|(span, _)| span.clone());
             let is_told = |known: &Diagnostic| {
                 known.code == Code::UnusedName && place(known) == place(&diagnostic)
@@ -83,7 +83,7 @@ impl Derived {
     }
 }
 
-/// Reads a spec and makes the program with the functions `kinds`.
+/// Reads a spec and derives the program with the functions `kinds`.
 pub fn compile(file: &str, text: &str, kinds: &[FunctionKind]) -> Result<Program, Report> {
     derived(file, text)?.program(text, kinds)
 }
@@ -95,7 +95,7 @@ pub fn regressor(file: &str, text: &str) -> Result<Regressor, Report> {
         .map_err(|findings| refused(&checked.mechanism, text, &findings))
 }
 
-/// Report on a refused mechanism: the errors, and possible causes as warnings.
+/// Report on a rejected mechanism: the errors, and possible causes as warnings.
 fn refused(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
     let reasons = reasons(mechanism, findings);
     let mut findings = findings.to_vec();
@@ -114,7 +114,7 @@ fn refused(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
     Report::new(mechanism.file.as_str(), text, diagnostics)
 }
 
-/// What the derivation found wrong, at its place in the text of the spec.
+/// Errors of the derivation, at their positions in the text of the spec.
 pub fn report(mechanism: &Mechanism, text: &str, findings: &[Finding]) -> Report {
     let diagnostics = findings
         .iter()
@@ -143,7 +143,7 @@ fn diagnostic(
         Item::Output(i) => Some(&mechanism.outputs[i].label.span),
     };
     let span = item.cloned().filter(|span| !span.is_empty()).or_else(|| {
-        // What concerns the whole mechanism concerns the choice of its pseudo-velocities.
+        // Findings about the whole mechanism are shown at its pseudo-velocities.
         let (ast, _) = appell_spec::parse::parse(text);
         let section = |name: &str| {
             ast.sections

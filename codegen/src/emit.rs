@@ -1,9 +1,9 @@
-//! Readable Rust from a program. Nothing else in this crate knows how Rust is written.
+//! Emits readable Rust from a program. All knowledge of Rust syntax in this crate is here.
 //!
-//! The files: [`types`] writes the structs, [`function`] signatures and rustdoc, [`statements`] turns the
-//! steps of a schedule into statements, [`body`] adds arguments and results, [`model`] implements the run-time trait,
-//! [`equations`] writes what a function computes as a person does, [`picture`] draws small matrices, [`layout`] places
-//! comments and blank lines, [`markdown`] writes the page about the model, and [`syntax`] holds short constructors.
+//! The files: [`types`] emits the structs, [`function`] signatures and rustdoc, [`statements`] converts the
+//! steps of a schedule to statements, [`body`] adds arguments and results, [`model`] implements the run-time
+//! trait, [`equations`] displays the equations of a function, [`picture`] draws small matrices, [`layout`] inserts
+//! comments and blank lines, [`markdown`] writes the page about the model, and [`syntax`] has short constructors.
 
 mod body;
 mod equations;
@@ -26,7 +26,7 @@ use types::Types;
 
 pub use error::Error;
 
-/// What to emit.
+/// Options of the emission.
 #[derive(Debug, Clone)]
 pub struct Options {
     /// The functions; empty for all that the program has.
@@ -36,9 +36,9 @@ pub struct Options {
     /// Whether to emit `INFO` and the implementation of `Model`, which need the standard library
     /// and all functions.
     pub model_impl: bool,
-    /// What the schedules are made for.
+    /// Cost model of the schedules.
     pub tuning: Tuning,
-    /// Text of the spec, kept in the constant `SPEC`.
+    /// Text of the spec, emitted as the constant `SPEC`.
     pub spec: Option<String>,
 }
 
@@ -63,7 +63,7 @@ pub struct Emitted {
     pub docs: String,
     /// Name of the type that implements `Model`.
     pub model: String,
-    /// Operations of every function.
+    /// Operation counts of every function.
     pub costs: Vec<(FunctionKind, OperationCount)>,
 }
 

@@ -1,12 +1,13 @@
-//! A model as an FMU of FMI 3.0, for model exchange and co-simulation: its texts. Nothing is compiled or packed here.
+//! A model as an FMU of FMI 3.0, for model exchange and co-simulation: its source texts. Compilation and
+//! packing are done elsewhere.
 //!
 //! - `variables.rs`: names, value references, units;
 //! - `inputs.rs`: inputs within a step of co-simulation;
-//! - `structure.rs`: which variables depend on which;
+//! - `structure.rs`: dependencies between variables;
 //! - `description.rs`: `modelDescription.xml` and `buildDescription.xml`;
 //! - `tables.rs`: the numbers of a model in C;
 //! - `xml.rs`: elements, with all texts escaped;
-//! - `c/`: what is the same for all models, in C99.
+//! - `c/`: code common to all models, in C99.
 
 mod description;
 mod inputs;
@@ -21,9 +22,9 @@ use crate::program::{FunctionKind, Program};
 pub use inputs::InputsOfStep;
 use variables::Variables;
 
-/// What is to be compiled beside the equations.
+/// The source file to compile in addition to the equations.
 const FUNCTIONS: &str = "fmi-functions.c";
-/// C that is the same for all models. No mechanism has such a name.
+/// C code common to all models. No mechanism has such a name.
 const TEMPLATES: [(&str, &str); 5] = [
     ("fmi-absent.h", include_str!("fmu/c/fmi-absent.h")),
     ("fmi-derivatives.h", include_str!("fmu/c/fmi-derivatives.h")),
@@ -47,7 +48,7 @@ pub struct Emitted {
     pub compiled: [String; 2],
 }
 
-/// The functions that a program needs to become an FMU.
+/// The functions that a program needs for an FMU.
 pub fn functions() -> [FunctionKind; 7] {
     adapted()
 }
@@ -89,12 +90,12 @@ pub fn emit(program: &Program, inputs: InputsOfStep) -> Emitted {
     }
 }
 
-/// A name for these texts: FNV-1a of 128 bits.
+/// An identifier of these texts: FNV-1a of 128 bits.
 fn token<'t>(texts: impl Iterator<Item = &'t str>) -> String {
     const START: u128 = 0x6c62_272e_07bb_0142_62b8_2175_6295_c58d;
     const PRIME: u128 = 0x0000_0000_0100_0000_0000_0000_0000_013b;
     let step = |hash: u128, byte: u8| (hash ^ u128::from(byte)).wrapping_mul(PRIME);
-    // A zero ends each text.
+    // A zero terminates each text.
     let bytes = texts.flat_map(|text| text.bytes().chain([0]));
     format!("{{{:032x}}}", bytes.fold(START, step))
 }

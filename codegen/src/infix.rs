@@ -1,7 +1,7 @@
-//! Schedules in languages whose operators are written as in mathematics, such as C and Python.
+//! Expressions of schedules in languages with infix operators, such as C and Python.
 //!
-//! A [`Dialect`] says how names, numbers, functions and choices are written; operators, parentheses and the
-//! order of evaluation are the same in all of them, and those of the schedule.
+//! A [`Dialect`] defines names, numbers, functions and choices; operators, parentheses and the order of
+//! evaluation are common to all, and follow the schedule.
 
 use std::collections::BTreeSet;
 
@@ -11,9 +11,9 @@ use crate::schedule::piece::method;
 use crate::schedule::{Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Function, Rational, Relation};
 
-/// What differs between languages.
+/// The differences between languages.
 pub(crate) trait Dialect {
-    /// A name that the language does not keep for itself.
+    /// A name that is not reserved in the language.
     fn name(&self, name: &str) -> String;
     /// A function of one argument.
     fn function(&self, function: Function, of: &str) -> String;
@@ -21,11 +21,11 @@ pub(crate) trait Dialect {
     fn atan2(&self, y: &str, x: &str) -> String;
     /// A power with a real exponent.
     fn power(&self, base: &str, exponent: &str) -> String;
-    /// Left, right, value where the relation holds, value elsewhere.
+    /// Compared left and right sides, value if the relation holds, value otherwise.
     fn choice(&self, relation: Relation, operands: [String; 4]) -> String;
 }
 
-/// Name of a function of one argument in `math.h`; the sign, which that lacks, is `sign`.
+/// Name of a function of one argument in `math.h`, or `sign`, which `math.h` lacks.
 pub(crate) fn math_name(function: Function) -> &'static str {
     match function {
         Function::Ln => "log",
@@ -34,7 +34,7 @@ pub(crate) fn math_name(function: Function) -> &'static str {
     }
 }
 
-/// How tightly an operation binds.
+/// Precedence of an operation.
 #[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Level {
     Sum,
@@ -67,7 +67,7 @@ impl<D: Dialect> Infix<'_, D> {
         trees.join(", ")
     }
 
-    /// A tree where something that binds as tightly as `least` is needed.
+    /// A tree, in parentheses if its precedence is below `least`.
     // Trees are at most one printed line deep.
     fn at(&self, tree: &Tree, least: Level) -> String {
         let (text, level) = match tree {
@@ -117,7 +117,7 @@ impl<D: Dialect> Infix<'_, D> {
         }
     }
 
-    /// The numbers in a function, without their signs.
+    /// The absolute values of the numbers in a function.
     pub(crate) fn constants(&self) -> BTreeSet<Rational> {
         let mut constants = BTreeSet::new();
         visit(self.schedule, &mut |tree| {
@@ -128,7 +128,7 @@ impl<D: Dialect> Infix<'_, D> {
         constants
     }
 
-    /// Whether a value occurs after its definition.
+    /// Values that are used after their definition.
     pub(crate) fn used(&self) -> BTreeSet<Value> {
         let mut used = BTreeSet::new();
         visit(self.schedule, &mut |tree| {
@@ -139,7 +139,7 @@ impl<D: Dialect> Infix<'_, D> {
         used
     }
 
-    /// A name that neither an argument nor a value has.
+    /// A name different from all arguments and values.
     pub(crate) fn free(&self, wanted: &str) -> String {
         let mut name = wanted.to_owned();
         while self.schedule.names.contains(&name) || self.names.iter().any(|other| *other == name) {
@@ -149,7 +149,7 @@ impl<D: Dialect> Infix<'_, D> {
     }
 }
 
-/// Calls a function with every tree of a schedule and every part of one.
+/// Calls a function on every tree of a schedule and every subtree.
 fn visit<'t>(schedule: &'t Schedule, see: &mut impl FnMut(&'t Tree)) {
     let mut rest: Vec<&Tree> = Vec::new();
     for step in &schedule.steps {
@@ -177,7 +177,7 @@ fn visit<'t>(schedule: &'t Schedule, see: &mut impl FnMut(&'t Tree)) {
     }
 }
 
-/// Rows and columns of an array; one row for a list, none of either for a number.
+/// Rows and columns of an array; only columns for a list, neither for a number.
 pub(crate) fn shape(program: &Program, layout: Layout) -> Vec<usize> {
     let len = |space: Space| match space {
         Space::ConstraintRows => program.info.constraint_rows.len(),

@@ -1,7 +1,7 @@
-//! A program executed step by step, behind the trait of all models.
+//! Interprets a program, behind the trait of all models.
 //!
-//! It is slow and has no requirements: the yardstick for emitted and compiled code, and the way
-//! out where no machine code can be made.
+//! It is slow and portable: the reference for emitted and compiled code, and the fallback where no machine code
+//! can be generated.
 
 use std::sync::OnceLock;
 
@@ -13,16 +13,16 @@ use appell_runtime::switching::Counts;
 use crate::program::{FunctionKind, Program};
 use crate::schedule::{Schedule, enclose, enclose_along, interpret_weighted, schedule};
 
-/// A model that interprets its schedules. Functions that the program lacks give NaN.
+/// A model that interprets its schedules. Functions that the program lacks return NaN.
 #[derive(Debug)]
 pub struct InterpretedModel {
     program: Program,
-    /// By function of the program; made at the first use.
+    /// By function of the program, created on first use.
     schedules: Vec<OnceLock<Schedule>>,
 }
 
 impl InterpretedModel {
-    /// Takes a program.
+    /// A model of a program.
     pub fn new(program: Program) -> Self {
         let schedules = program.functions.iter().map(|_| OnceLock::new()).collect();
         Self { program, schedules }
@@ -35,7 +35,7 @@ impl InterpretedModel {
         Some(lazy.get_or_init(|| schedule(&self.program, function)))
     }
 
-    /// Fills each slice with the result of its name.
+    /// Fills each slice with the result of the given name.
     fn evaluate(&self, kind: FunctionKind, at: At<'_>, wanted: &mut [(&str, &mut [f64])]) {
         self.evaluate_weighted(kind, at, &[], wanted);
     }

@@ -1,16 +1,15 @@
-//! Schedules compiled to machine code in this process.
+//! Compiles schedules to machine code in this process.
 //!
 //! [`NativeFunction`] is one compiled [`Schedule`](crate::schedule::Schedule), [`JitModel`] a whole
-//! [`Program`](crate::program::Program) behind the trait of all models. The code follows the
-//! schedule operation by operation, without fused or reordered arithmetic, and calls the
-//! elementary functions of the Rust standard library. Its results are those of the emitted Rust
-//! and of the interpreter, bit for bit.
+//! [`Program`](crate::program::Program) behind the trait of all models. The code executes the operations of the
+//! schedule without fusing or reordering arithmetic, and calls the elementary functions of the Rust standard
+//! library. Its results are bit-identical to those of the emitted Rust and of the interpreter.
 //!
-//! [`VectorFunction`] evaluates a schedule at eight places at once, with the same bits in each.
+//! [`VectorFunction`] evaluates a schedule at eight points at once, with bit-identical results.
 //!
-//! The stages: `check` makes sure that a schedule can be compiled at all, `translate` turns
-//! it, `native` calls the machine code, `memory` owns it. `elementary` and `dense` are what the code
-//! calls. `vector` has stages of its own.
+//! The stages: `check` verifies that a schedule can be compiled, `translate` lowers it, `native` calls the
+//! machine code, `memory` owns it. `elementary` and `dense` are run-time routines of the code. `vector` has
+//! stages of its own.
 
 // Machine code is reached by pointers. Only `native`, `memory`, `elementary`, `dense`,
 // `vector::machine` and `vector::routines` use unsafe blocks; the interface of the module is safe.

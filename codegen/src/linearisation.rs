@@ -1,8 +1,7 @@
 //! A and B as formulas about a steady motion, and the characteristic polynomial.
 //!
-//! [`Linearisation::about`] takes the exact Jacobians of the motion, puts the steady motion in
-//! ([`SteadyMotion`]), and writes every entry as one fraction. Which states matter to the motion is
-//! read from the equations ([`Structure`]).
+//! [`Linearisation::about`] substitutes the steady motion ([`SteadyMotion`]) in the exact Jacobians and writes
+//! every entry as one fraction. Essential states are determined from the equations ([`Structure`]).
 
 mod characteristic;
 mod steady;
@@ -17,23 +16,23 @@ use crate::mechanics::linear::ImplicitMotion;
 use crate::symbolic::dissolve::Dissolved;
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// Numerators with more terms stay as the derivation left them.
+/// Numerators with more terms are left in derived form.
 const MOST_TERMS: usize = 200;
-/// Entries of more operations stay as the derivation left them.
+/// Entries with more operations are left in derived form.
 const MOST_OPERATIONS: usize = 1000;
 
-/// `ẋ = A x + B u` for small departures from a steady motion.
+/// `ẋ = A x + B u` for small perturbations of a steady motion.
 #[derive(Debug, Clone)]
 pub struct Linearisation {
     /// The motion.
     pub steady: SteadyMotion,
     /// Symbols of the states, essential ones first.
     pub states: Vec<Expr>,
-    /// How many states are essential.
+    /// The number of essential states.
     pub essential: usize,
     /// Symbols of the inputs.
     pub inputs: Vec<Expr>,
-    /// Rates of the essential states in the motion: it is steady where they vanish.
+    /// Rates of the essential states; the motion is steady where they vanish.
     pub rates: Vec<Expr>,
     /// A, row by row.
     pub a: Vec<Vec<Expr>>,
@@ -99,8 +98,8 @@ impl Linearisation {
         })
     }
 
-    /// The characteristic polynomial of the essential states. `None` where it has too many terms, and
-    /// where position constraints tie states together: A counts all of them as free.
+    /// The characteristic polynomial of the essential states. `None` if it has too many terms, or if position
+    /// constraints make states dependent, which A treats as independent.
     pub fn characteristic(&self, derivation: &mut Derivation) -> Option<Characteristic> {
         if !derivation.positions.dependent.is_empty() {
             return None;
@@ -113,7 +112,7 @@ impl Linearisation {
     }
 }
 
-/// Functions of the state, as they are in the motion.
+/// Functions of the state, evaluated in the steady motion.
 struct Entries<'a> {
     derivation: &'a mut Derivation,
     motion: Substitution,
@@ -131,7 +130,7 @@ impl Entries<'_> {
     }
 }
 
-/// One fraction, with the definitions of names put in; what that is too long for stays as it is.
+/// One fraction, with names replaced by their definitions; a value that becomes too long is left unchanged.
 fn simplest(derivation: &mut Derivation, names: &mut Dissolved, value: Expr) -> Expr {
     let algebra = &mut derivation.algebra;
     if algebra.test.is_zero(&algebra.graph, value) {

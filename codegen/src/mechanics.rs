@@ -1,6 +1,6 @@
-//! From a mechanism to its equations of motion by the Gibbs-Appell method.
+//! Derives the equations of motion of a mechanism by the Gibbs-Appell method.
 //!
-//! The files are the steps; `equations` calls them in order, and `ARCHITECTURE.md` lists them.
+//! One file per stage; `equations` calls them in order, and `ARCHITECTURE.md` lists them.
 
 mod adjoint;
 pub mod algebra;
@@ -81,7 +81,7 @@ pub use algebra::seed;
 pub use ranges::{declared_ranges, parameter_ranges};
 pub use regressor::{Linear, Regressor, regressor};
 
-/// The derivation of one mechanism, every stage kept for reading.
+/// The derivation of one mechanism, with all intermediate stages.
 #[derive(Clone)]
 pub struct Derivation {
     /// Graph and tools.
@@ -90,15 +90,15 @@ pub struct Derivation {
     pub symbols: Symbols,
     /// Constraint rows.
     pub constraints: Constraints,
-    /// Contacts, which can only push.
+    /// Unilateral contacts.
     pub contacts: Vec<Contact>,
     /// Position constraints.
     pub positions: Positions,
     /// q̇ in terms of the pseudo-velocities.
     pub velocities: GeneralizedVelocities,
-    /// Generalised velocities without a formula.
+    /// Generalised velocities without an explicit formula.
     pub dependent: DependentSpeeds,
-    /// The motion as if nothing bound the dependent speeds, which come last.
+    /// The unconstrained motion, before the dependent speeds, which come last, are eliminated.
     pub unbound: Unbound,
     /// Velocities of points and frames.
     pub kinematics: Kinematics,
@@ -114,21 +114,21 @@ pub struct Derivation {
     pub responses_in_outputs: Vec<(Expr, Expr)>,
     /// Π.
     pub forces: Vec<Expr>,
-    /// Rates that are given; M, b and Π have them in.
+    /// Prescribed rates, already substituted in M, b and Π.
     pub given: Given,
     /// Solved equations, with ω̇.
     pub motion: Motion,
     /// q̇, named.
     pub coordinate_rates: Vec<Expr>,
-    /// q̇ if no contact crept, named.
+    /// q̇ without creep, named.
     pub rolling_rates: Vec<Expr>,
-    /// The tree of links, where the equations were made by recursion.
+    /// The tree of links, if the equations were derived by recursion.
     pub recursion: Option<Recursion>,
     /// Warnings and notes.
     pub warnings: Vec<Finding>,
 }
 
-/// The motion while the dependent speeds count as free, with their symbols.
+/// The motion with the dependent speeds as independent ones, represented by their symbols.
 #[derive(Debug, Clone)]
 pub struct Unbound {
     /// Π.
@@ -149,8 +149,8 @@ impl Derivation {
     }
 }
 
-/// Derives the equations of motion of a mechanism. What can be told without the stage that fails is
-/// told with its findings.
+/// Derives the equations of motion of a mechanism. Errors include all divisors that vanish identically, besides
+/// those of the stage that fails.
 pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
     let mut findings = divisors::findings(mechanism);
     match equations(mechanism, false) {
@@ -176,8 +176,8 @@ pub fn derive(mechanism: &Mechanism) -> Outcome<Derivation> {
     }
 }
 
-/// The same equations for readers: generalised velocities that are quotients by sums keep their letters, as do
-/// their partial derivatives.
+/// The same equations for display: generalised velocities with sums as denominators remain symbols, as do their
+/// partial derivatives.
 pub fn derive_in_letters(mechanism: &Mechanism) -> Outcome<Derivation> {
     equations(mechanism, true)
 }
@@ -199,8 +199,8 @@ fn equations(mechanism: &Mechanism, in_letters: bool) -> Outcome<Derivation> {
     Ok(derivation)
 }
 
-/// The equations while loads that depend on reactions do not act and no contact creeps; and all loads,
-/// with symbols for reactions and for dependent speeds.
+/// The equations without the loads that depend on reactions and without creep; and all loads, with symbols for
+/// reactions and for dependent speeds.
 fn without_reactions(
     mechanism: &Mechanism,
     in_letters: bool,
@@ -313,17 +313,17 @@ fn tools(mechanism: &Mechanism, in_letters: bool) -> (Symbols, Algebra) {
     (symbols, algebra)
 }
 
-/// What binds the motion.
+/// The constraints of the motion.
 struct Bound {
     constraints: Constraints,
     contacts: Vec<Contact>,
-    /// Contacts whose normal is not known.
+    /// Contacts whose normal is unknown.
     not_judged: Vec<Finding>,
     positions: Positions,
     elimination: Elimination,
 }
 
-/// Constraints, and the generalised velocities that they leave.
+/// Constraints, and the generalised velocities that satisfy them.
 fn bound(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Outcome<Bound> {
     let mut intervals = declared_ranges(&algebra.graph, mechanism, symbols);
 
@@ -344,7 +344,7 @@ fn bound(algebra: &mut Algebra, mechanism: &Mechanism, symbols: &Symbols) -> Out
     })
 }
 
-/// ω̇ by recursion where there is a tree of links, else from M, b and Π.
+/// ω̇ by recursion if there is a tree of links, otherwise from M, b and Π.
 fn solved(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -360,7 +360,7 @@ fn solved(
     motion::solve(algebra, mechanism, gibbs, forces, &parts, dependent.way())
 }
 
-/// Puts the rates that drives give into M, b and Π.
+/// Substitutes the prescribed rates in M, b and Π.
 fn with_given_rates(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -387,7 +387,7 @@ fn with_unknown_rates(
     Kinematics::new(algebra, mechanism, symbols, rates, &[], Effort::Plain)
 }
 
-/// Motions of the bodies, and what they make of S.
+/// Motions of the bodies, and the resulting M and b.
 struct Moving {
     kinematics: Kinematics,
     bodies: Vec<BodyMotion>,
@@ -395,7 +395,7 @@ struct Moving {
     recursion: Option<Recursion>,
 }
 
-/// By recursion over links where that is shorter, else by the sums over bodies.
+/// By recursion over links where that is shorter, otherwise by summation over bodies.
 fn moving(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -432,7 +432,7 @@ fn moving(
     })
 }
 
-/// The contacts whose every row holds for all pseudo-velocities: by a formula or by geometry.
+/// The contacts all of whose rows hold identically in the pseudo-velocities, by a formula or by geometry.
 fn rolling_contacts(
     mechanism: &Mechanism,
     constraints: &Constraints,
@@ -448,7 +448,7 @@ fn rolling_contacts(
     let contacts = mechanism.constraints.entries();
     contacts
         .filter_map(|(id, constraint)| match constraint.kind {
-            // A surface that moves does not hold the contact still.
+            // On a moving surface the contact is not at rest.
             ConstraintKind::Rolling {
                 body,
                 contact,
@@ -463,7 +463,7 @@ fn rolling_contacts(
         .collect()
 }
 
-/// q̇ by the names of the coordinates.
+/// q̇, named after the coordinates.
 fn named_rates(graph: &mut Graph, mechanism: &Mechanism, rates: &[Expr]) -> Vec<Expr> {
     let coordinates = mechanism.coordinates.iter().zip(rates);
     coordinates
@@ -471,7 +471,7 @@ fn named_rates(graph: &mut Graph, mechanism: &Mechanism, rates: &[Expr]) -> Vec<
         .collect()
 }
 
-/// What is singular where the motion starts.
+/// Singularities at the initial state.
 fn initially_singular(
     algebra: &mut Algebra,
     mechanism: &Mechanism,

@@ -1,5 +1,5 @@
-//! Schedules as graphs of operations, for programs that are made from programs: `flatten` reads a schedule into a
-//! `graph`, `bind` writes what some results need, and `closed_loop` puts one schedule in front of another.
+//! Schedules as graphs of operations, for program transformations: `flatten` converts a schedule to a `graph`,
+//! `bind` converts live nodes to a schedule, and `closed_loop` composes two schedules.
 
 pub(crate) mod bind;
 pub(crate) mod closed_loop;

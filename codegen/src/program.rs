@@ -1,4 +1,4 @@
-//! What the derivation hands to scheduling and emission: arguments, functions, expressions.
+//! The interface between derivation and scheduling or emission: arguments, functions, expressions.
 
 mod layout;
 
@@ -11,7 +11,7 @@ use crate::symbolic::{Expr, Graph, SymbolId};
 /// The functions of one mechanism.
 #[derive(Debug, Clone)]
 pub struct Program {
-    /// Names, units, defaults; the emitted model and the in-process model return exactly this.
+    /// Names, units, defaults; identical in the emitted and the in-process model.
     pub info: ModelInfo,
     /// Name of the spec file, for comments.
     pub file: String,
@@ -19,15 +19,13 @@ pub struct Program {
     pub graph: Graph,
     /// The symbols that expressions may contain, in the order of `info`.
     pub arguments: Arguments,
-    /// Coordinates that follow from the others by a position constraint each, in the order of the
-    /// constraints.
+    /// Dependent coordinates, one per position constraint, in the order of the constraints.
     pub dependent: Vec<usize>,
-    /// Sizes of the linear systems of several unknowns that are solved with pivoting on the way to
-    /// the rates.
+    /// Sizes of the linear systems of several unknowns that are solved with pivoting to compute the rates.
     pub systems: Vec<usize>,
-    /// Values that readers know, for what has no other name on the way.
+    /// Values with established names, for intermediate values without a name.
     pub hints: Vec<Hint>,
-    /// Functions, in the order in which a reader wants them.
+    /// Functions, in the order of display.
     pub functions: Vec<Function>,
 }
 
@@ -37,12 +35,12 @@ impl Program {
         self.functions.iter().find(|function| function.kind == kind)
     }
 
-    /// How many values time alone switches.
+    /// The number of switching values that depend on time alone.
     pub fn switch_len(&self) -> usize {
         self.result_len(FunctionKind::Switches, "switches")
     }
 
-    /// How many functions switch the equations.
+    /// The number of switching functions.
     pub fn switch_counts(&self) -> Counts {
         Counts {
             answers: self.switch_len(),
@@ -59,7 +57,7 @@ impl Program {
     }
 }
 
-/// A value that readers know by a name, whether or not the derivation names it.
+/// A value with an established name, whether or not the derivation names it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Hint {
     /// The value.
@@ -81,13 +79,13 @@ pub struct Arguments {
     pub inputs: Vec<SymbolId>,
     /// Parameters.
     pub parameters: Vec<SymbolId>,
-    /// Weights of [`FunctionKind::Adjoint`], where the program has it.
+    /// Weights of [`FunctionKind::Adjoint`], if the program has it.
     pub weights: Vec<SymbolId>,
-    /// Weights of [`FunctionKind::OutputAdjoint`], where the program has it.
+    /// Weights of [`FunctionKind::OutputAdjoint`], if the program has it.
     pub output_weights: Vec<SymbolId>,
     /// Given pseudo-accelerations.
     pub accelerations: Vec<SymbolId>,
-    /// The number π, where expressions may contain it.
+    /// The number π, if expressions may contain it.
     pub pi: Option<SymbolId>,
 }
 
@@ -96,62 +94,62 @@ pub struct Arguments {
 pub struct Function {
     /// Which one.
     pub kind: FunctionKind,
-    /// Quantities that a reader wants first. What follows uses their values and does not look
-    /// inside.
+    /// Intermediate quantities that are displayed first. Later computations use their values and treat them as
+    /// opaque.
     pub stages: Vec<Stage>,
-    /// What it returns, at least one array.
+    /// Results, at least one array.
     pub results: Vec<Array>,
-    /// What names on the way mean.
+    /// Meanings of intermediate names.
     pub glossary: Vec<Term>,
-    /// Which values on the way are computed together, under a heading, where they are needed first.
+    /// Groups of intermediate values under a heading, computed before their first use.
     pub groups: Vec<Group>,
-    /// Left and right sides of equations, for readers: how a person writes what is solved.
+    /// Left and right sides of equations for display, in the form in which they are solved.
     pub equations: Vec<[Expr; 2]>,
-    /// What else a caller should know, a sentence each.
+    /// Further remarks for callers, a sentence each.
     pub remarks: Vec<String>,
 }
 
 /// The meaning of some names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Term {
-    /// What the names start with.
+    /// Common prefix of the names.
     pub symbol: String,
-    /// How they go on.
+    /// Permitted suffixes.
     pub names: Names,
     /// One sentence.
     pub meaning: String,
 }
 
-/// Values that are computed under one heading.
+/// Values computed under one heading.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Group {
     /// One line.
     pub title: String,
-    /// Their names: what they start with, and how they go on.
+    /// Prefixes and permitted suffixes of their names.
     pub names: Vec<(String, Names)>,
 }
 
 impl Group {
-    /// Whether a name is one of those.
+    /// Whether a name belongs to the group.
     pub fn holds(&self, name: &str) -> bool {
         let mut names = self.names.iter();
         names.any(|(symbol, names)| names.fit(symbol, name))
     }
 }
 
-/// How names go on after their symbol.
+/// Suffixes of names after their symbol.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Names {
-    /// Not at all.
+    /// None.
     Alone,
     /// `_x`, `_y` or `_z`.
     Axes,
-    /// Not at all, or with an underscore and anything.
+    /// None, or an underscore with any text.
     Any,
 }
 
 impl Names {
-    /// Whether a name is one of those of a symbol.
+    /// Whether a name consists of a symbol and such a suffix.
     fn fit(self, symbol: &str, name: &str) -> bool {
         let rest = name.strip_prefix(symbol);
         rest.is_some_and(|rest| match self {
@@ -163,23 +161,23 @@ impl Names {
 }
 
 impl Term {
-    /// Whether a name is one of those.
+    /// Whether the term explains a name.
     pub fn explains(&self, name: &str) -> bool {
         self.names.fit(&self.symbol, name)
     }
 }
 
-/// Named quantities on the way to the results.
+/// Named intermediate quantities.
 #[derive(Debug, Clone)]
 pub struct Stage {
     /// Heading, one line.
     pub title: String,
-    /// The quantities; those without a name are passed over.
+    /// The quantities; those without a name are skipped.
     pub values: Vec<Expr>,
 }
 
 impl Function {
-    /// A function that goes straight to its results.
+    /// A function without intermediate stages.
     pub fn new(kind: FunctionKind, results: Vec<Array>) -> Self {
         Self {
             kind,
@@ -192,28 +190,28 @@ impl Function {
         }
     }
 
-    /// The same with something a caller should know.
+    /// Adds remarks for callers.
     #[must_use]
     pub fn remarking(mut self, remarks: impl Iterator<Item = String>) -> Self {
         self.remarks.extend(remarks);
         self
     }
 
-    /// The same with the meaning of some names.
+    /// Adds meanings of names.
     #[must_use]
     pub fn explaining(mut self, terms: Vec<Term>) -> Self {
         self.glossary.extend(terms);
         self
     }
 
-    /// The same with headings for what is computed together.
+    /// Adds groups with headings.
     #[must_use]
     pub fn grouping(mut self, groups: Vec<Group>) -> Self {
         self.groups.extend(groups);
         self
     }
 
-    /// The same by way of some named quantities.
+    /// Adds a stage of named intermediate quantities.
     #[must_use]
     pub fn by_way_of(mut self, title: &str, values: Vec<Expr>) -> Self {
         self.stages.push(Stage {
@@ -224,7 +222,7 @@ impl Function {
     }
 }
 
-/// The functions that a model can have; one that would be empty may be missing. The order is the order in emitted code.
+/// The functions that a model can have, in the order of emitted code; empty ones may be missing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FunctionKind {
     /// q̇(q, ω): result `coordinate_rates`.
@@ -235,7 +233,7 @@ pub enum FunctionKind {
     MassMatrix,
     /// b: result `bias`.
     Bias,
-    /// M and b, with what they share: results `mass_matrix`, `bias`.
+    /// M and b, sharing subexpressions: results `mass_matrix`, `bias`.
     MassMatrixAndBias,
     /// Π: result `generalized_forces`.
     GeneralizedForces,
@@ -247,31 +245,29 @@ pub enum FunctionKind {
     ParameterJacobian,
     /// Results `kinetic`, `potential`, `power`.
     Energies,
-    /// Constraint rows with the generalised velocities put in: result `residual`.
+    /// Constraint rows at the generalised velocities: result `residual`.
     ConstraintResidual,
     /// Reactions in the ground: result `forces`, three columns.
     ConstraintForces,
     /// Outputs of the spec: result `outputs`.
     Outputs,
-    /// What time alone switches, where anything does: result `switches`.
+    /// Switching values that depend on time alone, if any: result `switches`.
     Switches,
-    /// Functions of time alone, where there are any: results `functions`, whose signs the switches are, and `shapes`,
-    /// which rise and fall.
+    /// Functions of time alone, if any: results `functions`, whose signs are the switches, and `shapes`, which
+    /// vary continuously.
     TimeFunctions,
-    /// The functions whose zeros switch the equations by the state, where there are any: result `crossings`.
+    /// Switching functions that depend on the state, if any: result `crossings`.
     Crossings,
-    /// What position constraints demand, where there are any: results `residual`, and `jacobian`
-    /// by the coordinates.
+    /// Position constraints, if any: results `residual`, and `jacobian` with respect to the coordinates.
     PositionConstraints,
-    /// Surfaces at the contacts, where they are not the same everywhere: results `normals`, three
-    /// columns, and `friction`.
+    /// Surfaces at the contacts, unless they are constant: results `normals`, three columns, and `friction`.
     Contacts,
-    /// Systems that are solved with pivoting, where there are any: result `matrices`, one after the
-    /// other.
+    /// Systems that are solved with pivoting, if any: result `matrices`, one after the other.
     Systems,
     /// M ω̇ + b − Π for given ω̇: result `demand`.
     InverseDynamics,
-    /// The same with its derivatives: results `demand`, `by_state`, `by_inputs`, and `mass_matrix`, that by ω̇.
+    /// The same with its derivatives: results `demand`, `by_state`, `by_inputs`, and `mass_matrix`, with
+    /// respect to ω̇.
     InverseDynamicsJacobians,
     /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩: results `x`, `u`, `p`.
     Adjoint,
@@ -279,12 +275,12 @@ pub enum FunctionKind {
     OutputJacobians,
     /// Gradient of ⟨μ, y⟩ + ⟨Γ, C⟩ + ⟨Δ, D⟩: results `x`, `u`, `p`.
     OutputAdjoint,
-    /// M ω̇ + b − Π = Y π + r: results `regressor`, `rest`, `parameters`. It stands in a program of its own,
-    /// [`regressor`](crate::mechanics::regressor), and so not among [`Self::ALL`].
+    /// M ω̇ + b − Π = Y π + r: results `regressor`, `rest`, `parameters`. It belongs to a program of its own,
+    /// [`regressor`](crate::mechanics::regressor), and so not to [`Self::ALL`].
     Regressor,
 }
 
-/// What a function takes beside time, parameters, state and inputs.
+/// An argument in addition to time, parameters, state and inputs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Own {
     /// Weights of the rates and their derivatives.
@@ -306,7 +302,7 @@ impl Own {
 }
 
 impl FunctionKind {
-    /// All of them that the program of a model can have, in the order of emitted code.
+    /// All functions that the program of a model can have, in the order of emitted code.
     pub const ALL: [Self; 24] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
@@ -334,8 +330,7 @@ impl FunctionKind {
         Self::OutputAdjoint,
     ];
 
-    /// Those of every model. The others, which estimation asks for, are as long as all of these
-    /// together.
+    /// The functions of every model. The others, required for estimation, are as long as all of these together.
     pub const STANDARD: [Self; 21] = [
         Self::Kinematics,
         Self::AccelerationEnergy,
@@ -360,8 +355,8 @@ impl FunctionKind {
         Self::InverseDynamicsJacobians,
     ];
 
-    /// [`Self::STANDARD`] for a mechanism of so many parameters: with more than 64, derivatives by them are only made
-    /// where they are asked for.
+    /// [`Self::STANDARD`] for a mechanism with a number of parameters: with more than 64, derivatives with
+    /// respect to them are omitted unless requested.
     pub fn standard(parameters: usize) -> Vec<Self> {
         const MOST_PARAMETERS: usize = 64;
         let is_made =
@@ -369,8 +364,8 @@ impl FunctionKind {
         Self::STANDARD.into_iter().filter(is_made).collect()
     }
 
-    /// Those that a motion needs: of [`Self::STANDARD`], all but derivatives and what other functions
-    /// return too.
+    /// The functions required for simulation: [`Self::STANDARD`] without derivatives and results that other
+    /// functions return as well.
     pub const OF_MOTIONS: [Self; 13] = [
         Self::AccelerationEnergy,
         Self::MassMatrixAndBias,
@@ -387,7 +382,7 @@ impl FunctionKind {
         Self::Systems,
     ];
 
-    /// What it takes beside time, parameters, state and inputs.
+    /// The argument in addition to time, parameters, state and inputs.
     pub fn takes(self) -> Option<Own> {
         match self {
             Self::Adjoint => Some(Own::Weights),
@@ -404,12 +399,12 @@ impl FunctionKind {
         self.words().0
     }
 
-    /// Name of the struct it returns where it returns several arrays.
+    /// Name of the result struct, if it returns several arrays.
     pub fn result_struct(self) -> &'static str {
         self.words().1
     }
 
-    /// What it returns, one sentence.
+    /// Its results, one sentence.
     pub fn about(self) -> &'static str {
         self.words().2
     }
@@ -545,21 +540,21 @@ impl FunctionKind {
 pub struct Array {
     /// Its name.
     pub name: String,
-    /// What it holds, one sentence.
+    /// Its contents, one sentence.
     pub about: String,
-    /// How its entries are told apart.
+    /// Its shape, and the labels of its entries.
     pub layout: Layout,
     /// Entries, row by row.
     pub entries: Vec<Expr>,
-    /// What each entry is called where it is computed.
+    /// Names of the entries in the computation.
     pub labels: Vec<String>,
-    /// What the rows and the columns of a plain list or matrix belong to.
+    /// Labels of the rows and columns of a plain list or matrix.
     pub names: [Vec<String>; 2],
-    /// Headings over the computation of the entries; entries under none are computed last.
+    /// Headings for the computation of the entries; entries without a heading are computed last.
     pub paragraphs: Vec<Paragraph>,
 }
 
-/// A heading over the computation of some entries.
+/// A heading for the computation of some entries.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Paragraph {
     /// One line.
@@ -569,7 +564,7 @@ pub struct Paragraph {
 }
 
 impl Array {
-    /// An array whose entries are called by its name and their number.
+    /// An array whose entries are named by its name and their index.
     pub fn new(name: &str, about: &str, layout: Layout, entries: Vec<Expr>) -> Self {
         let labels = match entries.len() {
             1 => vec![name.to_owned()],
@@ -591,7 +586,7 @@ impl Array {
         Self::new(name, about, Layout::Scalar, vec![entry])
     }
 
-    /// ẋ, with q̇ before the pseudo-accelerations in the text.
+    /// ẋ, with q̇ computed before the pseudo-accelerations.
     pub fn rates(info: &ModelInfo, entries: Vec<Expr>) -> Self {
         let (all, speeds) = (entries.len(), info.speeds.min(entries.len()));
         Self::new(
@@ -641,21 +636,21 @@ impl Array {
         array
     }
 
-    /// The same with other names of the entries.
+    /// Renames the entries.
     #[must_use]
     pub fn labelled(mut self, labels: impl Iterator<Item = String>) -> Self {
         self.labels = labels.collect();
         self
     }
 
-    /// The same with names for rows and columns.
+    /// Adds names of rows and columns.
     #[must_use]
     pub fn with_names(mut self, rows: Vec<String>, columns: Vec<String>) -> Self {
         self.names = [rows, columns];
         self
     }
 
-    /// The same with a heading over some entries.
+    /// Adds a heading for some entries.
     #[must_use]
     pub fn under(mut self, title: &str, entries: impl IntoIterator<Item = usize>) -> Self {
         self.paragraphs.push(Paragraph {

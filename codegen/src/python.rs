@@ -1,5 +1,5 @@
-//! Equations as Python functions over a namespace of arrays: the same lines run on arrays of `numpy` and `jax.numpy`
-//! and on symbols of `casadi` and `sympy`.
+//! Equations as Python functions over an array namespace: the same code runs on arrays of `numpy` and
+//! `jax.numpy` and on symbols of `casadi` and `sympy`.
 
 use std::fmt::Write as _;
 
@@ -13,10 +13,10 @@ use crate::schedule::pi::parts_of_pi;
 use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
 use crate::symbolic::{self, Rational, Relation};
 
-/// What names of namespaces become; see the class `_Namespace`.
+/// Adapts the names of namespaces; see the class `_Namespace`.
 const PRELUDE: &str = include_str!("python/prelude.py");
 
-/// Words that are no names in Python, and those that the functions use.
+/// Keywords of Python, and names that the functions use.
 const KEYWORDS: &[&str] = &[
     "False", "None", "True", "and", "as", "assert", "async", "await", "break", "class", "continue",
     "def", "del", "elif", "else", "except", "finally", "for", "from", "global", "if", "import",
@@ -56,8 +56,8 @@ impl Dialect for Python {
     }
 }
 
-/// The module of a program: names, units and values of the spec, and a function for each of the functions `kinds`
-/// that the program has.
+/// The module of a program: names, units and values of the spec, and a function for each of the functions
+/// `kinds` that the program has.
 pub fn module(program: &Program, kinds: &[FunctionKind]) -> String {
     let info = &program.info;
     let mut text = format!(
@@ -233,7 +233,7 @@ fn statement(text: &mut String, infix: &Infix<'_, Python>, step: &Step) {
     };
 }
 
-/// Lists of lists by the shape of an array.
+/// Nested lists of an array's shape.
 fn nested(infix: &Infix<'_, Python>, shape: &[usize], entries: &[Tree]) -> String {
     match shape {
         [] => entries
@@ -249,7 +249,7 @@ fn nested(infix: &Infix<'_, Python>, shape: &[usize], entries: &[Tree]) -> Strin
     }
 }
 
-/// A number of the equations: exact where the namespace has exact numbers.
+/// A numeric constant: exact if the namespace has exact numbers.
 fn constant(value: &Rational) -> String {
     if let Some((numerator, denominator)) = parts_of_pi(value) {
         return format!("_f.number({numerator}, {denominator}) * _f.pi");
@@ -273,7 +273,7 @@ fn quoted(text: &str) -> String {
     format!("\"{}\"", docstring(text))
 }
 
-/// A text that may stand between three quotes.
+/// A text that may occur in a triple-quoted string.
 fn docstring(text: &str) -> String {
     sentence(text).replace('"', "'")
 }

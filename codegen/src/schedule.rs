@@ -1,7 +1,8 @@
 //! From expressions to a sequence of named operations; it knows no target language.
 //!
-//! The emitted Rust, the in-process compiler and the interpreter all follow a [`Schedule`] to the
-//! letter: same operations, same order, so they agree to the last bits of the elementary functions.
+//! The emitted Rust, the in-process compiler and the interpreter all execute a [`Schedule`] with
+//! the same operations in the same order, so their results differ only by the last bits of the
+//! elementary functions.
 
 mod bind;
 mod cancel;
@@ -37,17 +38,16 @@ pub use tuning::Tuning;
 
 use crate::program::{self, Program};
 
-/// The operations of one function of a program, as few as are found.
+/// The operations of one function of a program, their number minimised heuristically.
 ///
 /// # Panics
-///
-/// If an expression contains a symbol that is not an argument of the program, which the derivation
-/// must not let happen.
+/// If an expression contains a symbol that is not an argument of the program, which would be a bug of the
+/// derivation.
 pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
     schedule_tuned(program, function, Tuning::default())
 }
 
-/// [`schedule`] for other costs, or with more patience.
+/// [`schedule`] with a different cost model or search effort.
 ///
 /// # Panics
 ///

@@ -1,9 +1,8 @@
 //! Exact symbolic algebra on a shared graph; it knows no mechanics.
 //!
-//! Expressions are canonical: equal sums and products of the same parts are the same node, so
-//! equality is comparison of two indices. Nothing is expanded, and the local identities that are
-//! applied never make an expression larger. Equality across different spellings is decided by
-//! evaluation in a finite field ([`identity`]).
+//! Expressions are canonical: equal sums and products of the same operands are the same node, so equality is
+//! comparison of two indices. Nothing is expanded, and the local identities that are applied never make an
+//! expression larger. Equality of different forms is decided by evaluation in a finite field ([`identity`]).
 
 mod canonical;
 mod common_factors;

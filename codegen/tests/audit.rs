@@ -1,5 +1,4 @@
-//! Plausible mistakes: each is caught at its line, with a message that is worth reading; and what is
-//! right is left in peace.
+//! Plausible mistakes: each is reported at its line with a readable message; correct specs are not reported.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -31,7 +30,7 @@ fn name_of(path: &Path) -> &str {
     path.file_stem().unwrap().to_str().unwrap()
 }
 
-/// Everything that is told about a spec.
+/// All diagnostics of a spec.
 fn told(path: &Path) -> Report {
     let text = std::fs::read_to_string(path).unwrap();
     let file = path.file_name().unwrap().to_str().unwrap();

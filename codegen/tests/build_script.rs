@@ -1,4 +1,4 @@
-//! What a build script writes.
+//! The output of a build script.
 
 use std::path::Path;
 

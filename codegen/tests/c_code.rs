@@ -1,4 +1,4 @@
-//! C of all shipped mechanisms: compiled without a warning, and the same bits as the schedule.
+//! C code of all shipped mechanisms: it compiles without warnings and is bit-identical to the schedule.
 
 use std::fmt::Write as _;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Emitted Rust compiles, computes exactly what the schedule says, and is the same in every run.
+//! Emitted Rust compiles, reproduces the schedule bit for bit, and is identical in every run.
 //!
 //! The golden files are modules of this test; `emit_golden` compares them and writes them anew.
 
@@ -243,7 +243,7 @@ fn a_vector_without_entries_needs_no_scalar() {
     assert_eq!(mixture_model::Inputs {}, mixture_model::Inputs::default());
 }
 
-/// `type` cannot name a field of Rust, and what is called so otherwise stays apart from it.
+/// `type` cannot name a field in Rust, and other names do not collide with its replacement.
 #[test]
 fn words_of_rust_stay_different_names() {
     let mut program = emit_support::unicycle();

@@ -1,4 +1,4 @@
-//! What the derivation refuses, told at its place, and what it must not refuse.
+//! Errors of the derivation, reported at their positions, and specs that must be accepted.
 
 use std::fmt::Write as _;
 use std::time::{Duration, Instant};
@@ -20,7 +20,7 @@ fn refusal(text: &str) -> String {
     }
 }
 
-/// What is told about a spec that is accepted.
+/// Warnings about a spec that is accepted.
 fn warnings(text: &str) -> String {
     let derived = derived("a.toml", text).unwrap_or_else(|report| panic!("{}", report.plain()));
     Report::new("a.toml", text, derived.warnings).plain()
@@ -53,7 +53,7 @@ fn a_constraint_that_follows_from_the_others_is_left_out_with_a_warning() {
 
 #[test]
 fn the_row_that_is_left_out_follows_in_every_configuration() {
-    // At x = 0 the first says nothing, so the second must stay.
+    // At x = 0 the first is trivial, so the second must not be omitted.
     let rows = "first = { kind = 'velocity', zero = 'x*dot(x)' }\n\
                 second = { kind = 'velocity', zero = 'dot(x)' }";
     let shown = warnings(&mass(rows, "v = 'dot(y)'\nw = 'dot(z)'"));
@@ -376,7 +376,7 @@ fn a_number_beyond_double_precision_is_told_at_its_expression() {
     }
     let shown = refusal(&numbers("k*x", "1"));
     assert!(shown.contains("error[not-finite]: the motion"), "{shown}");
-    // What cancels is a number.
+    // The sum cancels to a number.
     let shown = warnings(&numbers("1e300*1e-300*(k*x)*1e150*1e-150", "1e-300"));
     assert!(!shown.contains("not-finite"), "{shown}");
 }
@@ -390,7 +390,7 @@ fn long_numbers_stay_cheap() {
     assert!(!shown.contains("error"), "{shown}");
 }
 
-/// What the note about a divisor says to write keeps it off zero.
+/// The range proposed by the note about a divisor keeps it nonzero.
 #[test]
 fn limits_of_parameters_take_the_place_of_pivoting() {
     let text = include_str!("audit/singular-pseudo-velocities.limits.toml");

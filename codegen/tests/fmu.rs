@@ -1,4 +1,4 @@
-//! FMUs: sources that compile without a warning, descriptions that no text of a spec breaks.
+//! FMUs: sources that compile without warnings, descriptions that no text of a spec breaks.
 
 use appell_codegen::compile;
 use appell_codegen::fmu::{Emitted, InputsOfStep, emit, functions};
@@ -114,8 +114,8 @@ push = { kind = "force", on = "C", in = "ground", vector = ["calloc", 0, 0] }
     assert_eq!(description.matches("<Float64").count(), 9);
 }
 
-/// A rate that jumps depends on what makes it jump, though its derivative is zero there; what a constraint holds
-/// together is fixed.
+/// A discontinuous rate depends on its condition, though the derivative is zero; parameters of position
+/// constraints are fixed.
 #[test]
 fn dependencies_and_fixed_parameters_are_those_of_the_equations() {
     let text = r#"

@@ -1,4 +1,4 @@
-//! Damaged mechanisms are refused or derived, never with a panic, a long wait or much memory.
+//! Damaged mechanisms are rejected or derived, without panic, long run time or excessive memory.
 //!
 //! The shipped specs are changed where a spec has meaning: expressions are exchanged and combined,
 //! numbers, axes, frames, points and kinds replaced, items removed. Many still load, and are derived,

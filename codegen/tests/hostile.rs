@@ -10,7 +10,7 @@ use proc_macro2::{TokenStream, TokenTree};
 
 use crate::c_code::{compilers, folder};
 
-/// What ends a comment or a string somewhere, alone and in combination.
+/// Texts that terminate comments or strings in some language, alone and combined.
 const HOSTILE: &[&str] = &[
     r"x *\ int pwned = 1; /\*",
     r"x *\\ int pwned = 1; /\\*",
@@ -86,8 +86,8 @@ o = { value = "d + x", unit = "m", about = "SENTENCE" }
     .replace("SENTENCE", &sentence)
 }
 
-/// Programs of hostile sentences, each with its sentence, from files of hostile names; what a spec refuses to hold is
-/// the name alone.
+/// Programs of hostile sentences, each with its sentence, from files of hostile names; sentences that a spec
+/// rejects occur in the name only.
 fn programs() -> Vec<(&'static str, Program)> {
     let made = |&sentence: &&'static str| {
         let of = |text: &str| compile(sentence, &spec(text), &FunctionKind::STANDARD);
@@ -101,7 +101,7 @@ fn harmless() -> Program {
     compile("evil.toml", &spec("a sentence"), &FunctionKind::STANDARD).expect("a valid spec")
 }
 
-/// What a program writes, told what is wrong in its standard error.
+/// The output of a program; fails with its standard error.
 fn output(program: &str, folder: &Path, arguments: &[&str]) -> String {
     let output = (Command::new(program)
         .current_dir(folder)

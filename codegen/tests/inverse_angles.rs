@@ -1,4 +1,4 @@
-//! Angles that inverse functions give: a disc on a road whose tilt follows from its slope.
+//! Angles from inverse functions: a disc on a road whose tilt follows from its slope.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use appell_codegen::compile;
@@ -79,7 +79,7 @@ fn after_four_seconds(text: &str, speed: f64) -> [f64; 2] {
     [x[0], x[info.state_index("s").unwrap()]]
 }
 
-/// From an integration of the one equation that is left, by hand.
+/// From an integration of the remaining equation, derived by hand.
 const REFERENCE: [(f64, [f64; 2]); 2] = [
     (5.0, [6.963_742, 4.849_430]),
     (20.0, [20.391_793, 16.256_953]),

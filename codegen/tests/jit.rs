@@ -1,4 +1,4 @@
-//! Schedules in machine code compute what the interpreter computes, bit for bit.
+//! Compiled schedules are bit-identical to the interpreter.
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -27,7 +27,7 @@ const FUNCTIONS: [Function; 13] = [
     Function::Sign,
 ];
 
-/// Numbers at which functions change their ways.
+/// Arguments at which functions change branches.
 const SPECIAL: [f64; 14] = [
     0.0,
     -0.0,

@@ -247,7 +247,7 @@ fn a_part_agrees_with_the_whole_where_its_parameters_are_zero_and_elsewhere() {
             model.parameter_jacobian(at, p);
         }
         if c == 0.0 {
-            // Nobody asks for the slope by what is zero; the whole has one.
+            // The model specialised for c = 0 omits the slope with respect to c.
             assert!(own[9] == 0.0 && all[9] != 0.0);
             all[9] = 0.0;
         }

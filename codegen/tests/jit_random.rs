@@ -125,7 +125,7 @@ fn assemble(plans: Vec<Plan>) -> Schedule {
     schedule(steps, (0..defined).map(value).collect())
 }
 
-/// The tree with all its values among the first `known`; time stands in where there are none.
+/// The tree with its values reduced to the first `known`; time replaces them if there are none.
 fn bound(tree: Tree, known: u32) -> Tree {
     let into = |tree: Box<Tree>| Box::new(bound(*tree, known));
     match tree {

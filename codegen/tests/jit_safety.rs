@@ -1,4 +1,4 @@
-//! Machine code refuses what it cannot handle, is shared between threads, and is freed.
+//! Machine code rejects unsupported schedules, is shared between threads, and is freed.
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -91,7 +91,7 @@ fn dropped_functions_leave_no_code_behind() {
     for _ in 0..FUNCTIONS {
         drop(NativeFunction::compile(&schedule, SIZES).unwrap());
     }
-    // Each needs a page at least. Tests that run beside this one hold a few.
+    // Each needs at least one page. Tests that run concurrently own a few.
     assert!(executable_bytes() < before + FUNCTIONS / 2 * PAGE);
 }
 
@@ -202,7 +202,7 @@ fn an_empty_function_does_nothing() {
     );
 }
 
-/// A chain of operations that keeps many values alive at once.
+/// A chain of operations with many live values.
 fn chain(operations: u32) -> Schedule {
     let step = |k: u32| {
         let other = if k < 9 { state(k % 3) } else { value(k / 2) };

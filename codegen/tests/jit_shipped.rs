@@ -1,4 +1,4 @@
-//! Shipped mechanisms at eight places at once: each lane has the bits of scalar code.
+//! Shipped mechanisms at eight points at once: each lane is bit-identical to scalar code.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
@@ -14,14 +14,14 @@ use appell_test_kit::{Random, shipped};
 
 use crate::jit_support::{lane, same};
 
-/// Blocks of random places per function.
+/// Blocks of random points per function.
 const BLOCKS: usize = 4;
 /// An angle that needs more digits of π than straight code has.
 const FAR_TURNED: f64 = 1e12;
 /// Own functions and those of the platform differ by rounding; equations enlarge that.
 const ROUNDING: f64 = 1e-9;
 
-/// What motions and their analysis evaluate most.
+/// The functions most used in simulation and analysis.
 const KINDS: [FunctionKind; 4] = [
     FunctionKind::Rates,
     FunctionKind::Jacobians,
@@ -29,7 +29,7 @@ const KINDS: [FunctionKind; 4] = [
     FunctionKind::Energies,
 ];
 
-/// A place.
+/// A point.
 struct Place {
     t: f64,
     x: Vec<f64>,
@@ -38,7 +38,7 @@ struct Place {
 }
 
 impl Place {
-    /// A random place inside the declared ranges and not far from the initial state.
+    /// A random point inside the declared ranges and near the initial state.
     fn random(info: &ModelInfo, random: &mut Random) -> Self {
         let mut near = |quantities: &[Quantity], width: f64| -> Vec<f64> {
             let draw = |quantity: &Quantity| {
@@ -71,7 +71,7 @@ impl Place {
     }
 }
 
-/// Eight places, component by component.
+/// Eight points, component by component.
 struct Block {
     places: [Place; LANES],
     t: [f64; LANES],

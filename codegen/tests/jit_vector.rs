@@ -1,4 +1,4 @@
-//! Eight places at once: every lane has the bits of scalar code.
+//! Eight points at once: every lane is bit-identical to scalar code.
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
@@ -100,7 +100,7 @@ fn negatives_take_the_bits_of_scalar_code_along() {
     }
 }
 
-/// Sums of products of all pairs of so many values: most have to leave their registers.
+/// Sums of products of all pairs of values: most have to be spilled.
 fn pairs(count: u32, call_between: bool) -> Schedule {
     let mut steps: Vec<_> = (0..count)
         .map(|k| {
@@ -140,7 +140,7 @@ fn values_survive_calls() {
 
 #[test]
 fn frames_of_many_pages_are_made() {
-    // All are alive until the last: 2000 blocks are 31 pages.
+    // All are live until the last: 2000 blocks are 31 pages.
     let steps = (0..2000).map(|k| {
         let last = if k == 0 { state(0) } else { value(k - 1) };
         set(k, binary(Operation::Add, last, number(k.into(), 3)))
@@ -345,7 +345,7 @@ fn what_cannot_be_compiled_is_interpreted_in_every_lane() {
     }
 }
 
-/// A function of the first two states and what computes it elsewhere.
+/// A function of the first two states, and its reference implementation.
 type Known = (Tree, fn(f64, f64) -> f64);
 
 #[test]
@@ -369,7 +369,7 @@ fn own_functions_are_those_of_the_runtime() {
         (Tree::Power(base, exponent), elementary::powf),
     ];
     let schedule = schedule(vec![], known.iter().map(|(tree, _)| tree.clone()).collect());
-    // Angles beyond all ordinary ones stand beside ordinary ones.
+    // Angles that need extended reduction together with ordinary ones.
     let numbers = [0.3, -1e22, 710.0, f64::NAN, -0.0, 0.99, f64::INFINITY, 1e9];
     let second = [2.5, -0.7, 0.0, 1.0, -2.0, f64::NAN, 3.0, -1e-300];
     let points = std::array::from_fn(|l| with_states(numbers[l], second[l]));

@@ -1,4 +1,4 @@
-//! The derivation and what is made of it, from the outside.
+//! Integration tests of the derivation and its outputs.
 
 mod build_script;
 mod c_code;

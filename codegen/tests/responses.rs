@@ -10,7 +10,7 @@ use appell_runtime::differences;
 use appell_runtime::model::{At, Gradient, Model};
 use appell_test_kit::Random;
 
-/// Rounding, times the condition of what is solved on the way.
+/// Rounding, times the condition number of the systems involved.
 const ROUNDING: f64 = 1e-9;
 /// Differences keep nine digits of ten.
 const DIFFERENCES: f64 = 1e-6;
@@ -310,7 +310,7 @@ fn friction_follows_the_normal_force() {
         let mut rates = [f64::NAN; 2];
         model.rates(point.at(), &mut rates);
         assert_close("rates", &rates, &[a, v], ROUNDING);
-        // The power that is told is that of push and friction; the others have potentials.
+        // The reported power is that of push and friction; the other loads have potentials.
         let power = model.energies(point.at()).power;
         assert_close("power", &[power], &[v * (pushing + rubbing)], ROUNDING);
     });
@@ -351,7 +351,7 @@ fn slopes(z: &[f64], mut of: impl FnMut(&[f64]) -> Vec<f64>) -> Vec<Vec<f64>> {
     columns
 }
 
-/// A, B and P against differences of the rates; what the loads do against the change of the energy.
+/// A, B and P against differences of the rates; the work of the loads against the change of the energy.
 fn assert_motion(what: &str, model: &dyn Model, point: &Point) {
     let info = model.info();
     let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
@@ -412,12 +412,13 @@ fn a_reaction_in_a_load_is_that_of_the_motion_with_the_load() {
     }
 }
 
-/// A slider-crank whose slider rubs with a force that the law of its normal force tells.
+/// A slider-crank with friction on its slider, a given function of its normal force.
 fn slider_crank(law: &str) -> String {
     include_str!("emit_support/slider_crank.toml").replace("LAW", law)
 }
 
-/// The law, what follows from a multiplier, and states with accelerations of the crank and multipliers.
+/// The friction law, the relation of force and multiplier, and states with accelerations of the crank and
+/// multipliers.
 type Rubbing = (&'static str, fn(f64) -> f64, [[f64; 5]; 3]);
 
 /// By another program: Lagrange's multiplier of `M q̈ = Q + Jᵀ λ`, found by bracketing so that the load has it.
@@ -563,7 +564,7 @@ pin = { value = \"force(pin)\" }
 
 #[test]
 fn what_cannot_be_told_is_refused_where_it_is_named() {
-    // Two contacts say the same of one motion: their shares are not told.
+    // Two contacts are redundant: their individual reactions are indeterminate.
     let text = with(
         BLOCK,
         &[
@@ -588,7 +589,7 @@ fn what_cannot_be_told_is_refused_where_it_is_named() {
     ] {
         assert!(shown.contains(part), "{part} is not in {shown}");
     }
-    // The wheel lifts off by a coordinate: nothing tells the normal of what it rolls on.
+    // A coordinate lifts the wheel off the ground: the normal of the surface is unknown.
     let text = with(
         &WHEEL
             .replace("R*cos(theta)\"], about", "h\"], about")

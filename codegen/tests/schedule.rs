@@ -1,4 +1,4 @@
-//! Schedules compute what was derived, with few operations, under names that people can read.
+//! Schedules reproduce the derivation with few operations and readable names.
 
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 #![allow(
@@ -130,7 +130,7 @@ fn random_program(numbers: &mut Numbers) -> Program {
             }
             9 => {
                 let value = g.name(&format!("value_{step}"), a);
-                // Half of the named values are wanted as they stand.
+                // Half of the named values are displayed stages.
                 if pick(2) == 0 {
                     kept.push(value);
                 }

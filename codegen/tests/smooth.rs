@@ -76,7 +76,7 @@ fn a_smooth_corner_keeps_its_digits() {
                     "{x} {b} {w}: {y:?} {expected:?}"
                 );
                 let (got, wanted) = (c[2 * k + 1], slopes[k]);
-                // What a rounding of both sides changes, by the curvature of the corner.
+                // The effect of rounding both sides, by the curvature of the corner.
                 let bend = w * w / (2.0 * (x - b).hypot(w).powi(3));
                 let felt = wanted.abs().max(1e-3) + (x.abs() + b.abs()) * bend;
                 assert!(

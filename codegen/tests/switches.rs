@@ -1,6 +1,6 @@
 //! Relations of time inside a spec: found by the derivation, landed on by the integrators.
 
-// What cannot be derived or simulated fails the test.
+// Mechanisms that cannot be derived or simulated fail the test.
 #![allow(clippy::unwrap_used)]
 
 use appell_codegen::compile;

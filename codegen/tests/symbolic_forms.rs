@@ -70,7 +70,7 @@ fn pythagoras_shortens_sums() {
     let ml = g.mul(m, l);
     assert_eq!(g.add(ms, mc), ml);
     assert_eq!(g.sub(ml, mc), ms);
-    // What would not become shorter stays.
+    // Expressions that would not become shorter are unchanged.
     let twice = g.scale(&2.into(), s2);
     let kept = g.add(twice, c2);
     assert!(matches!(g.node(kept), Node::Sum(t) if t.len() == 2));

@@ -1,4 +1,4 @@
-//! Equality by evaluation: identities that hold are found, near misses are not.
+//! Equality by evaluation: valid identities are proven, near misses rejected.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 
@@ -139,7 +139,7 @@ fn multiples_and_parts_of_angles_are_related() {
     b.equal(left, right);
     b.different(left, wrong);
 
-    // Far beyond what a mechanism needs the relation is lost, not wrong.
+    // Beyond any realistic multiple the relation is not modelled, but no false claim is made.
     let g = &mut b.g;
     let far = g.scale(&(1 << 40).into(), x);
     let once_more = g.add(far, x);
@@ -248,7 +248,7 @@ fn square_roots_square_and_keep_their_sign() {
     let over = g.div(root, radicand);
     b.equal(reciprocal, over);
 
-    // √(a²) is |a|; the test must not take it for a, and it cannot tell that it is not.
+    // √(a²) is |a|; the test must not take it for a, and cannot prove that they differ.
     let g = &mut b.g;
     let square = g.square(a);
     let length = g.sqrt(square);

@@ -1,4 +1,4 @@
-//! What people read: text, `LaTeX` and `MathML`.
+//! Formatted expressions: text, `LaTeX` and `MathML`.
 
 #![allow(clippy::unwrap_used, reason = "tests")]
 

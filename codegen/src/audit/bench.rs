@@ -1,4 +1,4 @@
-//! What every question about the equations needs, and where its answers go.
+//! The context shared by all checks of the equations, and their results.
 
 use appell_spec::mechanism::{Mechanism, ParameterId};
 
@@ -15,23 +15,23 @@ use crate::mechanics::{Derivation, declared_ranges};
 use crate::symbolic::print::{Setter, Spelled, text};
 use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 
-/// Nobody reads a formula with more operations in a message.
+/// Formulas with more operations are not shown in messages.
 const MOST_OPERATIONS: usize = 16;
 
-/// What an audit tells.
+/// The results of an audit.
 #[derive(Debug, Clone, Default)]
 pub struct Audit {
     /// Warnings and notes.
     pub warnings: Vec<Finding>,
-    /// What is worth knowing.
+    /// Notes.
     pub notes: Vec<Finding>,
 }
 
-/// What every question about the equations needs.
+/// The context shared by all checks of the equations.
 pub(super) struct Bench<'a> {
     pub(super) mechanism: &'a Mechanism,
     pub(super) derivation: &'a Derivation,
-    /// A graph of its own: the emitted equations do not depend on the audit.
+    /// A separate graph, so that the emitted equations do not depend on the audit.
     pub(super) algebra: Algebra,
     pub(super) declared: Intervals,
     pub(super) state: InitialState,
@@ -39,14 +39,14 @@ pub(super) struct Bench<'a> {
     pub(super) unconstrained: Kinematics,
     /// Outputs in terms of coordinates and pseudo-velocities.
     pub(super) outputs: Vec<Expr>,
-    /// Limits of parameters that would take the place of pivoting.
+    /// Parameter limits that would make pivoting unnecessary.
     pub(super) limits: Option<Limits>,
-    /// Ranges that would take the place of pivoting.
+    /// Coordinate ranges that would make pivoting unnecessary.
     pub(super) proposals: Vec<Proposal>,
 }
 
 impl<'a> Bench<'a> {
-    /// `None` where an expression divides by zero, which the derivation tells.
+    /// `None` if an expression divides by zero, which the derivation reports.
     pub(super) fn new(mechanism: &'a Mechanism, derivation: &'a Derivation) -> Option<Self> {
         let symbols = &derivation.symbols;
         let graph = derivation.algebra.graph.clone();
@@ -67,19 +67,19 @@ impl<'a> Bench<'a> {
         })
     }
 
-    /// An expression as people read it, where they would.
+    /// An expression as displayed text, if it is short enough.
     pub(super) fn readable(&self, expr: Expr) -> Option<String> {
         let graph = &self.algebra.graph;
         (graph.operations(&[expr]) <= MOST_OPERATIONS).then(|| shown(graph, expr))
     }
 
-    /// An expression as people read it.
+    /// An expression as displayed text.
     pub(super) fn shown(&self, expr: Expr) -> String {
         shown(&self.algebra.graph, expr)
     }
 
-    /// Everything that the motion and its results consist of, without reactions but with friction and with what
-    /// position constraints demand of the configuration.
+    /// All expressions of the motion and its results, without reactions but with friction and position
+    /// constraints.
     pub(super) fn equations(&self) -> Vec<Expr> {
         let Derivation {
             contacts,
@@ -100,7 +100,7 @@ impl<'a> Bench<'a> {
         all
     }
 
-    /// Whether none of the expressions changes with a symbol.
+    /// Whether all expressions are independent of a symbol.
     pub(super) fn are_independent_of(&mut self, exprs: &[Expr], symbol: Expr) -> bool {
         let Algebra { graph, test, .. } = &mut self.algebra;
         graph.as_symbol(symbol).is_some_and(|symbol| {
@@ -122,7 +122,7 @@ fn outputs(
         rates: &derivation.velocities.rates,
     };
     let mut told = motions(algebra, mechanism, symbols, &derivation.kinematics);
-    // With symbols for ω̇, which depends on nothing but the equations.
+    // With symbols for ω̇, whose value follows from the equations alone.
     let named = &derivation.responses_in_outputs;
     let mut named = Substitution::of_parts(&algebra.graph, named);
     let mut outputs = Vec::with_capacity(mechanism.outputs.len());
@@ -158,17 +158,17 @@ pub(super) fn listed<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     names.join(", ")
 }
 
-/// Limits of parameters with which formulas give the rates that are now solved with pivoting.
+/// Parameter limits with which the rates have an explicit formula instead of a pivoted solve.
 #[derive(Debug, Clone)]
 pub(super) struct Limits {
-    /// What they keep off zero.
+    /// Expressions that they keep nonzero.
     pub(super) divisors: Vec<Expr>,
-    /// Parameters with the limits that they lack, in their units.
+    /// Parameters with their missing limits, in their units.
     pub(super) parameters: Vec<(ParameterId, [Option<f64>; 2])>,
 }
 
 impl Limits {
-    /// Whether they keep an expression off zero.
+    /// Whether they keep an expression nonzero.
     pub(super) fn keep_off_zero(&self, expr: Expr) -> bool {
         self.divisors.contains(&expr)
     }

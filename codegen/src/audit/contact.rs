@@ -1,8 +1,7 @@
-//! Rolling contacts that contradict their own geometry.
+//! Rolling contacts with inconsistent geometry.
 //!
-//! A contact point moves over the ground and stays on it; the material point that passes through it is
-//! at rest for that instant. So across the ground both velocities vanish by geometry, and along it
-//! they differ.
+//! A contact point moves along the ground; the material point that coincides with it is instantaneously at
+//! rest. So the normal components of both velocities vanish by geometry, and the tangential ones differ.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{BodyId, ConstraintKind, GROUND, Mechanism, Normal, PointId};
@@ -68,7 +67,7 @@ struct Geometry<'a> {
 }
 
 impl Geometry<'_> {
-    /// What is wrong with a contact, and what to write instead.
+    /// The inconsistency of a contact, and the fix.
     fn contradiction(&mut self, body: BodyId, contact: PointId) -> Option<(String, String)> {
         let mechanism = self.mechanism;
         let (body_name, point) = (
@@ -103,7 +102,7 @@ impl Geometry<'_> {
         let centre = mechanism.bodies[body].centre;
         let is_bound = !self.velocities_of_positions().is_empty();
         let graph = &mut self.algebra.graph;
-        // Position constraints turn the plane of the velocities: the arm is asked without them.
+        // Position constraints rotate the plane of the velocities: the arm is tested without them.
         let arm = if is_bound {
             vector::ZERO
         } else {
@@ -116,7 +115,7 @@ impl Geometry<'_> {
         if removed == 3 && !self.stays_level(contact) {
             return Some(self.leaves_the_ground(contact));
         }
-        // With two velocities in the plane of the arm, that plane is not tangent to the body.
+        // If two velocities lie in the plane of the arm, that plane is not tangent to the body.
         if removed == 3 || removed == 2 && !is_bound && count(Standing::Inconsistent) == 0 {
             return Some(self.is_not_tangent(body, contact));
         }
@@ -133,7 +132,7 @@ impl Geometry<'_> {
         })
     }
 
-    /// What is wrong with the normal of a surface, and what to write instead.
+    /// The inconsistency of a surface normal, and the fix.
     fn wrong_normal(
         &mut self,
         body: BodyId,
@@ -191,7 +190,7 @@ impl Geometry<'_> {
         self.vanishes(&arm)
     }
 
-    /// Whether the contact point moves with the material of the body, whatever the motion.
+    /// Whether the contact point is body-fixed in every motion.
     fn is_pinned(&mut self, body: BodyId, contact: PointId) -> bool {
         let material = self.material_velocity(body, contact);
         let graph = &mut self.algebra.graph;
@@ -201,7 +200,7 @@ impl Geometry<'_> {
         self.vanishes(&passing)
     }
 
-    /// Whether a point keeps its height, once the coordinates satisfy the position constraints.
+    /// Whether a point has constant height under the position constraints.
     fn stays_level(&mut self, point: PointId) -> bool {
         let Some(down) = self.mechanism.down() else {
             return false;
@@ -232,8 +231,7 @@ impl Geometry<'_> {
         )
     }
 
-    /// How many of some velocities the coordinates leave open, once they satisfy the position
-    /// constraints.
+    /// The number of velocities that are independent under the position constraints.
     fn independent_of_positions(&mut self, wanted: &[Expr]) -> usize {
         let standings = self.after_positions(wanted, &vec![Graph::ZERO; wanted.len()]);
         let open = standings.iter();
@@ -241,8 +239,7 @@ impl Geometry<'_> {
             .count()
     }
 
-    /// How some velocities, each with a rest, stand to those before them and to the position
-    /// constraints.
+    /// Rank relations of velocities, each with a rest, to earlier ones and to the position constraints.
     fn after_positions(&mut self, wanted: &[Expr], rests: &[Expr]) -> Vec<Standing> {
         let of_positions = self.velocities_of_positions();
         let positions = of_positions.len();
@@ -304,7 +301,7 @@ impl Geometry<'_> {
         )
     }
 
-    /// Height of a point against the weight, and the coordinates that change it.
+    /// Height of a point, opposite to gravity, and the coordinates that change it.
     fn height(&mut self, point: PointId) -> Option<(Expr, Vec<String>)> {
         let down = self.mechanism.down()?;
         let graph = &mut self.algebra.graph;

@@ -1,5 +1,5 @@
-//! Where the pseudo-velocities and the constraints determine the generalised velocities: away from
-//! the zeros of the determinant of their coefficients.
+//! The pseudo-velocities and the constraints determine the generalised velocities except at the zeros of the
+//! determinant of their coefficients.
 
 use appell_spec::Code;
 use appell_spec::mechanism::SpeedId;
@@ -12,9 +12,9 @@ use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::motions::motions;
 use crate::symbolic::{Expr, Graph, Node, SymbolId};
 
-/// Coefficients with more operations, and determinants, are not examined.
+/// Coefficients and determinants with more operations are not examined.
 const MOST_OPERATIONS: usize = 300;
-/// Minors that are expanded at most.
+/// Maximum number of expanded minors.
 const MOST_MINORS: usize = 500;
 
 /// One finding per factor of the determinant that can vanish.
@@ -76,7 +76,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         }
         let help =
             format!("declare {excluding}, or choose pseudo-velocities that are independent there");
-        // Samples do not satisfy position constraints, which may keep away from it.
+        // Samples do not satisfy position constraints, which may exclude the zero.
         if bench.derivation.positions.names.is_empty() && takes_both_signs(bench, factor) {
             let message =
                 format!("{away}; the declared ranges include configurations where it is zero");
@@ -99,8 +99,8 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
 
 type Matrix = Vec<Vec<Expr>>;
 
-/// The coefficients in the definitions of the pseudo-velocities, and the factors of the determinant of these and
-/// the constraints; `None` where they are too long to be read.
+/// The coefficients in the definitions of the pseudo-velocities, and the factors of the determinant of these
+/// and the constraints; `None` if they are too long to display.
 fn factors_of_determinant(bench: &mut Bench) -> Option<(Matrix, Vec<Expr>)> {
     let (speeds, rows) = coefficients(bench)?;
     let all = [rows, speeds.clone()].concat();
@@ -148,7 +148,7 @@ fn coefficients(bench: &mut Bench) -> Option<(Matrix, Matrix)> {
     Some((speeds, rows))
 }
 
-/// By minors along the row or column with the fewest entries. `None` where that takes too many.
+/// Laplace expansion along the row or column with the fewest entries. `None` if it has too many terms.
 fn determinant(algebra: &mut Algebra, rows: Matrix, minors: &mut usize) -> Option<Expr> {
     *minors = minors.checked_sub(1)?;
     let n = rows.len();
@@ -193,7 +193,7 @@ fn determinant(algebra: &mut Algebra, rows: Matrix, minors: &mut usize) -> Optio
     Some(algebra.shortest(sum))
 }
 
-/// The factors of a product that can make it vanish, each once.
+/// The distinct factors of a product that can vanish.
 fn factors(algebra: &mut Algebra, product: Expr) -> Vec<Expr> {
     let (_, product) = algebra.graph.split_coefficient(product);
     let factors = match algebra.graph.node(product) {
@@ -218,7 +218,7 @@ fn positions<'a>(bench: &Bench<'a>, expr: Expr) -> Vec<(&'a str, SymbolId)> {
         .collect()
 }
 
-/// Whether a factor keeps its sign even without the declared ranges of the coordinates.
+/// Whether a factor has constant sign even without the declared coordinate ranges.
 fn is_never_zero(bench: &Bench, factor: Expr) -> bool {
     let mut unbounded = bench.mechanism.clone();
     for q in &mut unbounded.coordinates {
@@ -229,8 +229,8 @@ fn is_never_zero(bench: &Bench, factor: Expr) -> bool {
     crate::mechanics::declared_ranges(graph, &unbounded, symbols).cannot_vanish(graph, factor)
 }
 
-/// The pseudo-velocity to look at: the last with the factor for a coefficient, or else with the factor
-/// in one, or else with one that changes with the same coordinates.
+/// The pseudo-velocity to report: the last one with the factor as a coefficient, else as a part of one, else
+/// one that depends on the same coordinates.
 fn culprit(bench: &mut Bench, speeds: &Matrix, factor: Expr) -> Item {
     let minus = bench.algebra.graph.neg(factor);
     let graph = &bench.algebra.graph;

@@ -1,4 +1,4 @@
-//! What is used and yet changes nothing: coordinates, parameters, bodies.
+//! Coordinates, parameters and bodies that are used but have no effect.
 
 use appell_spec::Code;
 
@@ -17,7 +17,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     bodies(bench, told);
 }
 
-/// Coordinates that neither place nor move anything that matters.
+/// Coordinates that affect neither the position nor the motion of anything relevant.
 fn coordinates(bench: &mut Bench, told: &mut Audit) {
     let Some(moved) = moved(bench) else {
         return;
@@ -25,7 +25,7 @@ fn coordinates(bench: &mut Bench, told: &mut Audit) {
     let symbols = &bench.derivation.symbols;
     let equations = bench.equations();
     for (q, coordinate) in bench.mechanism.coordinates.entries() {
-        // Two rows with the same rate tie others together by means of it.
+        // Two rows with the same rate couple other coordinates through it.
         let rows = bench.derivation.constraints.rows.iter();
         let ties = rows.filter(|row| row.is_active() && row.coefficients[q.index()] != Graph::ZERO);
         if ties.count() > 1 {
@@ -58,7 +58,7 @@ fn coordinates(bench: &mut Bench, told: &mut Audit) {
     }
 }
 
-/// What happens in terms of q and q̇: velocities of the bodies, powers of the loads, outputs.
+/// The motion in terms of q and q̇: velocities of the bodies, powers of the loads, outputs.
 fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
     let (mechanism, symbols) = (bench.mechanism, &bench.derivation.symbols);
     let rates = &symbols.rates;
@@ -91,10 +91,10 @@ fn moved(bench: &mut Bench) -> Option<Vec<Expr>> {
     Some(moved)
 }
 
-/// Parameters that drop out of all equations.
+/// Parameters that cancel in all equations.
 fn parameters(bench: &mut Bench, told: &mut Audit) {
     let equations = bench.equations();
-    // What a load without work depends on is told with the load.
+    // Parameters of loads without work are reported with the load.
     let silent = silent_loads(bench);
     for (p, parameter) in bench.mechanism.parameters.entries() {
         let symbol = bench.derivation.symbols.parameters[p.index()];

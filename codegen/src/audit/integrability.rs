@@ -1,9 +1,9 @@
-//! Constraints between velocities that fix positions: holonomic ones in disguise.
+//! Holonomic constraints stated as velocity constraints.
 //!
-//! Constraint rows are one-forms on positions and time. The motions that they allow are spanned by
-//! vector fields, one per pseudo-velocity and one for time; moving along two of them in turn leads
-//! along their Lie bracket. What the rows say about all brackets, and brackets of brackets, tells what
-//! no motion ever changes (Frobenius): a sum of rows that vanishes on all of them is integrable.
+//! Constraint rows are one-forms on positions and time. The admissible motions are spanned by vector fields,
+//! one per pseudo-velocity and one for time; alternating between two of them gives a motion along their Lie
+//! bracket. By the theorem of Frobenius, a linear combination of rows that vanishes on all iterated brackets is
+//! integrable.
 
 use appell_spec::Code;
 use appell_spec::mechanism::CoordinateId;
@@ -13,22 +13,22 @@ use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::rank::{Combination, LinearRow, Standing, standings};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// Brackets of so many fields are formed at most.
+/// Maximum number of fields whose brackets are formed.
 const MOST_FIELDS: usize = 24;
-/// Longer velocities are not differentiated: their brackets take longer than the equations.
+/// Longer velocities are skipped: their brackets are more expensive than the equations.
 const MOST_OPERATIONS: usize = 250;
-/// The search ends where it has made so many expressions.
+/// Number of new expressions at which the search ends.
 const MOST_EXPRESSIONS: usize = 20_000;
 
-/// A motion that the constraints allow at every position.
+/// A motion that is admissible at every position.
 #[derive(Clone)]
 struct Field {
     rates: Vec<Expr>,
-    /// Whether time runs along with it.
+    /// Whether it includes the passage of time.
     in_time: bool,
 }
 
-/// One note per integrable sum of rows.
+/// One note per integrable combination of rows.
 pub(super) fn findings(bench: &mut Bench) -> Vec<Finding> {
     let rows = &bench.derivation.constraints.rows;
     let rows: Vec<usize> = (0..rows.len()).filter(|&i| rows[i].is_active()).collect();
@@ -53,15 +53,15 @@ pub(super) fn findings(bench: &mut Bench) -> Vec<Finding> {
     .collect()
 }
 
-/// What the rows say about independent brackets of allowed motions. `None` where every sum of rows
-/// says something, or where the search grows too large.
+/// Values of the rows on independent brackets of admissible motions. `None` if no combination of rows vanishes
+/// on all of them, or if the search grows too large.
 fn velocities_of_brackets(bench: &mut Bench, rows: &[usize]) -> Option<Vec<Vec<Expr>>> {
     let limit = bench.algebra.graph.len() + MOST_EXPRESSIONS;
     let rates = &bench.derivation.velocities.rates;
     if bench.algebra.graph.operations(rates) > MOST_OPERATIONS {
         return None;
     }
-    // A position constraint is integrable and does not hide it.
+    // Position constraints are integrable by definition.
     let all = &bench.derivation.constraints.rows;
     let hidden = rows.iter().filter(|&&row| !all[row].of_position).count();
     let mut fields = allowed(bench);
@@ -105,7 +105,7 @@ fn velocities_of_brackets(bench: &mut Bench, rows: &[usize]) -> Option<Vec<Vec<E
     Some(reached.into_iter().map(|row| row.coefficients).collect())
 }
 
-/// The motions that the constraints allow: q̇ per pseudo-velocity, and what happens without any.
+/// The admissible motions: q̇ per pseudo-velocity, and q̇ at zero pseudo-velocities.
 fn allowed(bench: &mut Bench) -> Vec<Field> {
     let (symbols, velocities) = (&bench.derivation.symbols, &bench.derivation.velocities);
     let algebra = &mut bench.algebra;
@@ -126,7 +126,7 @@ fn allowed(bench: &mut Bench) -> Vec<Field> {
     fields
 }
 
-/// `[a, b]`: the velocity at which going along a, b, -a, -b in turn leads away.
+/// `[a, b]`: the net motion along a, b, -a, -b in turn.
 fn bracket(bench: &mut Bench, a: &Field, b: &Field) -> Field {
     let rates = (0..a.rates.len()).map(|k| {
         let along_a = derivative_along(bench, b.rates[k], a);
@@ -161,7 +161,7 @@ fn derivative_along(bench: &mut Bench, expr: Expr, field: &Field) -> Expr {
     algebra.graph.sum(&parts)
 }
 
-/// The constrained velocities along a bracket, along which time stands still.
+/// Values of the rows on a bracket, which has no time component.
 fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
     let all = &bench.derivation.constraints.rows;
     let algebra = &mut bench.algebra;
@@ -177,7 +177,7 @@ fn velocities(bench: &mut Bench, rows: &[usize], bracket: &Field) -> Vec<Expr> {
         .collect()
 }
 
-/// The note for the integrable sum `row - Σ share · other`; none where a position constraint says it.
+/// The note for the integrable combination `row - Σ share · other`; `None` if a position constraint states it.
 fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Finding> {
     let rows = &bench.derivation.constraints.rows;
     let algebra = &mut bench.algebra;
@@ -242,7 +242,7 @@ fn integrable(bench: &mut Bench, row: usize, sum: &Combination) -> Option<Findin
     })
 }
 
-/// Whether a form follows from the position constraints, also from those whose rows contacts repeat.
+/// Whether a form follows from the position constraints, including those whose rows contacts repeat.
 fn is_stated(bench: &mut Bench, form: &[Expr], rest: Expr) -> bool {
     let rows = bench.derivation.constraints.rows.iter();
     let mut rows: Vec<LinearRow> = rows
@@ -260,7 +260,7 @@ fn is_stated(bench: &mut Bench, form: &[Expr], rest: Expr) -> bool {
     matches!(standing, Some(Standing::Redundant(_)))
 }
 
-/// What the form is the differential of, where its coefficients are constant.
+/// The potential of a form with constant coefficients.
 fn relation(bench: &mut Bench, form: &[Expr]) -> Option<Expr> {
     let symbols = &bench.derivation.symbols;
     let graph = &mut bench.algebra.graph;

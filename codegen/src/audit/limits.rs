@@ -1,4 +1,4 @@
-//! Limits of parameters with which formulas give the rates that are now solved with pivoting.
+//! Parameter limits with which the rates have an explicit formula instead of a pivoted solve.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{CoordinateId, Mechanism, Parameter, ParameterId};
@@ -9,10 +9,10 @@ use crate::mechanics::declared_ranges;
 use crate::mechanics::elimination::eliminate;
 use crate::mechanics::finding::{Finding, Item};
 
-/// How far the limits are from the values, the widest first.
+/// Ratios of the limits to the values, the widest first.
 const FACTORS: [f64; 4] = [2.0, 1.5, 1.2, 1.1];
 
-/// The widest limits of the parameters in what divides with which nothing is solved with pivoting.
+/// The widest limits of the parameters in divisors that make all pivoted solves unnecessary.
 pub(super) fn limits(bench: &mut Bench) -> Option<Limits> {
     let derivation = bench.derivation;
     let positions = &derivation.positions.names;
@@ -63,7 +63,7 @@ pub(super) fn limits(bench: &mut Bench) -> Option<Limits> {
     })
 }
 
-/// The limits that a parameter lacks, in its unit, rounded towards its value.
+/// The missing limits of a parameter, in its unit, rounded towards its value.
 fn missing(parameter: &Parameter, factor: f64) -> [Option<f64>; 2] {
     let value = parameter.value / parameter.label.unit.scale;
     let ends = [value / factor, value * factor];
@@ -89,7 +89,7 @@ fn two_digits(value: f64, round: impl Fn(f64) -> f64) -> f64 {
     round(value * power) / power
 }
 
-/// One note that names what divides, and the limits that keep it off zero.
+/// One note that lists the divisors, and the limits that keep them nonzero.
 pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     let Some(limits) = &bench.limits else {
         return;
@@ -129,7 +129,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
 }
 
 impl Limits {
-    /// As they stand in a spec.
+    /// The limits in the syntax of a spec.
     fn written(&self, mechanism: &Mechanism) -> String {
         let of = |(id, ends): &(ParameterId, [Option<f64>; 2])| {
             let keys = ["at_least", "at_most"].into_iter().zip(ends);

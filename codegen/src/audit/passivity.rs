@@ -1,4 +1,4 @@
-//! Passive elements that feed energy: a sign that is wrong.
+//! Passive elements that supply energy: a sign error.
 
 use appell_spec::Code;
 use appell_spec::expr::Expr as Spec;
@@ -67,8 +67,8 @@ fn is_negative(bench: &mut Bench, coefficient: &Spec) -> bool {
         .is_ok_and(|coefficient| bench.declared.of(graph, coefficient).hi < 0.0)
 }
 
-/// Whether a load depends on nothing but the state, and its power is the same against every velocity
-/// and never negative: friction with the wrong sign.
+/// Whether a load depends on the state only, and its power is even in every velocity and never negative:
+/// friction with the wrong sign.
 fn drives(bench: &mut Bench, load: LoadId) -> bool {
     let symbols = &bench.derivation.symbols;
     let load = &bench.derivation.loads[load.index()];

@@ -1,4 +1,4 @@
-//! Ranges of angles with which formulas give the rates that are now solved with pivoting.
+//! Ranges of angles with which the rates have an explicit formula instead of a pivoted solve.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{Coordinate, CoordinateId, Mechanism};
@@ -8,22 +8,22 @@ use crate::mechanics::declared_ranges;
 use crate::mechanics::elimination::eliminate;
 use crate::mechanics::finding::{Finding, Item};
 
-/// Ranges that end before a pole, in radians: about zero for a tilt, beside it for a polar angle.
+/// Ranges that exclude poles, in radians: about zero for a tilt, between poles for a polar angle.
 const BETWEEN_POLES: [[f64; 2]; 3] = [[-1.5, 1.5], [0.05, 3.1], [-3.1, -0.05]];
 
-/// A range to write.
+/// A proposed range.
 #[derive(Debug, Clone)]
 pub(super) struct Proposal {
     pub(super) coordinate: CoordinateId,
     range: [f64; 2],
-    /// Whether another finding names it.
+    /// Whether another finding reports it.
     pub(super) is_told: bool,
-    /// Coordinates whose rates are solved with pivoting then.
+    /// Coordinates whose rates would still need a pivoted solve.
     open: Vec<usize>,
 }
 
 impl Proposal {
-    /// As it stands in a spec.
+    /// The range in the syntax of a spec.
     pub(super) fn written(&self, mechanism: &Mechanism) -> String {
         let Coordinate { label, initial, .. } = &mechanism.coordinates[self.coordinate];
         let scale = label.unit.scale;
@@ -46,8 +46,8 @@ impl Proposal {
     }
 }
 
-/// Ranges of angles without one, each of which leaves fewer rates to pivoting. Position constraints
-/// choose their own ranges.
+/// Ranges for angles without one, each of which reduces the number of pivoted rates. Position constraints
+/// determine their own ranges.
 pub(super) fn proposals(bench: &mut Bench) -> Vec<Proposal> {
     let derivation = bench.derivation;
     if !derivation.positions.names.is_empty() {
@@ -100,7 +100,7 @@ pub(super) fn proposals(bench: &mut Bench) -> Vec<Proposal> {
     proposals
 }
 
-/// One note per range that nobody has told of.
+/// One note per range that no other finding reports.
 pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     let mechanism = bench.mechanism;
     let names = |q: &usize| &*mechanism.coordinates[CoordinateId::new(*q)].label.name;

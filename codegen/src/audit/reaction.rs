@@ -1,4 +1,4 @@
-//! Forces and their reactions: opposite, and on one line.
+//! Forces and their reactions: opposite, with a common line of action.
 
 use std::mem::discriminant;
 
@@ -67,7 +67,7 @@ fn couples(bench: &mut Bench, told: &mut Audit) {
     }
 }
 
-/// What a load acts on.
+/// The point or body on which a load acts.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum On {
     /// A force on a point.
@@ -76,11 +76,11 @@ enum On {
     Body(BodyId),
 }
 
-/// What acts where.
+/// Application, frame and components of a load.
 type Action = (On, FrameId, Vec3);
 
-/// One input that acts with the same sign on two bodies or points: the second may be meant as the
-/// reaction to the first.
+/// One input that acts with the same sign on two bodies or points: the second may be intended as the reaction
+/// to the first.
 fn equal_signs(bench: &mut Bench, told: &mut Audit) {
     let mechanism = bench.mechanism;
     let inputs = ids(&bench.algebra.graph, &bench.derivation.symbols.inputs);

@@ -1,16 +1,16 @@
-//! Configurations inside the declared ranges, to show what cannot be proven.
+//! Sample configurations inside the declared ranges, as examples for unproven properties.
 
 use super::bench::Bench;
 use crate::mechanics::symbols::ids;
 use crate::symbolic::{Expr, evaluate};
 
-/// How many configurations are tried.
+/// Number of configurations.
 const COUNT: u32 = 24;
-/// Where a coordinate without range is tried: angles go around, lengths change their sign.
+/// Sampling range of a coordinate without a range: angles are periodic, lengths change sign.
 const WIDE: [f64; 2] = [-4.0, 4.0];
 
-/// Whether an expression is positive in some configuration and not so in another, and hence zero
-/// between them where it is continuous.
+/// Whether an expression is positive in one configuration and not in another, and hence zero between them if it
+/// is continuous.
 pub(super) fn takes_both_signs(bench: &Bench, expr: Expr) -> bool {
     let graph = &bench.algebra.graph;
     let coordinates = ids(graph, &bench.derivation.symbols.coordinates);
@@ -33,8 +33,7 @@ pub(super) fn takes_both_signs(bench: &Bench, expr: Expr) -> bool {
     positive && negative
 }
 
-/// Spread over the unit interval for each coordinate, and differently for different ones: multiples
-/// of the square roots of the numbers that are no squares.
+/// Low-discrepancy sequence in the unit interval for each coordinate: multiples of square roots of non-squares.
 fn fraction(index: u32, coordinate: usize) -> f64 {
     let radicand = (2..)
         .filter(|n: &u32| n.isqrt().pow(2) != *n)

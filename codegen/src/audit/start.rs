@@ -9,12 +9,12 @@ use crate::mechanics::finding::{Finding, Item};
 use crate::mechanics::symbols::ids;
 use crate::symbolic::{Expr, evaluate};
 
-/// Newton steps; each is halved until the residual falls.
+/// Maximum Newton steps; each is halved until the residual decreases.
 const STEPS: usize = 50;
 const HALVINGS: i32 = 30;
-/// A residual that fell to this part of the first one, or of a step that changes nothing, is zero.
+/// Relative tolerance for the residual, and for steps without effect.
 const SOLVED: f64 = 1e-9;
-/// Part of a value by which a coordinate may move without a word: initial values are guesses.
+/// Relative change of a coordinate that is not reported: initial values are guesses.
 const GUESSED: f64 = 0.25;
 
 pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
@@ -22,7 +22,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     let graph = &bench.algebra.graph;
     let first = bench.state.values();
     let errors = evaluate(graph, first, &positions.residual);
-    // Without a finite residual there is nothing to solve; the derivation tells of singular states.
+    // A non-finite residual cannot be solved; the derivation reports singular states.
     if errors.is_empty() || !size(&errors).is_finite() {
         return;
     }
@@ -49,8 +49,8 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     }
 }
 
-/// Newton's method for the dependent coordinates, which stand at `places` among the symbols. The solver of the
-/// run time does the same for a compiled model; a check has none. Nothing where it ends before the constraints hold.
+/// Newton's method for the dependent coordinates, at the indices `places` of the symbols. The run-time solver
+/// does the same, but needs a compiled model. `None` without convergence.
 fn assembled(bench: &Bench, places: &[usize]) -> Option<Vec<f64>> {
     let positions = &bench.derivation.positions;
     let graph = &bench.algebra.graph;

@@ -1,4 +1,4 @@
-//! Loads and inputs that do no work in any motion that the constraints allow.
+//! Loads and inputs without work in any admissible motion.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{InputId, LoadId, LoadKind};
@@ -14,7 +14,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
     inputs(bench, &silent, told);
 }
 
-/// Loads whose power is zero.
+/// Loads with zero power.
 pub(super) fn silent_loads(bench: &mut Bench) -> Vec<LoadId> {
     let Algebra { graph, test, .. } = &mut bench.algebra;
     let loads = bench.mechanism.loads.ids().zip(&bench.derivation.loads);
@@ -27,7 +27,7 @@ pub(super) fn silent_loads(bench: &mut Bench) -> Vec<LoadId> {
 }
 
 fn loads(bench: &Bench, silent: &[LoadId], told: &mut Audit) {
-    // Where constraints react, a load without work still changes their reactions.
+    // A load without work still changes the reactions of constraints.
     let reacting = !bench.mechanism.constraints.is_empty();
     for &index in silent {
         let load = &bench.mechanism.loads[index];
@@ -55,7 +55,7 @@ fn loads(bench: &Bench, silent: &[LoadId], told: &mut Audit) {
     }
 }
 
-/// Inputs that enter neither Π nor an output, besides those of loads that are told already.
+/// Inputs that occur neither in Π nor in an output, except those of loads that are reported already.
 fn inputs(bench: &mut Bench, silent: &[LoadId], told: &mut Audit) {
     let is_told: Vec<InputId> = silent
         .iter()
@@ -81,7 +81,7 @@ fn inputs(bench: &mut Bench, silent: &[LoadId], told: &mut Audit) {
     }
 }
 
-/// Ids, names and symbols of the inputs that a load depends on.
+/// Ids, names and symbols of the inputs on which a load depends.
 fn inputs_of<'a>(bench: &Bench<'a>, load: LoadId) -> Vec<(InputId, &'a str, SymbolId)> {
     let graph = &bench.algebra.graph;
     let symbols: &[Expr] = &bench.derivation.symbols.inputs;

@@ -1,4 +1,4 @@
-//! Emitted functions behind plain arrays of numbers, for C that is the same for all models.
+//! Adapts emitted functions to plain arrays of numbers, for C code shared by all models.
 
 use std::fmt::Write as _;
 
@@ -7,8 +7,8 @@ use super::{Real, is_empty};
 use crate::infix::shape;
 use crate::program::{Function, FunctionKind, Layout, Program, Space};
 
-/// A function of a model that takes and fills arrays of doubles, by the names of its results. Results without
-/// entries, and functions that the program lacks, are left alone.
+/// A function of a model that reads and fills arrays of doubles, with the names of its results. Results without
+/// entries, and functions that the program lacks, are skipped.
 const ADAPTED: [(FunctionKind, &[&str]); 7] = [
     (FunctionKind::Rates, &["rates"]),
     (FunctionKind::Jacobians, &["rates", "a", "b"]),
@@ -19,13 +19,13 @@ const ADAPTED: [(FunctionKind, &[&str]); 7] = [
     (FunctionKind::PositionConstraints, &["residual", "jacobian"]),
 ];
 
-/// The functions that have such a form.
+/// The functions with adapters.
 pub(crate) fn adapted() -> [FunctionKind; 7] {
     ADAPTED.map(|(kind, _)| kind)
 }
 
-/// Static functions `NAME_of_model(t, p, x, u, results…)` around the emitted functions of the same names; no emitted
-/// name ends like these.
+/// Static functions `NAME_of_model(t, p, x, u, results…)` that wrap the emitted functions of the same names; no
+/// emitted name has this suffix.
 pub(crate) fn adapters(program: &Program) -> String {
     let types = Types::new(program, Real::Double);
     let mut text = loader(&types);

@@ -16,9 +16,9 @@ pub(super) struct Types<'a> {
     pub(super) program: &'a Program,
     pub(super) real: Real,
     pub(super) names: ArgumentNames,
-    /// What every name of the header begins with.
+    /// Prefix of all names in the header.
     pub(super) prefix: String,
-    /// The same for types.
+    /// Prefix of types.
     type_prefix: String,
 }
 
@@ -50,12 +50,12 @@ impl<'a> Types<'a> {
         Dialect::name(&self.real, name)
     }
 
-    /// The local of an argument, which is also its field.
+    /// The local of an argument, with the name of its field.
     pub(super) fn local(&self, argument: Argument) -> String {
         self.real_name(self.names.get(argument))
     }
 
-    /// Arguments of functions, none of them called like a quantity.
+    /// Arguments of functions, with names different from all quantities.
     pub(super) fn groups(&self) -> Groups {
         let free = |name| self.free(name);
         Groups {
@@ -66,7 +66,7 @@ impl<'a> Types<'a> {
         }
     }
 
-    /// A name that is not called like a quantity.
+    /// A name different from all quantities.
     fn free(&self, name: &str) -> String {
         let mut name = name.to_owned();
         while self.names.iter().any(|other| *other == name) {
@@ -75,7 +75,7 @@ impl<'a> Types<'a> {
         name
     }
 
-    /// Name of what a function takes beside these arguments.
+    /// Name of an additional argument of a function.
     pub(super) fn own(&self, own: Own) -> String {
         self.free(own.name())
     }
@@ -160,7 +160,7 @@ impl<'a> Types<'a> {
         text
     }
 
-    /// How a function is called.
+    /// The signature of a function.
     pub(super) fn signature(&self, function: &Function) -> String {
         let groups = self.groups();
         let real = self.real.name();
@@ -202,7 +202,7 @@ impl<'a> Types<'a> {
         )
     }
 
-    /// The argument that takes an array.
+    /// The parameter for an array of results.
     pub(super) fn result(&self, function: &Function, array: &Array) -> String {
         let mut name = format!("to_{}", identifier(&array.name));
         let others = function
@@ -347,7 +347,7 @@ impl<'a> Types<'a> {
     }
 }
 
-/// States and rates are structs of as many numbers.
+/// States and rates are structs with the same number of members.
 const STEP: &str = "\
 SIGNATURE {
     static const REAL part[4] = {0, (REAL)0.5, (REAL)0.5, 1};
@@ -377,7 +377,7 @@ SIGNATURE {
 }
 ";
 
-/// What a field means, and the unit of the spec.
+/// Description of a field, with the unit of the spec.
 fn told(quantity: &Quantity, space: Space) -> String {
     let about = match space {
         Space::Rates | Space::Accelerations | Space::CoordinateRates => {

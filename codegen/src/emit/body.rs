@@ -10,7 +10,7 @@ use crate::program::{Array, Function, Layout, Space};
 use crate::schedule::{Argument, Schedule, Tree};
 use crate::symbolic::Rational;
 
-/// Columns of the lines that take arguments apart.
+/// Maximum columns of lines that destructure arguments.
 const COLUMNS: usize = 80;
 
 /// The statements of a function; the last one is its result.
@@ -35,7 +35,7 @@ struct Body<'a> {
 }
 
 impl Body<'_> {
-    /// `let &Parameters { m, g, .. } = p;`, as often as the names need lines.
+    /// `let &Parameters { m, g, .. } = p;`, on as many lines as the names need.
     fn arguments(&mut self) {
         for group in self.types.groups() {
             let used: Vec<&str> = self
@@ -74,7 +74,7 @@ impl Body<'_> {
         }
     }
 
-    /// The arrays, and the expression that holds them all.
+    /// The arrays, and the expression that contains them.
     fn results(&mut self, function: &Function) {
         let mut fields = Vec::new();
         let structure = result_struct(function);
@@ -140,7 +140,7 @@ impl Body<'_> {
         s::structure(Types::type_name(space), fields.zip(values).collect(), None)
     }
 
-    /// `Name { field: value, ..Name::splat(zero) }`: the entries that are not zero.
+    /// `Name { field: value, ..Name::splat(zero) }` with the nonzero entries.
     fn row(&self, space: Space, entries: &[Tree]) -> Expr {
         let is_zero = |tree: &&Tree| **tree == Tree::Constant(Rational::ZERO);
         if entries.iter().filter(is_zero).count() <= 1 {
@@ -165,7 +165,7 @@ impl Body<'_> {
     }
 }
 
-/// Names in rows of so many columns, commas included.
+/// Names in rows of at most `columns` columns, commas included.
 fn rows<'a>(names: &'a [&'a str], columns: usize) -> impl Iterator<Item = &'a [&'a str]> {
     let mut rest = names;
     std::iter::from_fn(move || {
@@ -181,7 +181,7 @@ fn rows<'a>(names: &'a [&'a str], columns: usize) -> impl Iterator<Item = &'a [&
     })
 }
 
-/// Comments before an expression.
+/// Attaches comments before an expression.
 fn attach(value: &mut Expr, attributes: Vec<Attribute>) {
     match value {
         Expr::Struct(inner) => inner.attrs = attributes,
@@ -193,7 +193,7 @@ fn attach(value: &mut Expr, attributes: Vec<Attribute>) {
     }
 }
 
-/// Which arguments a struct holds.
+/// A struct of arguments.
 pub(super) struct Group {
     /// Name of the struct.
     pub(super) type_name: &'static str,

@@ -1,4 +1,4 @@
-//! Equations as a person writes them, above the function that computes them.
+//! Equations in mathematical notation, above the function that computes them.
 
 use appell_spec::foreign::one_line;
 
@@ -10,14 +10,14 @@ use crate::symbolic::{Expr, Graph, Node};
 
 /// Widest line, in characters.
 const WIDEST: usize = 92;
-/// Most lines of an equation; a longer one is told by the paragraphs of its function.
+/// Most lines of an equation; the paragraphs of the function document a longer one.
 const LONGEST: usize = 5;
 /// Most lines above a function.
 const MOST: usize = 40;
-/// Nodes of the largest expression that is worth a try.
+/// Nodes of the largest expression that is tried.
 const LARGEST: usize = 400;
 
-/// The equations as rustdoc lines, those that are short enough to read, and the names in them.
+/// The sufficiently short equations as rustdoc lines, and the names in them.
 pub(super) fn equations(types: &Types<'_>, function: &Function) -> (Vec<String>, Vec<String>) {
     let graph = &types.program.graph;
     let mut writer = Writer {
@@ -36,7 +36,7 @@ pub(super) fn equations(types: &Types<'_>, function: &Function) -> (Vec<String>,
                 continue;
             };
             let right = writer.terms(writer.opened(entry));
-            // A pseudo-velocity may be a rate of a coordinate, with its name.
+            // A pseudo-velocity may equal the rate of a coordinate and have its name.
             if right.as_deref() != Some(std::slice::from_ref(&left)) {
                 lines.extend(equation(Some(vec![left]), right));
             }
@@ -57,7 +57,7 @@ pub(super) fn equations(types: &Types<'_>, function: &Function) -> (Vec<String>,
     (lines, writer.names)
 }
 
-/// The equation that all mechanisms share, where theirs is too long.
+/// The general form of the equation, if the specific one is too long.
 fn in_general(kind: FunctionKind) -> Option<&'static str> {
     match kind {
         FunctionKind::AccelerationEnergy => Some("S = Σ ½ m a² + ½ α·J α + α·(ω × J ω)"),
@@ -68,8 +68,8 @@ fn in_general(kind: FunctionKind) -> Option<&'static str> {
     }
 }
 
-/// What a result is called in an equation; nothing where the equation says less than the names of the
-/// code, or is told by [`Function::equations`].
+/// The left side of a result's equation; `None` if the equation adds nothing to the names of the code, or is
+/// one of [`Function::equations`].
 fn left_side(
     types: &Types<'_>,
     function: &Function,
@@ -92,7 +92,7 @@ fn left_side(
         (FunctionKind::ConstraintResidual, _) => Some("0".to_owned()),
         (FunctionKind::Bias, _) => of_speed("b"),
         (FunctionKind::GeneralizedForces, _) => of_speed("Π"),
-        // Pseudo-accelerations stand in the equations that are solved for them.
+        // Pseudo-accelerations are displayed in the equations that determine them.
         (FunctionKind::Rates, Layout::Vector(Space::Rates)) => {
             let label = array.labels.get(place)?;
             (place >= info.speeds).then(|| letter(label))
@@ -107,24 +107,24 @@ fn left_side(
 struct Writer<'a> {
     graph: &'a Graph,
     setter: Setter<ParametersFirst<'a>>,
-    /// Names in what was written.
+    /// Names used so far.
     names: Vec<String>,
 }
 
 impl Writer<'_> {
-    /// The value behind a name.
+    /// The value of a named expression.
     fn opened(&self, expr: Expr) -> Expr {
         self.graph.named_value(expr).unwrap_or(expr)
     }
 
-    /// The terms of a sum, each with its sign; nothing where they are too large to read.
+    /// The signed terms of a sum; `None` if they are too long to display.
     fn terms(&mut self, expr: Expr) -> Option<Vec<String>> {
         if self.graph.in_order(&[expr]).len() > LARGEST {
             return None;
         }
         let formula = self.setter.set(self.graph, expr);
         for &want in &formula.wants {
-            // What is so large that it got a letter for the occasion is told nowhere.
+            // Letters introduced for large subexpressions are not defined in rustdoc.
             let &Node::Named(id) = self.graph.node(want) else {
                 return None;
             };
@@ -135,7 +135,7 @@ impl Writer<'_> {
             other => vec![(false, other)],
         };
         let write = |(place, (minus, term)): (usize, (bool, Math))| {
-            // A sum of one term sets its brackets and its sign.
+            // A sum of one term gets its brackets and its sign.
             let written = text(&Math::Sum(vec![(false, term)]));
             match (place, minus) {
                 (0, false) => written,
@@ -148,7 +148,7 @@ impl Writer<'_> {
     }
 }
 
-/// Both sides on as many lines as they need, broken before signs; nothing where that is too long.
+/// Both sides on as many lines as needed, broken before signs; empty if that is too long.
 fn equation(left: Option<Vec<String>>, right: Option<Vec<String>>) -> Vec<String> {
     let (Some(left), Some(mut right)) = (left, right) else {
         return Vec::new();

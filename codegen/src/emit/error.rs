@@ -1,13 +1,13 @@
-//! Why nothing was emitted.
+//! Errors of the emission.
 
 use thiserror::Error;
 
 use crate::program::FunctionKind;
 
-/// Why nothing was emitted.
+/// Errors of the emission.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Error {
-    /// The path of the run-time crate is no path.
+    /// The path of the run-time crate is not a path.
     #[error("`{0}` is not the path of a crate or module")]
     RuntimePath(String),
     /// The implementation of `Model` needs a function that the program does not have.
@@ -25,7 +25,7 @@ pub enum Error {
         /// Entries of the array.
         found: usize,
     },
-    /// The text is not Rust, which is an error of this module.
+    /// The text is not valid Rust, which is a bug of this module.
     #[error("emitted text does not parse: {0}")]
     Syntax(String),
 }

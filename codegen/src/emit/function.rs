@@ -12,7 +12,7 @@ use super::types::{Types, result_struct};
 use crate::program::{Function, Space, Term};
 use crate::schedule::{Argument, OperationCount, Schedule};
 
-/// What the rows and columns of a plain array are, where no struct tells it.
+/// Meanings of the rows and columns of a plain array that has no struct.
 fn rows_and_columns(function: &Function) -> Vec<String> {
     let [array] = function.results.as_slice() else {
         return Vec::new();
@@ -32,7 +32,7 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
     }
 }
 
-/// What the names of values mean, where they occur, in the body or in the equations `told` over it.
+/// Meanings of the names in the body of a function or in its displayed equations.
 fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<String> {
     let occurs = |term: &&Term| {
         let mut names = schedule.names.iter().chain(told);

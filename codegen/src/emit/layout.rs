@@ -1,15 +1,14 @@
-//! Comments and blank lines, which syntax trees cannot hold.
+//! Comments and blank lines, which syntax trees cannot represent.
 //!
-//! The printer writes `#[comment = "…"]` as a comment. A comment of its own kind marks the place
-//! of a blank line; no text of a spec can spell it, because every other comment starts with a
-//! space.
+//! The printer writes `#[comment = "…"]` as a comment. A reserved comment marks a blank line; it cannot occur
+//! in the text of a spec, because all other comments start with a space.
 
 use appell_spec::foreign::{one_line, sentence};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 use syn::{Attribute, Expr, Meta, token};
 
-/// What the marker is printed as.
+/// The printed form of the marker.
 const BLANK_LINE: &str = "//%blank";
 const BLANK: &str = "%blank";
 
@@ -54,12 +53,12 @@ fn attribute(name: &str, text: &str) -> Attribute {
     }
 }
 
-/// A name or a unit inside rustdoc, as code.
+/// A name or a unit in rustdoc, as code.
 pub(super) fn code(text: &str) -> String {
     format!("`{}`", sentence(text).replace('`', "'"))
 }
 
-/// A sentence of a spec inside rustdoc: no links, no tags, no emphasis, no code.
+/// A sentence of a spec in rustdoc: without links, tags, emphasis or code.
 pub(super) fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for c in sentence(text).chars() {
@@ -71,7 +70,7 @@ pub(super) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// Printed code with its blank lines.
+/// Replaces the markers in printed code by blank lines.
 pub(super) fn with_blank_lines(printed: &str) -> String {
     let mut text = String::with_capacity(printed.len());
     for line in printed.lines() {

@@ -10,11 +10,11 @@ use super::types::Types;
 use crate::program::FunctionKind;
 use crate::schedule::OperationCount;
 
-/// What a model is made of: title, source, tables of all quantities, costs.
+/// Description of a model: title, source, tables of all quantities, costs.
 pub(super) fn page(types: &Types<'_>, costs: &[(FunctionKind, OperationCount)]) -> String {
     let info = &types.program.info;
     let mut page = String::new();
-    // Writing to a string does not fail.
+    // Writing to a string cannot fail.
     let _ = writeln!(page, "{}\n", escaped(&info.title));
     if !info.source.is_empty() {
         let _ = writeln!(page, "Source: {}\n", escaped(&info.source));
@@ -66,10 +66,10 @@ fn table(page: &mut String, title: &str, value: &str, quantities: &[Quantity]) {
     }
 }
 
-/// Most marks around a raw string of Rust.
+/// Maximum number of `#` around a raw string in Rust.
 const MOST_GUARDS: usize = 255;
 
-/// The spec as a raw string, or as an escaped one where a raw string cannot hold it.
+/// The spec as a raw string, or as an escaped one if a raw string cannot contain it.
 pub(super) fn spec_constant(spec: &str) -> String {
     const ABOUT: &str = "/// The spec this module is made from.\npub const SPEC: &str = ";
     let mut guard = "#".to_owned();

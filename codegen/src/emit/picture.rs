@@ -1,4 +1,4 @@
-//! Small matrices drawn in characters.
+//! Small matrices drawn with characters.
 
 use appell_spec::foreign::one_line;
 
@@ -9,10 +9,10 @@ use crate::symbolic::{Expr, Graph, SymbolId};
 
 /// Widest picture, in characters.
 const WIDEST: usize = 92;
-/// Nodes of the largest entry that is worth a try.
+/// Nodes of the largest entry that is tried.
 const LARGEST: usize = 60;
 
-/// Letters as their names spell them, with the parameters first in every product.
+/// Letters spelled as their names, with the parameters first in every product.
 #[derive(Clone, Copy)]
 pub(super) struct ParametersFirst<'a>(pub(super) &'a [SymbolId]);
 
@@ -23,7 +23,7 @@ impl Vocabulary for ParametersFirst<'_> {
     }
 }
 
-/// The mass matrix as rustdoc lines, where it fits on the page.
+/// The mass matrix as rustdoc lines, if it fits.
 pub(super) fn picture(types: &Types<'_>, function: &Function) -> Vec<String> {
     let (FunctionKind::MassMatrix, [array]) = (function.kind, function.results.as_slice()) else {
         return Vec::new();

@@ -1,4 +1,4 @@
-//! The steps of a schedule as statements, with names for its arguments.
+//! Converts the steps of a schedule to statements, with names for its arguments.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,7 @@ use crate::schedule::piece::method;
 use crate::schedule::{Operation, Schedule, Step, Tree, Value};
 use crate::symbolic::{Rational, Relation};
 
-/// The statements of a function on their way.
+/// The statements of a function under construction.
 pub(super) struct Statements<'a> {
     names: &'a ArgumentNames,
     schedule: &'a Schedule,
@@ -110,7 +110,7 @@ impl<'a> Statements<'a> {
         }
     }
 
-    /// Name of a factorisation, not that of a value.
+    /// Name of a factorisation, distinct from values.
     fn factors(&self, factorisation: u32) -> String {
         let mut name = format!("lu_{}", factorisation + 1);
         let taken = |name: &String| {
@@ -122,7 +122,7 @@ impl<'a> Statements<'a> {
         name
     }
 
-    /// Values that something uses.
+    /// Values that are used.
     fn used(&self) -> BTreeSet<Value> {
         let entries = self
             .schedule
@@ -195,7 +195,7 @@ fn trees(steps: &[Step]) -> impl Iterator<Item = &Tree> {
     })
 }
 
-/// What a tree is made of.
+/// The direct subtrees of a tree.
 fn parts(tree: &Tree) -> Vec<&Tree> {
     match tree {
         Tree::Value(_) | Tree::Argument(_) | Tree::Constant(_) => Vec::new(),
@@ -217,7 +217,7 @@ fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
     }
 }
 
-/// The number as Rust computes it: rounded once.
+/// The number as a Rust expression that rounds it once.
 fn constant(value: &Rational) -> Expr {
     const EXACT: u64 = 1 << 53;
     // Clippy rejects the digits of π.

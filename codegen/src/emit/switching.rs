@@ -1,4 +1,4 @@
-//! What switches an emitted model; the trait has an answer for models that nothing switches.
+//! Switching functions of an emitted model; the trait has a default for models without any.
 
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
@@ -10,7 +10,7 @@ use super::syntax::known;
 use super::types::Types;
 use crate::program::{FunctionKind, Space};
 
-/// The implementation of `Switching`, and the method of `Model` that offers it.
+/// The implementation of `Switching`, and the method of `Model` that returns it.
 pub(super) fn implementation(
     types: &Types<'_>,
     name: &syn::Path,
@@ -93,7 +93,7 @@ pub(super) fn implementation(
     Ok([items, method])
 }
 
-/// The functions of time between two times. They are functions of time and parameters alone.
+/// Bounds on the functions of time and parameters between two times.
 fn bounds_in_time(types: &Types<'_>) -> TokenStream {
     let kind = FunctionKind::TimeFunctions;
     if types.program.function(kind).is_none() {
@@ -109,7 +109,7 @@ fn bounds_in_time(types: &Types<'_>) -> TokenStream {
     }
 }
 
-/// The functions of the state along a stretch of a motion.
+/// Bounds on the functions of the state along a trajectory segment.
 fn bounds_along(types: &Types<'_>) -> TokenStream {
     let kind = FunctionKind::Crossings;
     if types.program.function(kind).is_none() {
@@ -135,7 +135,7 @@ fn bounds_along(types: &Types<'_>) -> TokenStream {
     }
 }
 
-/// A function of bounds; those of the states and the inputs are given.
+/// Calls a function on bounds; those of the states and the inputs are given.
 fn call(
     types: &Types<'_>,
     kind: FunctionKind,

@@ -1,7 +1,7 @@
-//! Short constructors for the syntax that function bodies are made of.
+//! Short constructors of syntax trees for function bodies.
 //!
-//! Bodies are built as syntax trees directly: parsing hundreds of small token streams would take
-//! longer than everything else.
+//! Bodies are built as syntax trees directly, since parsing hundreds of small token streams would dominate the
+//! run time.
 
 use proc_macro2::{Ident, Literal, Span};
 use syn::punctuated::Punctuated;
@@ -39,9 +39,8 @@ const STATICS: &[&str] = &[
     "CONTACTS",
 ];
 
-/// An identifier. Whatever the text is, the result is one identifier and nothing else. What Rust or
-/// the emitted text use otherwise gets an underscore at the end, and so does what looks like that
-/// then: different names stay different.
+/// An identifier, whatever the text is. Keywords and names used by the emitted text get an underscore at the
+/// end, and so do names that would then collide with these: different names stay different.
 pub(super) fn ident(name: &str) -> Ident {
     let mut name = identifier(name);
     let stem = name.trim_end_matches('_');
@@ -51,7 +50,7 @@ pub(super) fn ident(name: &str) -> Ident {
     Ident::new(&name, Span::call_site())
 }
 
-/// An identifier of this crate's own choice.
+/// An identifier of this crate.
 pub(super) fn known(name: &'static str) -> Ident {
     Ident::new(name, Span::call_site())
 }
@@ -156,7 +155,7 @@ pub(super) fn array(elements: Vec<Expr>) -> Expr {
     })
 }
 
-/// A double, exactly, or what is none.
+/// A double as an exact literal, or a constant for non-finite values.
 pub(super) fn number(value: f64) -> Expr {
     if value.is_nan() {
         return syn::parse_quote!(f64::NAN);
@@ -207,7 +206,7 @@ pub(super) fn field(value: Expr, name: &str) -> Expr {
     })
 }
 
-/// `Type { field: value, …, ..rest }`, short where field and value have the same name.
+/// `Type { field: value, …, ..rest }`, in shorthand form if field and value have the same name.
 pub(super) fn structure(
     type_name: &'static str,
     fields: Vec<(&str, Expr)>,
@@ -272,7 +271,7 @@ pub(super) fn array_pattern(names: &[Option<&str>]) -> Pat {
     })
 }
 
-/// `&Type { fields, .. }`, with the dots if the type has other fields.
+/// `&Type { fields, .. }`, with the dots unless `all` fields are listed.
 pub(super) fn borrowed_fields(type_name: &'static str, fields: &[&str], all: bool) -> Pat {
     let fields: Punctuated<syn::FieldPat, token::Comma> = fields
         .iter()

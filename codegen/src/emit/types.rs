@@ -52,12 +52,12 @@ impl<'a> Types<'a> {
         &self.arguments
     }
 
-    /// Whether a local of this name would hide an argument.
+    /// Whether a local of this name would shadow an argument.
     pub(super) fn is_argument(&self, name: &str) -> bool {
         self.names.iter().any(|other| other == name)
     }
 
-    /// Whether a struct of this name would hide a field where structs are taken apart.
+    /// Whether a struct of this name would shadow a field in destructuring patterns.
     pub(super) fn is_field(&self, name: &str) -> bool {
         let own = [
             &self.rates,
@@ -68,7 +68,7 @@ impl<'a> Types<'a> {
         self.is_argument(name) || own.into_iter().flatten().any(|field| field == name)
     }
 
-    /// The structs that hold the arguments.
+    /// The structs of the arguments.
     pub(super) fn groups(&self) -> [Group; 3] {
         let [_, parameters, state, inputs] = &self.arguments;
         let group = |type_name, argument: &String, len, like| Group {
@@ -90,7 +90,7 @@ impl<'a> Types<'a> {
         ]
     }
 
-    /// Name and type of what a function takes beside them.
+    /// Name and type of a function's additional argument.
     pub(super) fn own(&self, kind: FunctionKind) -> Option<(String, TokenStream)> {
         let own = kind.takes()?;
         let list = |names: &[String]| {
@@ -149,7 +149,7 @@ impl<'a> Types<'a> {
         }
     }
 
-    /// How many entries a layout has.
+    /// The number of entries of a layout.
     pub(super) fn len(&self, layout: Layout) -> usize {
         let len = |space| self.fields(space).len();
         match layout {
@@ -240,7 +240,7 @@ impl<'a> Types<'a> {
         }
     }
 
-    /// The vectors that functions take or return. `named` says that a model puts them together.
+    /// The vectors in the signatures of functions. `named` adds those that a model needs.
     fn spaces(functions: &[&Function], named: bool) -> BTreeSet<Space> {
         let mut spaces = BTreeSet::from([Space::Parameters, Space::State, Space::Inputs]);
         spaces.extend(named.then_some(Space::Outputs));
@@ -294,7 +294,7 @@ impl<'a> Types<'a> {
         items
     }
 
-    /// ω̇ and q̇ out of ẋ.
+    /// ω̇ and q̇ as parts of ẋ.
     fn parts_of_rates(&self) -> TokenStream {
         let blank = blank_tokens();
         let method = |name: &'static str, about: &'static str, space| {
@@ -347,7 +347,7 @@ impl<'a> Types<'a> {
             .collect()
     }
 
-    /// Field names of the results of a function, no two equal.
+    /// Unique field names of the results of a function.
     pub(super) fn result_fields(function: &Function) -> Vec<String> {
         let mut names = Names::default();
         function
@@ -386,7 +386,7 @@ pub(super) fn result_struct(function: &Function) -> Option<&'static str> {
     (function.results.len() != 1).then(|| function.kind.result_struct())
 }
 
-/// A name like `wanted` that no argument has.
+/// `wanted`, made different from all arguments.
 fn unlike(names: &ArgumentNames, wanted: &str) -> String {
     let mut name = wanted.to_owned();
     while names.iter().any(|other| *other == name) {
@@ -395,7 +395,7 @@ fn unlike(names: &ArgumentNames, wanted: &str) -> String {
     name
 }
 
-/// Identifiers of names, no two equal.
+/// Unique identifiers of names.
 fn distinct<'a>(names: impl Iterator<Item = &'a str>) -> Vec<String> {
     let mut taken = Names::default();
     names.map(|name| taken.fresh(name)).collect()
@@ -430,14 +430,14 @@ struct Vector<'a> {
     name: &'static str,
     about: &'static str,
     fields: &'a [String],
-    /// A sentence for each.
+    /// A sentence for each field.
     texts: Vec<String>,
     /// Whether its default is zero.
     default: bool,
 }
 
 impl Vector<'_> {
-    /// The struct. Without fields it needs no scalar.
+    /// The struct. Without fields it has no type parameter.
     fn tokens(&self) -> TokenStream {
         let type_name = known(self.name);
         let blank = blank_tokens();
@@ -464,7 +464,7 @@ impl Vector<'_> {
         }
     }
 
-    /// What makes it a vector.
+    /// The arithmetic of a vector.
     fn arithmetic(&self, runtime: &syn::Path, moved: Option<&'static str>) -> TokenStream {
         let name = known(self.name);
         let blank = blank_tokens();
@@ -480,7 +480,7 @@ impl Vector<'_> {
     }
 }
 
-/// What the rate of a quantity is.
+/// Description of the rate of a quantity.
 fn rate(quantity: &Quantity) -> String {
     let unit = match &*quantity.unit {
         "" => "1/s".to_owned(),
@@ -493,7 +493,7 @@ fn rate(quantity: &Quantity) -> String {
     format!("Rate of {}, in {}.", code(&quantity.name), code(&unit))
 }
 
-/// What the pseudo-force of a pseudo-velocity is.
+/// Description of the pseudo-force of a pseudo-velocity.
 fn force(quantity: &Quantity) -> String {
     let unit = match &*quantity.unit {
         "" => "W".to_owned(),
@@ -504,7 +504,7 @@ fn force(quantity: &Quantity) -> String {
     format!("Along {}, in {}.", code(&quantity.name), code(&unit))
 }
 
-/// What a quantity is, and its unit.
+/// Description of a quantity, with its unit.
 fn sentence(quantity: &Quantity) -> String {
     let about = capitalised(&escaped(&quantity.about));
     let about = about.trim_end_matches('.');

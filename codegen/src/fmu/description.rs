@@ -77,7 +77,7 @@ pub(super) fn build(name: &str, compiled: &[String]) -> String {
         .document()
 }
 
-/// A number as XML writes it.
+/// A number in XML notation.
 fn number(value: f64) -> String {
     format!("{value:?}")
 }

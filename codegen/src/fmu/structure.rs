@@ -1,11 +1,12 @@
-//! Which variables depend on which: by the zeros of the Jacobians, and by what occurs in an expression where it jumps.
+//! Dependencies between variables: by the zeros of the Jacobians, and by the conditions of discontinuous
+//! expressions.
 
 use super::variables::Variables;
 use super::xml::Element;
 use crate::program::{FunctionKind, Program};
 use crate::symbolic::{Expr, Function, Node, SymbolId};
 
-/// How a variable depends on others.
+/// The dependencies of a variable.
 #[derive(Debug, Default)]
 struct Dependencies {
     on: Vec<(usize, &'static str)>,
@@ -31,7 +32,7 @@ fn unknown(name: &'static str, reference: usize) -> Element {
     Element::new(name).with("valueReference", reference)
 }
 
-/// Rows of the unknowns: value references, expressions, derivatives by states and inputs.
+/// Rows of the unknowns: value references, expressions, derivatives with respect to states and inputs.
 struct Rows<'a> {
     first: usize,
     entries: &'a [Expr],
@@ -45,7 +46,8 @@ struct Structure<'a> {
 }
 
 impl Structure<'_> {
-    /// Whether derivatives do not tell all: an expression that jumps depends on what makes it jump.
+    /// Whether an expression is discontinuous: it then depends on its conditions, which derivatives do not
+    /// show.
     fn jumps(&self, expr: Expr) -> bool {
         let graph = &self.program.graph;
         let all = graph.in_order(&[expr]);
@@ -57,7 +59,7 @@ impl Structure<'_> {
         })
     }
 
-    /// How an expression depends on a symbol whose derivative is known.
+    /// The kind of an expression's dependency on a symbol, given the derivative.
     fn kind(&self, expr: Expr, by: SymbolId, derivative: Option<&Expr>) -> Option<&'static str> {
         let graph = &self.program.graph;
         let number = derivative.and_then(|&derivative| graph.as_number(derivative));
@@ -98,10 +100,10 @@ impl Structure<'_> {
         found
     }
 
-    /// The same at the start, where parameters are known as well.
+    /// The dependencies at initialisation, where parameters are known as well.
     fn at_start(&self, rows: &Rows<'_>, index: usize) -> Element {
         let reference = rows.first + index;
-        // Dependent coordinates are unknown there themselves, and all depends on them.
+        // Dependent coordinates are unknown at initialisation, and all variables depend on them.
         if !self.program.dependent.is_empty() {
             return unknown("InitialUnknown", reference);
         }

@@ -11,11 +11,11 @@ use super::variables::Variables;
 use crate::c::adapters;
 use crate::program::Program;
 
-/// Tolerance of a co-simulation where none is asked for.
+/// Default tolerance of a co-simulation.
 pub(super) const DEFAULT_TOLERANCE: f64 = 1e-10;
-/// The least tolerance: rounding allows no less.
+/// The smallest tolerance that rounding permits.
 const LEAST_TOLERANCE: f64 = 1e-13;
-/// Stands for the token of an instance, which is made of the texts around it.
+/// Placeholder of the instantiation token, which is a hash of the surrounding texts.
 pub(super) const TOKEN: &str = "@TOKEN@";
 
 /// `fmi-equations.h`.
@@ -83,7 +83,7 @@ fn signals(text: &mut String, program: &Program) {
             .flat_map(|signal| of(signal).to_vec())
             .collect()
     };
-    // The tables of a spec are functions of time.
+    // The tables of a checked spec are functions of time.
     let tables: Vec<Signal> = (info.signals.iter())
         .filter_map(|table| Signal::new(table).ok())
         .collect();
@@ -137,7 +137,7 @@ fn integers(text: &mut String, name: &str, values: impl Iterator<Item = usize>) 
     array(text, "int", name, &values);
 }
 
-/// An array of as many entries a line as fit; one zero where there are none.
+/// An array with as many entries per line as fit; a single zero if it is empty.
 fn array(text: &mut String, kind: &str, name: &str, values: &[String]) {
     let _ = write!(text, "static const {kind} {name}[] = {{");
     let mut width = usize::MAX;

@@ -1,4 +1,4 @@
-//! Units: values are in SI, and shown in the unit of the spec.
+//! Units: values are in SI, and displayed in the unit of the spec.
 
 use std::collections::BTreeMap;
 
@@ -10,7 +10,7 @@ use super::xml::Element;
 /// The attributes of the base units, in the order of the exponents of a dimension.
 const BASE: [&str; 7] = ["m", "kg", "s", "A", "K", "mol", "cd"];
 
-/// A unit in SI; angles are told apart from numbers as far as rates of them.
+/// A unit in SI; angles and their rates are distinguished from numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Si {
     dimension: Dimension,
@@ -56,7 +56,7 @@ pub(super) struct Units {
 }
 
 impl Units {
-    /// Names of the unit of a quantity in SI, and of that in which it is shown, if that is another.
+    /// Name of the SI unit of a quantity, and of its display unit, if different.
     pub(super) fn of(&mut self, quantity: &Quantity) -> Option<(String, Option<String>)> {
         let unit = parse(&quantity.unit).ok()?;
         let si = Si {

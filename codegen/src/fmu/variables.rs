@@ -1,4 +1,4 @@
-//! The variables of an FMU: their order is that of their value references.
+//! The variables of an FMU, in the order of their value references.
 
 use appell_runtime::model::Quantity;
 
@@ -16,8 +16,8 @@ pub(super) struct Variables {
     pub(super) outputs: usize,
     pub(super) switches: usize,
     pub(super) end: usize,
-    /// Whether each parameter is fixed: those of position constraints are, as another value would tear the mechanism
-    /// apart on its way.
+    /// Whether each parameter is fixed: those of position constraints are, since changing them would violate
+    /// the constraints during a simulation.
     pub(super) fixed: Vec<bool>,
 }
 
@@ -33,7 +33,7 @@ impl Variables {
         let outputs = rates + info.states.len();
         let switches = outputs + info.outputs.len();
         let lists: [&[Quantity]; 4] = [&info.parameters, &info.inputs, &info.states, &info.outputs];
-        // The names of a spec are all different, and none of them is `t`.
+        // The names of a spec are unique, and none of them is `t`.
         let is_taken = lists
             .concat()
             .iter()

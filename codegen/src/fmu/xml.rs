@@ -21,7 +21,7 @@ impl Element {
         }
     }
 
-    /// The same with another attribute.
+    /// Adds an attribute.
     #[expect(
         clippy::needless_pass_by_value,
         reason = "a number or a text is given as it stands"
@@ -31,7 +31,7 @@ impl Element {
         self
     }
 
-    /// The same with an attribute, if it has a value.
+    /// Adds an attribute, if it has a value.
     pub(super) fn maybe(self, name: &'static str, value: Option<impl ToString>) -> Self {
         match value {
             Some(value) => self.with(name, value),
@@ -39,7 +39,7 @@ impl Element {
         }
     }
 
-    /// The same with more elements inside.
+    /// Adds child elements.
     pub(super) fn holding(mut self, inside: impl IntoIterator<Item = Self>) -> Self {
         self.inside.extend(inside);
         self

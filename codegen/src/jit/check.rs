@@ -1,4 +1,4 @@
-//! Everything that translation relies on, checked before it starts.
+//! Checks the assumptions of the translation before it starts.
 
 use appell_runtime::model::ModelInfo;
 use rustc_hash::FxHashMap;
@@ -6,25 +6,25 @@ use rustc_hash::FxHashMap;
 use super::JitError;
 use crate::schedule::{Argument, ResultArray, Schedule, Step, Tree, Value};
 
-/// The longest function that is compiled. Compilation takes more than a second and the frame may
-/// need most of a thread's stack beyond it.
+/// The longest function that is compiled. Beyond it compilation takes more than a second, and the frame may
+/// need most of a thread's stack.
 pub const MOST_OPERATIONS: usize = 100_000;
 /// The deepest nesting of an expression.
 pub const MOST_DEPTH: usize = 500;
 /// The largest linear system; its factors live on the stack.
 pub const MOST_ROWS: usize = 64;
 
-/// Arguments beyond it are out of reach of a load with a constant offset.
+/// Arguments beyond it cannot be addressed by a load with a constant offset.
 const MOST_ARGUMENTS: usize = 1 << 24;
 
-/// A schedule that can be translated: values and factorisations are defined before they are used,
-/// systems have matching sizes, and the limits hold.
+/// A schedule that can be translated: values and factorisations are defined before they are used, systems have
+/// consistent sizes, and the limits hold.
 #[derive(Debug)]
 pub(super) struct Checked<'a> {
     pub(super) schedule: &'a Schedule,
     /// Rows of the factorisations, by their number.
     pub(super) rows: FxHashMap<u32, usize>,
-    /// How many weights it uses, counted from the first.
+    /// The number of weights used, counted from the first.
     pub(super) weights: usize,
 }
 
@@ -123,7 +123,7 @@ impl Checker {
             });
         }
         shape(factorisation, rows * rows, matrix.len())?;
-        // Counts the factors as well: each factorisation has its own on the stack.
+        // Includes the factors: each factorisation has its own on the stack.
         self.count(2 * rows * rows)?;
         self.trees(matrix)?;
         self.rows.insert(factorisation, rows);
@@ -166,7 +166,7 @@ impl Checker {
         Ok(())
     }
 
-    /// Trees that are stored somewhere.
+    /// Trees that are stored in memory.
     fn trees(&mut self, trees: &[Tree]) -> Result<(), JitError> {
         self.count(trees.len())?;
         trees.iter().try_for_each(|tree| self.tree(tree, 0))
@@ -214,7 +214,7 @@ impl Checker {
             Argument::Weight(index)
             | Argument::OutputWeight(index)
             | Argument::Acceleration(index) => {
-                // Every call has to bring as many.
+                // Every call must supply as many weights.
                 self.weights = self.weights.max(index as usize + 1);
                 ("weight", index, MOST_ARGUMENTS)
             }

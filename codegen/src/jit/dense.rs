@@ -1,8 +1,7 @@
-//! The linear systems that machine code calls.
+//! Linear solvers called by machine code.
 //!
-//! Small systems use the factorisation of emitted code, compiled for each size. Larger ones, rare
-//! in mechanisms, are factorised anew for each right-hand side; the operations and their order are
-//! the same.
+//! Small systems use the factorisation of emitted code, monomorphised for each size. Larger ones, rare in
+//! mechanisms, are factorised again for each right-hand side; the operations and their order are the same.
 
 use std::slice;
 
@@ -10,17 +9,17 @@ use appell_runtime::dense::{Lu, lu_factor, lu_solve, lu_solve_in_place};
 
 /// Factors the matrix at the first address into the second; the third is the number of rows.
 pub(super) type Factor = unsafe extern "C" fn(*const f64, *mut f64, usize);
-/// Replaces the right-hand side at the second address by the unknowns, given what [`Factor`] wrote.
+/// Replaces the right-hand side at the second address by the solution, given the output of [`Factor`].
 pub(super) type Solve = unsafe extern "C" fn(*const f64, *mut f64, usize);
 
-/// How systems of one size are solved.
+/// Solver routines for one size.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Routines {
     /// Factorisation.
     pub(super) factor: Factor,
     /// Solution.
     pub(super) solve: Solve,
-    /// Size of what `factor` writes.
+    /// Size of the output of `factor`.
     pub(super) bytes: usize,
 }
 
@@ -117,7 +116,7 @@ mod tests {
             let routines = Routines::new(rows);
             let mut lu = vec![0.0; routines.bytes / size_of::<f64>()];
             let mut found = right.clone();
-            // SAFETY: the buffers have the sizes that the routines ask for.
+            // SAFETY: the buffers have the sizes that the routines require.
             unsafe {
                 (routines.factor)(matrix.as_ptr(), lu.as_mut_ptr(), rows);
                 (routines.solve)(lu.as_ptr(), found.as_mut_ptr(), rows);

@@ -1,20 +1,20 @@
 //! The elementary functions that machine code calls.
 //!
-//! Each stands under an address and a calling convention that machine code knows.
+//! Each has a fixed address and a C calling convention.
 
 use appell_runtime::real::{Own, Standard};
 
 use super::vector::Blocks;
 use crate::symbolic::Function;
 
-/// Which elementary functions machine code calls.
+/// The elementary functions called by machine code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Elementary {
     /// Those of the Rust standard library, which emitted Rust calls for `f64`.
     #[default]
     Standard,
-    /// Those of [`appell_runtime::elementary`], with the same bits on every machine; a vector of numbers
-    /// takes little longer than one.
+    /// Those of [`appell_runtime::elementary`], bit-identical on every machine; a vector of numbers takes
+    /// little longer than one.
     Own,
 }
 
@@ -22,11 +22,11 @@ pub enum Elementary {
 pub(super) type Unary = extern "C" fn(f64) -> f64;
 /// `(f64, f64) -> f64`
 pub(super) type Binary = extern "C" fn(f64, f64) -> f64;
-/// Writes two numbers for one.
+/// Writes two numbers for one argument.
 pub(super) type Pair = unsafe extern "C" fn(f64, *mut [f64; 2]);
 
 impl Elementary {
-    /// The function to call. `None` where instructions do it.
+    /// The function to call. `None` if inline instructions compute it.
     pub(super) fn unary(self, function: Function) -> Option<Unary> {
         match self {
             Self::Standard => unary::<Standard>(function),
@@ -59,7 +59,7 @@ impl Elementary {
     }
 }
 
-// A block of one number, so that vectors of the processor with their fused multiply-adds are used.
+// A block of one number, so that the processor's vector instructions with fused multiply-adds are used.
 macro_rules! shims {
     ($($name:ident),+) => {
         $(
@@ -109,6 +109,6 @@ unsafe extern "C" fn sin_cos<F: Blocks>(angle: f64, out: *mut [f64; 2]) {
     let mut both = [[0.0]; 2];
     <F as Blocks>::sin_cos(&[angle], &mut both);
     let [[sin], [cos]] = both;
-    // SAFETY: the caller provides the place.
+    // SAFETY: the caller provides the memory.
     unsafe { out.write([sin, cos]) }
 }

@@ -1,4 +1,4 @@
-//! What can go wrong between a schedule and its machine code.
+//! Errors of compilation.
 
 use cranelift_codegen::CodegenError;
 use cranelift_codegen::settings::SetError;
@@ -10,10 +10,10 @@ use crate::program::FunctionKind;
 /// A schedule or program that could not be compiled.
 #[derive(Debug, Error)]
 pub enum JitError {
-    /// No code can be made for this processor.
+    /// No code can be generated for this processor.
     #[error("no machine code for this processor: {reason}")]
     Host {
-        /// What the compiler says.
+        /// The compiler's message.
         reason: &'static str,
     },
     /// The compiler refused its settings.
@@ -76,7 +76,7 @@ pub enum JitError {
         /// How many there are.
         len: usize,
     },
-    /// The program lacks a function that its sizes ask for.
+    /// The program lacks a function that its sizes require.
     #[error("the program has no function {kind:?}")]
     MissingFunction {
         /// Which one.

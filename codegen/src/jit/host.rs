@@ -7,17 +7,17 @@ use cranelift_codegen::settings::{self, Configurable};
 
 use super::JitError;
 
-/// How long a function is used.
+/// Expected lifetime of a function, which decides the effort of register allocation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Use {
-    /// For as long as the program runs.
+    /// For the whole run of the program.
     Lasting,
-    /// For some ten thousand evaluations, which take no longer than to choose its registers well.
+    /// For some ten thousand evaluations, which take no longer than optimal register allocation.
     Brief,
 }
 
 impl Use {
-    /// Steps beyond which a function is long.
+    /// Number of steps beyond which a function is long.
     const fn long(self) -> usize {
         match self {
             Self::Lasting => 6000,
@@ -26,7 +26,7 @@ impl Use {
     }
 }
 
-/// The instruction set of this processor, for a function of so many steps; found out once.
+/// The instruction set of this processor, for a function of a given number of steps; determined once.
 pub(super) fn target(steps: usize, of: Use) -> Result<OwnedTargetIsa, JitError> {
     static TARGETS: [OnceLock<OwnedTargetIsa>; 2] = [OnceLock::new(), OnceLock::new()];
     let is_long = steps > of.long();
@@ -41,16 +41,16 @@ pub(super) fn target(steps: usize, of: Use) -> Result<OwnedTargetIsa, JitError> 
 fn detect(is_long: bool) -> Result<OwnedTargetIsa, JitError> {
     let mut flags = settings::builder();
     flags.set("opt_level", "speed")?;
-    // Registers of a long function take minutes to choose well, and most values are spilled anyway.
+    // Good register allocation of a long function takes minutes, and most values are spilled anyway.
     if is_long {
         flags.set("regalloc_algorithm", "single_pass")?;
     }
-    // The code calls functions that may be far away, by address.
+    // The code calls functions at any distance, by absolute address.
     flags.set("is_pic", "false")?;
     flags.set("use_colocated_libcalls", "false")?;
-    // Long functions spill to frames of many pages: touch each, without a call.
+    // Long functions spill to frames of many pages: probe each page inline.
     flags.set("probestack_strategy", "inline")?;
-    // Nothing unwinds through the code.
+    // Panics never unwind through the code.
     flags.set("unwind_info", if cfg!(windows) { "true" } else { "false" })?;
     flags.set(
         "enable_verifier",

@@ -5,12 +5,12 @@ use std::sync::Mutex;
 
 use cranelift_jit::JITModule;
 
-/// Owner of the memory that holds the code. The lock is never contended: it only makes the
-/// compiler's state, which nobody uses after compilation, shareable between threads.
+/// Owner of the memory that holds the code. The lock is never contended: it only makes the compiler's state,
+/// unused after compilation, shareable between threads.
 pub(super) struct Code(Mutex<Option<Box<JITModule>>>);
 
 impl Code {
-    /// Takes a module whose code nothing else runs. The memory is freed with the owner.
+    /// Takes a module whose code is not called otherwise. The memory is freed with the owner.
     pub(super) fn new(module: JITModule) -> Self {
         Self(Mutex::new(Some(Box::new(module))))
     }

@@ -1,4 +1,4 @@
-//! Machine code and its life.
+//! Compiled functions and their lifetime.
 
 use appell_runtime::model::At;
 use cranelift_jit::{JITBuilder, JITModule};
@@ -22,7 +22,7 @@ type Entry =
 pub struct NativeFunction {
     entry: Entry,
     sizes: Sizes,
-    /// How many weights it uses.
+    /// The number of weights used.
     weights: usize,
     /// Lengths of the results.
     results: Vec<usize>,
@@ -36,7 +36,7 @@ impl NativeFunction {
         Self::compile_with(schedule, sizes, Elementary::Standard)
     }
 
-    /// [`Self::compile`] with elementary functions of one's choice.
+    /// [`Self::compile`] with the given elementary functions.
     pub fn compile_with(
         schedule: &Schedule,
         sizes: Sizes,
@@ -59,7 +59,7 @@ impl NativeFunction {
         context.func.signature = signature(config);
         translate(&checked, elementary, config, &mut context.func);
         let defined = define(&mut module, &mut context);
-        // From here on the memory is freed, also where something failed.
+        // From here on the memory is freed, also on errors.
         let code = Code::new(module);
         let entry = defined?;
         Ok(Self {
@@ -76,8 +76,8 @@ impl NativeFunction {
     ///
     /// # Panics
     ///
-    /// Where a slice has another length than the schedule's results and the sizes it was compiled
-    /// for; no code runs then.
+    /// If the length of a slice differs from the schedule's results or from the sizes it was compiled for; no
+    /// code is executed then.
     #[inline]
     pub fn call<const N: usize>(&self, at: At<'_>, results: [&mut [f64]; N]) {
         self.call_weighted(at, &[], results);
@@ -87,7 +87,7 @@ impl NativeFunction {
     ///
     /// # Panics
     ///
-    /// As [`Self::call`], and where there are fewer weights than the schedule uses.
+    /// As [`Self::call`], and if there are fewer weights than the schedule uses.
     #[inline]
     pub fn call_weighted<const N: usize>(
         &self,
@@ -116,7 +116,7 @@ impl NativeFunction {
     }
 }
 
-/// Refuses slices of other lengths than a function was made for.
+/// Panics if slices have other lengths than the function requires.
 #[inline]
 pub(super) fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], results: &[usize]) {
     let found = Sizes {
@@ -136,7 +136,7 @@ pub(super) fn check_lengths(at: At<'_>, sizes: Sizes, out: &[&mut [f64]], result
     );
 }
 
-/// Refuses fewer weights than a function uses.
+/// Panics if there are fewer weights than a function uses.
 #[inline]
 pub(super) fn check_weights(weights: &[f64], used: usize) {
     assert!(

@@ -1,4 +1,4 @@
-//! One function of a model: compiled when it is first asked for, interpreted where it cannot be.
+//! Lazy compilation of one function of a model, with the interpreter as fallback.
 
 use std::sync::OnceLock;
 
@@ -11,10 +11,10 @@ use super::{Elementary, JitError, NativeFunction, Sizes};
 use crate::program::{Function, FunctionKind, Program};
 use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
 
-/// A result that is asked of a function: its name and its length.
+/// A requested result of a function: its name and its length.
 pub(super) type Wanted = (&'static str, usize);
 
-/// Some results of a function of a program. The code is made when it is first asked for.
+/// Some results of a function of a program, compiled on first use.
 pub(super) struct OnDemand {
     kind: FunctionKind,
     wanted: Vec<Wanted>,
@@ -25,23 +25,23 @@ pub(super) struct OnDemand {
 
 /// A function that can be evaluated.
 pub(super) enum Ready {
-    /// In machine code.
+    /// Compiled.
     Native(NativeFunction),
-    /// Step by step, because it could not be compiled.
+    /// Interpreted, because compilation failed.
     Interpreted {
-        /// The function, with the wanted results only.
+        /// The function, restricted to the requested results.
         schedule: Schedule,
         /// Lengths of the arguments.
         sizes: Sizes,
         /// Lengths of the results.
         results: Vec<usize>,
-        /// Why it was not compiled.
+        /// Why compilation failed.
         reason: JitError,
     },
 }
 
 impl OnDemand {
-    /// The wanted results of a function. A program may leave out what has no entries.
+    /// The requested results of a function. A program may omit results without entries.
     pub(super) fn new(
         program: &Program,
         kind: FunctionKind,
@@ -75,14 +75,14 @@ impl OnDemand {
         })
     }
 
-    /// Compiles the function now, or says why it cannot be compiled.
+    /// Compiles the function now, or returns why this is impossible.
     pub(super) fn compile(&self, program: &Program, sizes: Sizes) -> Result<(), JitError> {
         let native = NativeFunction::compile(self.schedule(program), sizes)?;
         self.ready.get_or_init(|| Ready::Native(native));
         Ok(())
     }
 
-    /// Makes the function now, in one way or the other.
+    /// Compiles the function now, or prepares its interpretation.
     pub(super) fn prepare(&self, program: &Program, sizes: Sizes) {
         self.ready(program, sizes);
     }
@@ -100,7 +100,7 @@ impl OnDemand {
         self.ready(program, sizes).call(at, weights, out);
     }
 
-    /// The function, made when it is first asked for.
+    /// The function, prepared on first use.
     #[inline]
     fn ready(&self, program: &Program, sizes: Sizes) -> &Ready {
         self.ready.get_or_init(|| self.make(program, sizes))
@@ -119,7 +119,7 @@ impl OnDemand {
         Ready::of(self.schedule(program).clone(), sizes, self.of)
     }
 
-    /// Follows another schedule, made when it is first asked for.
+    /// Uses another schedule, made on first use.
     #[inline]
     pub(super) fn follow(&self, make: impl FnOnce() -> Schedule) {
         self.schedule.get_or_init(make);
@@ -129,8 +129,8 @@ impl OnDemand {
         self.schedule.get_or_init(|| self.find_schedule(program))
     }
 
-    /// The steps of the whole function, so that numbers do not depend on what is wanted, with the
-    /// wanted results. The compiler drops the steps that these do not need.
+    /// The steps of the whole function, so that results do not depend on the selection, with only the requested
+    /// results. The compiler eliminates dead steps.
     fn find_schedule(&self, program: &Program) -> Schedule {
         let whole =
             find(program, self.kind).filter(|_| self.wanted.iter().any(|&(_, len)| len > 0));

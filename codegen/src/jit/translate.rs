@@ -1,7 +1,7 @@
-//! A checked schedule to the compiler's intermediate language.
+//! Translates a checked schedule to the compiler's intermediate representation.
 //!
-//! A schedule has no branches, so the function is a single block. The compiler removes what no
-//! result needs and chooses the order; it neither fuses nor reorders floating-point arithmetic.
+//! A schedule has no branches, so the function is a single basic block. The compiler eliminates dead code and
+//! schedules instructions; it neither fuses nor reorders floating-point arithmetic.
 
 use cranelift_codegen::ir::condcodes::FloatCC;
 use cranelift_codegen::ir::types::F64;
@@ -27,7 +27,7 @@ pub(super) fn signature(config: TargetFrontendConfig) -> Signature {
     signature_of(config.default_call_conv, &parameters, &[])
 }
 
-/// Writes the body of a function with [`signature`].
+/// Translates the body of a function with [`signature`].
 pub(super) fn translate(
     checked: &Checked<'_>,
     elementary: Elementary,
@@ -51,29 +51,28 @@ struct Translation<'a> {
     received: Received,
     /// Results of the steps.
     values: Vec<ir::Value>,
-    /// Signatures that are declared already.
+    /// Signatures declared so far.
     signatures: FxHashMap<Shape, SigRef>,
     /// Sine and cosine.
     pair: StackSlot,
-    /// A matrix on its way into a factorisation.
+    /// Matrix passed to a factorisation.
     matrix: StackSlot,
-    /// A right-hand side, then the unknowns.
+    /// Right-hand side, overwritten by the solution.
     right: StackSlot,
     factorisations: FxHashMap<u32, Factorisation>,
     results: Results<'a>,
 }
 
-/// The entries of the results. A value is stored when it is defined, so that it occupies no register until the
-/// end.
+/// The entries of the results. A value is stored as soon as it is defined, which shortens its live range.
 struct Results<'a> {
     arrays: &'a [ResultArray],
-    /// Addresses of the arrays that are loaded already.
+    /// Addresses of the arrays loaded so far.
     addresses: Vec<Option<ir::Value>>,
-    /// Places of values that are results as they are: arrays and entries.
+    /// For values that are results: arrays and entries.
     places: FxHashMap<Value, Vec<(usize, usize)>>,
 }
 
-/// What the compiled function receives; see [`signature`].
+/// The arguments of the compiled function; see [`signature`].
 struct Received {
     time: ir::Value,
     states: ir::Value,
@@ -124,7 +123,7 @@ impl<'a> Translation<'a> {
             weights: builder.block_params(block)[4],
             results: builder.block_params(block)[5],
         };
-        // A checked schedule defines values before it uses them; zero stands in until then.
+        // A checked schedule defines values before their use; until then they are zero.
         let zero = builder.ins().f64const(0.0);
         let rows = checked.rows.values().copied().max().unwrap_or(0);
         let [pair, matrix, right] =
@@ -176,7 +175,7 @@ impl<'a> Translation<'a> {
     }
 
     fn sin_cos(&mut self, sin: Value, cos: Value, angle: ir::Value) {
-        // Through memory: as fast as two result registers, and the same on every platform.
+        // By memory: as fast as two result registers, and the same on every platform.
         let pointer = self.config.pointer_type();
         let pair = self.pair;
         let to = self.builder.ins().stack_addr(pointer, pair, 0);
@@ -217,7 +216,7 @@ impl<'a> Translation<'a> {
         }
     }
 
-    /// Defines a value as what a routine has left in a slot.
+    /// Loads a value that a routine has written to a slot.
     fn load(&mut self, value: Value, slot: StackSlot, index: usize) {
         let pointer = self.config.pointer_type();
         let instruction = self.builder.ins();
@@ -226,8 +225,8 @@ impl<'a> Translation<'a> {
     }
 
     fn store_all(&mut self, slot: StackSlot, trees: &[Tree]) {
-        // All are computed before the first is stored: computing may call functions, and what is
-        // stored may stay in registers until then.
+        // All entries are computed before the first is stored: their computation may call functions, and the
+        // results may stay in registers until the stores.
         let pointer = self.config.pointer_type();
         let entries: Vec<_> = trees.iter().map(|tree| self.tree(tree)).collect();
         for (index, entry) in entries.into_iter().enumerate() {
@@ -245,7 +244,7 @@ impl<'a> Translation<'a> {
         [from, to, rows]
     }
 
-    /// Entries that no step defines: constants, arguments, negated values.
+    /// Stores the entries that no step defines: constants, arguments, negated values.
     fn remaining_results(&mut self) {
         let arrays = self.results.arrays;
         for (array, result) in arrays.iter().enumerate() {
@@ -320,7 +319,7 @@ impl<'a> Translation<'a> {
         }
     }
 
-    /// `branches[0]` where `compared` are ordered as asked, `branches[1]` elsewhere and for NaN.
+    /// `branches[0]` where the relation of `compared` holds, `branches[1]` otherwise and for NaN.
     fn choose(
         &mut self,
         condition: FloatCC,
@@ -338,7 +337,7 @@ impl<'a> Translation<'a> {
         match function {
             Function::Sqrt => self.builder.ins().sqrt(a),
             Function::Abs => self.builder.ins().fabs(a),
-            // Zeros stay zero and NaN stays NaN, as in the runtime.
+            // Zero and NaN are preserved, as in the runtime.
             _ => {
                 let [zero, one, minus_one] =
                     [0.0, 1.0, -1.0].map(|number| self.builder.ins().f64const(number));
@@ -358,7 +357,7 @@ impl<'a> Translation<'a> {
             | Argument::OutputWeight(index)
             | Argument::Acceleration(index) => (self.received.weights, index),
         };
-        // Loaded where it is used: to load it again costs less than to keep it.
+        // Loaded at each use: reloading is cheaper than a spilled register.
         let (flags, place) = (MemFlagsData::trusted(), offset(index as usize));
         self.builder.ins().load(F64, flags, array, place)
     }

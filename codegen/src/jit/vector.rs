@@ -1,22 +1,22 @@
-//! Schedules compiled to vector instructions, for eight places at once.
+//! Compiles schedules to vector instructions, for eight points at once.
 //!
-//! A *block* is one number for each of eight places, `[f64; 8]`; arguments and results are arrays
-//! of blocks. With AVX-512 a block is one register. With AVX it is two halves: the code works on
-//! four places and runs twice. Elsewhere, and where a schedule is too long, places are evaluated one
-//! by one with scalar code. Lanes do not know of each other, so results do not depend on the way.
+//! A *block* is one number for each of eight points, `[f64; 8]`; arguments and results are arrays of blocks.
+//! With AVX-512 a block is one register. With AVX it is two halves: the code processes four points and runs
+//! twice. Without these, or if a schedule is too long, the points are evaluated individually with scalar code.
+//! Lanes are independent, so results do not depend on the method.
 //!
-//! Cranelift has no vectors of that width, hence a small compiler of our own. The stages:
+//! Cranelift lacks vectors of that width, hence this small compiler. The stages:
 //!
 //! | file | from | to |
 //! |---|---|---|
-//! | `lower.rs`, `line.rs` | schedule | values in a straight line; linear systems of up to 12 rows written out |
-//! | `order.rs` | values | actions: calls first, results where they are known |
+//! | `lower.rs`, `line.rs` | schedule | values in straight-line code; linear systems of up to 12 rows unrolled |
+//! | `order.rs` | values | actions: calls early, results stored at their definition |
 //! | `registers.rs`, `slots.rs`, `instruction.rs` | actions | instructions with registers and blocks of the frame |
-//! | `assemble.rs`, `encode.rs` | instructions | bytes, constants behind them |
-//! | `machine.rs` | bytes | code in executable memory; calls it |
+//! | `assemble.rs`, `encode.rs` | instructions | machine code, followed by constants |
+//! | `machine.rs` | machine code | a callable function in executable memory |
 //!
-//! `routines.rs` has what the code calls: elementary functions (`blocks.rs`) and large systems. `function.rs`
-//! chooses between machine code and scalar code.
+//! `routines.rs` contains run-time routines: elementary functions (`blocks.rs`) and large systems.
+//! `function.rs` chooses between vector and scalar code.
 
 mod assemble;
 mod blocks;

@@ -1,19 +1,19 @@
-//! det(λ - A), its zeros taken out.
+//! det(λ - A), with zero eigenvalues factored out.
 //!
-//! A matrix is a graph with an edge for every entry that is not zero. The coefficient of `λⁿ⁻ᵏ` is the
-//! sum over all sets of disjoint cycles through `k` states in all, of the product of their entries,
-//! negative for an odd number of cycles. No division, and only products that are not zero.
+//! A matrix is a weighted graph with an edge for every nonzero entry. The coefficient of `λⁿ⁻ᵏ` is the sum,
+//! over all sets of disjoint cycles through `k` states in total, of the products of their weights, negated for
+//! an odd number of cycles. This needs no division, and only nonzero products.
 
 use super::simplest;
 use crate::mechanics::Derivation;
 use crate::symbolic::dissolve::Dissolved;
 use crate::symbolic::{Expr, Graph};
 
-/// Products in one coefficient; more are no reading.
+/// Maximum number of products in a coefficient; longer ones are unreadable.
 const MOST_PRODUCTS: usize = 150;
-/// Paths that are followed from one state.
+/// Maximum number of paths followed from one state.
 const MOST_STEPS: usize = 20_000;
-/// States as bits of a number.
+/// States are bits of a number.
 const MOST_STATES: usize = 64;
 
 /// A characteristic polynomial with the leading coefficient 1.
@@ -21,16 +21,16 @@ const MOST_STATES: usize = 64;
 pub struct Characteristic {
     /// Its degree.
     pub degree: usize,
-    /// A symbol for every entry of the matrix; numbers stand for themselves.
+    /// A symbol for every entry of the matrix; numbers are kept.
     pub entries: Vec<Vec<Expr>>,
-    /// The coefficient of `λⁿ⁻ᵏ` at place `k`, in those symbols.
+    /// The coefficient of `λⁿ⁻ᵏ` at index `k`, in those symbols.
     pub in_entries: Vec<Expr>,
-    /// The same with the entries put in.
+    /// The same with the entries substituted.
     pub coefficients: Vec<Expr>,
 }
 
 impl Characteristic {
-    /// Of a matrix. `None` where a coefficient has too many products.
+    /// The polynomial of a matrix. `None` if a coefficient has too many products.
     pub fn of(derivation: &mut Derivation, matrix: &[&[Expr]]) -> Option<Self> {
         let sets = cycle_sets(matrix)?;
         let entries: Vec<Vec<Expr>> = matrix
@@ -56,7 +56,7 @@ impl Characteristic {
             let value = simplest(derivation, &mut names, value);
             coefficients.push(value);
         }
-        // Products of several entries can cancel.
+        // Products of several entries may cancel.
         for (in_entries, value) in in_entries.iter_mut().zip(&coefficients) {
             if *value == Graph::ZERO {
                 *in_entries = Graph::ZERO;
@@ -70,7 +70,7 @@ impl Characteristic {
         })
     }
 
-    /// How many eigenvalues are zero for every value of the entries.
+    /// The number of eigenvalues that are identically zero.
     pub fn zeros(&self) -> usize {
         let zeros = self.coefficients.iter().rev();
         zeros.take_while(|&&c| c == Graph::ZERO).count()
@@ -101,14 +101,14 @@ fn sum(graph: &mut Graph, sets: &[Vec<Cycle>], entry: impl Fn(usize, usize) -> E
     graph.sum(&products)
 }
 
-/// Sets of disjoint cycles through `k` states in all, at place `k`.
+/// Sets of disjoint cycles through `k` states in total, at index `k`.
 fn cycle_sets(matrix: &[&[Expr]]) -> Option<Vec<Vec<Vec<Cycle>>>> {
     if matrix.len() > MOST_STATES {
         return None;
     }
     let cycles = cycles(matrix)?;
     let mut sets: Vec<Vec<Vec<Cycle>>> = vec![Vec::new(); matrix.len() + 1];
-    // Cycles are added in their order, so that every set is found once.
+    // Cycles are added in order, so that every set is generated once.
     let mut open: Vec<(usize, u64, Vec<Cycle>)> = vec![(0, 0, Vec::new())];
     while let Some((next, states, set)) = open.pop() {
         for (place, cycle) in cycles.iter().enumerate().skip(next) {
@@ -126,7 +126,7 @@ fn cycle_sets(matrix: &[&[Expr]]) -> Option<Vec<Vec<Vec<Cycle>>>> {
     Some(sets)
 }
 
-/// Cycles without repeated states, each from its first state on.
+/// Simple cycles, each starting at its first state.
 fn cycles(matrix: &[&[Expr]]) -> Option<Vec<Cycle>> {
     let mut cycles = Vec::new();
     let mut open: Vec<Cycle> = Vec::new();

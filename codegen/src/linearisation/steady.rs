@@ -1,8 +1,8 @@
 //! A steady motion as values of states, rates and inputs.
 //!
-//! Essential coordinates rest: that gives the pseudo-velocities which move them. The other
-//! pseudo-velocities are written in the rates of ignorable coordinates, by their definitions, where
-//! these rates are constant. What is not given stays a letter.
+//! The rates of essential coordinates vanish, which determines the pseudo-velocities that move them. The other
+//! pseudo-velocities are expressed in the rates of ignorable coordinates, by their definitions, if these rates
+//! are constant. Unspecified quantities remain symbols.
 
 use appell_spec::mechanism::Mechanism;
 
@@ -11,21 +11,21 @@ use crate::mechanics::Derivation;
 use crate::mechanics::expressions::Lowering;
 use crate::symbolic::{Expr, Graph, Substitution, SymbolId};
 
-/// Why conditions describe no motion.
+/// Why conditions do not define a motion.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum SteadyError {
-    /// A value follows from itself.
+    /// A value depends on itself.
     #[error("`{0}` is defined in terms of itself")]
     Circular(String),
     /// Two conditions for one quantity.
     #[error("`{0}` is given twice")]
     Twice(String),
-    /// A rate that the pseudo-velocities do not have.
+    /// A rate that contradicts the pseudo-velocities.
     #[error(
         "`{0}` contradicts the rate that follows from the pseudo-velocities; give pseudo-velocities instead"
     )]
     Contradiction(String),
-    /// Something is divided by zero.
+    /// Division by zero.
     #[error("the equations divide by zero along this motion")]
     Undefined,
 }
@@ -35,7 +35,7 @@ pub enum SteadyError {
 pub struct SteadyMotion {
     /// Essential and ignorable states.
     pub structure: Structure,
-    /// Symbols with what they are in the motion. No value mentions a symbol that has one.
+    /// Symbols with their values in the motion. No value mentions a symbol that has one.
     pub values: Vec<(Expr, Expr)>,
 }
 
@@ -69,7 +69,7 @@ impl SteadyMotion {
         Ok(builder.motion)
     }
 
-    /// Puts the motion in.
+    /// The substitution of the steady motion.
     pub fn substitution(&self, graph: &Graph) -> Substitution {
         Substitution::of_parts(graph, &self.values)
     }
@@ -87,7 +87,7 @@ struct Builder<'a> {
 }
 
 impl Builder<'_> {
-    /// Gives a symbol its value, also in the values that are known.
+    /// Assigns a value to a symbol, and substitutes it in the known values.
     fn set(&mut self, symbol: Expr, value: Expr) -> Result<(), SteadyError> {
         let graph = &self.derivation.algebra.graph;
         let Some(id) = graph.as_symbol(symbol) else {
@@ -110,7 +110,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// What an expression is in the motion as far as it is known.
+    /// The value of an expression in the motion, as far as known.
     fn value(&mut self, expr: Expr) -> Result<Expr, SteadyError> {
         let graph = &mut self.derivation.algebra.graph;
         let mut motion = self.motion.substitution(graph);
@@ -123,7 +123,7 @@ impl Builder<'_> {
         speeds.filter(|&w| !self.motion.gives(w)).collect()
     }
 
-    /// Those of some symbols on which an expression depends.
+    /// The subset of symbols on which an expression depends.
     fn depends(&mut self, expr: Expr, symbols: &[Expr]) -> Vec<Expr> {
         let algebra = &mut self.derivation.algebra;
         let ids: Vec<(Expr, SymbolId)> = symbols
@@ -136,8 +136,8 @@ impl Builder<'_> {
             .collect()
     }
 
-    /// Essential coordinates rest, unless their rate is given. Each pass finds the pseudo-velocities
-    /// that alone are left to move a coordinate.
+    /// Sets rates of essential coordinates to zero, unless given. Each pass finds pseudo-velocities that alone
+    /// remain in such a rate.
     fn rest(&mut self) -> Result<(), SteadyError> {
         let speeds = self.derivation.symbols.speeds.len();
         let essential = self.motion.structure.essential.clone();
@@ -176,7 +176,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Rates that the known pseudo-velocities determine.
+    /// Rates determined by the known pseudo-velocities.
     fn rates_that_follow(&mut self) -> Result<(), SteadyError> {
         for (k, symbol) in self
             .derivation
@@ -198,7 +198,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// The other pseudo-velocities by their definitions, where as many constant rates stand there.
+    /// Expresses the other pseudo-velocities by their definitions, if these contain as many constant rates.
     fn speeds_in_rates(&mut self) -> Result<(), SteadyError> {
         let symbols = self.derivation.symbols.clone();
         let lowering = Lowering {
@@ -233,7 +233,7 @@ impl Builder<'_> {
         Ok(())
     }
 
-    /// Rates of ignorable coordinates that do not follow from what is known and stay constant.
+    /// Constant rates of ignorable coordinates that are not determined by known values.
     fn constant_rates(&mut self) -> Result<Vec<Expr>, SteadyError> {
         let symbols = self.derivation.symbols.clone();
         let speeds = symbols.speeds.len();
@@ -265,7 +265,7 @@ impl Builder<'_> {
         known.apply(graph, expr).ok_or(SteadyError::Undefined)
     }
 
-    /// A given rate must be the one that the pseudo-velocities give.
+    /// Checks that given rates agree with the pseudo-velocities.
     fn check_given_rates(&mut self) -> Result<(), SteadyError> {
         for (k, symbol) in self
             .derivation

@@ -3,8 +3,8 @@
 use crate::mechanics::Derivation;
 use crate::mechanics::symbols::ids;
 
-/// Essential and ignorable states. Coordinates on which no essential rate depends, such as position
-/// and heading of a wheel, are ignorable.
+/// Essential and ignorable states. Coordinates on which no essential rate depends, such as position and heading
+/// of a wheel, are ignorable.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Structure {
     /// Essential states, by their index in the model.
@@ -14,7 +14,7 @@ pub struct Structure {
 }
 
 impl Structure {
-    /// From the equations of motion, by the identity test.
+    /// Determined from the equations of motion by the identity test.
     pub fn of(derivation: &mut Derivation) -> Self {
         let speeds = derivation.symbols.speeds.len();
         let coordinates = ids(&derivation.algebra.graph, &derivation.symbols.coordinates);

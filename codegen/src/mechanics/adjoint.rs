@@ -1,8 +1,8 @@
-//! Adjoints of the equations of motion and of the outputs: gradients of weighted sums of what the
-//! Jacobians hold, by reverse accumulation.
+//! Adjoints of the equations of motion and of the outputs: gradients of weighted sums of the entries of the
+//! Jacobians, by reverse accumulation.
 //!
-//! A gradient of a filter or of a shooting method needs second derivatives of the rates, but only
-//! summed up with weights. One sweep backwards gives that sum's gradient in everything at once.
+//! The gradient of a filter or of a shooting method needs second derivatives of the rates, but only as weighted
+//! sums. One reverse sweep gives the gradient of such a sum in all variables.
 
 use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::mechanism::Mechanism;

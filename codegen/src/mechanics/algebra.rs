@@ -1,4 +1,4 @@
-//! The graph with the tools that every stage of the derivation uses on it.
+//! The expression graph with the tools shared by all stages of the derivation.
 
 use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
@@ -10,16 +10,16 @@ use super::finding::{Finding, Item, Outcome};
 use super::quaternion::quaternions;
 use super::symbols::{Symbols, ids};
 
-/// Expressions that a derivation may hold.
+/// Maximum number of expressions in a derivation.
 const MOST_EXPRESSIONS: usize = 1_000_000;
-/// Expressions that a program with all derivatives may hold.
+/// Maximum number of expressions in a program with all derivatives.
 pub(super) const MOST_OF_PROGRAM: usize = 8 * MOST_EXPRESSIONS;
-/// Products with more terms than this are not multiplied out.
+/// Products with more terms than this are not expanded.
 const MOST_TERMS: usize = 200;
-/// Fractions whose numerators would have more terms than this are not joined.
+/// Fractions are not combined if the numerator would have more terms than this.
 const MOST_JOINED_TERMS: usize = 12;
 
-/// Longer expressions stand as a recursion made them.
+/// Longer expressions are left in recursive form.
 const MOST_OPERATIONS_OF_SHORT: usize = 80;
 
 /// A system `C s = r` that determines unknowns, by the cofactors and the determinant of C.
@@ -37,26 +37,26 @@ pub struct Relation {
     pub right: Vec<Expr>,
 }
 
-/// Graph, identity test and remembered derivatives.
+/// Graph, identity test and memoised derivatives.
 #[derive(Clone)]
 pub struct Algebra {
     /// Owner of the expressions.
     pub graph: Graph,
-    /// Decides equality across spellings.
+    /// Decides equality of expressions in different forms.
     pub test: IdentityTest,
     /// The circle constant.
     pub(super) pi: Expr,
     coordinates: Vec<SymbolId>,
     derivatives: Vec<(SymbolId, Derivatives)>,
-    /// What is known of unknowns that no formula gives; taken out while it serves.
+    /// Relations between unknowns without an explicit formula; temporarily removed while in use.
     pub(super) relations: Vec<Relation>,
     /// Unit quaternions, the scalar part first.
     pub(super) quaternions: Vec<[Expr; 4]>,
-    /// Coordinates that position constraints give by a formula.
+    /// Coordinates that position constraints determine explicitly.
     pub(crate) given: Vec<(Expr, Expr)>,
-    /// Whether long expressions stand as a recursion made them.
+    /// Whether long expressions are left in recursive form.
     pub(super) recursive: bool,
-    /// Whether generalised velocities that are quotients keep their letters, for readers.
+    /// Whether generalised velocities that are quotients remain symbols, for display.
     pub in_letters: bool,
 }
 
@@ -88,12 +88,12 @@ impl Algebra {
         }
     }
 
-    /// Fails where the expressions have grown beyond what a mechanism of bodies needs.
+    /// Fails if the number of expressions exceeds any realistic mechanism's.
     pub fn check_size(&self) -> Outcome<()> {
         self.holds_at_most(MOST_EXPRESSIONS)
     }
 
-    /// Fails where there are more expressions.
+    /// Fails if there are more expressions.
     pub fn holds_at_most(&self, most: usize) -> Outcome<()> {
         if self.graph.len() <= most {
             return Ok(());
@@ -122,8 +122,8 @@ impl Algebra {
         self.derivatives[place].1.of(&mut self.graph, expr)
     }
 
-    /// The expression, or the number zero if that is its value everywhere: what depends on nothing
-    /// must not seem to by rounding.
+    /// The expression, or the number zero if it vanishes identically, so that rounding cannot make it appear to
+    /// depend on anything.
     pub fn unless_zero(&mut self, expr: Expr) -> Expr {
         if self.test.is_zero(&self.graph, expr) {
             Graph::ZERO
@@ -132,8 +132,8 @@ impl Algebra {
         }
     }
 
-    /// Whether an expression is zero wherever the position constraints hold, as far as these give coordinates by
-    /// formulas.
+    /// Whether an expression vanishes on the constraint manifold, as far as position constraints give
+    /// coordinates explicitly.
     pub fn vanishes(&mut self, expr: Expr) -> bool {
         if self.test.is_zero(&self.graph, expr) {
             return true;
@@ -147,11 +147,11 @@ impl Algebra {
         there.is_some_and(|there| self.test.is_zero(&self.graph, there))
     }
 
-    /// The same value in the fewest operations that the tools here find.
+    /// The same value with the fewest operations found by the tools here.
     ///
-    /// A coordinate that provably does not matter is set to zero: the velocity of a wheel in its
-    /// own frame, written with the yaw angle, is the same at every yaw. Then the products are
-    /// multiplied out where that pays.
+    /// A coordinate on which the value provably does not depend is set to zero: the velocity of a wheel in its
+    /// own frame, written with the yaw angle, is independent of yaw. Then the products are expanded where that
+    /// saves operations.
     pub fn shortest(&mut self, expr: Expr) -> Expr {
         if self.graph.is_free(expr) || self.recursive && self.is_long(expr) {
             return expr;
@@ -168,7 +168,7 @@ impl Algebra {
         self.graph.shorter(best, factored)
     }
 
-    /// The same value where quaternions have norm 1, if that is shorter: w² = 1 − x² − y² − z².
+    /// The same value on unit quaternions, if that is shorter: w² = 1 − x² − y² − z².
     fn with_unit_norms(&mut self, mut expr: Expr) -> Expr {
         for quaternion in self.quaternions.clone() {
             let symbols = ids(&self.graph, &quaternion);
@@ -186,8 +186,7 @@ impl Algebra {
         expr
     }
 
-    /// The same value in another form, where fewer divisors remain and no more operations: what an
-    /// elimination divided by on its way may cancel.
+    /// An equal expression with fewer divisors and no more operations: pivots of an elimination often cancel.
     pub fn with_fewest_divisors(&mut self, expr: Expr) -> Expr {
         let divisors = self.graph.divisor_count(expr);
         if divisors < 2 {
@@ -206,8 +205,7 @@ impl Algebra {
         forms.min_by_key(cost).unwrap_or(expr)
     }
 
-    /// A vector that others are made from: its components under names, which keep them from being multiplied
-    /// out.
+    /// A vector from which others are computed: its components are named, which prevents their expansion.
     pub(super) fn shared3(&mut self, name: &str, v: Vec3) -> Vec3 {
         let v = v.map(|component| self.shortest(component));
         named3(self, name, v)
@@ -217,7 +215,7 @@ impl Algebra {
         self.graph.operations(&[expr]) > MOST_OPERATIONS_OF_SHORT
     }
 
-    /// [`Algebra::shortest`] of each component, by way of the relations between unknowns.
+    /// [`Algebra::shortest`] of each component, using the relations between unknowns.
     pub fn shortest3(&mut self, v: Vec3) -> Vec3 {
         let v = v.map(|component| self.shortest(component));
         let relations = std::mem::take(&mut self.relations);
@@ -231,7 +229,7 @@ impl Algebra {
         v
     }
 
-    /// An expression `c s + rest` without the unknowns, `c C⁻¹ r + rest`, where that takes no division and
+    /// An expression `c s + rest` with the unknowns eliminated, `c C⁻¹ r + rest`, if that needs no division and
     /// no more operations.
     fn related(&mut self, expr: Expr, relation: &Relation) -> Option<Expr> {
         let is_long = self.graph.operations(&[expr]) > MOST_TERMS;
@@ -271,8 +269,7 @@ impl Algebra {
         (pays && !graph.mentions(told, &relation.symbols)).then_some(told)
     }
 
-    /// An expression with `parts` written out, multiplied out and nested again. `None` where that
-    /// takes too many terms.
+    /// An expression with `parts` substituted, expanded and nested again. `None` if that gives too many terms.
     pub fn written_out(&mut self, expr: Expr, parts: &[(Expr, Expr)]) -> Option<Expr> {
         let plain = Substitution::of_parts(&self.graph, parts).apply(&mut self.graph, expr)?;
         let expanded = self.graph.expand(plain, MOST_TERMS)?;
@@ -280,8 +277,8 @@ impl Algebra {
         Some(self.graph.nest(expanded))
     }
 
-    /// A quotient as `whole + over / under` without common factors, with `parts` written out:
-    /// `[whole, over, under]`. `None` where writing it out takes too many terms.
+    /// A quotient as `whole + over / under` without common factors, with `parts` substituted:
+    /// `[whole, over, under]`. `None` if the expansion has too many terms.
     pub fn cancelled(
         &mut self,
         numerator: Expr,
@@ -328,9 +325,9 @@ impl Algebra {
     }
 }
 
-/// The identity test draws its points from the spec, so that every run draws the same.
+/// The seed of the identity test is derived from the spec, so that runs are reproducible.
 pub fn seed(mechanism: &Mechanism) -> u64 {
-    // FNV-1a: short and fixed for all time. A spec made to deceive the test deceives its author only.
+    // FNV-1a: short and stable. An adversarial spec harms only its author.
     mechanism
         .name
         .bytes()

@@ -1,4 +1,4 @@
-//! The derived equations as the functions of a program.
+//! Assembles the derived equations as the functions of a program.
 
 use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::mechanism::{BodyId, ConstraintId, FrameId, Mechanism};
@@ -26,8 +26,8 @@ use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program, 
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
-/// The program of a derivation, with the functions `kinds`. Without outputs or switches there is no
-/// function for them.
+/// The program of a derivation, with the functions `kinds`; those of outputs or switches are omitted if there
+/// are none.
 pub fn program(
     mut derivation: Derivation,
     mechanism: &Mechanism,
@@ -56,7 +56,7 @@ pub fn program(
             functions.push(derivation.staged(mechanism, Function::new(kind, results)));
         }
     }
-    // Last, so that what readers see does not change the order of anything that is computed.
+    // Last, so that display does not change the order of any computation.
     let equations = derivation.equations();
     for function in &mut functions {
         if function.kind == FunctionKind::Rates {
@@ -87,7 +87,7 @@ pub fn program(
     })
 }
 
-/// The symbols that functions take.
+/// The symbols of the functions' arguments.
 pub(super) fn function_arguments(derivation: &Derivation, info: &ModelInfo) -> Arguments {
     let symbols = &derivation.symbols;
     let graph = &derivation.algebra.graph;
@@ -203,14 +203,14 @@ impl Derivation {
                 self.inverse_dynamics_jacobians(mechanism, info)?
             }
             FunctionKind::Adjoint => self.adjoint(info)?,
-            // Its bodies are others: `regressor.rs` makes it.
+            // It is derived from other bodies, in `regressor.rs`.
             FunctionKind::Regressor => Vec::new(),
             FunctionKind::OutputJacobians => self.output_jacobians(mechanism, info)?,
             FunctionKind::OutputAdjoint => self.output_adjoint(mechanism, info)?,
         })
     }
 
-    /// The equations of motion as they are solved.
+    /// The solved equations of motion.
     fn equations(&mut self) -> Vec<[Expr; 2]> {
         let graph = &mut self.algebra.graph;
         let right: Vec<Expr> = (self.forces.iter())
@@ -239,7 +239,7 @@ impl Derivation {
         by_speed("bias", "bias", "Bias.", speeds, self.gibbs.bias.clone())
     }
 
-    /// A function with what a reader wants before its results.
+    /// A function with intermediate quantities displayed before its results.
     fn staged(&mut self, mechanism: &Mechanism, function: Function) -> Function {
         use FunctionKind as F;
         let accelerations = self.motion.accelerations.clone();
@@ -300,7 +300,7 @@ impl Derivation {
         }
     }
 
-    /// A function with the meaning of the names that it may use.
+    /// A function with a glossary of the names that it may use.
     pub(super) fn explained(
         &self,
         mechanism: &Mechanism,
@@ -360,7 +360,7 @@ impl Derivation {
         self.explained(mechanism, function, bodies)
     }
 
-    /// The rows that geometry does not embed, at the generalised velocities.
+    /// The constraint rows that geometry does not embed, evaluated at the generalised velocities.
     fn constraint_residual(&mut self, mechanism: &Mechanism) -> Array {
         let graph = &mut self.algebra.graph;
         let residual = reactions::residual(graph, &self.constraints, &self.rolling_rates);
@@ -381,7 +381,7 @@ impl Derivation {
         array
     }
 
-    /// The bodies for the reactions. Dependent speeds are not differentiated once more for them.
+    /// The bodies for the reactions; dependent speeds are not differentiated again.
     pub(super) fn bodies_in_ground(&mut self, mechanism: &Mechanism) -> Vec<BodyMotion> {
         if !self.dependent.values.is_empty() {
             return self.bodies.clone();
@@ -396,7 +396,7 @@ impl Derivation {
         )
     }
 
-    /// Normals and friction of the contacts; nothing where they are the same everywhere.
+    /// Normals and friction of the contacts, unless they are constant.
     fn surfaces(&self) -> Vec<Array> {
         let graph = &self.algebra.graph;
         if self
@@ -437,7 +437,7 @@ impl Derivation {
         ]
     }
 
-    /// Reactions in the ground, by place.
+    /// Reactions in ground components, by place.
     pub(super) fn reactions(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Vec3>> {
         let bodies = self.bodies_in_ground(mechanism);
         reactions::reactions(
@@ -452,7 +452,7 @@ impl Derivation {
         )
     }
 
-    /// One row per place with a reaction.
+    /// One row per reaction.
     fn constraint_forces(&mut self, mechanism: &Mechanism) -> Outcome<Array> {
         let forces = self.reactions(mechanism)?;
         let layout = Layout::Rows(Space::Reactions, 3);
@@ -477,7 +477,7 @@ impl Derivation {
         Ok(array)
     }
 
-    /// S at the actual accelerations: the sum, then body by body.
+    /// S at the actual accelerations: the sum, then the terms by body.
     fn acceleration_energies(&mut self) -> Vec<Array> {
         let mut results = Vec::with_capacity(self.bodies.len() + 1);
         for body in self.bodies.clone() {
@@ -500,7 +500,7 @@ impl Derivation {
         results
     }
 
-    /// T, V and the power of the loads without a potential and of what is prescribed.
+    /// T, V, the power of non-conservative loads and the power of prescribed motions.
     fn energies(&mut self, mechanism: &Mechanism) -> Outcome<Vec<Array>> {
         let letter = letters::kinetic(mechanism);
         let bodies = self.bodies.clone();
@@ -540,7 +540,7 @@ impl Derivation {
         [self.motion.accelerations.as_slice(), &self.coordinate_rates].concat()
     }
 
-    /// The motion with ω̇ by the factors of M, which derivatives of ω̇ use as well.
+    /// The motion with ω̇ from the factorised M, which the derivatives of ω̇ also use.
     fn factorized_motion(&self) -> Motion {
         let mut motion = self.motion.clone();
         if let Some(tree) = &self.recursion {
@@ -587,7 +587,7 @@ impl Derivation {
                 columns_of.push(columns.collect::<Outcome<_>>()?);
             }
         }
-        // A recursion has no terms that cancel.
+        // In a recursion no terms cancel.
         let written_out = self.recursion.is_none();
         for (columns, variables) in columns_of.iter_mut().zip(variables).filter(|_| written_out) {
             for (column, variable) in columns.iter_mut().zip(variables) {
@@ -643,7 +643,7 @@ pub(super) fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
     symbols.inputs.iter().copied().chain(tabulated).collect()
 }
 
-/// The constraints that have no row, and why.
+/// The constraints without rows, with the reason.
 fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<Item = String> {
     let has_row =
         |index| (constraints.rows.iter()).any(|row| row.constraint == index && !row.is_embedded());
@@ -657,14 +657,14 @@ fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<I
     })
 }
 
-/// The file as comments name it: its path, or its name alone where the path is absolute.
+/// The file as shown in comments: its path, or only its name if the path is absolute.
 fn shown_file(file: &str) -> &str {
     let path = std::path::Path::new(file);
     let name = path.file_name().and_then(std::ffi::OsStr::to_str);
     name.filter(|_| path.is_absolute()).unwrap_or(file)
 }
 
-/// Where the things of a spec stand, for comments.
+/// Source locations of spec items, for comments.
 struct Source<'a>(&'a Mechanism);
 
 impl Source<'_> {

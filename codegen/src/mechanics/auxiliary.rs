@@ -1,11 +1,11 @@
-//! Forces behind rows that geometry or other rows already satisfy.
+//! Reactions of rows that are satisfied by geometry or implied by other rows.
 //!
-//! Such a row `r = Σ factor · other` does not affect the motion, but it has a reaction. The reaction
-//! does work in an auxiliary motion outside the coordinates: a virtual translation of the connected
-//! part along the force. In that motion the row is independent, `r - Σ factor · other = D c` for the
-//! rates c of the auxiliary motions. If D is invertible, each row can be violated alone and its
-//! reaction follows. If D is singular, there are more reactions than equations of equilibrium: the
-//! mechanism is statically indeterminate, and no share of the forces is reported.
+//! Such a row `r = Σ factor · other` does not affect the motion, but it has a reaction. The reaction does work
+//! in an auxiliary motion outside the coordinates: a virtual translation of the connected part along the force.
+//! In that motion the row is independent, `r - Σ factor · other = D c` for the rates c of the auxiliary
+//! motions. If D is invertible, each row can be violated alone and its reaction follows. If D is singular,
+//! there are more reactions than equations of equilibrium: the mechanism is statically indeterminate, and the
+//! individual forces are not reported.
 
 use appell_spec::Code;
 use appell_spec::expr::Quantity;
@@ -20,21 +20,21 @@ use super::row::{Reaction, Row};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Intervals};
 
-/// A motion that the coordinates do not have, with an auxiliary speed of its own.
+/// A motion outside the coordinates, with its own auxiliary speed.
 #[derive(Debug, Clone)]
 pub struct AuxiliaryMotion {
-    /// The points next to the origin from which hangs what is carried along.
+    /// The points adjacent to the origin whose subtrees move.
     roots: Vec<PointId>,
-    /// Its velocity for a unit of its rate.
+    /// Its velocity per unit rate.
     along: FrameVector,
-    /// How much of each row it violates per unit of its rate.
+    /// The rate at which each row is violated, per unit rate.
     pub gains: Vec<Expr>,
-    /// Its rate as a sum of the rates at which rows are violated.
+    /// Its rate as a linear combination of the violation rates of the rows.
     pub rate: Vec<Expr>,
 }
 
 impl AuxiliaryMotion {
-    /// What moves at a rate.
+    /// The velocities of the moving subtrees for a given rate.
     pub fn at(&self, graph: &mut Graph, rate: Expr) -> Vec<Carried> {
         let v = FrameVector {
             frame: self.along.frame,
@@ -44,7 +44,7 @@ impl AuxiliaryMotion {
         self.roots.iter().map(carried).collect()
     }
 
-    /// How much of a row it violates.
+    /// The rate at which a row is violated, per unit rate.
     fn gain(&self, algebra: &mut Algebra, frames: &Frames, row: &Row) -> Expr {
         if row.root.is_none_or(|root| !self.roots.contains(&root)) {
             return Graph::ZERO;
@@ -56,22 +56,22 @@ impl AuxiliaryMotion {
     }
 }
 
-/// Rows whose shares of a force cannot be told.
+/// Rows whose individual reactions are indeterminate.
 #[derive(Debug, Clone)]
 struct Indeterminate {
     /// The last of the rows.
     row: usize,
-    /// Places of reactions that would change with the shares.
+    /// Places whose reactions depend on the indeterminate distribution.
     places: Vec<usize>,
 }
 
-/// What holds the rows that follow from others.
+/// The auxiliary motions for the rows that follow from others.
 #[derive(Debug, Clone, Default)]
 pub struct AuxiliaryMotions {
     /// Motions that violate them.
     pub motions: Vec<AuxiliaryMotion>,
     indeterminate: Vec<Indeterminate>,
-    /// Places of position constraints that a contact keeps: the force is the contact's.
+    /// Places of position constraints that a contact satisfies: the reaction is the contact's.
     silent: Vec<usize>,
 }
 
@@ -82,7 +82,7 @@ struct Equation {
 }
 
 impl AuxiliaryMotions {
-    /// Looks for a motion behind each row that follows from others.
+    /// Determines an auxiliary motion for each row that follows from others.
     pub fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -149,7 +149,7 @@ impl AuxiliaryMotions {
         untold.all(|&other| other != place) && !self.silent.contains(&place)
     }
 
-    /// What to warn of, once for all reactions that depend on each other.
+    /// Warnings, one for each group of interdependent reactions.
     pub fn findings(&self, mechanism: &Mechanism, rows: &[Row], places: &[String]) -> Vec<Finding> {
         let mut groups: Vec<Indeterminate> = Vec::new();
         for indeterminate in &self.indeterminate {
@@ -165,7 +165,7 @@ impl AuxiliaryMotions {
             joined.places.dedup();
             groups.push(joined);
         }
-        // A constraint that always holds is told of as such.
+        // Constraints that always hold are reported separately.
         groups.retain(|group| group.places.len() > 1);
         let finding = |group: Indeterminate| {
             let shares = |row: &&Row| group.places.contains(&row.reaction.place);
@@ -195,7 +195,7 @@ impl AuxiliaryMotions {
         groups.into_iter().map(finding).collect()
     }
 
-    /// `Σ gain · c = Σ violation` for a row that is a sum of others with `factors`.
+    /// `Σ gain · c = Σ violation` for a row that is a combination of others with `factors`.
     fn equation(&self, algebra: &mut Algebra, row: usize, factors: Vec<Expr>) -> Equation {
         let graph = &mut algebra.graph;
         let mut violations: Vec<Expr> = factors.into_iter().map(|f| graph.neg(f)).collect();
@@ -214,7 +214,7 @@ impl AuxiliaryMotions {
 }
 
 impl Equation {
-    /// A motion for which it can be solved in every configuration, the plainest first.
+    /// The simplest pivot that cannot vanish in the declared ranges.
     fn pivot(&self, algebra: &Algebra, intervals: &mut Intervals) -> Option<usize> {
         let graph = &algebra.graph;
         let candidates = (0..self.gains.len()).filter(|&k| self.gains[k] != Graph::ZERO);
@@ -222,7 +222,7 @@ impl Equation {
         safe.min_by_key(|&k| (graph.operations(&[self.gains[k]]), k))
     }
 
-    /// Takes a motion out of it by an equation that is solved for that motion.
+    /// Eliminates a motion by an equation that is solved for it.
     fn less(&mut self, algebra: &mut Algebra, solved: &Self, motion: usize) {
         let share = self.gains[motion];
         if share == Graph::ZERO {
@@ -236,7 +236,7 @@ impl Equation {
         }
     }
 
-    /// Solves it for a motion.
+    /// Normalises the coefficient of a motion to 1.
     fn divide(&mut self, algebra: &mut Algebra, motion: usize) {
         let pivot = self.gains[motion];
         for value in self.gains.iter_mut().chain(&mut self.violations) {
@@ -246,7 +246,7 @@ impl Equation {
     }
 }
 
-/// The shortest form; zero where it is zero.
+/// The shortest form; zero if it vanishes identically.
 fn tidy(algebra: &mut Algebra, expr: Expr) -> Expr {
     if algebra.test.is_zero(&algebra.graph, expr) {
         Graph::ZERO
@@ -255,7 +255,7 @@ fn tidy(algebra: &mut Algebra, expr: Expr) -> Expr {
     }
 }
 
-/// A row as a sum of active rows: a factor for each of all rows.
+/// A row as a combination of active rows: a factor for each of all rows.
 fn factors(algebra: &mut Algebra, rows: &[Row], row: usize) -> Vec<Expr> {
     let mut factors = vec![Graph::ZERO; rows.len()];
     if rows[row].is_embedded() {
@@ -272,7 +272,7 @@ fn factors(algebra: &mut Algebra, rows: &[Row], row: usize) -> Vec<Expr> {
     factors
 }
 
-/// Where a force remains if rows react in the proportion of `shares`.
+/// Places with a nonzero force if the rows react in the proportions `shares`.
 fn loaded_places(algebra: &mut Algebra, rows: &[Row], shares: &[Expr]) -> Vec<usize> {
     let mut loads: Vec<(usize, Vec3)> = Vec::new();
     for (row, &share) in rows.iter().zip(shares) {
@@ -290,8 +290,8 @@ fn loaded_places(algebra: &mut Algebra, rows: &[Row], shares: &[Expr]) -> Vec<us
     loaded.map(|(place, _)| place).collect()
 }
 
-/// The points next to the origin that hang together with `root`: coordinates that move both say that
-/// something joins them, which no constraint tells.
+/// The points adjacent to the origin that are connected to `root`: a shared coordinate implies a connection
+/// that no constraint states.
 fn tied_to(mechanism: &Mechanism, root: PointId) -> Vec<PointId> {
     let all = mechanism
         .points
@@ -314,7 +314,7 @@ fn tied_to(mechanism: &Mechanism, root: PointId) -> Vec<PointId> {
     tied
 }
 
-/// The coordinates on the way from the origin to what hangs from `root`.
+/// The coordinates that move the subtree of `root`.
 fn moving(mechanism: &Mechanism, root: PointId) -> Vec<CoordinateId> {
     let mut coordinates = Vec::new();
     let mut see = |quantity| {

@@ -27,14 +27,14 @@ use crate::symbolic::{Expr, Graph, Intervals, Substitution};
 pub struct Constraints {
     /// Scalar rows in the order of the spec.
     pub rows: Vec<Row>,
-    /// The reactions that are reported.
+    /// The reported reactions.
     pub reactions: Vec<Reported>,
-    /// For each place of a reaction its index into [`Constraints::reactions`]; none where its
-    /// reaction cannot be told.
+    /// For each place of a reaction its index into [`Constraints::reactions`]; `None` if the reaction is
+    /// indeterminate.
     pub reported: Vec<Option<usize>>,
-    /// What violates the rows that follow from geometry or from others.
+    /// Auxiliary motions that violate the rows implied by geometry or by other rows.
     pub auxiliary: AuxiliaryMotions,
-    /// Rows that were left out, reactions that cannot be told.
+    /// Omitted rows and indeterminate reactions.
     pub warnings: Vec<Finding>,
 }
 
@@ -45,7 +45,7 @@ impl Constraints {
         rows.filter(move |row| row.constraint == constraint)
     }
 
-    /// Index of the reaction of a row among those that are reported.
+    /// Index of a row's reaction among the reported ones.
     pub fn reported(&self, row: &Row) -> Option<usize> {
         self.reported.get(row.reaction.place).copied().flatten()
     }
@@ -109,8 +109,8 @@ pub fn constraints(
     })
 }
 
-/// The constraints, in the order in which they are kept. Where a contact and a position constraint say the
-/// same, the contact is kept, because its reaction has a point; a position says more than its derivative.
+/// The constraints in order of precedence. If a contact and a position constraint are equivalent, the contact
+/// has precedence, because its reaction has a point; a position constraint implies its derivative.
 fn by_precedence(mechanism: &Mechanism) -> Vec<ConstraintId> {
     let kind = |i: ConstraintId| &mechanism.constraints[i].kind;
     let is_position = |i| matches!(kind(i), ConstraintKind::Position { .. });
@@ -126,12 +126,12 @@ fn by_precedence(mechanism: &Mechanism) -> Vec<ConstraintId> {
 enum Place {
     /// At a point.
     Point(PointId),
-    /// Along a combination of velocities that has no point: a multiplier.
+    /// Along a combination of velocities without a point: a multiplier.
     Constraint(ConstraintId),
 }
 
 impl Place {
-    /// Its name in results. A constraint that is called like a point says that it is none.
+    /// Its name in results, made unique if a constraint has the name of a point.
     fn name(self, mechanism: &Mechanism) -> String {
         match self {
             Self::Point(point) => mechanism.points[point].name.clone(),
@@ -146,7 +146,7 @@ impl Place {
         }
     }
 
-    /// Its reaction under this name. A multiplier is a power divided by the constrained rate.
+    /// Its reaction under this name. The unit of a multiplier is power per constrained rate.
     fn reaction(self, mechanism: &Mechanism, name: String) -> Reported {
         match self {
             Self::Point(_) => Reported::on_point(name.into()),
@@ -170,7 +170,7 @@ struct Scalar {
 }
 
 impl Scalar {
-    /// The row of a constraint that no point feels.
+    /// The row of a constraint without a point.
     fn without_point(name: &str, value: Expr) -> Self {
         let along = FrameVector {
             frame: GROUND,
@@ -186,7 +186,7 @@ impl Scalar {
     }
 }
 
-/// What one constraint demands, row by row, and where its reaction acts.
+/// The scalar rows of one constraint, and where its reaction acts.
 fn scalar_rows(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -288,7 +288,7 @@ fn scalar_rows(
     })
 }
 
-/// The velocity of a body at a contact, from that of what it rolls on, along the axes of a frame.
+/// The relative velocity at a rolling contact, in the components of a frame.
 fn rolling_rows(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -305,7 +305,7 @@ fn rolling_rows(
         v = graph.sub3(v, carried);
     }
     let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);
-    // What carries both does not part them.
+    // A motion that carries both bodies does not change their relative velocity.
     let own = Some(root(body)).filter(|own| on.is_none_or(|on| root(on) != *own));
     let rows = ["x", "y", "z"].iter().enumerate().map(|(k, axis)| {
         let unit = FrameVector {
@@ -366,8 +366,8 @@ fn row(
     })
 }
 
-/// What the rows without any generalised velocity say: those of a point hold by geometry, others
-/// contradict the spec or say nothing. Returns what to warn of.
+/// Checks rows without generalised velocities: those of a point hold by geometry, others contradict the spec or
+/// are trivial. Returns the warnings.
 fn without_motion(
     mechanism: &Mechanism,
     rows: &[Row],

@@ -1,8 +1,8 @@
-//! Rolling contacts that no formula solves: their rows in the frame where they are shortest.
+//! Rolling contacts without an explicit solution: their rows in the frame where they are shortest.
 //!
-//! The body's motion is known when the rows are solved, so they share its partial velocities. And
-//! since the contact is at rest, so is the rate at which its velocity turns with the frame: the rows'
-//! rates of change are the components of `v̇_C + d/dt (ω × r)`.
+//! The motion of the body is needed as well, so the rows share its partial velocities. Since the velocity of
+//! the contact point vanishes, so does the transport term of its derivative: the rates of the rows are the
+//! components of `v̇_C + d/dt (ω × r)`.
 
 use appell_spec::mechanism::{BodyId, ConstraintKind, FrameId, GROUND, Mechanism, PointId};
 
@@ -20,15 +20,15 @@ use crate::symbolic::{Expr, Substitution};
 
 /// The three rows of a contact.
 pub struct ContactRows {
-    /// Their places in the open system.
+    /// Their positions in the open system.
     pub places: Vec<usize>,
     /// The rows in the chosen frame.
     pub rows: Vec<TurnedRow>,
-    /// Their rates of change where all accelerations vanish, with the other sign.
+    /// Their rates at zero accelerations, negated.
     change: Vec3,
 }
 
-/// What the rows of a contact are made of.
+/// The data that determine the rows of a contact.
 struct Contact<'a> {
     mechanism: &'a Mechanism,
     symbols: &'a Symbols,
@@ -41,7 +41,7 @@ struct Contact<'a> {
 }
 
 impl ContactRows {
-    /// Those of all contacts none of whose rows is solved by a formula.
+    /// The rows of all contacts none of whose rows has an explicit solution.
     pub fn all(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -94,7 +94,7 @@ impl ContactRows {
         Ok(all)
     }
 
-    /// Rate of change of the row at a place of the open system.
+    /// Negated rate of the row at a position of the open system.
     pub fn change_of(&self, place: usize) -> Option<Expr> {
         let axis = self.places.iter().position(|&p| p == place)?;
         Some(self.change[axis])
@@ -179,7 +179,7 @@ impl Contact<'_> {
             .collect()
     }
 
-    /// Velocity of the contact without any speed.
+    /// Velocity of the contact at zero speeds.
     fn drift(&self, algebra: &mut Algebra, frame: FrameId) -> Outcome<Vec3> {
         let v =
             self.kinematics
@@ -201,7 +201,7 @@ impl Contact<'_> {
         }
     }
 
-    /// `-(v̇_C + d/dt (ω × r))` where all accelerations vanish.
+    /// `-(v̇_C + d/dt (ω × r))` at zero accelerations.
     fn change(&self, algebra: &mut Algebra, frame: FrameId) -> Vec3 {
         let time = TimeDerivative {
             symbols: self.symbols,

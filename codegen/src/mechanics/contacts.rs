@@ -1,4 +1,4 @@
-//! Contacts, which can only push: where they react, and along which normal.
+//! Unilateral contacts: places and normals of their reactions.
 
 use std::mem;
 
@@ -22,18 +22,18 @@ pub struct Contact {
     pub constraint: ConstraintId,
     /// Index into [`Constraints::reactions`].
     pub place: usize,
-    /// Direction in which it pushes, in the ground.
+    /// Direction of the normal force on the body, in the ground.
     pub normal: Vec3,
-    /// Whether friction holds it along the surface.
+    /// Whether friction prevents sliding.
     pub grips: bool,
-    /// Coefficient of friction, if the spec tells it.
+    /// Coefficient of friction, if the spec gives it.
     pub friction: Option<Expr>,
 }
 
-/// The contacts of a mechanism, at most one per place of a reaction, and what to warn of.
+/// The contacts of a mechanism, at most one per place of a reaction, and warnings.
 ///
-/// Where constraints share a reaction in a way that cannot be told, their contacts are not judged.
-/// Of several contacts at one place one is judged, by the whole reaction: the first that grips.
+/// Contacts whose reactions are indeterminate are not monitored. Of several contacts at one place one is
+/// monitored, by the total reaction: the first with friction.
 pub fn contacts(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -100,7 +100,7 @@ pub fn contacts(
     Ok((contacts, warnings))
 }
 
-/// Keeps of two contacts at one place the one that is judged, and warns if the other says more.
+/// Selects the monitored one of two contacts at one place, and warns if the other is more restrictive.
 fn merge(mechanism: &Mechanism, known: &mut Contact, contact: Contact) -> Option<Finding> {
     let other = if contact.grips && !known.grips {
         mem::replace(known, contact)
@@ -122,8 +122,7 @@ fn merge(mechanism: &Mechanism, known: &mut Contact, contact: Contact) -> Option
     })
 }
 
-/// The axis of the ground against the weight, where the coordinates keep the contact from moving
-/// along it.
+/// The axis of the ground opposite to gravity, if the coordinates prevent motion of the contact along it.
 fn against_the_weight(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -169,7 +168,7 @@ fn idle_friction(name: &str, constraint: ConstraintId, unknown: bool) -> Finding
 }
 
 impl Contact {
-    /// Whether neither the normal nor the friction changes with the state or with parameters.
+    /// Whether normal and friction are independent of the state and of parameters.
     pub fn is_constant(&self, graph: &Graph) -> bool {
         let mut exprs = self.normal.iter().chain(&self.friction);
         exprs.all(|&expr| graph.as_number(expr).is_some())

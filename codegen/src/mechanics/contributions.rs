@@ -24,7 +24,7 @@ pub fn of_loads(derivation: &mut Derivation) -> Vec<Vec<bool>> {
     loads.iter().map(enters).collect()
 }
 
-/// By body: whether it moves with each pseudo-velocity.
+/// By body: whether each pseudo-velocity moves it.
 pub fn of_bodies(derivation: &Derivation) -> Vec<Vec<bool>> {
     let speeds = 0..derivation.symbols.speeds.len();
     let bodies = derivation.bodies.iter();

@@ -1,23 +1,23 @@
-//! Small systems whose entries can all vanish while their determinant cannot, as in a turn by angles:
-//! solved by Cramer's rule.
+//! Small systems with a nonvanishing determinant but no safe pivot, as for a rotation by angles: solved by
+//! Cramer's rule.
 
 use super::algebra::Algebra;
 use crate::symbolic::{Expr, Graph, Intervals, SymbolId};
 
-/// Unknowns of the largest system that is solved by its determinant: a turn in space has three.
+/// Size of the largest system solved by its determinant: a rotation in space has three unknowns.
 const MOST_UNKNOWNS: usize = 3;
 
-/// Equations and the unknowns that occur in them alone, by their places.
+/// Equations with the unknowns that occur only in them, by index.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Block {
-    /// Places of its equations.
+    /// Indices of its equations.
     pub equations: Vec<usize>,
     /// Its unknowns.
     pub unknowns: Vec<usize>,
 }
 
-/// The blocks into which equations fall. `matrix` holds the coefficients of all unknowns, a row per
-/// equation; `open` are the unknowns that are left.
+/// The independent blocks of a system. `matrix` holds the coefficients of all unknowns, a row per equation;
+/// `open` are the unsolved unknowns.
 pub fn blocks(matrix: &[&[Expr]], open: &[usize]) -> Vec<Block> {
     let mut left: Vec<usize> = (0..matrix.len()).collect();
     let mut blocks = Vec::new();
@@ -45,14 +45,14 @@ pub fn blocks(matrix: &[&[Expr]], open: &[usize]) -> Vec<Block> {
             unknowns,
         });
     }
-    // The larger ones first: what is left may then be a pair alone.
+    // Larger blocks first: the remainder may then be a block of two.
     blocks.sort_by_key(|block| std::cmp::Reverse(block.unknowns.len()));
     blocks
 }
 
-/// The unknowns of a square system. `None` where it is larger than a turn in space, or its
-/// determinant is not known to keep off zero; the identity test takes out of it what cancels.
-/// The determinant must not mention `held`: quotients by what changes are longer than a system.
+/// The unknowns of a square system. `None` if it has more than three, or its determinant is not known to be
+/// nonzero; the identity test removes cancelling terms from it. The determinant must not mention `held`:
+/// quotients by variable terms are longer than a system.
 pub fn solve(
     algebra: &mut Algebra,
     rows: &[Vec<Expr>],
@@ -75,8 +75,7 @@ pub fn solve(
     Some(unknowns.collect())
 }
 
-/// Cofactors, row by row, and determinant of a square matrix. `None` where it is larger than a turn in
-/// space.
+/// Cofactors, row by row, and determinant of a square matrix. `None` if it is larger than 3 × 3.
 pub fn adjugate(algebra: &mut Algebra, rows: &[Vec<Expr>]) -> Option<(Vec<Vec<Expr>>, Expr)> {
     let n = rows.len();
     if !(1..=MOST_UNKNOWNS).contains(&n) || rows.iter().any(|row| row.len() != n) {
@@ -91,7 +90,7 @@ pub fn adjugate(algebra: &mut Algebra, rows: &[Vec<Expr>]) -> Option<(Vec<Vec<Ex
     Some((cofactors, determinant))
 }
 
-/// The minor without row i and column j, with its sign. In a turn it is an entry again.
+/// The signed minor without row i and column j. For a rotation it equals the entry.
 fn cofactor(algebra: &mut Algebra, rows: &[Vec<Expr>], i: usize, j: usize) -> Expr {
     let others = |left_out: usize| (0..rows.len()).filter(move |&k| k != left_out);
     let rest: Vec<Expr> = others(i)

@@ -1,21 +1,22 @@
-//! Light creep of rolling contacts.
+//! Linear creep of rolling contacts.
 //!
-//! A wheel of rubber or steel slides a little against the force that acts on it. In the range where
-//! sliding grows with the force, its velocity is
+//! A wheel of rubber or steel creeps under load. In the range where the creep velocity is linear in the force,
+//! it is
 //!
 //! `s = -|v| (κₗ Fₗ eₗ + κₜ Fₜ eₜ) / N`,
 //!
-//! with v the velocity of the contact along the surface, eₗ its direction and eₜ across it, F the force on
-//! the wheel and N its normal part (J. J. Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact*,
-//! 1990, linear theory). The constraint rows of the contact hold s in place of zero. F is the force of
-//! pure rolling: what creep changes of it is of second order in κ.
+//! with v the velocity of the contact along the surface, eₗ its direction and eₜ across it, F the force on the
+//! wheel and N its normal part (J. J. Kalker, *Three-Dimensional Elastic Bodies in Rolling Contact*, 1990,
+//! linear theory). The constraint rows of the contact equal s instead of zero. F is the force of pure rolling:
+//! its change due to creep is of second order in κ.
 //!
-//! Sliding has inertia. With the velocities of sliding as further pseudo-velocities, M and m their masses,
-//! Appell's equations are `M ω̇ + m ṡ + b(q, ω, s) = Π(q, ω, s)`. The state is `w = ω + M⁻¹ m s`, and
+//! Creep has inertia. With the creep velocities s as additional pseudo-velocities, M and m the blocks of the
+//! mass matrix, Appell's equations are `M ω̇ + m ṡ + b(q, ω, s) = Π(q, ω, s)`. The state is `w = ω + M⁻¹ m s`,
+//! and
 //!
 //! `M ẇ = Π - b + (ṁ - Ṁ M⁻¹ m) s`,
 //!
-//! which needs no ṡ. What has passed since s changed counts as if it had changed at once.
+//! which does not contain ṡ. Changes of s act without delay.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, Creep, GROUND, Mechanism, PointId};
@@ -32,10 +33,10 @@ use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Rational, Substitution};
 
-/// Below this velocity of travel, in mm/s, creep fades.
+/// Below this velocity of travel, in mm/s, creep tends to zero.
 const SLOW: i64 = 1;
 
-/// A contact that creeps.
+/// A contact with creep.
 struct Creeping<'m> {
     constraint: ConstraintId,
     point: PointId,
@@ -43,7 +44,7 @@ struct Creeping<'m> {
     contact: Contact,
 }
 
-/// The motion with what creep changes of it.
+/// The motion with its first-order changes due to creep.
 pub struct CreepingMotion {
     /// M and b.
     pub gibbs: GibbsForm,
@@ -53,7 +54,7 @@ pub struct CreepingMotion {
     pub coordinate_rates: Vec<Expr>,
 }
 
-/// The motion with all contacts creeping; `None` where none does.
+/// The motion with creep in all contacts that have it; `None` if there are none.
 pub fn creeping_motion(
     derivation: &mut Derivation,
     mechanism: &Mechanism,
@@ -67,7 +68,7 @@ pub fn creeping_motion(
     let symbols = derivation.symbols.clone();
     let algebra = &mut derivation.algebra;
 
-    // Appell's equations of the mechanism that may slide.
+    // Appell's equations with creep velocities as speeds.
     let (free, held): (Vec<Expr>, Vec<Expr>) = violated
         .rates
         .iter()
@@ -92,7 +93,7 @@ pub fn creeping_motion(
     settle(&mut loads, &mut algebra.graph, mechanism, reactions)?;
     let forces = generalized_forces(algebra, &loads, &symbols.speeds);
 
-    // m s, and what its change adds.
+    // m s, and the term of its rate.
     let rolling = derivation.velocities.rates.clone();
     let time = TimeDerivative {
         symbols: &symbols,
@@ -170,7 +171,7 @@ fn sliding(
     Ok(sliding)
 }
 
-/// The contacts that creep.
+/// The contacts with creep.
 fn creeping<'m>(derivation: &Derivation, mechanism: &'m Mechanism) -> Outcome<Vec<Creeping<'m>>> {
     let mut creeping = Vec::new();
     for (constraint, item) in mechanism.constraints.entries() {
@@ -198,7 +199,7 @@ fn creeping<'m>(derivation: &Derivation, mechanism: &'m Mechanism) -> Outcome<Ve
 }
 
 impl Creeping<'_> {
-    /// Velocity of sliding, in the ground.
+    /// Creep velocity, in the ground.
     fn slides(&self, derivation: &mut Derivation, force: Vec3) -> Outcome<Vec3> {
         let lowering = Lowering {
             symbols: &derivation.symbols,
@@ -232,14 +233,14 @@ impl Creeping<'_> {
     }
 }
 
-/// M⁻¹ times a list.
+/// Multiplies a vector by M⁻¹.
 pub(super) fn per_mass(
     derivation: &mut Derivation,
     mechanism: &Mechanism,
     momenta: &[Expr],
 ) -> Outcome<Vec<Expr>> {
     let algebra = &mut derivation.algebra;
-    // Solved for symbols, so that nothing of it is called an acceleration.
+    // Solved with symbols, so that no intermediate quantity is named an acceleration.
     let kicks: Vec<Expr> = (0..momenta.len())
         .map(|i| algebra.graph.symbol(&format!("kick_{i}")))
         .collect();

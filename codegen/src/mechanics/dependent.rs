@@ -1,10 +1,10 @@
-//! Generalised velocities that no formula gives, as dependent speeds.
+//! Generalised velocities without an explicit formula, as dependent speeds.
 //!
-//! They first count as further speeds `s`, as if nothing bound them: velocities and equations stay
-//! short. The system `C s = r(ω)` that determines them then brings the equations back to the
-//! pseudo-velocities. With `s = β ω + β₀` and `ṡ = β ω̇ + γ`, and `B = [1; β]`, the mass matrix is
-//! `Bᵀ M B`, the bias `Bᵀ (b + M [0; γ])`, the pseudo-forces `Bᵀ Π` (Kane and Levinson, Dynamics:
-//! Theory and Applications, 1985, sections 2.11 and 4.4).
+//! They are first treated as additional independent speeds `s`, before their elimination: velocities and
+//! equations stay short. The system `C s = r(ω)` that determines them then reduces the equations to the
+//! pseudo-velocities. With `s = β ω + β₀`, `ṡ = β ω̇ + γ` and `B = [1; β]`, the mass matrix is `Bᵀ M B`, the
+//! bias `Bᵀ (b + M [0; γ])`, the pseudo-forces `Bᵀ Π` (Kane and Levinson, Dynamics: Theory and Applications,
+//! 1985, sections 2.11 and 4.4).
 
 use appell_spec::mechanism::{CoordinateId, Mechanism};
 
@@ -29,7 +29,7 @@ pub struct DependentSpeeds {
     pub system: OpenSystem,
     /// ∂r/∂ω, row by row.
     pub driving: Vec<Vec<Expr>>,
-    /// `ṙ - Ċ s` where all pseudo-accelerations vanish, with symbols for s.
+    /// `ṙ - Ċ s` at zero pseudo-accelerations, with symbols for s.
     pub change: Vec<Expr>,
     /// s, named.
     pub values: Vec<Expr>,
@@ -39,15 +39,15 @@ pub struct DependentSpeeds {
     pub accelerations: Vec<Expr>,
     /// Symbols for the multipliers λ, one per equation of the system.
     pub multipliers: Vec<Expr>,
-    /// β: how each follows the pseudo-velocities, named.
+    /// β = ∂s/∂ω, named.
     pub partial: Vec<Vec<Expr>>,
-    /// γ: ṡ where all pseudo-accelerations vanish, named.
+    /// γ: ṡ at zero pseudo-accelerations, named.
     pub bias: Vec<Expr>,
 }
 
 impl DependentSpeeds {
-    /// The dependent speeds with their derivatives, and q̇ with their values. `bodies` move along the
-    /// pseudo-velocities and the dependent speeds.
+    /// The dependent speeds with their derivatives, and q̇ with their values. The motions of `bodies` are in
+    /// terms of the pseudo-velocities and the dependent speeds.
     pub fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -173,14 +173,14 @@ impl DependentSpeeds {
         .collect()
     }
 
-    /// Puts the values in place of the symbols.
+    /// Substitutes the values for the symbols.
     pub fn actual(&self, graph: &Graph) -> Substitution {
         let unknowns = self.system.unknowns.iter().copied();
         let parts: Vec<(Expr, Expr)> = unknowns.zip(self.values.iter().copied()).collect();
         Substitution::of_parts(graph, &parts).keeping_names()
     }
 
-    /// How the equations without them are solved.
+    /// The solution method of the reduced equations.
     pub fn way(&self) -> Way<'static> {
         if self.values.is_empty() {
             Way::Shortest
@@ -243,7 +243,7 @@ impl DependentSpeeds {
             .collect()
     }
 
-    /// ω̇, and ṡ that goes with it.
+    /// ω̇ followed by the corresponding ṡ.
     pub fn accelerations_with(&self, graph: &mut Graph, independent: &[Expr]) -> Vec<Expr> {
         let mut all = independent.to_vec();
         for (row, &bias) in self.partial.iter().zip(&self.bias) {
@@ -357,8 +357,8 @@ impl DependentSpeeds {
         Ok(bodies)
     }
 
-    /// Partial velocities by the pseudo-velocities in place of those by all speeds, and what the
-    /// dependent ones add where all pseudo-accelerations vanish.
+    /// Replaces partial velocities with respect to all speeds by those with respect to the pseudo-velocities;
+    /// returns the contribution of the dependent speeds at zero pseudo-accelerations.
     fn reduce_partial(&self, graph: &mut Graph, partial: &mut Vec<Vec3>) -> Vec3 {
         let dependent = partial.split_off(partial.len() - self.values.len());
         for (i, own) in partial.iter_mut().enumerate() {
@@ -382,7 +382,7 @@ pub fn scalar_product(graph: &mut Graph, a: &[Expr], b: &[Expr]) -> Expr {
     graph.sum(&products)
 }
 
-/// Values with a substitution applied.
+/// Values after a substitution.
 pub fn apply(
     substitution: &mut Substitution,
     algebra: &mut Algebra,

@@ -1,8 +1,8 @@
-//! Divisions by what is zero in every configuration: `1/(sin(a)^2 + cos(a)^2 - 1)`, `tan(pi/2)`; and numbers that no
-//! double holds.
+//! Divisions by expressions that vanish identically, `1/(sin(a)^2 + cos(a)^2 - 1)`, `tan(pi/2)`, and numbers
+//! beyond the range of doubles.
 //!
-//! All expressions of a spec are read once in a graph of their own, so that every such mistake is told
-//! at once and the equations do not depend on the search.
+//! All expressions of a spec are lowered once in a separate graph, so that every such mistake is reported at
+//! once and the equations are unaffected by the search.
 
 use appell_spec::Code;
 use appell_spec::expr::Expr as Spec;
@@ -14,7 +14,7 @@ use super::finding::{Finding, Item, division_by_zero};
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Node};
 
-/// One finding per item that divides by zero or holds a number beyond double precision.
+/// One finding per item that divides by zero or contains a number beyond double precision.
 pub fn findings(mechanism: &Mechanism) -> Vec<Finding> {
     let mut graph = Graph::new();
     let symbols = Symbols::new(&mut graph, mechanism);
@@ -51,7 +51,7 @@ fn finding(algebra: &mut Algebra, symbols: &Symbols, item: Item, expr: &Spec) ->
     (!holds_doubles(graph, &[lowered])).then(|| beyond_double("an expression", item))
 }
 
-/// Whether a double holds each number in expressions.
+/// Whether all numbers in expressions are in the range of doubles.
 pub fn holds_doubles(graph: &Graph, roots: &[Expr]) -> bool {
     graph
         .in_order(roots)
@@ -67,7 +67,7 @@ pub fn holds_doubles(graph: &Graph, roots: &[Expr]) -> bool {
         })
 }
 
-/// A number that no double holds.
+/// A number beyond the range of doubles.
 pub fn beyond_double(what: &str, item: Item) -> Finding {
     Finding {
         code: Code::NotFinite,

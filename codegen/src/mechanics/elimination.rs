@@ -1,4 +1,4 @@
-//! Constraints and definitions of the pseudo-velocities, solved for the generalised velocities.
+//! Solves constraints and definitions of the pseudo-velocities for the generalised velocities.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
@@ -21,13 +21,13 @@ use crate::symbolic::{Expr, Graph, Intervals, Node, Substitution, SymbolId, vect
 /// The generalised velocities in terms of the pseudo-velocities.
 #[derive(Debug, Clone)]
 pub struct GeneralizedVelocities {
-    /// q̇ in the motions that the constraints allow.
+    /// q̇ in the admissible motions.
     pub rates: Vec<Expr>,
     /// q̇ when every constraint row may be violated at a rate of its own.
     pub violating: Violation,
     /// Coordinates whose rates need a pivoted solve at run time.
     pub solved_numerically: Vec<usize>,
-    /// What that solve determines: these rates, or angular velocities in place of the rates of quaternions.
+    /// The unknowns of that solve: these rates, or angular velocities instead of quaternion rates.
     pub solved: Vec<Expr>,
 }
 
@@ -42,12 +42,12 @@ pub struct Violation {
     pub carried_rates: Vec<Expr>,
 }
 
-/// What formulas solve, in terms of what they leave open.
+/// The explicitly solved unknowns in terms of those of the open system.
 #[derive(Debug, Clone)]
 pub struct Elimination {
     /// q̇ in terms of the pseudo-velocities and of the unknowns of the open system.
     pub rates: Vec<Expr>,
-    /// What is left open, in the motions that the constraints allow.
+    /// The system of the remaining unknowns in the admissible motions.
     pub open: OpenSystem,
     /// q̇ and the right-hand side of the open system when constraint rows are violated.
     violating: (Vec<Expr>, Vec<Expr>),
@@ -55,8 +55,8 @@ pub struct Elimination {
     carried_rates: Vec<Expr>,
 }
 
-/// Solves for q̇. Pivots are taken where they cannot vanish in the declared ranges; what is left
-/// without such a pivot goes into one small system that is solved with pivoting at run time.
+/// Solves for q̇. Pivots must not vanish in the declared ranges; unknowns without such a pivot form a small
+/// system that is solved with pivoting at run time.
 pub fn eliminate(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -89,7 +89,7 @@ pub fn eliminate(
         if !row.is_active() {
             continue;
         }
-        // Σ C q̇ = violation - rest - what the auxiliary motions contribute
+        // Σ C q̇ = violation - rest - contribution of the auxiliary motions
         let mut parts = vec![violation_rates[index], algebra.graph.neg(row.rest)];
         for (motion, &rate) in constraints.auxiliary.motions.iter().zip(&carried_rates) {
             let contribution = algebra.graph.mul(motion.gains[index], rate);
@@ -117,7 +117,8 @@ pub fn eliminate(
         .iter()
         .map(|e| LinearRow::homogeneous(e.coefficients.clone()));
     let given: Vec<LinearRow> = given.collect();
-    // Four rates are three unknowns: the angular velocity stands where the rates of the vector part were.
+    // The four rates of a quaternion are replaced by three unknowns: the angular velocity, in the columns of
+    // the vector part.
     let open = (0..mechanism.coordinates.len())
         .filter(|column| !quaternions.iter().any(|[scalar, ..]| scalar == column));
     let solved = solve(algebra, equations, open.collect(), symbols, intervals);
@@ -156,15 +157,15 @@ pub fn eliminate(
 }
 
 impl Elimination {
-    /// Turns equations of the open system about: the equation at each of `places` becomes its row
-    /// of `turned`, the sum of them all with the factors of that row.
+    /// Recombines equations of the open system: the equation at each of `places` becomes its row of `turned`,
+    /// the sum of them all with the factors of that row.
     pub fn turn(&mut self, algebra: &mut Algebra, places: &[usize], turned: &[TurnedRow]) {
         let before: Vec<Expr> = places
             .iter()
             .map(|&place| self.violating.1[place])
             .collect();
         for (&place, row) in places.iter().zip(turned) {
-            // What a violation adds is linear in it.
+            // The contribution of a violation is linear in it.
             let mut parts = vec![row.right];
             for (&factor, &right) in row.factors.iter().zip(&before) {
                 for &violation in &self.violation_rates {
@@ -227,18 +228,18 @@ impl Elimination {
     }
 }
 
-/// An equation of the open system that stands for others of it.
+/// An equation that replaces others of the open system as a linear combination of them.
 #[derive(Debug, Clone)]
 pub struct TurnedRow {
     /// Coefficients of the unknowns.
     pub coefficients: Vec<Expr>,
-    /// Right-hand side in the motions that the constraints allow.
+    /// Right-hand side in the admissible motions.
     pub right: Expr,
-    /// The equation as a sum of those that it stands for.
+    /// Its factors as a linear combination of the replaced equations.
     pub factors: Vec<Expr>,
 }
 
-/// What the spec defines the pseudo-velocities by, with symbols for q̇.
+/// The defining expressions of the pseudo-velocities, with symbols for q̇.
 pub fn definitions(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -269,8 +270,8 @@ pub fn definitions(
         .ok_or_else(|| vec![division_by_zero(Item::Mechanism)])
 }
 
-/// Coefficients of the rates of quaternions as those of angular velocities, which stand where the rates of the vector
-/// parts were.
+/// Converts coefficients of quaternion rates to those of angular velocities, in the columns of the vector
+/// parts.
 fn turn_unknowns(
     algebra: &mut Algebra,
     symbols: &Symbols,
@@ -306,7 +307,7 @@ fn definition(algebra: &mut Algebra, symbols: &Symbols, index: usize, value: Exp
         coefficients.push(algebra.shortest(coefficient));
         parts.push(algebra.graph.mul(coefficient, rate));
     }
-    // ω minus what the definition holds besides the generalised velocities.
+    // ω minus the terms of the definition without generalised velocities.
     let right = algebra.graph.sum(&parts);
     let right = algebra.shortest(right);
     Equation {
@@ -378,12 +379,12 @@ struct Solved {
     column: usize,
     coefficients: Vec<(usize, Expr)>,
     right: Expr,
-    /// The equation that it solves, where the quotient may keep a letter.
+    /// The equation that it solves, if the quotient may remain a symbol.
     whole: Option<Equation>,
 }
 
 impl Solved {
-    /// Puts the unknown into the other equations.
+    /// Eliminates the unknown from the other equations.
     fn take_out_of(&self, algebra: &mut Algebra, equations: &mut [Equation]) {
         for equation in equations {
             let factor = equation.coefficients[self.column];
@@ -402,8 +403,8 @@ impl Solved {
     }
 }
 
-/// The unknowns, and the system of those that need a pivoted solve; the others are in terms of these.
-/// `None` where the equations are dependent everywhere.
+/// The unknowns in terms of those that need a pivoted solve, and the system of the latter. `None` if the
+/// equations are dependent everywhere.
 fn solve(
     algebra: &mut Algebra,
     mut equations: Vec<Equation>,
@@ -514,14 +515,14 @@ fn solve(
     Some((rates, system))
 }
 
-/// Whether a quotient by a pivot may keep a letter: by a sum of several terms that depend on the position.
+/// Whether a quotient by a pivot may remain a symbol: the pivot is a sum that depends on the position.
 fn keeps_letter(algebra: &Algebra, pivot: Expr, symbols: &Symbols) -> bool {
     let graph = &algebra.graph;
     let is_sum = matches!(graph.node(pivot), Node::Sum(terms) if terms.len() > 1);
     algebra.in_letters && is_sum && graph.mentions(pivot, &ids(graph, &symbols.coordinates))
 }
 
-/// The pivot that fills in least, among those that cannot vanish.
+/// The pivot with the least fill-in among those that cannot vanish.
 fn safest_pivot(
     algebra: &mut Algebra,
     equations: &[Equation],
@@ -555,7 +556,7 @@ fn safest_pivot(
     best.map(|(_, place)| place)
 }
 
-/// Whether the equations are independent somewhere, as equations for the unknowns `open`.
+/// Whether the equations are generically independent as equations for the unknowns `open`.
 fn are_independent(algebra: &mut Algebra, equations: &[Equation], open: &[usize]) -> bool {
     let row =
         |e: &Equation| LinearRow::homogeneous(open.iter().map(|&c| e.coefficients[c]).collect());
@@ -564,8 +565,8 @@ fn are_independent(algebra: &mut Algebra, equations: &[Equation], open: &[usize]
     standings.iter().all(|s| *s == Standing::Independent)
 }
 
-/// The pseudo-velocities that follow from constraints and from those before them; `definitions` are
-/// their equations, `rows` those of the constraints.
+/// The pseudo-velocities that depend on constraints and on earlier pseudo-velocities; `definitions` are their
+/// equations, `rows` those of the constraints.
 fn untold_velocities(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -618,7 +619,7 @@ fn untold_velocities(
         }
     }
     if findings.is_empty() {
-        // Which one follows cannot be told from the equations as they are written.
+        // The equations do not show which one is dependent.
         findings.push(finding(consequence.to_owned(), Item::Mechanism));
     }
     findings

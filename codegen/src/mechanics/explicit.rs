@@ -1,7 +1,7 @@
-//! Coordinates that position constraints give by a formula, such as the tilt of a road by its slope.
+//! Coordinates that position constraints give explicitly, such as the tilt of a road by its slope.
 //!
-//! What vanishes only where the constraints hold, such as the velocity of a contact across a surface, is told
-//! with the formula in the place of the coordinate. Only contacts ask for it.
+//! Quantities that vanish only on the constraint manifold, such as the normal velocity of a contact on a
+//! surface, are recognised by substituting the formula for the coordinate. Only contacts use this.
 
 use appell_spec::mechanism::{ConstraintKind, CoordinateId, Mechanism};
 

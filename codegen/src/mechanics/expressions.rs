@@ -1,4 +1,4 @@
-//! From the expressions of a spec to expressions of the graph.
+//! Lowers spec expressions to expressions of the graph.
 
 use appell_spec::expr::{
     BinaryOp, Expr as Spec, ExprKind, Function as SpecFunction, Quantity, Relation as SpecRelation,
@@ -11,11 +11,11 @@ use crate::symbolic::{Expr, Function, Graph, Rational, Relation};
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct DivisionByZero;
 
-/// What the names of a spec expression stand for.
+/// The meaning of the names of spec expressions.
 pub struct Lowering<'a> {
-    /// Symbols of everything but the generalised velocities.
+    /// Symbols of all quantities except the generalised velocities.
     pub symbols: &'a Symbols,
-    /// Generalised velocities: symbols while they are unknown, expressions once they are solved.
+    /// Generalised velocities: symbols while unknown, expressions once solved.
     pub rates: &'a [Expr],
 }
 
@@ -93,7 +93,7 @@ impl Lowering<'_> {
             Quantity::PseudoVelocity(i) => s.speeds[i.index()],
             Quantity::Input(i) => s.inputs[i.index()],
             Quantity::Signal(i) => s.signals[i.index()][0],
-            // All that a spec names have one.
+            // All quantities that a spec names have a symbol.
             Quantity::Motion(_) | Quantity::Response(_) => s.named(quantity).unwrap_or(Graph::ZERO),
             Quantity::Time => s.time,
             Quantity::Pi => s.pi,
@@ -101,7 +101,7 @@ impl Lowering<'_> {
     }
 }
 
-/// The functions of the language in terms of those of the graph.
+/// Maps the functions of the language to those of the graph.
 fn call(
     graph: &mut Graph,
     function: SpecFunction,
@@ -136,8 +136,9 @@ fn call(
             graph.function(Function::Tanh, ratio)
         }
         F::SmoothMin | F::SmoothMax => {
-            // Less or more than the sharp one by w²/(2(d + √(d² + w²))), d ≥ 0 being the difference: that cancels no
-            // digits, nor do its derivatives, which take the sides of the choice for those of d.
+            // The smoothed value differs from the sharp one by w²/(2(d + √(d² + w²))), d ≥ 0 being the
+            // difference. This avoids cancellation, also in the derivatives, whose branches are those of the
+            // choice.
             let [less, more] =
                 [[a, b], [b, a]].map(|sides| graph.choice(Relation::Less, [a, b], sides));
             let (difference, signed) = (graph.sub(more, less), graph.sub(a, b));

@@ -98,17 +98,17 @@ impl FactorizedBlock {
         Ok(block)
     }
 
-    /// Whether L has an entry in a row and a column, both counted in the order of elimination.
+    /// Whether L has a nonzero entry, with row and column in the order of elimination.
     pub fn couples(&self, row: usize, column: usize) -> bool {
         self.lower[row][column] != Graph::ZERO
     }
 
-    /// Every speed with its entry of D.
+    /// Each speed with its entry of D.
     pub fn pivots(&self) -> impl Iterator<Item = (usize, Expr)> {
         self.speeds.iter().copied().zip(self.pivots.iter().copied())
     }
 
-    /// Unknowns of `M x = right` for the speeds of the block. `name` is given the solutions `z` of
+    /// Solution of `M x = right` for the speeds of the block. `name` is called on the solution `z` of
     /// `L z = right`.
     pub fn solve(
         &self,
@@ -139,7 +139,7 @@ impl FactorizedBlock {
     }
 }
 
-/// Takes the one that comes first in an order.
+/// Removes and returns the first open entry of an order.
 fn next_of(order: &[usize], open: &mut Vec<usize>) -> usize {
     let rank = |speed: usize| order.iter().position(|&other| other == speed);
     let first = (0..open.len()).min_by_key(|&place| rank(open[place]));

@@ -1,4 +1,4 @@
-//! What the derivation finds wrong with a mechanism.
+//! Findings: errors and warnings of the derivation.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{
@@ -33,16 +33,16 @@ pub enum Item {
     Output(OutputId),
 }
 
-/// A mistake that only the derivation can see.
+/// A mistake that is detected only in the derivation.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Finding {
     /// Diagnostic code.
     pub code: Code,
-    /// What is wrong, one sentence.
+    /// The problem, one sentence.
     pub message: String,
-    /// Where.
+    /// The item concerned.
     pub item: Item,
-    /// What to write instead.
+    /// How to fix it.
     pub help: String,
 }
 

@@ -1,4 +1,4 @@
-//! Frames: rotations by chains and angular velocities without differentiating matrices.
+//! Frames: composed rotations, and angular velocities without differentiating matrices.
 
 use appell_spec::mechanism::{FrameId, List, Mechanism};
 
@@ -106,8 +106,8 @@ impl Frames {
         })
     }
 
-    /// Angular velocity of a frame in the components of one that it is turned against: that of the
-    /// other and the rates of the turns between.
+    /// Angular velocity of a frame in the components of a related one: the latter's angular velocity plus the
+    /// rates of the turns between.
     pub fn angular_velocity_in(&self, graph: &mut Graph, frame: FrameId, to: FrameId) -> Vec3 {
         let path = self.ancestors(frame);
         let Some(last) = path.iter().position(|&f| f == to) else {
@@ -123,7 +123,7 @@ impl Frames {
         graph.add3(v, self.frames[to].w)
     }
 
-    /// The same vector in the components of another frame.
+    /// A vector expressed in another frame.
     pub fn express(&self, graph: &mut Graph, vector: FrameVector, to: FrameId) -> Vec3 {
         let (up, down) = (self.ancestors(vector.frame), self.ancestors(to));
         let shared = up
@@ -151,7 +151,7 @@ impl Frames {
         std::iter::successors(Some(frame), |&f| self.frames[f].parent).collect()
     }
 
-    /// How many frames lie on the way from one to the other, the last one counted.
+    /// The number of frames on the path from one frame to another, excluding the first.
     pub fn distance(&self, from: FrameId, to: FrameId) -> usize {
         let (up, down) = (self.ancestors(from), self.ancestors(to));
         let both = up.iter().rev().zip(down.iter().rev());

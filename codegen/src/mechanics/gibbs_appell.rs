@@ -26,7 +26,7 @@ pub struct BodyMotion {
     pub rotation: Option<Rotation>,
 }
 
-/// Motion of a centre of mass, in a frame of its own.
+/// Motion of a centre of mass, in a frame chosen for it.
 #[derive(Debug, Clone)]
 pub struct Translation {
     /// Name of the point.
@@ -35,7 +35,7 @@ pub struct Translation {
     pub velocity: FrameVector,
     /// Partial velocities ∂v/∂ω, one per pseudo-velocity.
     pub partial: Vec<Vec3>,
-    /// Acceleration where all pseudo-accelerations vanish.
+    /// Acceleration at zero pseudo-accelerations.
     pub bias: Vec3,
 }
 
@@ -48,9 +48,9 @@ pub struct Rotation {
     pub partial: Vec<Vec3>,
     /// Inertia about the centre of mass.
     pub inertia: Mat3,
-    /// Angular acceleration where all pseudo-accelerations vanish.
+    /// Angular acceleration at zero pseudo-accelerations.
     pub bias: Vec3,
-    /// Rate of the angular momentum there: I ω̇ + Ω × I ω.
+    /// Rate of the angular momentum at zero pseudo-accelerations: I ω̇ + Ω × I ω.
     pub momentum_rate: Vec3,
 }
 
@@ -137,7 +137,7 @@ fn translation(
     let bias = algebra.graph.add3(componentwise, turning);
     let mut bias = algebra.shortest3(bias);
     if !algebra.quaternions.is_empty() {
-        // Norms of quaternions cancel where velocities are not hidden behind names.
+        // Norms of quaternions cancel only in velocities without names.
         let turning = algebra.graph.cross(w_frame, velocity.v);
         let plain = algebra.graph.add3(componentwise, turning);
         let plain = algebra.shortest3(plain);
@@ -153,8 +153,8 @@ fn translation(
     }
 }
 
-/// The bodies as their weight and the reactions of the ground see them: a centre of mass whose
-/// acceleration is no longer in the ground moves in the ground.
+/// The bodies for gravity and reactions: accelerations of centres of mass that are in other frames are
+/// expressed in the ground.
 pub fn motions_in_ground(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -215,7 +215,7 @@ fn rotation(
     let w_frame = frame_rate(algebra, mechanism, kinematics, velocity.frame);
     let componentwise = time.of3(algebra, velocity.v);
     let componentwise = algebra.shortest3(componentwise);
-    // In the frame of the tensor its components are constant, so ḣ = I ω̇ + Ω × h.
+    // The inertia tensor is constant in its frame, so ḣ = I ω̇ + Ω × h.
     let momentum = algebra.graph.mat_vec(&inertia, velocity.v);
     let growth = algebra.graph.mat_vec(&inertia, componentwise);
     let turning = algebra.graph.cross(w_frame, momentum);
@@ -234,7 +234,7 @@ fn rotation(
     }
 }
 
-/// Angular velocity of a frame with names for its components.
+/// Angular velocity of a frame with named components.
 pub(super) fn frame_rate(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -245,8 +245,7 @@ pub(super) fn frame_rate(
     named3(algebra, &format!("w_{}", mechanism.frames[frame].name), w)
 }
 
-/// The named parts of the bodies' motions, each with its value written out down to the rates of the
-/// frames.
+/// The named parts of the bodies' motions, each with its definition expanded down to the rates of the frames.
 pub fn named_parts(graph: &mut Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)> {
     let velocities = bodies.iter().flat_map(|body| body.centre.velocity.v);
     let mut parts: Vec<(Expr, Expr)> = velocities
@@ -260,7 +259,7 @@ pub fn named_parts(graph: &mut Graph, bodies: &[BodyMotion]) -> Vec<(Expr, Expr)
             .flat_map(|rotation| rotation.momentum_rate);
         for part in body.centre.bias.into_iter().chain(rotation) {
             if let Some(value) = graph.named_value(part) {
-                // What cannot be written out stays in its names: the same value.
+                // If the expansion fails, the names stay: the value is the same.
                 let value = written_out.apply(graph, value).unwrap_or(value);
                 parts.push((part, value));
             }
@@ -280,7 +279,7 @@ pub fn partial_velocities(algebra: &mut Algebra, v: Vec3, directions: &[Expr]) -
         .collect()
 }
 
-/// A tensor written in a frame that is not the body's must not change with the rotation between.
+/// A tensor given in a frame other than the body's must be invariant under the rotation between.
 fn check_invariance(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -290,7 +289,7 @@ fn check_invariance(
 ) -> Option<Finding> {
     let item = &mechanism.bodies[body];
     let (body_frame, written) = (item.frame?, item.inertia.as_ref()?.frame);
-    // I is invariant where R I = I R; the columns of R are the body's axes.
+    // I is invariant if R I = I R; the columns of R are the body's axes.
     let mut axes = [vector::ZERO; 3];
     for (axis, unit) in axes.iter_mut().zip(vector::IDENTITY) {
         let unit = FrameVector {
@@ -334,8 +333,8 @@ pub struct GibbsForm {
 }
 
 impl GibbsForm {
-    /// Writes out the named `parts` in the bias where terms of several of them cancel: all entries,
-    /// and back to the names where these are shorter.
+    /// Expands the named `parts` in the bias if terms cancel, in all entries; names are restored where they are
+    /// shorter.
     pub fn write_out_what_cancels(&mut self, algebra: &mut Algebra, parts: &[(Expr, Expr)]) {
         let written_out = |&named| algebra.written_out(named, parts).unwrap_or(named);
         let mut bias: Vec<Expr> = self.bias.iter().map(written_out).collect();
@@ -352,7 +351,7 @@ impl GibbsForm {
     }
 }
 
-/// ∂S/∂ω̇ by body: `Σ m v_i · a + w_i · ḣ`, `v_i` and `w_i` the partial velocities.
+/// ∂S/∂ω̇ by body: `Σ m v_i · a + w_i · ḣ` with the partial velocities `v_i` and `w_i`.
 pub fn gibbs_form(algebra: &mut Algebra, bodies: &[BodyMotion], speeds: usize) -> GibbsForm {
     let mut mass_matrix = vec![vec![Graph::ZERO; speeds]; speeds];
     let mut bias = Vec::with_capacity(speeds);
@@ -405,7 +404,7 @@ pub fn acceleration_energy(
     algebra.graph.sum(&terms)
 }
 
-/// Its three terms, with names.
+/// The three terms of the acceleration energy, named.
 pub fn acceleration_energies(
     algebra: &mut Algebra,
     body: &BodyMotion,
@@ -435,19 +434,19 @@ pub fn acceleration_energies(
     terms.map(|(how, s)| graph.name(&format!("s_{how}_{}", body.name), s))
 }
 
-/// The motion that happens: with the solved pseudo-accelerations.
+/// The actual motion, with the solved pseudo-accelerations.
 #[derive(Debug, Clone)]
 pub struct ActualMotion {
     /// Acceleration of the centre of mass, in the frame of its velocity.
     pub a: Vec3,
     /// Angular acceleration, in the frame of the inertia tensor.
     pub alpha: Vec3,
-    /// Rate of the angular momentum about the centre of mass, there.
+    /// Rate of the angular momentum about the centre of mass, in the same frame.
     pub momentum_rate: Vec3,
 }
 
 impl ActualMotion {
-    /// The motion of a body, component by component with names.
+    /// The motion of a body with named components.
     pub fn new(algebra: &mut Algebra, body: &BodyMotion, accelerations: &[Expr]) -> Self {
         let graph = &mut algebra.graph;
         let a = along(graph, body.centre.bias, &body.centre.partial, accelerations);
@@ -482,8 +481,8 @@ pub fn kinetic_energy(algebra: &mut Algebra, body: &BodyMotion) -> Expr {
     kinetic_energy_with(algebra, body, body.centre.velocity.v)
 }
 
-/// The same for a reader: with the name `T_body`, or another letter than T, and by way of the named velocity of the centre of
-/// mass where that is no longer.
+/// The kinetic energy for display: named `T_body`, or with another letter than T, and in terms of the named
+/// velocity of the centre of mass unless that is longer.
 pub fn kinetic_energy_by_velocity(
     algebra: &mut Algebra,
     body: &BodyMotion,

@@ -1,8 +1,8 @@
-//! Pseudo-velocities whose rates are given: a drive brings whatever force they take.
+//! Pseudo-velocities with prescribed rates: a drive supplies the required generalised force.
 //!
-//! The equation of such a speed p is ω̇ₚ = αₚ. In the equations of the others Mᵢₚ αₚ is known and counts as bias, so
-//! that the system stays symmetric: row and column p of M are those of the unit matrix. What the drive brings is
-//! what is left of Appell's equation of p, `M ω̇ + b − Π`.
+//! The equation of such a speed p is ω̇ₚ = αₚ. In the other equations Mᵢₚ αₚ is known and added to the bias, so
+//! the system stays symmetric: row and column p of M are those of the unit matrix. The required force of the
+//! drive is the residual of Appell's equation of p, `M ω̇ + b − Π`.
 
 use appell_spec::Code;
 use appell_spec::mechanism::Mechanism;
@@ -14,26 +14,26 @@ use super::gibbs_appell::GibbsForm;
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph};
 
-/// The given rates, and the equations that hold in their places.
+/// The prescribed rates, and the equations that they replace.
 #[derive(Debug, Clone, Default)]
 pub struct Given {
     speeds: Vec<GivenSpeed>,
 }
 
-/// A pseudo-velocity with a given rate.
+/// A pseudo-velocity with a prescribed rate.
 #[derive(Debug, Clone)]
 struct GivenSpeed {
     speed: usize,
     /// α.
     rate: Expr,
-    /// Row of M, b and Π of Appell's equation, which the drive fulfils.
+    /// Row of M, b and Π of the replaced Appell equation.
     mass: Vec<Expr>,
     bias: Expr,
     force: Expr,
 }
 
 impl Given {
-    /// The given rates of a mechanism; `rates` are q̇.
+    /// The prescribed rates of a mechanism; `rates` are q̇.
     pub fn of(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -56,7 +56,7 @@ impl Given {
         Ok(Self { speeds })
     }
 
-    /// Whether no rate is given.
+    /// Whether no rate is prescribed.
     pub fn is_empty(&self) -> bool {
         self.speeds.is_empty()
     }
@@ -66,7 +66,7 @@ impl Given {
         self.speeds.iter().map(|given| (given.speed, given.rate))
     }
 
-    /// Puts the given rates into M and b.
+    /// Substitutes the prescribed rates in M and b.
     pub fn put_into(&mut self, graph: &mut Graph, gibbs: &mut GibbsForm) {
         for given in &mut self.speeds {
             given.mass.clone_from(&gibbs.mass_matrix[given.speed]);
@@ -76,14 +76,14 @@ impl Given {
         gibbs.give(graph, &rates);
     }
 
-    /// Puts the given rates into Π.
+    /// Substitutes the prescribed rates in Π.
     pub fn put_into_forces(&mut self, forces: &mut [Expr]) {
         for given in &mut self.speeds {
             given.force = std::mem::replace(&mut forces[given.speed], given.rate);
         }
     }
 
-    /// What the drives bring along their speeds in a motion with these rates.
+    /// Required generalised forces of the drives in a motion with these rates.
     pub fn drives(&self, graph: &mut Graph, accelerations: &[Expr]) -> Vec<(usize, Expr)> {
         let drives = self.speeds.iter().map(|given| {
             let inertial = given.mass.iter().zip(accelerations);
@@ -94,7 +94,7 @@ impl Given {
         drives.collect()
     }
 
-    /// Refuses given rates where the equations of motion are made otherwise; `what` is that.
+    /// Reports a conflict of prescribed rates with another method of derivation, `what`.
     pub fn refuse_beside(&self, what: &str) -> Outcome<()> {
         let findings = self.speeds.iter().map(|given| Finding {
             code: Code::NotAllowedHere,
@@ -111,7 +111,7 @@ impl Given {
 }
 
 impl GibbsForm {
-    /// Lets speeds have given rates: their rows and columns become those of the unit matrix.
+    /// Prescribes rates of speeds: their rows and columns become those of the unit matrix.
     pub fn give(&mut self, graph: &mut Graph, rates: &[(usize, Expr)]) {
         let is_given = |speed: usize| rates.iter().any(|(given, _)| *given == speed);
         for i in 0..self.bias.len() {

@@ -1,4 +1,4 @@
-//! What the names of a derivation mean, for the readers of emitted functions.
+//! Glossary of the names of a derivation, for readers of emitted functions.
 
 use appell_spec::mechanism::{ConstraintKind, FrameId, Mechanism};
 use appell_spec::units::Unit;
@@ -11,7 +11,7 @@ use super::motion::{Block, Motion};
 use super::row::Row;
 use crate::program::{Group, Names, Term};
 
-/// Names of the steps that solve Appell's equations and differentiate the solution.
+/// Names of intermediate quantities in the solution of Appell's equations and its derivatives.
 pub fn of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Term> {
     let mut terms = Vec::new();
     let any = |kind: fn(&Block) -> bool| motion.blocks.iter().any(kind);
@@ -65,7 +65,7 @@ pub fn of_solution(mechanism: &Mechanism, motion: &Motion) -> Vec<Term> {
     terms
 }
 
-/// Names of right-hand sides that are divided by a parameter where they are written.
+/// Names of right-hand sides that are already divided by a parameter.
 fn divided(mechanism: &Mechanism) -> impl Iterator<Item = Term> {
     mechanism.pseudo_velocities.iter().flat_map(|speed| {
         let speed = &speed.label.name;
@@ -115,7 +115,7 @@ pub fn of_motions(
     terms
 }
 
-/// Headings for the motions of frames and bodies, which `names` spells as [`of_motions`] does.
+/// Headings for the motions of frames and bodies, named as in [`of_motions`].
 pub fn groups_of_motions(mechanism: &Mechanism, bodies: &[BodyMotion]) -> Vec<Group> {
     let frames = mechanism.frames.iter();
     let mut groups = vec![Group {
@@ -214,7 +214,7 @@ pub fn of_rows(mechanism: &Mechanism, constraints: &Constraints) -> Vec<Term> {
         .collect()
 }
 
-/// Names of the reactions that no point feels.
+/// Names of the multipliers, reactions without a point.
 pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<Term> {
     let without_point = |row: &Row| {
         let kind = &mechanism.constraints[row.constraint].kind;
@@ -237,7 +237,7 @@ pub fn of_multipliers(mechanism: &Mechanism, constraints: &Constraints) -> Vec<T
         .collect()
 }
 
-/// The first of the rows of every constraint that has such rows.
+/// The first row of each constraint with such rows.
 fn each_constraint(
     constraints: &Constraints,
     such: impl Fn(&Row) -> bool,

@@ -1,5 +1,4 @@
-//! Names for what the derivation computes without naming it: where a value on the way is one of these,
-//! a reader meets it under its name.
+//! Names for unnamed intermediate values: a value equal to one of these hints is displayed under its name.
 
 use rustc_hash::FxHashSet;
 
@@ -12,8 +11,8 @@ use crate::symbolic::SymbolId;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
 impl Derivation {
-    /// Positions of points from the points that they are placed from, their derivatives by the
-    /// coordinates, and partial velocities of bodies; and what the names mean.
+    /// Positions of points relative to their reference points, their derivatives with respect to coordinates,
+    /// and partial velocities of bodies, with a glossary.
     pub(super) fn hints(
         &mut self,
         mechanism: &Mechanism,
@@ -95,7 +94,7 @@ impl Derivation {
     }
 }
 
-/// The symbols that emitted functions know.
+/// The symbols available in emitted functions.
 fn known(arguments: &Arguments) -> FxHashSet<SymbolId> {
     let lists = [
         arguments.states.as_slice(),

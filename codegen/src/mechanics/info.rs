@@ -1,4 +1,4 @@
-//! What a model tells of itself: its quantities with their units, its constraints and contacts.
+//! Metadata of a model: its quantities with their units, its constraints and contacts.
 
 use appell_runtime::model::{Contact, Interpolation, List, ModelInfo, Quantity, SignalTable};
 use appell_spec::mechanism::{self, Label, Mechanism, Signal, SignalId};
@@ -6,7 +6,7 @@ use appell_spec::mechanism::{self, Label, Mechanism, Signal, SignalId};
 use super::Derivation;
 use super::initial::InitialState;
 
-/// Signals with those of their derivatives that equations may contain.
+/// Signals with their derivatives that may occur in equations.
 pub(super) fn tabulated_inputs(mechanism: &Mechanism) -> Vec<(usize, u8)> {
     let orders = |signal: &Signal| 0..=signal.interpolation.derivatives();
     let signals = mechanism.signals.iter().enumerate();
@@ -15,7 +15,7 @@ pub(super) fn tabulated_inputs(mechanism: &Mechanism) -> Vec<(usize, u8)> {
         .collect()
 }
 
-/// Names, units and sizes of the model, with the inputs that `signals` are.
+/// Names, units and sizes of the model, including the inputs for signals.
 pub(super) fn info(
     derivation: &Derivation,
     mechanism: &Mechanism,
@@ -81,7 +81,7 @@ pub(super) fn info(
     }
 }
 
-/// The contacts as they are at the initial state.
+/// The contacts at the initial state.
 fn contacts(derivation: &Derivation, mechanism: &Mechanism) -> List<Contact> {
     let graph = &derivation.algebra.graph;
     let state = InitialState::new(graph, mechanism, &derivation.symbols);

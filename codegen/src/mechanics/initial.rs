@@ -1,5 +1,5 @@
-//! What the equations are at the initial state, where a mechanism is most likely to be singular:
-//! arms stretched out, angles at zero, springs without length.
+//! Checks the equations at the initial state, where singularities are most likely: arms stretched out, angles
+//! at zero, springs of zero length.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{Connection, GROUND, Mechanism, SpeedId};
@@ -68,8 +68,8 @@ impl InitialState {
         evaluate(graph, &self.values, exprs)
     }
 
-    /// Whether an expression is zero there or changes its sign on the way to an end of the range of a
-    /// coordinate.
+    /// Whether an expression is zero at the initial state or changes sign between it and an end of a
+    /// coordinate's range.
     fn vanishes(&self, graph: &Graph, expr: Expr) -> bool {
         let here = self.of(graph, &[expr])[0];
         here == 0.0
@@ -84,8 +84,8 @@ impl InitialState {
     }
 }
 
-/// Springs and dampers that lose their direction: those whose length is zero at the initial state, or
-/// that are straight along an axis and turn over inside the declared ranges.
+/// Springs and dampers with undefined direction: those of zero length at the initial state, or aligned with an
+/// axis and reversing direction inside the declared ranges.
 pub fn vanishing_lengths(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -123,10 +123,10 @@ pub fn vanishing_lengths(
     findings
 }
 
-/// A rate that is so many times larger than every pseudo-velocity is divided by what rounding leaves of zero.
+/// A rate larger than every pseudo-velocity by this factor results from division by a rounded zero.
 const LOST: f64 = 1e13;
 
-/// Equations that cannot be solved at the initial state.
+/// Singular equations at the initial state.
 pub fn singularities(
     graph: &Graph,
     mechanism: &Mechanism,
@@ -138,7 +138,7 @@ pub fn singularities(
     let speeds = mechanism.pseudo_velocities.iter();
     let fastest = speeds.fold(0.0, |most: f64, speed| most.max(speed.initial.abs()));
     for (q, rate) in mechanism.coordinates.iter().zip(state.of(graph, rates)) {
-        // A right angle in degrees is one but for rounding.
+        // A right angle in degrees is exact only up to rounding.
         let is_lost = fastest > 0.0 && rate.abs() > LOST * fastest;
         if is_lost || !rate.is_finite() {
             findings.push(Finding {

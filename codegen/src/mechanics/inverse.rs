@@ -1,8 +1,8 @@
-//! Inverse dynamics: the pseudo-forces M ω̇ + b − Π that a given motion takes beyond the loads, and how they
-//! change with the motion.
+//! Inverse dynamics: the pseudo-forces M ω̇ + b − Π that a given motion requires in addition to the loads, and
+//! their derivatives.
 //!
-//! Π is that of the state and the inputs, as in the equations of motion: what loads know of reactions is
-//! that of the motion which the inputs bring about.
+//! Π is that of the state and the inputs, as in the equations of motion: reactions in loads are those of the
+//! motion under these inputs.
 
 use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::mechanism::Mechanism;

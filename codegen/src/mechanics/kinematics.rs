@@ -11,7 +11,7 @@ use super::time::TimeDerivative;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// Frames farther from the one in which a vector is given are not tried for its components.
+/// Largest distance, in frames, at which other frames are tried for the components of a vector.
 const FARTHEST: usize = 3;
 
 /// Positions and velocities of a mechanism.
@@ -19,40 +19,40 @@ const FARTHEST: usize = 3;
 pub struct Kinematics {
     /// Frames and their angular velocities.
     pub frames: Frames,
-    /// Position of each point from the point it is placed from.
+    /// Position of each point relative to its reference point.
     offsets: List<PointId, FrameVector>,
     /// Velocity of each point from the ground.
     velocities: List<PointId, FrameVector>,
 }
 
-/// How much work goes into short velocities.
+/// How far velocities are simplified.
 #[derive(Debug, Clone, Copy)]
 pub enum Effort<'a> {
-    /// As they come: for velocities that are used up at once.
+    /// Not at all: for velocities used only once.
     Plain,
-    /// Each under a name, made from those of the frame and the point before it: for long chains.
+    /// Named components, computed recursively from frame and preceding point: for long chains.
     Recursive,
-    /// Each in its shortest form and in the frame where that is shortest: for the equations. The
-    /// centre of a body that rolls may move as its contact tells.
+    /// Shortest form in the frame where that is shortest: for the equations. The centre of a rolling body may
+    /// be expressed by its contact.
     Shortest(&'a [RollingContact]),
 }
 
-/// A point where a body touches the ground without slipping: what the body has there is at rest.
+/// A point of rolling contact with the ground: the material point of the body is at rest.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct RollingContact {
     /// The rolling body.
     pub body: BodyId,
-    /// Where it touches the ground.
+    /// The contact point.
     pub point: PointId,
 }
 
-/// An auxiliary motion that the coordinates do not have: the points placed from the origin by way of
-/// `root` are carried along with a velocity.
+/// An auxiliary motion outside the coordinates: the points placed from the origin via `root` are translated
+/// with a velocity.
 ///
-/// Where geometry already embeds a constraint, this is the motion against which its reaction works.
+/// If geometry already embeds a constraint, this is the motion in which its reaction does work.
 #[derive(Debug, Clone, Copy)]
 pub struct Carried {
-    /// The point next to the origin that everything carried hangs from.
+    /// The point adjacent to the origin whose subtree moves.
     pub root: PointId,
     /// Velocity.
     pub v: FrameVector,
@@ -109,7 +109,7 @@ impl Kinematics {
         Ok(kinematics)
     }
 
-    /// `v_P = v_from + (dr/dt in the frame) + ω × r`, and what carries the point along.
+    /// `v_P = v_from + (dr/dt in the frame) + ω × r`, plus auxiliary motions.
     fn relative_to(
         &self,
         algebra: &mut Algebra,
@@ -131,8 +131,8 @@ impl Kinematics {
         FrameVector { frame, v }
     }
 
-    /// The velocity of a point in its shortest form. The centre of a rolling body turns about the
-    /// contact, `v_C = ω × r_PC`: no shape of the body is differentiated for it.
+    /// The velocity of a point in its shortest form. The centre of a rolling body rotates about the contact,
+    /// `v_C = ω × r_PC`, which avoids differentiating the shape of the body.
     fn shortest(
         &self,
         algebra: &mut Algebra,
@@ -162,7 +162,7 @@ impl Kinematics {
         self.frames.simplest(algebra, FrameVector { v, ..vector })
     }
 
-    /// Replaces parts of all velocities.
+    /// Replaces subexpressions of all velocities.
     pub fn replace(&mut self, graph: &mut Graph, replacement: &mut Substitution) -> Outcome<()> {
         let components = self
             .velocities
@@ -181,12 +181,12 @@ impl Kinematics {
         self.velocities[point]
     }
 
-    /// Position of a point from the point that it is placed from.
+    /// Position of a point relative to its reference point.
     pub fn offset(&self, point: PointId) -> FrameVector {
         self.offsets[point]
     }
 
-    /// Velocity of the material point of a body that is at `point` now: `v_C + ω × r_CP`.
+    /// Velocity of the material point of a body currently at `point`: `v_C + ω × r_CP`.
     pub fn material_velocity(
         &self,
         graph: &mut Graph,
@@ -223,7 +223,7 @@ impl Kinematics {
             std::iter::successors(Some(point), |&p: &PointId| mechanism.points[p].from).collect()
         };
         let (a, b) = (chain(from), chain(to));
-        // Parts of the way that both share cancel; leaving them out keeps the vector short.
+        // Omitting the common part of both paths keeps the vector short.
         let shared = a
             .iter()
             .rev()
@@ -249,8 +249,8 @@ impl Kinematics {
 }
 
 impl Frames {
-    /// The same vector in the frame where its components take the fewest operations, among those
-    /// near by: every turn on the way to a far one makes the components longer.
+    /// A vector expressed in the nearby frame where its components have the fewest operations: each turn on the
+    /// path to a distant frame makes the components longer.
     pub fn simplest(&self, algebra: &mut Algebra, vector: FrameVector) -> FrameVector {
         let mut best = vector;
         let mut cost = algebra.graph.operations(&best.v);
@@ -269,7 +269,7 @@ impl Frames {
     }
 }
 
-/// The point next to the origin on the way to `point`.
+/// The point adjacent to the origin on the path to `point`.
 pub fn root_of(mechanism: &Mechanism, point: PointId) -> PointId {
     let mut root = point;
     while let Some(from) = mechanism.points[root].from

@@ -1,9 +1,9 @@
-//! Letters of what the derivation names, unless a quantity of the spec bears them.
+//! Letters of derived quantities, unless a quantity of the spec uses them.
 
 use appell_spec::mechanism::Mechanism;
 
-/// `letter`, or `word` where a name of the spec is that letter or continues it: beside the moments `M_d`
-/// and `M_h`, the entry `M_v_v` of the mass matrix would be read as one more.
+/// `letter`, or `word` if a name of the spec is that letter or starts with it: next to moments `M_d` and `M_h`,
+/// the entry `M_v_v` of the mass matrix would be mistaken for one of them.
 fn letter(mechanism: &Mechanism, letter: &'static str, word: &'static str) -> &'static str {
     let continues = |name: &str| {
         let rest = name.strip_prefix(letter);
@@ -34,7 +34,7 @@ pub(super) fn diagonal(mechanism: &Mechanism) -> &'static str {
     letter(mechanism, "D", "diagonal")
 }
 
-/// Letter of what forward elimination solves.
+/// Letter of the solution of the forward elimination.
 pub(super) fn forward(mechanism: &Mechanism) -> &'static str {
     letter(mechanism, "z", "forward")
 }

@@ -1,5 +1,5 @@
-//! Jacobians of the rates by implicit differentiation: the equations of motion are differentiated
-//! with the accelerations held as unknowns, and solved with the pivots that solve the motion.
+//! Jacobians of the rates by implicit differentiation: the equations of motion are differentiated at fixed
+//! accelerations, and solved with the pivots of the motion.
 
 use super::algebra::{Algebra, name_of};
 use super::finding::{Item, Outcome, division_by_zero};
@@ -9,7 +9,7 @@ use super::recursion::Recursion;
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// What the accelerations solve.
+/// The equations solved by the accelerations.
 pub struct ImplicitMotion<'a> {
     /// M and b.
     pub gibbs: &'a GibbsForm,
@@ -22,9 +22,8 @@ pub struct ImplicitMotion<'a> {
 }
 
 impl ImplicitMotion<'_> {
-    /// Residual of every equation with symbols for the accelerations. Eliminated equations, the
-    /// symbol standing for ω̇ less its whole part: `right - pivot (ω̇ + Σ coupling ω̇_other)`; others:
-    /// `Π - b - M ω̇`.
+    /// Residual of every equation with symbols for the accelerations. Eliminated equations, with the symbol
+    /// denoting ω̇ minus its whole part: `right - pivot (ω̇ + Σ coupling ω̇_other)`; others: `Π - b - M ω̇`.
     pub fn residual(&self, algebra: &mut Algebra, symbols: &Symbols) -> Vec<Expr> {
         let unknowns = &symbols.accelerations;
         let mut residual = vec![Graph::ZERO; unknowns.len()];
@@ -56,7 +55,7 @@ impl ImplicitMotion<'_> {
     }
 
     /// Derivatives of all rates, one column per variable: those of ω̇ from `∂residual/∂z` with the
-    /// accelerations put in after the differentiation, those of q̇ directly.
+    /// accelerations substituted after the differentiation, those of q̇ directly.
     pub fn jacobian(
         &self,
         algebra: &mut Algebra,
@@ -96,7 +95,7 @@ impl ImplicitMotion<'_> {
 }
 
 impl ImplicitMotion<'_> {
-    /// [`ImplicitMotion::jacobian`] with respect to anything but parameters, by recursion over the links.
+    /// [`ImplicitMotion::jacobian`] for variables other than parameters, by recursion over the links.
     pub fn jacobian_along(
         &self,
         algebra: &mut Algebra,
@@ -145,7 +144,7 @@ impl Motion {
                         let plain = algebra.graph.div(right, equation.pivot);
                         let named = rho(algebra, equation.speed, right);
                         let named = algebra.graph.div(named, equation.pivot);
-                        // A pivot that cancels does so under no name.
+                        // A cancelling pivot is not named.
                         let count = |own| algebra.graph.operations(&[own]);
                         let own = if count(plain) < count(named) {
                             plain

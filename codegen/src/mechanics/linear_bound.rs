@@ -1,15 +1,15 @@
-//! Jacobians of the rates where dependent speeds take part.
+//! Jacobians of the rates with dependent speeds.
 //!
-//! Everything is differentiated while the dependent speeds s, their rates and the accelerations are
-//! held, and brought together once. With `C s = r`, `D = ∂r/∂ω` and `C ṡ = D ω̇ + c`:
+//! All expressions are differentiated at fixed dependent speeds s, fixed rates ṡ and fixed accelerations, and
+//! the results are combined once. With `C s = r`, `D = ∂r/∂ω` and `C ṡ = D ω̇ + c`:
 //!
 //! ```text
 //! C ds = d(r - C s)                 C dṡ = d(D ω̇ + c - C ṡ) + ∂c/∂s ds
 //! M dω̇ = Bᵀ (d(ρ + [D, -C]ᵀ λ) + ∂ρ/∂s ds + ∂ρ/∂ṡ dṡ)
 //! ```
 //!
-//! ρ = Π - b - M ω̇ of all speeds does not vanish: its dependent part is `Cᵀ λ`, the work of the
-//! constraints, and holding λ takes the place of differentiating B.
+//! ρ = Π - b - M ω̇ of all speeds does not vanish: its dependent part is `Cᵀ λ`, the work of the constraints;
+//! differentiating at fixed λ replaces the derivative of B.
 
 use super::Unbound;
 use super::algebra::{Algebra, name_of, named3};
@@ -20,7 +20,7 @@ use super::motion::Motion;
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// The motion with its dependent speeds, ready to be differentiated.
+/// The motion with its dependent speeds, prepared for differentiation.
 pub struct BoundMotion<'a> {
     symbols: &'a Symbols,
     motion: &'a Motion,
@@ -36,7 +36,7 @@ pub struct BoundMotion<'a> {
     rates_by_speeds: Vec<Vec<Expr>>,
 }
 
-/// What vanishes, with symbols for what is held.
+/// Residuals, with symbols for the fixed quantities.
 struct Held {
     /// `r - C s`
     velocity: Vec<Expr>,
@@ -44,12 +44,12 @@ struct Held {
     acceleration: Vec<Expr>,
     /// `ρ + [D, -C]ᵀ λ` of all speeds, the dependent ones last.
     balance: Vec<Expr>,
-    /// Puts what happens in place of the symbols.
+    /// Substitutes the actual motion for the symbols.
     actual: Substitution,
 }
 
 impl Held {
-    /// Derivatives with respect to one symbol, the others held, at the actual motion.
+    /// Derivatives with respect to one symbol at fixed others, at the actual motion.
     fn partials(
         actual: &mut Substitution,
         algebra: &mut Algebra,
@@ -63,7 +63,7 @@ impl Held {
 }
 
 impl<'a> BoundMotion<'a> {
-    /// Everything that does not depend on the variable of differentiation.
+    /// Computes the terms that are independent of the variable of differentiation.
     pub fn new(
         algebra: &mut Algebra,
         symbols: &'a Symbols,
@@ -122,7 +122,7 @@ impl<'a> BoundMotion<'a> {
         Ok(column)
     }
 
-    /// Derivatives of Π - b - M ω̇ with respect to a variable, ω̇ held; and those of the dependent speeds.
+    /// Derivatives of Π - b - M ω̇ with respect to a variable at fixed ω̇; and those of the dependent speeds.
     pub fn balance_column(
         &mut self,
         algebra: &mut Algebra,
@@ -170,7 +170,7 @@ impl<'a> BoundMotion<'a> {
     }
 }
 
-/// What vanishes, and the motion that happens.
+/// The residuals and the actual motion.
 fn held(
     algebra: &mut Algebra,
     symbols: &Symbols,
@@ -198,7 +198,7 @@ fn held(
     })
 }
 
-/// ρ = Π - b - M ω̇ of all speeds, body by body: applied forces less `v_j · m a + w_j · ḣ`.
+/// ρ = Π - b - M ω̇ of all speeds, body by body: applied forces minus `v_j · m a + w_j · ḣ`.
 fn residual(algebra: &mut Algebra, unbound: &Unbound, accelerations: &[Expr]) -> Vec<Expr> {
     let mut rows: Vec<Vec<Expr>> = unbound.forces.iter().map(|&force| vec![force]).collect();
     for body in &unbound.bodies {

@@ -16,29 +16,29 @@ use super::symbols::Symbols;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
 
-/// A scalar force and the velocity along which it works.
+/// A scalar force with its power-conjugate velocity.
 #[derive(Debug, Clone, Copy)]
 struct Work {
     force: Expr,
     velocity: Expr,
 }
 
-/// A load, as the pairs of forces and velocities that make its power.
+/// A load as pairs of forces and conjugate velocities.
 #[derive(Debug, Clone, Default)]
 pub struct AppliedLoad {
     work: Vec<Work>,
-    /// What depends on reactions in it: the symbols that stand for it, and its values.
+    /// Its expressions that depend on reactions: symbols and values.
     pub of_reactions: Vec<(Expr, Expr)>,
-    /// What an expression may name of it.
+    /// Its force as expressions may refer to it.
     pub acts: Acts,
     /// Potential energy, for loads that have one.
     pub potential: Option<Expr>,
 }
 
-/// The force of a load as expressions name it.
+/// The force of a load as expressions refer to it.
 #[derive(Debug, Clone, Copy, Default)]
 pub enum Acts {
-    /// On every body in another way.
+    /// Distributed over the bodies.
     #[default]
     Spread,
     /// A force or a torque.
@@ -63,7 +63,7 @@ impl AppliedLoad {
         self.work.iter().any(|w| graph.mentions(w.force, symbols))
     }
 
-    /// Forces, each with the velocity along which it works.
+    /// Forces with their power-conjugate velocities.
     pub fn work(&self) -> impl Iterator<Item = (Expr, Expr)> {
         self.work.iter().map(|w| (w.force, w.velocity))
     }
@@ -79,7 +79,7 @@ impl AppliedLoad {
     }
 }
 
-/// Replaces parts of all forces, velocities and potentials.
+/// Replaces subexpressions of all forces, velocities and potentials.
 pub fn replace(
     loads: &mut [AppliedLoad],
     graph: &mut Graph,
@@ -130,7 +130,8 @@ pub fn generalized_forces(
         .collect()
 }
 
-/// All loads of a mechanism, for given velocities. What depends on reactions has symbols until [`settle`].
+/// All loads of a mechanism, for given velocities. Expressions that depend on reactions are symbols until
+/// [`settle`].
 pub fn applied_loads(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -163,7 +164,7 @@ pub fn applied_loads(
     }
 }
 
-/// Puts the forces of loads where other loads name them.
+/// Substitutes forces of loads that other loads refer to.
 fn name_each_other(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -188,7 +189,7 @@ fn name_each_other(
     Ok(())
 }
 
-/// What stands for the symbols of the forces of loads; other symbols are left out.
+/// Values for the symbols of forces of loads; other symbols are omitted.
 pub fn forces(
     graph: &mut Graph,
     kinematics: &Kinematics,
@@ -205,7 +206,7 @@ pub fn forces(
                 kinematics.frames.express(graph, force, frame)[axis.index()]
             }
             (Acts::Scalar(force), None) => force,
-            // The checks of the spec refuse it.
+            // Rejected when the spec is checked.
             _ => Graph::ZERO,
         };
         values.push((symbol, value));
@@ -213,8 +214,8 @@ pub fn forces(
     values
 }
 
-/// Puts values in place of what depends on reactions, with those that are known; it is nothing where none is. A
-/// symbol of [`AppliedLoad::of_reactions`] that is among them stays one.
+/// Substitutes values for the expressions that depend on reactions, including the `known` ones; no-op if there
+/// are none. A symbol of [`AppliedLoad::of_reactions`] among the latter is kept.
 pub fn settle(
     loads: &mut [AppliedLoad],
     graph: &mut Graph,
@@ -244,7 +245,7 @@ pub fn settle(
     Ok(())
 }
 
-/// A load that divides by zero: a connection without length, or an expression.
+/// A load that divides by zero: a connection of zero length, or an expression.
 fn undefined(index: LoadId, kind: &LoadKind) -> Finding {
     let item = Item::Load(index);
     match kind.between() {
@@ -268,7 +269,7 @@ struct Context<'a> {
 type Lowered<T> = Result<T, DivisionByZero>;
 
 impl Context<'_> {
-    /// A load, with what depends on reactions in it.
+    /// Lowers a load, with symbols for the expressions that depend on reactions.
     fn load(&self, algebra: &mut Algebra, kind: &LoadKind) -> Lowered<AppliedLoad> {
         let mut applied = self.apply(algebra, kind)?;
         for (place, expr) in kind.expressions().into_iter().enumerate() {
@@ -280,7 +281,7 @@ impl Context<'_> {
         Ok(applied)
     }
 
-    /// The value of an expression, counted as in [`LoadKind::expressions`], or what stands for it.
+    /// The value of an expression, numbered as in [`LoadKind::expressions`], or its symbol.
     fn part(&self, algebra: &mut Algebra, place: usize, expr: &Spec) -> Lowered<Expr> {
         let symbol = self.lowering.symbols.of_reactions(self.load, place);
         symbol.map_or_else(|| self.lowering.lower(&mut algebra.graph, expr), Ok)
@@ -360,7 +361,7 @@ impl Context<'_> {
         }
     }
 
-    /// The weight of every body; its potential counts from the origin of the ground.
+    /// The weight of every body; its potential is relative to the origin of the ground.
     fn gravity(&self, algebra: &mut Algebra, down: [i8; 3], g: &Spec) -> Lowered<AppliedLoad> {
         let g = self.lowering.lower(&mut algebra.graph, g)?;
         let down = down.map(|c| algebra.graph.integer(c.into()));
@@ -430,7 +431,7 @@ impl Context<'_> {
         })
     }
 
-    /// Length of a connection, and the pairs whose power is the rate of the length.
+    /// Length of a connection, and the force-velocity pairs whose power is the rate of the length.
     fn extension(&self, algebra: &mut Algebra, between: &Connection) -> Lowered<(Expr, Vec<Work>)> {
         match *between {
             Connection::Coordinate(q) => {
@@ -475,7 +476,7 @@ impl Context<'_> {
     }
 
     fn body_rate(&self, algebra: &mut Algebra, body: BodyId, frame: FrameId) -> Vec3 {
-        // A torque on a point mass does no work; the checks of the spec refuse it.
+        // A torque on a point mass is rejected when the spec is checked.
         let Some(body_frame) = self.mechanism.bodies[body].frame else {
             return [Graph::ZERO; 3];
         };

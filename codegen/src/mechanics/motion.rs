@@ -1,6 +1,6 @@
 //! Appell's equations `M ω̇ = Π - b`, solved for the pseudo-accelerations block by block.
 //!
-//! M is positive definite, so every order of elimination is stable and the simplest pivot is taken.
+//! M is positive definite, so every order of elimination is stable and the simplest pivot is used.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{Mechanism, SpeedId};
@@ -12,25 +12,25 @@ use super::gibbs_appell::GibbsForm;
 use super::letters;
 use crate::symbolic::{Expr, Graph, Node, Rational};
 
-/// Blocks up to this size are eliminated by formulas, each in its shortest form; larger ones, and
-/// those whose entries are numbers of a solved system, by an unrolled factorisation with named entries.
+/// Blocks up to this size are eliminated symbolically, each in its shortest form; larger ones, and those with
+/// numerically solved entries, by an unrolled factorisation with named entries.
 const LARGEST_EXPLICIT_BLOCK: usize = 2;
 
-/// How Appell's equations are solved.
+/// Solution method of Appell's equations.
 #[derive(Debug, Clone, Copy)]
 pub enum Way<'a> {
-    /// Small blocks by formulas, large ones by a factorisation.
+    /// Small blocks symbolically, large ones by a factorisation.
     Shortest,
-    /// By a factorisation: what the entries hold is solved numerically already.
+    /// By a factorisation: the entries contain numerical solutions already.
     Factorized,
-    /// By a factorisation with the speeds in this order.
+    /// By a factorisation in this order of speeds.
     InOrder(&'a [usize]),
 }
 
 /// The solved equations of motion.
 #[derive(Debug, Clone)]
 pub struct Motion {
-    /// Speeds that no entry of the mass matrix couples, and how each such block is solved.
+    /// Blocks of speeds that the mass matrix does not couple, with their solutions.
     pub blocks: Vec<Block>,
     /// ω̇, named.
     pub accelerations: Vec<Expr>,
@@ -39,33 +39,32 @@ pub struct Motion {
 /// A block of the mass matrix.
 #[derive(Debug, Clone)]
 pub enum Block {
-    /// Equations after elimination; each needs only accelerations of earlier ones.
+    /// Eliminated equations; each depends only on accelerations of earlier ones.
     Eliminated(Vec<Eliminated>),
     /// An unrolled factorisation.
     Factorized(FactorizedBlock),
 }
 
-/// One equation after elimination: `pivot · (ω̇_speed - whole + Σ coupling · ω̇_other) = right`.
+/// One eliminated equation: `pivot · (ω̇_speed - whole + Σ coupling · ω̇_other) = right`.
 #[derive(Debug, Clone)]
 pub struct Eliminated {
     /// The speed it determines.
     pub speed: usize,
     /// Its pivot; 1 where the right-hand side is already divided by it.
     pub pivot: Expr,
-    /// What the pivot was then: zero where the mass matrix is singular.
+    /// The undivided pivot: zero if the mass matrix is singular.
     pub inertia: Expr,
-    /// What the pivot divides without a rest.
+    /// Quotient of the part divisible by the pivot.
     pub whole: Expr,
     /// Its right-hand side.
     pub right: Expr,
-    /// `right / pivot`; it has a name where a whole part stands beside it.
+    /// `right / pivot`, named if there is a whole part.
     pub quotient: Expr,
-    /// Accelerations that are known by then, with their coefficients.
+    /// Couplings to accelerations that are known already, with their coefficients.
     pub couplings: Vec<(usize, Expr)>,
 }
 
-/// Solves the equations of motion. `parts` are the names that may be written out where that lets a
-/// mass or a length cancel.
+/// Solves the equations of motion. The named `parts` may be expanded if that lets a mass or a length cancel.
 pub fn solve(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -138,7 +137,7 @@ pub fn solve(
         blocks,
         accelerations,
     };
-    // A factorization along the tree divides by what nothing has tested.
+    // The pivots of a factorisation along the tree have not been tested yet.
     let singular = motion.pivots().into_iter().find(|&(_, pivot)| {
         let value = algebra.graph.named_value(pivot).unwrap_or(pivot);
         value == Graph::ZERO
@@ -150,9 +149,8 @@ pub fn solve(
 }
 
 impl Motion {
-    /// The equations as they are solved, for readers: those of a small block after elimination, in
-    /// the order of the solution, and the rows `M ω̇ = Π - b` of a large one. `unknowns` are the
-    /// symbols of ω̇.
+    /// The solved equations for display: those of a small block after elimination, in the order of the
+    /// solution, and the rows `M ω̇ = Π - b` of a large one. `unknowns` are the symbols of ω̇.
     pub fn equations(
         &self,
         graph: &mut Graph,
@@ -194,7 +192,7 @@ impl Motion {
         equations
     }
 
-    /// The equations that are solved one by one.
+    /// The symbolically eliminated equations.
     pub fn eliminated(&self) -> impl Iterator<Item = &Eliminated> {
         self.blocks.iter().flat_map(|block| match block {
             Block::Eliminated(equations) => equations.as_slice(),
@@ -202,7 +200,7 @@ impl Motion {
         })
     }
 
-    /// Every speed with the pivot that its equation is divided by.
+    /// Every speed with the pivot of its equation.
     pub fn pivots(&self) -> Vec<(usize, Expr)> {
         let mut pivots = Vec::new();
         for block in &self.blocks {
@@ -247,7 +245,7 @@ fn substitute_back(algebra: &mut Algebra, equations: &[Eliminated], known: &[Exp
         .collect()
 }
 
-/// Sets of speeds that no entry of the mass matrix couples.
+/// Sets of speeds that the mass matrix does not couple.
 pub fn independent_blocks(mass_matrix: &[Vec<Expr>]) -> Vec<Vec<usize>> {
     let mut blocks: Vec<Vec<usize>> = Vec::new();
     let mut placed = vec![false; mass_matrix.len()];
@@ -273,7 +271,7 @@ pub fn independent_blocks(mass_matrix: &[Vec<Expr>]) -> Vec<Vec<usize>> {
     blocks
 }
 
-/// Gaussian elimination, symmetric, the simplest pivot first.
+/// Symmetric Gaussian elimination, the simplest pivot first.
 fn eliminate(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -290,7 +288,7 @@ fn eliminate(
         let pivot = name_pivot(algebra, mechanism, k, schur[k][k]);
         let mut couplings = Vec::with_capacity(open.len());
         for &i in &open {
-            // The pivot itself may cancel; where it does not, its name is shorter.
+            // The quotient may cancel; otherwise the pivot's name is shorter.
             let cancelled = algebra.graph.div(schur[i][k], schur[k][k]);
             let cancelled = algebra.shortest(cancelled);
             let named = algebra.graph.div(schur[i][k], pivot);
@@ -343,8 +341,8 @@ fn name_right(algebra: &mut Algebra, mechanism: &Mechanism, speed: usize, right:
     algebra.graph.name(&name, right)
 }
 
-/// The right-hand side over a pivot that is a symbol, term by term, where that is shorter: a mass
-/// that most loads are proportional to goes.
+/// The right-hand side divided term by term by a pivot that is a symbol, if that is shorter: a mass to which
+/// most loads are proportional cancels.
 fn specific(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -373,7 +371,7 @@ fn specific(
     Some(algebra.graph.name(&name, specific))
 }
 
-/// Takes the diagonal entry with the fewest operations out of the open ones.
+/// Removes and returns the open index whose diagonal entry has the fewest operations.
 pub fn simplest_pivot(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -391,7 +389,7 @@ pub fn simplest_pivot(
     Err(vec![without_own_mass(mechanism, k)])
 }
 
-/// Fails where speeds move no mass at all, and names each.
+/// Fails if speeds have no inertia, naming each.
 fn massless(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -430,8 +428,8 @@ fn without_own_mass(mechanism: &Mechanism, speed: usize) -> Finding {
     }
 }
 
-/// Blocks of one or two speeds by Cramer's rule, everything written out: what numerator and
-/// denominator have in common then cancels. Empty for larger blocks.
+/// Blocks of one or two speeds by Cramer's rule, fully expanded so that common factors of numerator and
+/// denominator cancel. Empty for larger blocks.
 fn quotients(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -456,7 +454,7 @@ fn quotients(
         _ => return Vec::new(),
     };
     let mut equations: Vec<Eliminated> = Vec::with_capacity(pairs.len());
-    // Numbers in front of the right-hand sides go into the pivots; equal pivots stay equal.
+    // Numeric factors of the right-hand sides are moved into the pivots; equal pivots stay equal.
     let mut scales: Vec<(Expr, Rational)> = Vec::new();
     for (&speed, (numerator, denominator)) in speeds.iter().zip(pairs) {
         let Some([whole, right, pivot]) = algebra.cancelled(numerator, denominator, parts) else {

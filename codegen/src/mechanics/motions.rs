@@ -1,4 +1,4 @@
-//! Kinematic quantities that a spec names, such as the speed of a point, as functions of the motion.
+//! Kinematic quantities in expressions of a spec, such as the speed of a point, as functions of the motion.
 
 use appell_spec::expr::Motion;
 use appell_spec::mechanism::Mechanism;
@@ -8,7 +8,7 @@ use super::kinematics::Kinematics;
 use super::symbols::Symbols;
 use crate::symbolic::{Expr, Substitution};
 
-/// What stands for the symbols of kinematic quantities in a motion; nothing where there are none.
+/// Values for the symbols of kinematic quantities in a motion; `None` if there are none.
 pub fn motions(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -25,7 +25,7 @@ pub fn motions(
     Some(Substitution::of_parts(&algebra.graph, &values))
 }
 
-/// An expression with what its kinematic quantities are; none where a number is divided by zero.
+/// An expression with its kinematic quantities substituted; `None` if it divides by the number zero.
 pub fn told(
     algebra: &mut Algebra,
     mechanism: &Mechanism,

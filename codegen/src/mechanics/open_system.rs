@@ -1,5 +1,5 @@
-//! The generalised velocities that no formula gives: a system that is solved with pivoting, or quotients that keep
-//! letters for readers.
+//! The generalised velocities without an explicit formula: a system that is solved with pivoting, or quotients
+//! that remain symbols for display.
 
 use super::algebra::Algebra;
 use super::finding::{Item, Outcome, division_by_zero};
@@ -8,7 +8,7 @@ use crate::symbolic::{Expr, Graph, Substitution};
 
 /// An equation `Σ coefficient · q̇ = right`.
 pub struct Equation {
-    /// The constraint row that it was.
+    /// The constraint row from which it originates.
     pub row: Option<usize>,
     /// Coefficients of q̇.
     pub coefficients: Vec<Expr>,
@@ -16,20 +16,20 @@ pub struct Equation {
     pub right: Expr,
 }
 
-/// What no safe pivot solves: `matrix · unknowns = right`.
+/// The equations without a safe pivot: `matrix · unknowns = right`.
 #[derive(Debug, Clone, Default)]
 pub struct OpenSystem {
     /// Coordinates whose rates it determines.
     pub coordinates: Vec<usize>,
-    /// Symbols of these rates; at the vector part of a quaternion they stand for the angular velocity.
+    /// Symbols of these rates; those of the vector part of a quaternion denote the angular velocity instead.
     pub unknowns: Vec<Expr>,
-    /// The constraint row behind each equation; none behind the definition of a pseudo-velocity.
+    /// The constraint row of each equation; `None` for the definition of a pseudo-velocity.
     pub rows: Vec<Option<usize>>,
     /// Its matrix, row by row: a function of coordinates and time.
     pub matrix: Vec<Expr>,
     /// Its right-hand side, linear in the pseudo-velocities.
     pub right: Vec<Expr>,
-    /// Whether each equation has one unknown, with a coefficient that cannot vanish.
+    /// Whether each equation has a single unknown, with a coefficient that cannot vanish.
     pub by_division: bool,
 }
 
@@ -57,8 +57,8 @@ impl OpenSystem {
             .collect()
     }
 
-    /// Takes an equation as that of one unknown, a column of it; the others have `rates`. False where these have
-    /// unknowns of the system in them.
+    /// Adds an equation for the unknown of `column`, with the `rates` of the others substituted. Returns false
+    /// if these contain unknowns of the system.
     pub fn keep(
         &mut self,
         algebra: &mut Algebra,
@@ -90,7 +90,7 @@ impl OpenSystem {
         true
     }
 
-    /// Expressions with values in place of the unknowns.
+    /// Expressions with values substituted for the unknowns.
     pub fn put_in(
         &self,
         algebra: &mut Algebra,

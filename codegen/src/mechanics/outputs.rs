@@ -1,5 +1,5 @@
-//! The outputs of a spec and their derivatives. What an output names of accelerations and forces holds
-//! symbols for ω̇ until it is differentiated.
+//! The outputs of a spec and their derivatives. Accelerations and forces in outputs are in terms of symbols for
+//! ω̇ until they are differentiated.
 
 use appell_spec::mechanism::Mechanism;
 
@@ -16,12 +16,12 @@ use crate::symbolic::{Expr, Graph, Substitution};
 pub(super) struct Outputs {
     /// With symbols for ω̇.
     implicit: Vec<Expr>,
-    /// As they are.
+    /// With the solved ω̇.
     pub(super) values: Vec<Expr>,
 }
 
 impl Derivation {
-    /// Whether outputs name what the equations have to be solved for.
+    /// Whether outputs depend on the solution of the equations.
     pub(super) fn outputs_need_accelerations(&self) -> bool {
         let unknown = ids(&self.algebra.graph, &self.symbols.accelerations);
         let values = self.responses_in_outputs.iter();
@@ -79,7 +79,7 @@ impl Derivation {
         Ok(Outputs { implicit, values })
     }
 
-    /// What stands for the symbols of accelerations and forces in outputs, with symbols for ω̇.
+    /// Values for the symbols of accelerations and forces in outputs, in terms of symbols for ω̇.
     pub(super) fn named_in_outputs(&mut self, mechanism: &Mechanism) -> Outcome<Vec<(Expr, Expr)>> {
         let outputs = mechanism.outputs.iter().map(|output| &output.value);
         let wanted = named_in(&self.symbols, outputs);
@@ -105,7 +105,7 @@ impl Derivation {
         answering.values(&mut self.algebra, &wanted)
     }
 
-    /// Puts ω̇ in place of its symbols.
+    /// Substitutes ω̇ for its symbols.
     fn actual_accelerations(&mut self) -> Substitution {
         let symbols = self.symbols.accelerations.iter();
         let values = self.motion.accelerations.iter();
@@ -126,7 +126,7 @@ impl Derivation {
         }
         let accelerations = self.symbols.accelerations.clone();
         let along = self.slopes(&outputs.implicit, &accelerations);
-        // Under no names: these derivatives hold ω̇, which a reader would not see.
+        // Unnamed, since these derivatives contain symbols of ω̇, which are not displayed.
         let mut actual = self.actual_accelerations();
         let mut at_the_motion = |graph: &mut Graph, partials: &[Expr]| {
             let values = actual.apply_all(graph, partials);

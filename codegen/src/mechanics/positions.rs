@@ -1,4 +1,4 @@
-//! Position constraints: what they demand, and which coordinates follow from the others.
+//! Position constraints: residuals, Jacobian and dependent coordinates.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, Mechanism};
@@ -15,7 +15,7 @@ use crate::symbolic::{Expr, Graph, Intervals};
 /// The position constraints `f(q, t) = 0` of a mechanism.
 #[derive(Debug, Clone, Default)]
 pub struct Positions {
-    /// The constraints; those that others repeat are left out.
+    /// The constraints, without redundant ones.
     pub constraints: Vec<ConstraintId>,
     /// Their names.
     pub names: Vec<String>,
@@ -23,9 +23,9 @@ pub struct Positions {
     pub residual: Vec<Expr>,
     /// `∂f/∂q`, row by row.
     pub jacobian: Vec<Vec<Expr>>,
-    /// The coordinate that follows from the others by each constraint, no two equal.
+    /// The dependent coordinate of each constraint, no two equal.
     pub dependent: Vec<usize>,
-    /// What is left out.
+    /// Omitted constraints.
     pub warnings: Vec<Finding>,
 }
 
@@ -87,7 +87,8 @@ impl Positions {
         }
     }
 
-    /// The names of the constraints of which this one, with its slopes, is a sum in every configuration.
+    /// The names of the constraints of which this one, with its Jacobian row, is a linear combination in every
+    /// configuration.
     fn repeated(
         &self,
         algebra: &Algebra,
@@ -101,7 +102,7 @@ impl Positions {
         };
         let before = self.jacobian.iter().map(Vec::as_slice).zip(&self.residual);
         let rows: Vec<LinearRow> = before.chain([(slopes, &residual)]).map(row).collect();
-        // The question must not change how equations are written.
+        // A copy, so that this test does not change the form of the equations.
         let mut algebra = algebra.clone();
         let Some(Standing::Redundant(sum)) = standings(&mut algebra, &rows).pop() else {
             return None;
@@ -117,7 +118,7 @@ impl Positions {
         )
     }
 
-    /// The coordinate that the spec names, or the first free one whose coefficient is safest.
+    /// The coordinate named in the spec, or the free one with the safest coefficient.
     fn dependent_of(
         &self,
         algebra: &mut Algebra,

@@ -1,8 +1,8 @@
-//! The power of what is prescribed: constraints and frames that move by themselves, and drives.
+//! The power of prescribed motions: rheonomic constraints and frames, and drives.
 //!
-//! A velocity is `v = Σ (∂v/∂ω) ω + v₀`. The first part is a motion that the constraints allow, along which
-//! inertial forces and loads balance (d'Alembert). So what keeps up the prescribed motion supplies the power
-//! `Σ (m a·v₀ + ḣ·Ω₀) − Σ F·v₀` over all bodies and loads. It is zero where nothing is prescribed.
+//! A velocity is `v = Σ (∂v/∂ω) ω + v₀`. The first part is an admissible motion, in which inertial forces and
+//! loads balance (d'Alembert). So the prescribed motion requires the power `Σ (m a·v₀ + ḣ·Ω₀) − Σ F·v₀` over
+//! all bodies and loads. It is zero if nothing is prescribed.
 
 use super::Derivation;
 use super::algebra::Algebra;
@@ -13,7 +13,7 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Substitution};
 
 impl Derivation {
-    /// The power of what is prescribed, with these pseudo-accelerations.
+    /// The power of prescribed motions, with these pseudo-accelerations.
     pub fn prescribed_power(&mut self, accelerations: &[Expr]) -> Outcome<Expr> {
         let (bodies, speeds) = (&self.bodies, &self.symbols.speeds);
         let mut sum = power(
@@ -69,7 +69,7 @@ fn power(
     Ok(algebra.graph.sum(&parts))
 }
 
-/// What a velocity is where all pseudo-velocities vanish; nothing where that is zero.
+/// The velocity at zero pseudo-velocities; `None` if it vanishes.
 fn prescribed(
     algebra: &mut Algebra,
     standing: &mut Substitution,

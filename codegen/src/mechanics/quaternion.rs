@@ -7,12 +7,12 @@ use super::algebra::Algebra;
 use crate::symbolic::vector::{Mat3, Vec3};
 use crate::symbolic::{Expr, Graph, Rational};
 
-/// The coordinates of the quaternions, by their places.
+/// The coordinates of the quaternions, by index.
 pub(super) fn quaternions(mechanism: &Mechanism) -> impl Iterator<Item = [usize; 4]> {
     let frames = mechanism.frames.iter();
     let all = frames.filter_map(|frame| Some(frame.quaternion?.map(CoordinateId::index)));
     let mut told = Vec::new();
-    // Frames that turn alike share one.
+    // Frames with the same rotation share one.
     all.filter(move |quaternion| {
         let is_new = !told.contains(quaternion);
         told.push(*quaternion);
@@ -20,18 +20,18 @@ pub(super) fn quaternions(mechanism: &Mechanism) -> impl Iterator<Item = [usize;
     })
 }
 
-/// Whether a constraint keeps the norm of a quaternion: these follow those of the spec.
+/// Whether a constraint is the norm of a quaternion: these come after those of the spec.
 pub(super) fn is_norm(mechanism: &Mechanism, constraint: ConstraintId) -> bool {
     let written = mechanism.constraints.len() - quaternions(mechanism).count();
     constraint.index() >= written
 }
 
-/// How a frame is turned from its parent.
+/// The rotation of a frame relative to its parent.
 #[derive(Debug, Clone)]
 pub(super) struct Attitude {
     /// From components in the frame to those in the parent.
     pub(super) matrix: Mat3,
-    /// Angular velocity from the parent, in the frame.
+    /// Angular velocity relative to the parent, in the frame.
     pub(super) w: Vec3,
 }
 

@@ -1,11 +1,11 @@
-//! The ranges inside which the equations hold.
+//! The ranges in which the equations are valid.
 
 use appell_spec::mechanism::Mechanism;
 
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Graph, Intervals, SymbolId};
 
-/// Ranges inside which a pivot must not vanish.
+/// Ranges in which a pivot must not vanish.
 pub fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Intervals {
     let coordinates = ids(graph, &symbols.coordinates)
         .into_iter()
@@ -15,8 +15,8 @@ pub fn declared_ranges(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) 
     Intervals::new(graph, coordinates.chain(parameters).collect())
 }
 
-/// A parameter whose limits admit both signs may be zero; any other keeps the sign of its value: a
-/// wheel of radius zero is another mechanism.
+/// A parameter whose limits include both signs may be zero; any other keeps the sign of its value, since a
+/// wheel of radius zero is a different mechanism.
 pub fn parameter_ranges(
     graph: &Graph,
     mechanism: &Mechanism,

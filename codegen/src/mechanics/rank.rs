@@ -1,5 +1,4 @@
-//! The generic rank of linear rows: which of them follow from the ones before, whatever the
-//! configuration.
+//! The generic rank of linear rows: which of them depend on earlier ones in all configurations.
 
 use super::algebra::Algebra;
 use crate::symbolic::{Expr, Graph, Intervals, Node};
@@ -9,12 +8,12 @@ use crate::symbolic::{Expr, Graph, Intervals, Node};
 pub struct LinearRow {
     /// One coefficient per unknown.
     pub coefficients: Vec<Expr>,
-    /// What remains without unknowns.
+    /// Terms without unknowns.
     pub rest: Expr,
 }
 
 impl LinearRow {
-    /// A row without rest.
+    /// A row without such terms.
     pub fn homogeneous(coefficients: Vec<Expr>) -> Self {
         Self {
             coefficients,
@@ -26,25 +25,25 @@ impl LinearRow {
 /// A row as a sum of earlier ones: `Σ factor · row`, by their index.
 pub type Combination = Vec<(usize, Expr)>;
 
-/// How a row stands to the independent rows before it.
+/// Relation of a row to the independent rows before it.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Standing {
-    /// It says something new.
+    /// Independent of them.
     Independent,
-    /// It is this sum of them.
+    /// This linear combination of them.
     Redundant(Combination),
-    /// Its coefficients are a sum of theirs, its rest is another one.
+    /// Its coefficients are a linear combination of theirs, its rest is not.
     Inconsistent,
 }
 
-/// A row in echelon form, and how it came from the rows as they are given.
+/// A row in echelon form, and its combination of the original rows.
 struct Reduced {
     pivot: usize,
     row: LinearRow,
     origin: Combination,
 }
 
-/// Gaussian elimination over the field of functions: a pivot is what does not vanish identically.
+/// Gaussian elimination over the field of functions: pivots must not vanish identically.
 pub fn standings(algebra: &mut Algebra, rows: &[LinearRow]) -> Vec<Standing> {
     let mut echelon: Vec<Reduced> = Vec::new();
     let mut standings = Vec::with_capacity(rows.len());
@@ -70,7 +69,7 @@ pub fn standings(algebra: &mut Algebra, rows: &[LinearRow]) -> Vec<Standing> {
     standings
 }
 
-/// A row less its share of each row in echelon form, and these shares.
+/// Reduces a row by the rows in echelon form; returns the rest and the factors.
 fn reduced(
     algebra: &mut Algebra,
     echelon: &[Reduced],
@@ -98,7 +97,7 @@ fn reduced(
     (row, factors)
 }
 
-/// Shares of rows in echelon form as shares of the rows as they are given.
+/// Converts a combination of rows in echelon form to one of the original rows.
 fn in_given_rows(algebra: &mut Algebra, echelon: &[Reduced], factors: &[Expr]) -> Combination {
     let mut combination = Combination::new();
     for (&factor, above) in factors.iter().zip(echelon) {
@@ -112,7 +111,7 @@ fn in_given_rows(algebra: &mut Algebra, echelon: &[Reduced], factors: &[Expr]) -
     }
     for (_, factor) in &mut combination {
         *factor = algebra.shortest(*factor);
-        // Whole rows are the most frequent share, and elimination writes it in many ways.
+        // Factors ±1 are most frequent, and elimination produces them in many forms.
         for whole in [1, -1] {
             let whole = algebra.graph.integer(whole);
             if *factor != whole && algebra.test.are_equal(&algebra.graph, *factor, whole) {

@@ -1,12 +1,13 @@
-//! Loads that depend on reactions, such as friction that grows with the normal force.
+//! Loads that depend on reactions, such as friction proportional to the normal force.
 //!
-//! Such loads F change the reactions λ that they depend on. Accelerations and reactions are linear in forces, so
+//! Such loads F change the reactions λ on which they depend. Accelerations and reactions are linear in forces,
+//! so
 //!
 //! `λ = λ₀ + K F(λ)`,
 //!
-//! with the reactions λ₀ while F = 0 and K = ∂λ/∂F. Newton's method solves it: in one step where F is linear in λ,
-//! else in a fixed number of steps from λ₀. Strong friction makes 1 − K ∂F/∂λ vanish, and beyond that there can be
-//! several solutions or none (P. Painlevé, 1895).
+//! with the reactions λ₀ at F = 0 and K = ∂λ/∂F. Newton's method solves it: in one step if F is linear in λ,
+//! otherwise in a fixed number of steps from λ₀. Strong friction makes 1 − K ∂F/∂λ singular, and beyond that
+//! there can be several solutions or none (P. Painlevé, 1895).
 
 use appell_spec::expr::Response;
 use appell_spec::mechanism::Mechanism;
@@ -23,13 +24,13 @@ use super::responses::{Answering, named_in};
 use super::symbols::ids;
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// Steps of Newton's method where forces are no linear functions of reactions. Each squares the error, which begins
-/// at a share of the order of the coefficient of friction.
+/// Newton steps if forces are nonlinear in reactions. Each squares the relative error, initially of the order
+/// of the coefficient of friction.
 const STEPS: usize = 4;
 
 impl Derivation {
-    /// Lets all loads act on a motion that knows only those without reactions. `all` hold symbols for what depends
-    /// on reactions and for the dependent speeds.
+    /// Applies all loads to a motion derived without those that depend on reactions. `all` contain symbols for
+    /// these expressions and for the dependent speeds.
     pub(super) fn let_all_loads_act(
         &mut self,
         mechanism: &Mechanism,
@@ -55,8 +56,8 @@ impl Derivation {
         Ok(())
     }
 
-    /// Π of loads along all speeds and along the pseudo-velocities; the loads lose their symbols for the dependent
-    /// speeds.
+    /// Π of loads along all speeds and along the pseudo-velocities; symbols for the dependent speeds are
+    /// substituted in the loads.
     fn forces_of(&mut self, loads: &mut [AppliedLoad]) -> Outcome<(Vec<Expr>, Vec<Expr>)> {
         let (algebra, dependent) = (&mut self.algebra, &self.dependent);
         let directions = [self.symbols.speeds.as_slice(), &dependent.system.unknowns].concat();
@@ -69,7 +70,7 @@ impl Derivation {
         Ok((unbound, forces))
     }
 
-    /// The reactions that loads name, with their values in the motion of all loads.
+    /// The reactions in loads, with their values in the motion under all loads.
     fn reactions_with(
         &mut self,
         mechanism: &Mechanism,
@@ -103,7 +104,7 @@ impl Derivation {
         Ok(fixed.unknowns.into_iter().zip(values).collect())
     }
 
-    /// K: how reactions change with what stands for forces that depend on them.
+    /// K: the derivatives of reactions with respect to the symbols of forces that depend on them.
     fn response_to(
         &mut self,
         mechanism: &Mechanism,
@@ -116,7 +117,7 @@ impl Derivation {
         let held: Vec<(Expr, Expr)> = symbols.iter().map(|&f| (f, f)).collect();
         let unknown = self.symbols.accelerations.clone();
         let answers = self.answers(mechanism, wanted, &unknown, &held)?;
-        // What the symbols alone push.
+        // The loads with these symbols only.
         let mut absent = Substitution::by_zero(&self.algebra.graph, &symbols);
         let rest = dependent::apply(&mut absent, &mut self.algebra, forces)?;
         let graph = &mut self.algebra.graph;
@@ -184,7 +185,7 @@ impl FixedPoint {
     /// λ, under names.
     fn solved(&self, algebra: &mut Algebra, names: &[String]) -> Outcome<Vec<Expr>> {
         let graph = &mut algebra.graph;
-        // Reactions that no such load changes are known.
+        // Reactions independent of such loads are known.
         let is_open = |&i: &usize| self.response[i].iter().any(|&k| k != Graph::ZERO);
         let open: Vec<usize> = (0..names.len()).filter(is_open).collect();
         let mut values: Vec<Expr> = self.without.clone();
@@ -255,7 +256,7 @@ impl FixedPoint {
     }
 }
 
-/// Whether a residual is that without the unknowns less the matrix times the unknowns: a jump has no slope either.
+/// Whether a residual is affine in the unknowns with this matrix: a jump also has zero slope but is not.
 fn is_linear(algebra: &mut Algebra, residual: &[Expr], matrix: &[Expr], unknowns: &[Expr]) -> bool {
     let symbols = ids(&algebra.graph, unknowns);
     let changes = |&entry: &Expr| algebra.graph.mentions(entry, &symbols);
@@ -274,7 +275,7 @@ fn is_linear(algebra: &mut Algebra, residual: &[Expr], matrix: &[Expr], unknowns
     })
 }
 
-/// Unknowns of a system; a single equation is divided by its coefficient.
+/// Solution of a system; a single equation is divided by its coefficient.
 fn quotient(algebra: &mut Algebra, matrix: Vec<Expr>, right: Vec<Expr>) -> Outcome<Vec<Expr>> {
     let [coefficient] = matrix[..] else {
         return Ok(algebra.graph.solve_numerically(matrix, right));
@@ -298,7 +299,7 @@ fn name(mechanism: &Mechanism, response: Response) -> String {
             format!("reaction_{name}{}", along.unwrap_or_default())
         }
         Response::NormalForce(c) => format!("normal_force_{}", mechanism.constraints[c].name),
-        // They are no reactions.
+        // These are not reactions.
         Response::Acceleration(..)
         | Response::AngularAcceleration(..)
         | Response::Force(..)

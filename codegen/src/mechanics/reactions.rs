@@ -1,7 +1,7 @@
 //! Constraint forces by auxiliary pseudo-velocities.
 //!
-//! Every constraint row gets a speed at which it alone would be violated. In the motions along these
-//! speeds the constraint does work, so Appell's equations for them give its reaction.
+//! Every constraint row has a speed that violates only this row. In the motion along it the constraint does
+//! work, so Appell's equation for it gives the reaction.
 
 use appell_spec::mechanism::Mechanism;
 
@@ -16,8 +16,8 @@ use super::symbols::Symbols;
 use crate::symbolic::vector::{self, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// Reaction at every place of [`Constraints::reactions`], in the ground. `in_loads` are the reactions
-/// that loads depend on; loads whose reactions are not among them do not act.
+/// Reaction at every place of [`Constraints::reactions`], in the ground. `in_loads` are the reactions on which
+/// loads depend; loads with other reactions are omitted.
 #[expect(
     clippy::too_many_arguments,
     reason = "everything a reaction depends on, once"
@@ -42,7 +42,7 @@ pub fn reactions(
     let mut loads = applied_loads(algebra, mechanism, symbols, &kinematics, rates)?;
     settle(&mut loads, &mut algebra.graph, mechanism, in_loads)?;
     let applied = generalized_forces(algebra, &loads, &violation.rates);
-    // The violations only tell directions: a damper resists the motion that happens.
+    // Violations are virtual: a damper resists the actual motion only.
     let mut allowed = Substitution::by_zero(&algebra.graph, &violation.rates);
     let applied = applied
         .into_iter()

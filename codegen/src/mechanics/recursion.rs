@@ -1,11 +1,10 @@
 //! The equations of motion of trees of bodies by recursion over their links: the acceleration energy, its
-//! derivatives ∂S/∂ω̇ and what these change with the state are sums over bodies, and every sum is taken link
-//! by link, in the axes of the link, instead of body by body.
+//! derivatives ∂S/∂ω̇ and their derivatives with respect to the state are sums over bodies, and every sum is
+//! accumulated link by link, in the axes of the link, instead of body by body.
 //!
-//! Outwards go angular velocities and accelerations, inwards forces and the inertia of all that a link
-//! carries (J. Y. S. Luh, M. W. Walker, R. P. C. Paul, 1980; M. W. Walker, D. E. Orin, 1982). What is kept
-//! under a name is not multiplied out, so that the cost grows with the number of links and not with its
-//! third power.
+//! Angular velocities and accelerations propagate outwards, forces and composite inertias inwards (J. Y. S.
+//! Luh, M. W. Walker, R. P. C. Paul, 1980; M. W. Walker, D. E. Orin, 1982). Named quantities are not expanded,
+//! so the cost grows linearly with the number of links and not with its third power.
 
 mod articulated;
 mod balance;
@@ -37,28 +36,28 @@ use links::Links;
 use movement::{Driven, LinkMotion};
 pub use partials::Differentiable;
 
-/// A mechanism with fewer speeds has shorter equations with everything multiplied out.
+/// Mechanisms with fewer speeds have shorter equations in expanded form.
 const FEWEST_SPEEDS: usize = 5;
 
 /// A mechanism as a tree of links.
 #[derive(Debug, Clone)]
 pub struct Recursion {
     links: Links,
-    /// Inertia of each link alone.
+    /// Inertia of each link.
     own: Vec<Inertia>,
-    /// Inertia of each link with all that it carries.
+    /// Composite inertia of each link and its descendants.
     composites: Vec<Inertia>,
-    /// The acceleration of the ground that stands for the weights.
+    /// The fictitious acceleration of the ground that replaces gravity.
     rise: Vec3,
-    /// Π of the loads that are no steady weights.
+    /// Π of the loads other than steady gravity.
     forces: Vec<Expr>,
-    /// ω̇ by the factorised mass matrix, which its derivatives need as well.
+    /// ω̇ from the factorised mass matrix, which its derivatives also use.
     pub factorized: Vec<Expr>,
 }
 
 impl Recursion {
-    /// The recursion of a mechanism whose bodies form a tree of links and whose speeds are all free; none for
-    /// others, and for small ones.
+    /// The recursion of a mechanism whose bodies form a tree of links and whose speeds are all independent;
+    /// `None` for others, and for small ones.
     pub fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -114,7 +113,7 @@ impl Recursion {
         }
     }
 
-    /// The motions of the links where ω̇ = 0.
+    /// The motions of the links at ω̇ = 0.
     fn unaccelerated(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
         let driven = Driven {
             ground: vector::ZERO,
@@ -140,7 +139,7 @@ impl Recursion {
             let at_rest = LinkMotion::at_rest(vector::ZERO);
             let motion = place.link.map_or(&at_rest, |link| &motions[link]);
             let central = central_inertia(&mut algebra.graph, &lowering, id, body)?;
-            // In the axes of the link, as its acceleration.
+            // In the axes of the link, like its acceleration.
             let mut velocity = kinematics.velocity(body.centre);
             if let Some(frame) = body.frame.filter(|&frame| frame != velocity.frame) {
                 let v = kinematics
@@ -178,7 +177,7 @@ impl Recursion {
         Ok(bodies)
     }
 
-    /// Π of all loads; those that are no steady weights are kept.
+    /// Π of all loads; stores that of the loads other than steady gravity.
     pub fn forces(
         &mut self,
         algebra: &mut Algebra,
@@ -198,7 +197,7 @@ impl Recursion {
         all
     }
 
-    /// Appell's equations solved from the tips inwards, so that branches do not couple.
+    /// Solves Appell's equations from the tips inwards, so that branches stay decoupled.
     pub fn solve(
         &mut self,
         algebra: &mut Algebra,
@@ -224,7 +223,7 @@ impl Recursion {
         Ok(motion)
     }
 
-    /// The motions of the links where ω̇ = 0 and the ground rises, as the weights have it.
+    /// The motions of the links at ω̇ = 0 with the fictitious acceleration of the ground.
     fn falling(&self, algebra: &mut Algebra) -> Vec<LinkMotion> {
         let driven = Driven {
             ground: self.rise,
@@ -234,7 +233,7 @@ impl Recursion {
         self.links.motions(algebra, &driven)
     }
 
-    /// The links in the motion that happens.
+    /// The links in the actual motion.
     pub fn differentiable(&self, algebra: &mut Algebra, accelerations: &[Expr]) -> Differentiable {
         let driven = Driven {
             ground: self.rise,
@@ -246,7 +245,7 @@ impl Recursion {
         Differentiable::new(algebra, &self.links, inertias, self.rise, motions)
     }
 
-    /// `∂(Π − b − M ω̇)/∂z` with ω̇ held; z is a coordinate, a speed, an input or a signal.
+    /// `∂(Π − b − M ω̇)/∂z` at fixed ω̇; z is a coordinate, a speed, an input or a signal.
     pub fn partial(
         &self,
         algebra: &mut Algebra,
@@ -261,7 +260,7 @@ impl Recursion {
             algebra.graph.sub(given, taken)
         });
         let partials: Vec<Expr> = partials.collect();
-        // What depends on nothing must not seem to by rounding: rows of zeros have a sum of zero however weighted.
+        // Rounding must not make zeros nonzero: the sum of a zero row is zero with any weights.
         let weighted = (3..).step_by(2).zip(&partials);
         let weighted: Vec<(Rational, Expr)> = weighted.map(|(w, &e)| (w.into(), e)).collect();
         let sum = algebra.graph.linear_combination(&weighted);
@@ -289,7 +288,7 @@ impl Recursion {
             .collect()
     }
 
-    /// The forces along the speeds that these accelerations take, while the ground rises.
+    /// The inertial and gravity forces along the speeds for these accelerations.
     fn taken(
         &self,
         algebra: &mut Algebra,
@@ -306,7 +305,7 @@ impl Recursion {
         self.links.felt(&mut algebra.graph, &wrenches)
     }
 
-    /// Speeds from the tips inwards: eliminated in this order, branches do not couple.
+    /// Speeds from the tips inwards: in this order of elimination, branches stay decoupled.
     pub fn inwards(&self, speeds: usize) -> Vec<usize> {
         let columns = self
             .links
@@ -328,14 +327,14 @@ impl Recursion {
         order
     }
 
-    /// b less the work of the weights: while all else falls freely, the ground rises.
+    /// b minus the generalised gravity forces, by the fictitious acceleration of the ground.
     pub fn bias_less_weights(&self, algebra: &mut Algebra) -> Vec<Expr> {
         let motions = self.falling(algebra);
         let wrenches = self.links.wrenches(algebra, &self.own, &motions, "g");
         self.links.felt(&mut algebra.graph, &wrenches)
     }
 
-    /// The work of the weights along each speed.
+    /// The generalised gravity forces.
     pub fn weights(&self, algebra: &mut Algebra) -> Vec<Expr> {
         let still = self.links.still(algebra, self.rise);
         let wrenches: Vec<Wrench> = (self.composites.iter().zip(&still))
@@ -357,7 +356,7 @@ fn partials(algebra: &mut Algebra, v: Vec3, speeds: &[Expr]) -> Vec<Vec3> {
         .collect()
 }
 
-/// The weight of all bodies with an acceleration that never changes.
+/// Gravity on all bodies with constant acceleration.
 fn steady_weight(load: &Load) -> Option<([i8; 3], &SpecExpr)> {
     match &load.kind {
         LoadKind::Gravity { down, acceleration } if is_constant(acceleration) => {

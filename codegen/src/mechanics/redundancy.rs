@@ -1,6 +1,6 @@
-//! Constraint rows that follow from others: two wheels on one axle cannot slip sideways one by one.
+//! Redundant constraint rows: two wheels on one axle cannot slip sideways independently.
 //!
-//! Such a row is left out, and the motion stays the same.
+//! Such a row is omitted, which does not change the motion.
 
 use appell_spec::Code;
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, FrameId, GROUND, Mechanism};
@@ -13,11 +13,11 @@ use super::row::Row;
 use crate::symbolic::vector;
 use crate::symbolic::{Expr, Intervals};
 
-/// Marks the rows that add nothing, so that those that stay are independent. Returns what to warn of.
+/// Marks the redundant rows, so that the others are independent. Returns the warnings.
 ///
-/// A row is left out only where it is a sum of others in *every* configuration: `dot(x) = 0` does
-/// not follow from `x*dot(x) = 0`. Where the rows of a rolling contact do not allow this in the axes
-/// of the ground, they are resolved in the axes of another frame.
+/// A row is omitted only if it is a combination of others in *every* configuration: `dot(x) = 0` does not
+/// follow from `x*dot(x) = 0`. If the rows of a rolling contact do not allow this in the axes of the ground,
+/// they are resolved in the axes of another frame.
 pub fn leave_out(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -26,7 +26,7 @@ pub fn leave_out(
     rows: &mut [Row],
 ) -> Outcome<Vec<Finding>> {
     let (mut warnings, mut errors) = (Vec::new(), Vec::new());
-    // Rows with an error, which the others are still compared without.
+    // Rows with an error, which are excluded from further comparisons.
     let mut refused: Vec<usize> = Vec::new();
     let mut turned: Vec<ConstraintId> = Vec::new();
     loop {
@@ -65,7 +65,7 @@ pub fn leave_out(
     }
 }
 
-/// The first of the rows `open` that adds nothing to those before, by its index among all rows.
+/// The first of the rows `open` that depends on those before, by its index among all rows.
 fn first_dependent(
     algebra: &mut Algebra,
     rows: &[Row],
@@ -89,8 +89,8 @@ fn linear(rows: &[Row], places: &[usize]) -> Vec<LinearRow> {
     places.iter().map(|&place| rows[place].linear()).collect()
 }
 
-/// A row that follows from the others in every configuration, where `row = Σ factor · other`: the
-/// row itself, or another one for which that equation can be solved.
+/// A row that follows from the others in every configuration, where `row = Σ factor · other`: the row itself,
+/// or another one for which that equation can be solved.
 fn spare_row(
     algebra: &mut Algebra,
     intervals: &mut Intervals,
@@ -105,7 +105,7 @@ fn spare_row(
     if finite(algebra, intervals, &factors) {
         return Some(row);
     }
-    // Later rows first: the spec's first constraint on a motion is the one to keep.
+    // Later rows first, so that the first constraint of the spec on a motion is retained.
     let mut others = combination.clone();
     others.sort_unstable_by_key(|&(other, _)| std::cmp::Reverse(other));
     others.into_iter().find_map(|(other, share)| {
@@ -118,8 +118,8 @@ fn spare_row(
     })
 }
 
-/// The rows of a rolling contact in the axes of the first frame in which those that add nothing can
-/// be left out in every configuration.
+/// The rows of a rolling contact in the axes of the first frame in which the redundant ones can be omitted in
+/// every configuration.
 fn resolved_elsewhere(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -130,7 +130,7 @@ fn resolved_elsewhere(
 ) -> Option<Vec<(usize, Row)>> {
     match mechanism.constraints[constraint].kind {
         ConstraintKind::Rolling { normal: None, .. } => {}
-        // One row has no axes to choose; a surface has its own.
+        // A single row has no choice of axes; a surface determines them.
         ConstraintKind::Rolling { .. }
         | ConstraintKind::Velocity { .. }
         | ConstraintKind::FixedVelocity { .. }
@@ -161,8 +161,8 @@ fn resolved_elsewhere(
     })
 }
 
-/// The rows of a rolling contact as components along the axes of a frame. Rows that geometry embeds
-/// stay as they are; `None` where the frame has not got their axes.
+/// The rows of a rolling contact as components along the axes of a frame. Rows embedded by geometry are
+/// unchanged; `None` if the frame lacks their axes.
 fn resolved_in(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -253,9 +253,8 @@ fn singular(mechanism: &Mechanism, row: &Row) -> Finding {
     }
 }
 
-/// The warning for a row that is left out, where `row = Σ factor · other`. Rows of one contact may
-/// follow from each other, as geometry keeps it on its surface, and a position constraint beside the
-/// contact that keeps it is no mistake.
+/// The warning for an omitted row, where `row = Σ factor · other`. `None` if it depends only on rows of the
+/// same contact, which geometry keeps on its surface, or is the derivative of a position constraint.
 fn redundancy(
     rows: &[Row],
     spare: usize,

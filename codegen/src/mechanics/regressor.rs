@@ -1,10 +1,10 @@
 //! The regressor: inverse dynamics as a linear function of the inertial parameters, M ω̇ + b − Π = Y π + r.
 //!
-//! A body moves as one with mass m, first moments m c and inertia J about a point P that is fixed in it. The
-//! forces that its motion takes are linear in these ten numbers (W. Khalil, E. Dombre, 2002, section 9.2). So
-//! the equations are derived with a symbol for each of m, c and J, and Y is what they change: by m and J at
-//! c = 0, and by the first moments ∂²/∂m ∂c there. Parameters of loads follow that enter linearly beside
-//! these, such as coefficients of friction; r is what is left.
+//! The motion of a body depends on its mass m, first moments m c and inertia J about a body-fixed point P. The
+//! inertial forces are linear in these ten numbers (W. Khalil, E. Dombre, 2002, section 9.2). So the equations
+//! are derived with a symbol for each of m, c and J, and the columns of Y are derivatives: with respect to m
+//! and J at c = 0, and ∂²/∂m ∂c there for the first moments. Columns for load parameters that enter linearly in
+//! addition, such as coefficients of friction, follow; r is the remainder.
 
 use appell_spec::expr::{Expr as SpecExpr, ExprKind, Quantity};
 use appell_spec::mechanism::{
@@ -30,9 +30,9 @@ const AXES: [&str; 3] = ["x", "y", "z"];
 pub struct Regressor {
     /// A program with one function, [`FunctionKind::Regressor`].
     pub program: Program,
-    /// The parameters π, a column of Y each.
+    /// The parameters π, one per column of Y.
     pub parameters: Vec<Linear>,
-    /// Inertial parameters that no motion notices.
+    /// Inertial parameters without effect on any motion.
     pub without_effect: Vec<String>,
 }
 
@@ -95,10 +95,10 @@ pub fn regressor(mechanism: &Mechanism) -> Outcome<Regressor> {
 /// The inertial parameters of a body as parameters of a mechanism.
 struct GeneralBody {
     body: BodyId,
-    /// The point about which they are.
+    /// Their reference point.
     about: PointId,
     mass: ParameterId,
-    /// Centre of mass from that point; none for what turns only, or has no inertia.
+    /// Centre of mass from that point; `None` for bodies that only rotate or have no inertia.
     centre: Option<[ParameterId; 3]>,
     /// By [`PAIRS`].
     inertia: Option<[ParameterId; 6]>,
@@ -110,7 +110,7 @@ fn with_general_bodies(mechanism: &Mechanism) -> (Mechanism, Vec<GeneralBody>) {
     let mut bodies = Vec::with_capacity(mechanism.bodies.len());
     for (id, body) in mechanism.bodies.entries() {
         let mut parameter = |symbol: &str| {
-            // No name of a spec has parentheses.
+            // Names in a spec have no parentheses.
             let name = format!("{symbol}({})", body.name);
             general.parameters.push(unknown(name))
         };
@@ -124,7 +124,7 @@ fn with_general_bodies(mechanism: &Mechanism) -> (Mechanism, Vec<GeneralBody>) {
         let made = &mut general.bodies[id];
         made.mass = quantity(mass);
         if let (Some(inertia), Some(all)) = (&mut made.inertia, inertia) {
-            // What spins with the body is no longer symmetric about its axis.
+            // With general inertia a spinning body is not symmetric about its axis.
             inertia.frame = body.frame.unwrap_or(inertia.frame);
             for (&parameter, (i, j)) in all.iter().zip(PAIRS) {
                 inertia.matrix[i][j] = quantity(parameter);
@@ -154,8 +154,8 @@ fn with_general_bodies(mechanism: &Mechanism) -> (Mechanism, Vec<GeneralBody>) {
     (general, bodies)
 }
 
-/// The point of a body about which its inertial parameters are: that from which its centre is placed, where
-/// both are fixed in it, as the joint of a link; else its centre.
+/// The reference point of a body's inertial parameters: the one from which its centre is placed, if both are
+/// body-fixed, such as the joint of a link; otherwise its centre.
 fn point_in(mechanism: &Mechanism, body: &Body) -> PointId {
     let centre = &mechanism.points[body.centre];
     let is_fixed = || {
@@ -180,7 +180,7 @@ fn quantity(parameter: ParameterId) -> SpecExpr {
     }
 }
 
-/// A parameter that is not known, not even its sign.
+/// A parameter of unknown value and sign.
 fn unknown(name: String) -> Parameter {
     Parameter {
         label: Label {
@@ -206,19 +206,19 @@ impl Linear {
     }
 }
 
-/// Columns of Y, with what they belong to.
+/// Columns of Y, with their parameters.
 struct Columns {
     parameters: Vec<Linear>,
     without_effect: Vec<String>,
     entries: Vec<Vec<Expr>>,
-    /// π by the parameters of the spec.
+    /// Values of π in terms of the parameters of the spec.
     values: Vec<Expr>,
     /// r.
     rest: Vec<Expr>,
 }
 
 impl Columns {
-    /// Adds a column unless it is zero; whether it did.
+    /// Adds a column unless it is zero; returns whether it did.
     fn push(
         &mut self,
         derivation: &mut Derivation,
@@ -243,7 +243,7 @@ impl Columns {
 }
 
 impl Derivation {
-    /// Y, π and r of a mechanism whose bodies have been made general.
+    /// Y, π and r of a mechanism with general bodies.
     fn columns(&mut self, mechanism: &Mechanism, bodies: &[GeneralBody]) -> Outcome<Columns> {
         let demand = self.demand();
         let symbol = |derivation: &Self, id: ParameterId| derivation.symbols.parameters[id.index()];
@@ -292,8 +292,8 @@ impl Derivation {
         Ok(columns)
     }
 
-    /// Adds the parameters of loads that enter linearly beside inertia and beside those before them; which these
-    /// are.
+    /// Adds the load parameters that enter linearly in addition to inertial and earlier load parameters;
+    /// returns these.
     fn linear_parameters(
         &mut self,
         mechanism: &Mechanism,
@@ -317,7 +317,7 @@ impl Derivation {
             }
             let Label { name, unit, .. } = &parameter.label;
             let own = Linear::new(name, unit.dimension);
-            // Whatever has no effect on the forces may have one elsewhere.
+            // A parameter without effect on these forces may have one elsewhere.
             let is_felt = entries.iter().any(|&entry| entry != Graph::ZERO);
             if is_felt && columns.push(self, own, entries.clone(), theta) {
                 linear.push(theta);
@@ -327,7 +327,7 @@ impl Derivation {
         linear
     }
 
-    /// Mass, first moments, moments and products of inertia of a body by the parameters of the spec.
+    /// Mass, first moments, moments and products of inertia of a body in terms of the parameters of the spec.
     fn inertial_values(
         &mut self,
         mechanism: &Mechanism,

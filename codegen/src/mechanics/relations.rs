@@ -1,6 +1,6 @@
-//! What a system without a safe pivot tells of its unknowns although it cannot be solved everywhere:
-//! sums of them that are sums of its right-hand sides, without a division. The angular velocity of a
-//! top is what its pseudo-velocities are, also where its angles have a pole.
+//! Division-free relations between the unknowns of a system without a safe pivot: linear combinations of them
+//! that equal combinations of the right-hand sides. The angular velocity of a top equals its pseudo-velocities
+//! even where its angles are singular.
 
 use super::algebra::{Algebra, Relation};
 use super::cramer::{self, Block};
@@ -8,7 +8,7 @@ use super::elimination::OpenSystem;
 use super::symbols::ids;
 use crate::symbolic::Expr;
 
-/// Systems with more operations tell nothing short.
+/// Systems with more operations have no short relations.
 const MOST_OPERATIONS: usize = 24;
 
 /// The blocks of an open system that are small enough for Cramer's rule.

@@ -1,7 +1,7 @@
-//! Accelerations and forces that a spec names, such as the reaction of a constraint.
+//! Accelerations and forces in expressions of a spec, such as the reaction of a constraint.
 //!
-//! They are functions of the state, the inputs and ω̇. With symbols for ω̇ they are differentiated like
-//! everything that the solved equations enter: first with ω̇ held, then along its derivatives.
+//! They are functions of the state, the inputs and ω̇. With symbols for ω̇ they are differentiated like other
+//! functions of the solution: first at fixed ω̇, then by the chain rule.
 
 use appell_spec::Code;
 use appell_spec::expr::{Expr as Spec, Quantity, Response};
@@ -24,7 +24,7 @@ use super::time::TimeDerivative;
 use crate::symbolic::Expr;
 use crate::symbolic::vector::Vec3;
 
-/// The derived motion, as far as accelerations and forces depend on it.
+/// The derived motion, as needed for accelerations and forces.
 pub struct Answering<'a> {
     /// The mechanism.
     pub mechanism: &'a Mechanism,
@@ -38,24 +38,24 @@ pub struct Answering<'a> {
     pub violation: &'a Violation,
     /// Velocities of points and frames.
     pub kinematics: &'a Kinematics,
-    /// q̇ as it happens.
+    /// The actual q̇.
     pub rates: &'a [Expr],
-    /// Whether contacts creep, so that `rates` are not those that `kinematics` has.
+    /// Whether contacts creep, so that `rates` differ from those in `kinematics`.
     pub creeps: bool,
     /// Motions of the bodies.
     pub bodies: &'a [BodyMotion],
-    /// ω̇: symbols, or what it is.
+    /// ω̇: symbols or values.
     pub accelerations: &'a [Expr],
     /// Applied loads.
     pub loads: &'a [AppliedLoad],
-    /// Reactions that loads depend on.
+    /// Reactions on which loads depend.
     pub reactions_in_loads: &'a [(Expr, Expr)],
-    /// Given rates, with what drives bring.
+    /// Prescribed rates, with the forces of the drives.
     pub given: &'a Given,
 }
 
 impl Answering<'_> {
-    /// What stands for the symbols of accelerations and forces.
+    /// Values for the symbols of accelerations and forces.
     pub fn values(
         &self,
         algebra: &mut Algebra,
@@ -119,11 +119,11 @@ impl Answering<'_> {
         )
     }
 
-    /// The rate of a vector as the ground sees it, in the components of a frame.
+    /// The rate of a vector relative to the ground, in the components of a frame.
     fn rate_of(&self, algebra: &mut Algebra, vector: FrameVector, frame: FrameId) -> Vec3 {
         let frames = &self.kinematics.frames;
         let FrameVector { frame: own, v } = if self.creeps {
-            // The frames turn otherwise than these angular velocities tell.
+            // With creep, these angular velocities are not those of the actual motion.
             let v = frames.express(&mut algebra.graph, vector, GROUND);
             FrameVector { frame: GROUND, v }
         } else {
@@ -163,7 +163,7 @@ impl Answering<'_> {
         Ok(frames.express(&mut algebra.graph, force, frame)[axis.index()])
     }
 
-    /// Index of the reaction of a constraint among those that are reported.
+    /// Index of the reaction of a constraint among the reported ones.
     fn place_of(&self, constraint: ConstraintId) -> Result<usize, Untold> {
         let mut rows = self.constraints.rows_of(constraint);
         let place = rows.next().and_then(|row| self.constraints.reported(row));
@@ -187,7 +187,7 @@ impl Answering<'_> {
     }
 }
 
-/// The accelerations and forces that some expressions name, with their symbols.
+/// The accelerations and forces in some expressions, with their symbols.
 pub fn named_in<'e>(
     symbols: &Symbols,
     exprs: impl IntoIterator<Item = &'e Spec>,
@@ -205,7 +205,7 @@ pub fn named_in<'e>(
     wanted
 }
 
-/// Why a force cannot be told.
+/// Why a force is undetermined.
 #[derive(Clone, Copy)]
 enum Untold {
     Undetermined,
@@ -235,7 +235,7 @@ fn untold(mechanism: &Mechanism, response: Response, reason: Untold) -> Finding 
     }
 }
 
-/// The first item that names a force.
+/// The first item that refers to a force.
 fn who_names(mechanism: &Mechanism, response: Response) -> Item {
     let names = |exprs: &[&Spec]| {
         let mut found = false;

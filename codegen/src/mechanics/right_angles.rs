@@ -1,9 +1,9 @@
-//! Right angles in angles: they exchange sine and cosine, so that a fixed turn by one costs nothing.
+//! Right angles within angles: they exchange sine and cosine, so a fixed turn by one costs no operations.
 
 use super::algebra::Algebra;
 use crate::symbolic::{Expr, Graph, Node, Rational};
 
-/// Sine and cosine of an angle, without the right angles in it.
+/// Sine and cosine of an angle, with multiples of right angles removed.
 pub(super) fn sin_cos(algebra: &mut Algebra, angle: Expr) -> [Expr; 2] {
     let (count, rest) = taken_out(&mut algebra.graph, algebra.pi, angle);
     let graph = &mut algebra.graph;
@@ -16,7 +16,7 @@ pub(super) fn sin_cos(algebra: &mut Algebra, angle: Expr) -> [Expr; 2] {
     }
 }
 
-/// `angle = count · π/2 + rest`, with a count of zero unless π stands there with a multiple of a half.
+/// `angle = count · π/2 + rest`; the count is zero unless the angle contains a half-integer multiple of π.
 fn taken_out(graph: &mut Graph, pi: Expr, angle: Expr) -> (i64, Expr) {
     let terms = match graph.node(angle) {
         Node::Sum(terms) => terms

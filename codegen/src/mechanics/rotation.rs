@@ -1,12 +1,12 @@
-//! One step from the axes of a frame to axes turned against it: components of vectors and of symmetric
-//! tensors on either side, and how they change with a variable.
+//! One rotation between the axes of two frames: components of vectors and of symmetric tensors in both, and
+//! their derivatives.
 
 use super::algebra::Algebra;
 use super::quaternion::Attitude;
 use crate::symbolic::vector::{self, Mat3, Vec3, transpose};
 use crate::symbolic::{Expr, Graph};
 
-/// From the axes before the step to those behind it.
+/// From the parent axes to the child axes.
 #[derive(Debug, Clone)]
 pub(super) enum Rotation {
     /// About a coordinate axis.
@@ -31,7 +31,7 @@ pub(super) struct Turn {
 }
 
 impl Rotation {
-    /// R v: the components before the step.
+    /// R v: the components in the parent.
     pub(super) fn in_parent(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match self {
             Self::Turn(turn) => turn.rotate(graph, v, turn.sin, turn.cos),
@@ -39,7 +39,7 @@ impl Rotation {
         }
     }
 
-    /// Rᵀ v: the components behind the step.
+    /// Rᵀ v: the components in the child.
     pub(super) fn in_child(&self, graph: &mut Graph, v: Vec3) -> Vec3 {
         match self {
             Self::Turn(turn) => {
@@ -50,7 +50,7 @@ impl Rotation {
         }
     }
 
-    /// R T Rᵀ: the components of a tensor before the step.
+    /// R T Rᵀ: the components of a tensor in the parent.
     pub(super) fn tensor_in_parent(&self, graph: &mut Graph, t: &Mat3) -> Mat3 {
         match self {
             Self::Turn(turn) => turn.rotate_tensor(graph, t),
@@ -61,7 +61,7 @@ impl Rotation {
         }
     }
 
-    /// Angular velocity of the step, in the axes behind it.
+    /// Angular velocity of the rotation, in the child.
     pub(super) fn rate(&self) -> Vec3 {
         match self {
             Self::Turn(turn) => {
@@ -91,7 +91,7 @@ impl Rotation {
         self.change(algebra, z).in_child(&mut algebra.graph, v)
     }
 
-    /// ∂R/∂z as if it were a rotation.
+    /// ∂R/∂z in the same representation as a rotation.
     fn change(&self, algebra: &mut Algebra, z: Expr) -> Change {
         match self {
             Self::Turn(turn) => Change::Turn(Turn {
@@ -133,7 +133,7 @@ impl Change {
 }
 
 impl Turn {
-    /// The two axes that take part, in cyclic order.
+    /// The two axes that change, in cyclic order.
     fn plane(&self) -> [usize; 2] {
         [(self.axis + 1) % 3, (self.axis + 2) % 3]
     }
@@ -144,7 +144,7 @@ impl Turn {
         rotated
     }
 
-    /// What a rotation makes of the components across the axis.
+    /// Rotates the components perpendicular to the axis.
     fn rotate_plane(&self, graph: &mut Graph, v: Vec3, sin: Expr, cos: Expr) -> Vec3 {
         let [i, j] = self.plane();
         let mut rotated = vector::ZERO;

@@ -10,7 +10,7 @@ use crate::symbolic::{Expr, Graph};
 /// One scalar constraint: `Σ coefficient · q̇ + rest = 0`.
 #[derive(Debug, Clone)]
 pub struct Row {
-    /// Name for people, such as `rolling.x`.
+    /// Display name, such as `rolling.x`.
     pub name: String,
     /// Of which constraint.
     pub constraint: ConstraintId,
@@ -18,15 +18,15 @@ pub struct Row {
     pub value: Expr,
     /// Coefficients of the generalised velocities.
     pub coefficients: Vec<Expr>,
-    /// What remains without generalised velocities.
+    /// Terms without generalised velocities.
     pub rest: Expr,
-    /// Where its reaction is reported, and along which direction of the ground a unit of it acts.
+    /// Where its reaction is reported, and the direction of a unit reaction in the ground.
     pub reaction: Reaction,
-    /// The direction as it is written; an axis of the ground where the constraint has no point.
+    /// The direction in its original frame; an axis of the ground for constraints without a point.
     pub along: FrameVector,
-    /// The point next to the origin from which hangs what it holds, if it has a point.
+    /// The point adjacent to the origin on the path to the constrained point, if there is one.
     pub root: Option<PointId>,
-    /// Whether it is left out because it follows from the others.
+    /// Whether it is omitted because it follows from the others.
     pub redundant: bool,
     /// Whether it is the derivative of a position constraint.
     pub of_position: bool,
@@ -37,22 +37,22 @@ pub struct Row {
 pub struct Reaction {
     /// Index among the places of reactions; see [`super::constraints::Constraints::reported`].
     pub place: usize,
-    /// Direction in the ground; a row without a point reports its multiplier as first component.
+    /// Direction in the ground; the multiplier of a row without a point is the first component.
     pub direction: Vec3,
 }
 
 impl Row {
-    /// Whether the coordinates satisfy the row by themselves.
+    /// Whether the coordinates satisfy the row identically.
     pub fn is_embedded(&self) -> bool {
         self.coefficients.iter().all(|&c| c == Graph::ZERO)
     }
 
-    /// Whether the row restricts the generalised velocities beyond what the others do.
+    /// Whether the row restricts the generalised velocities independently of the others.
     pub fn is_active(&self) -> bool {
         !self.redundant && !self.is_embedded()
     }
 
-    /// The row for questions of rank.
+    /// The row for rank tests.
     pub fn linear(&self) -> LinearRow {
         LinearRow {
             coefficients: self.coefficients.clone(),

@@ -1,5 +1,6 @@
-//! Jumps and bends of the equations, such as those of `if(t < t_brake, …)` or `abs(v)`. An integrator has to end a
-//! step at each. What time alone decides it finds for certain, by bounds on functions of time.
+//! Discontinuities and kinks of the equations, such as those of `if(t < t_brake, …)` or `abs(v)`. An integrator
+//! has to end a step at each. Those that depend on time alone are located reliably, by bounds on functions of
+//! time.
 
 use rustc_hash::FxHashMap;
 
@@ -8,25 +9,25 @@ use super::symbols::{Symbols, ids};
 use crate::program::{Array, FunctionKind, Layout};
 use crate::symbolic::{Expr, Function, Graph, Node, SymbolId};
 
-/// What switches some expressions, and what it looks like in time.
+/// Switching functions of expressions, and their behaviour in time.
 #[derive(Debug, Clone, Default)]
 pub struct Switches {
-    /// Relations and signs of time and parameters: 1 where a relation holds and 0 elsewhere, or a sign. Each is
-    /// constant between its jumps.
+    /// Relations and signs of time and parameters: 1 if a relation holds and 0 otherwise, or a sign. Each is
+    /// piecewise constant.
     pub answers: Vec<Expr>,
-    /// For each of them the function whose sign it is: the difference that a relation compares, or what a sign or an
-    /// absolute value is taken of.
+    /// The corresponding switching functions: the difference of the sides of a relation, or the argument of a
+    /// sign or an absolute value.
     pub functions: Vec<Expr>,
-    /// Functions of time and parameters that rise and fall without a jump: sines, exponentials, powers.
+    /// Functions of time and parameters that vary continuously: sines, exponentials, powers.
     pub shapes: Vec<Expr>,
-    /// The functions whose signs states or inputs decide as well.
+    /// Switching functions that also depend on states or inputs.
     pub crossings: Vec<Expr>,
-    /// Functions of states that rise and fall within a small part of their arguments' range: exponentials, hyperbolic
-    /// tangents, and roots of a square and a constant, as in smoothed signs.
+    /// Functions of states that vary rapidly within a small part of their arguments' range: exponentials,
+    /// hyperbolic tangents, and roots of a square and a constant, as in smoothed signs.
     pub pulses: Vec<Expr>,
 }
 
-/// What an expression depends on.
+/// Dependencies of an expression.
 #[derive(Debug, Clone, Copy, Default)]
 struct Nature {
     by_time: bool,
@@ -44,7 +45,7 @@ impl Nature {
     }
 }
 
-/// What switches the values of `roots`.
+/// The switching functions of `roots`.
 pub fn switches(graph: &mut Graph, symbols: &Symbols, roots: &[Expr]) -> Switches {
     let time = ids(graph, &[symbols.time]);
     let constants = ids(
@@ -100,7 +101,7 @@ pub fn switches(graph: &mut Graph, symbols: &Symbols, roots: &[Expr]) -> Switche
 }
 
 impl Derivation {
-    /// The results of a function that tells what switches the rates.
+    /// The results of a function that reports the switching of the rates.
     pub(super) fn switch_arrays(&mut self, kind: FunctionKind) -> Vec<Array> {
         let rates = self.rates();
         let all = switches(&mut self.algebra.graph, &self.symbols, &rates);
@@ -122,7 +123,7 @@ impl Derivation {
 }
 
 impl Switches {
-    /// Whether nothing switches, and nothing rises and falls with time.
+    /// Whether there are neither switching functions nor functions that vary with time.
     pub fn is_empty(&self) -> bool {
         [&self.answers, &self.shapes, &self.crossings, &self.pulses]
             .iter()
@@ -145,7 +146,7 @@ impl Switches {
     }
 }
 
-/// Whether an expression may rise and fall within a small part of its arguments' range.
+/// Whether an expression may vary rapidly within a small part of its arguments' range.
 fn is_pulse(graph: &Graph, expr: Expr, is_constant: impl Fn(Expr) -> bool) -> bool {
     match *graph.node(expr) {
         Node::Function(Function::Exp | Function::Tanh, _) => true,
@@ -157,7 +158,7 @@ fn is_pulse(graph: &Graph, expr: Expr, is_constant: impl Fn(Expr) -> bool) -> bo
     }
 }
 
-/// Whether an expression may rise and fall faster than its parts.
+/// Whether an expression may vary faster than its operands.
 fn is_shape(graph: &Graph, expr: Expr) -> bool {
     match graph.node(expr) {
         Node::Function(function, _) => !matches!(function, Function::Abs | Function::Sign),

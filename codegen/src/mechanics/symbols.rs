@@ -6,44 +6,43 @@ use rustc_hash::FxHashMap;
 
 use crate::symbolic::{Expr, Graph, SymbolId};
 
-/// One symbol per named quantity, and those of their derivatives that the equations need.
+/// One symbol per named quantity, and those of its derivatives that the equations need.
 #[derive(Debug, Clone)]
 pub struct Symbols {
     /// Parameters.
     pub parameters: Vec<Expr>,
     /// Coordinates q.
     pub coordinates: Vec<Expr>,
-    /// Generalised velocities q̇ while they are unknowns.
+    /// Generalised velocities q̇ as unknowns.
     pub rates: Vec<Expr>,
     /// Pseudo-velocities ω.
     pub speeds: Vec<Expr>,
-    /// Pseudo-accelerations ω̇ while they are unknowns.
+    /// Pseudo-accelerations ω̇ as unknowns.
     pub accelerations: Vec<Expr>,
     /// Inputs.
     pub inputs: Vec<Expr>,
     /// Signals with their first and second derivatives.
     pub signals: Vec<[Expr; 3]>,
-    /// Kinematic quantities of points and frames that loads and outputs name, until their places take
-    /// what they are.
+    /// Kinematic quantities of points and frames in loads and outputs, until their values are substituted.
     pub motions: Vec<(MotionQuantity, Expr)>,
-    /// Accelerations and forces that they name, likewise.
+    /// Accelerations and forces in these, likewise.
     pub responses: Vec<(Response, Expr)>,
     /// The symbols of both.
     named: FxHashMap<Quantity, Expr>,
-    /// Expressions of loads that depend on reactions, by load and place, as if they were inputs.
+    /// Expressions of loads that depend on reactions, by load and index, treated as inputs.
     of_reactions: FxHashMap<(LoadId, usize), Expr>,
     /// Time.
     pub time: Expr,
     /// The circle constant.
     pub pi: Expr,
-    /// Weights of the adjoint of the rates, once it is asked for.
+    /// Weights of the adjoint of the rates, if requested.
     pub weights: Vec<Expr>,
-    /// Weights of the adjoint of the outputs, once it is asked for.
+    /// Weights of the adjoint of the outputs, if requested.
     pub output_weights: Vec<Expr>,
 }
 
 impl Symbols {
-    /// Makes the symbols; parameters first, so that canonical products start with them.
+    /// Creates the symbols; parameters first, so that canonical products start with them.
     pub fn new(graph: &mut Graph, mechanism: &Mechanism) -> Self {
         let mut all = |names: &mut dyn Iterator<Item = String>| -> Vec<Expr> {
             names.map(|name| graph.symbol(&name)).collect()
@@ -95,7 +94,7 @@ impl Symbols {
     }
 }
 
-/// A symbol for each kinematic quantity and force; no name of a spec has parentheses.
+/// A symbol for each kinematic quantity and force; names in a spec have no parentheses.
 #[derive(Default)]
 struct Named {
     motions: Vec<(MotionQuantity, Expr)>,
@@ -149,7 +148,7 @@ impl Named {
     }
 }
 
-/// As it is written in a spec.
+/// The quantity in the syntax of a spec.
 fn shown(mechanism: &Mechanism, motion: MotionQuantity) -> String {
     let point = |point: PointId| &mechanism.points[point].name;
     match motion {
@@ -167,7 +166,7 @@ fn shown(mechanism: &Mechanism, motion: MotionQuantity) -> String {
     }
 }
 
-/// As it is written in a spec.
+/// The quantity in the syntax of a spec.
 pub(super) fn answer(mechanism: &Mechanism, response: Response) -> String {
     let component = |direction: Option<(Axis, FrameId)>| {
         direction.map_or_else(String::new, |(a, f)| {
@@ -206,7 +205,7 @@ fn along(mechanism: &Mechanism, axis: Axis, frame: FrameId) -> String {
     format!("{axis}, {}", mechanism.frames[frame].name)
 }
 
-/// A symbol for each expression of a load that depends on reactions, by itself or by the force of another load.
+/// A symbol for each expression of a load that depends on reactions, directly or through another load's force.
 fn of_reactions(graph: &mut Graph, mechanism: &Mechanism) -> FxHashMap<(LoadId, usize), Expr> {
     let mut all: FxHashMap<(LoadId, usize), Expr> = FxHashMap::default();
     let mut reacts = vec![false; mechanism.loads.len()];
@@ -234,18 +233,19 @@ fn of_reactions(graph: &mut Graph, mechanism: &Mechanism) -> FxHashMap<(LoadId, 
 }
 
 impl Symbols {
-    /// What stands for an expression of a load, counted as in `LoadKind::expressions`, that depends on reactions.
+    /// The symbol of an expression of a load, numbered as in `LoadKind::expressions`, that depends on
+    /// reactions.
     pub fn of_reactions(&self, load: LoadId, place: usize) -> Option<Expr> {
         self.of_reactions.get(&(load, place)).copied()
     }
 
-    /// The symbol of a kinematic quantity or a force that a load or an output names.
+    /// The symbol of a kinematic quantity or a force in a load or an output.
     pub fn named(&self, quantity: Quantity) -> Option<Expr> {
         self.named.get(&quantity).copied()
     }
 }
 
-/// The symbols behind a list of expressions that are symbols.
+/// The ids of expressions that are symbols.
 pub fn ids(graph: &Graph, symbols: &[Expr]) -> Vec<SymbolId> {
     symbols.iter().filter_map(|&s| graph.as_symbol(s)).collect()
 }

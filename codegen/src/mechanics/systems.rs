@@ -2,8 +2,8 @@
 
 use crate::symbolic::{Expr, Graph, Node};
 
-/// The different matrices of the systems inside `roots`, row by row, each with its size. Of a lone
-/// unknown no condition number tells more than that it is divided by.
+/// The distinct matrices of the systems inside `roots`, row by row, each with its size. Systems of a single
+/// unknown are divisions and need no condition number.
 pub fn systems(graph: &Graph, roots: &[Expr]) -> Vec<(usize, Vec<Expr>)> {
     let mut systems: Vec<(usize, Vec<Expr>)> = Vec::new();
     for expr in graph.in_order(roots) {

@@ -14,7 +14,7 @@ pub struct TimeDerivative<'a> {
 }
 
 impl TimeDerivative<'_> {
-    /// `Σ ∂e/∂q q̇ + Σ ∂e/∂s ṡ + ∂e/∂t`; pseudo-velocities are held.
+    /// `Σ ∂e/∂q q̇ + Σ ∂e/∂s ṡ + ∂e/∂t` at fixed pseudo-velocities.
     pub fn of(&self, algebra: &mut Algebra, expr: Expr) -> Expr {
         let mut parts = vec![algebra.derivative(expr, self.symbols.time)];
         for (&coordinate, &rate) in self.symbols.coordinates.iter().zip(self.rates) {
@@ -30,7 +30,7 @@ impl TimeDerivative<'_> {
         algebra.graph.sum(&parts)
     }
 
-    /// The derivative of each component, in the frame of the components.
+    /// The component-wise derivative, in the frame of the components.
     pub fn of3(&self, algebra: &mut Algebra, v: Vec3) -> Vec3 {
         if v.iter().all(|&c| algebra.graph.as_number(c).is_some()) {
             return [Graph::ZERO; 3];

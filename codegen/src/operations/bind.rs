@@ -1,4 +1,4 @@
-//! From a graph to a schedule of what some results need.
+//! Converts a graph to a schedule of the live nodes.
 
 use rustc_hash::FxHashMap;
 
@@ -6,7 +6,7 @@ use super::graph::{Graph, Id, Node, Solution, count};
 use crate::schedule::{Argument, ResultArray, Schedule, Step, Tree, Value};
 use crate::symbolic::Function;
 
-/// The operations that named results need, each bound to a value of its own.
+/// The operations on which named results depend, each bound to a value.
 pub(crate) fn bind(graph: &Graph, results: Vec<(&str, Vec<Id>)>) -> Schedule {
     let mut binding = Binding {
         graph,
@@ -36,7 +36,7 @@ pub(crate) fn bind(graph: &Graph, results: Vec<(&str, Vec<Id>)>) -> Schedule {
     }
 }
 
-/// Which nodes some others need.
+/// The live nodes: those that `needed` ones depend on.
 fn live<'a>(graph: &Graph, needed: impl Iterator<Item = &'a Id>) -> Vec<bool> {
     let mut live = vec![false; graph.len()];
     let mut open: Vec<Id> = needed.copied().collect();
@@ -54,7 +54,7 @@ struct Binding<'g> {
     values: FxHashMap<Id, Value>,
     arguments: Vec<Argument>,
     steps: Vec<Step>,
-    /// Numbers of the factorisations, by matrix.
+    /// Indices of the factorisations, by matrix.
     factorised: FxHashMap<u32, u32>,
 }
 
@@ -102,7 +102,7 @@ impl Binding<'_> {
         self.steps.push(Step::Let { value, tree });
     }
 
-    /// Both together where both are needed.
+    /// Computes both together if both are live.
     fn sine_or_cosine(&mut self, id: Id, function: Function, angle: Id) {
         let other = match function {
             Function::Sin => Function::Cos,

@@ -1,21 +1,21 @@
-//! Equations of motion under a law, as one schedule.
+//! Equations of motion with a control law, as one schedule.
 
 use super::bind::bind;
 use super::flatten::flatten;
 use super::graph::{Graph, Id};
 use crate::schedule::{Argument, Schedule};
 
-/// What a law sees in the place of what the motion has.
+/// Replacements of the law's arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Seen {
-    /// A state plus an input of the whole: its measurement with noise.
+    /// A state plus an input of the closed loop: its noisy measurement.
     Disturbed {
         /// The state.
         state: u32,
-        /// The input that is added.
+        /// The added input.
         by: u32,
     },
-    /// An input of the whole for a parameter.
+    /// An input of the closed loop instead of a parameter.
     Replaced {
         /// The parameter.
         parameter: u32,
@@ -24,8 +24,8 @@ pub enum Seen {
     },
 }
 
-/// The rates of a closed loop: the first result of `law` is the inputs of `rates`. Both have the same time, states
-/// and parameters; the inputs of the whole are those of the law and those of what it sees.
+/// The rates of a closed loop: the first result of `law` gives the inputs of `rates`. Both have the same time,
+/// states and parameters; the inputs of the closed loop are those of the law and those of `seen`.
 pub fn closed_loop(law: &Schedule, rates: &Schedule, seen: &[Seen]) -> Schedule {
     let mut graph = Graph::default();
     let inputs = under(law, &mut graph, seen);
@@ -54,7 +54,7 @@ fn under(law: &Schedule, graph: &mut Graph, seen: &[Seen]) -> Vec<Id> {
     flatten(law, graph, argument).swap_remove(0)
 }
 
-/// Rates, the first result of a schedule, with inputs put in.
+/// Rates, the first result of a schedule, with inputs substituted.
 fn in_loop(rates: &Schedule, graph: &mut Graph, inputs: &[Id]) -> Vec<Id> {
     let given = |graph: &mut Graph, argument| match argument {
         Argument::Input(input) => inputs[input as usize],

@@ -1,4 +1,4 @@
-//! From a schedule to its graph, with other nodes in the place of its arguments.
+//! Converts a schedule to its graph, with its arguments substituted.
 
 use rustc_hash::FxHashMap;
 
@@ -6,8 +6,8 @@ use super::graph::{Graph, Id, Node};
 use crate::schedule::{Argument, Schedule, Step, Tree, Value};
 use crate::symbolic::Function;
 
-/// Adds the operations of a schedule to a graph and returns its results, one list an array.
-/// `argument` tells what stands for an argument.
+/// Adds the operations of a schedule to a graph and returns its results, one list per array. `argument` gives
+/// the node of an argument.
 pub(crate) fn flatten(
     schedule: &Schedule,
     graph: &mut Graph,
@@ -30,7 +30,7 @@ struct Flattening<'g, F> {
     graph: &'g mut Graph,
     argument: F,
     values: FxHashMap<Value, Id>,
-    /// By the number of the factorisation.
+    /// By index of the factorisation.
     matrices: FxHashMap<u32, u32>,
 }
 

@@ -1,4 +1,4 @@
-//! Operations without the order of a schedule: equal ones are one node.
+//! Operations without the order of a schedule, hash-consed.
 
 use rustc_hash::FxHashMap;
 
@@ -10,7 +10,7 @@ use crate::symbolic::{Function, Rational, Relation};
 pub(crate) struct Id(u32);
 
 impl Id {
-    /// Its position among the nodes.
+    /// Its index among the nodes.
     pub(crate) fn index(self) -> usize {
         self.0 as usize
     }
@@ -33,20 +33,20 @@ pub(crate) enum Node {
     Atan2(Id, Id),
     /// `base^exponent`
     Power(Id, Id),
-    /// A choice between two values.
+    /// A select between two values.
     Choice {
         /// Relation.
         relation: Relation,
         /// Left and right side of the relation.
         compared: [Id; 2],
-        /// Value where it holds, value elsewhere.
+        /// Value if it holds, value otherwise.
         branches: [Id; 2],
     },
     /// An unknown of a linear system.
     Unknown {
         /// The solution; see [`Graph::solution`].
         solution: u32,
-        /// Which unknown.
+        /// Row of the unknown.
         row: u32,
     },
 }
@@ -69,7 +69,7 @@ pub(crate) struct Matrix {
     pub(crate) entries: Vec<Id>,
 }
 
-/// Nodes in the order in which they were made: operands come first.
+/// Nodes in order of creation: operands come first.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Graph {
     nodes: Vec<Node>,
@@ -79,7 +79,7 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// How many nodes there are.
+    /// The number of nodes.
     pub(crate) fn len(&self) -> usize {
         self.nodes.len()
     }
@@ -89,12 +89,12 @@ impl Graph {
         (0..self.nodes.len()).map(id)
     }
 
-    /// What a node is.
+    /// The operation of a node.
     pub(crate) fn node(&self, Id(id): Id) -> &Node {
         &self.nodes[id as usize]
     }
 
-    /// A node that was made already.
+    /// An existing node.
     pub(crate) fn find(&self, node: &Node) -> Option<Id> {
         self.known.get(node).copied()
     }
@@ -126,7 +126,7 @@ impl Graph {
         }
     }
 
-    /// A node as it stands.
+    /// The node of an operation, without simplification.
     pub(crate) fn intern(&mut self, node: Node) -> Id {
         let nodes = &mut self.nodes;
         *self.known.entry(node).or_insert_with_key(|node| {
@@ -194,7 +194,7 @@ fn id(index: usize) -> Id {
     Id(count(index))
 }
 
-/// Schedules are far shorter.
+/// Converts an index; schedules are far shorter than its range.
 pub(crate) fn count(index: usize) -> u32 {
     u32::try_from(index).unwrap_or(u32::MAX)
 }

@@ -1,4 +1,4 @@
-//! Shapes of arrays, and what labels their entries.
+//! Shapes of arrays, and labels of their entries.
 
 use appell_runtime::model::{ModelInfo, Quantity};
 
@@ -28,8 +28,8 @@ pub enum Space {
 }
 
 impl Space {
-    /// What the entries stand for: rates and forces for the state that changes. Rows of constraints
-    /// and reactions stand for none.
+    /// The quantities of the entries: for rates and forces, those of the states. Rows of constraints and
+    /// reactions have none.
     pub fn quantities(self, info: &ModelInfo) -> &[Quantity] {
         match self {
             Self::Parameters => &info.parameters,
@@ -43,25 +43,25 @@ impl Space {
     }
 }
 
-/// The shape of an array, and what labels its entries.
+/// The shape of an array, and the labels of its entries.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Layout {
     /// One number.
     Scalar,
     /// One number per entry of a vector.
     Vector(Space),
-    /// So many numbers per entry of a vector.
+    /// A fixed number of numbers per entry of a vector.
     Rows(Space, usize),
     /// One number per pair of entries: derivatives of the first vector with respect to the second.
     Jacobian(Space, Space),
     /// A plain list.
     List(usize),
-    /// A plain matrix of so many rows and columns.
+    /// A plain matrix, by numbers of rows and columns.
     Matrix(usize, usize),
 }
 
 impl Layout {
-    /// Whether entries are told by a row and a column.
+    /// Whether entries have a row and a column index.
     pub fn has_columns(self) -> bool {
         matches!(self, Self::Rows(..) | Self::Jacobian(..) | Self::Matrix(..))
     }

@@ -1,4 +1,5 @@
-//! From the working graph to steps: what gets a name, in which order, under which name.
+//! Turns the working graph into steps: decides which nodes are bound to names, their order and
+//! their names.
 
 mod factors;
 
@@ -12,20 +13,20 @@ use super::steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value
 use crate::program::{Function, Own, Program};
 use crate::symbolic::{Function as Elementary, Rational};
 
-/// Columns of an emitted line.
+/// Maximum columns of an emitted line.
 const COLUMNS: usize = 88;
 /// Columns of `    let `, ` = ` and `;`.
 const FRAME: usize = 12;
-/// Columns of a name that is not known yet.
+/// Columns assumed for a name that is not chosen yet.
 const USUAL: usize = 24;
-/// Columns of the lines on which a long sum goes on.
+/// Columns available on the continuation lines of a long sum.
 const MORE_LINES: usize = 140;
-/// Wider trees are not written inside other trees.
+/// Wider trees are not inlined into other trees.
 const INLINE: usize = 72;
-/// Columns that a tree gets after a name of any length.
+/// Columns guaranteed to a tree, however long its name is.
 const NARROWEST: usize = 30;
 
-/// The steps of a function. `hints` tells which nodes are hints of the program, up to their sign.
+/// The steps of a function. `hints` marks the nodes that equal a hint of the program up to sign.
 pub(super) fn bind(
     program: &Program,
     function: &Function,
@@ -45,7 +46,7 @@ pub(super) fn bind(
     binding.finish(function)
 }
 
-/// How a node can be referred to.
+/// How a node is referred to.
 #[derive(Debug, Clone)]
 struct Built {
     piece: Piece,
@@ -58,18 +59,19 @@ struct Binding<'a> {
     dag: &'a Dag,
     arguments: ArgumentNames,
     outline: Outline<'a>,
-    /// Nodes wanted with the opposite sign.
+    /// Nodes to be computed with the opposite sign.
     minus: Vec<bool>,
-    /// Hints by their number, and whether they are minus the node, for what has no other name.
+    /// Per node without a derived name: index of a matching hint, and whether the hint is minus the
+    /// node.
     hints: Vec<Option<(usize, bool)>>,
-    /// Parts counted so far, by what they feed.
+    /// Number of parts defined so far, per consumer.
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
     names: Names,
     values: Vec<String>,
-    /// What the values are products of, where their names say that.
+    /// The monomial of each value, where its name denotes one.
     products: Vec<Option<Monomial>>,
-    /// Values whose names are hints.
+    /// Values named by hints.
     hinted: Vec<bool>,
     steps: Vec<Step>,
     title: Option<String>,
@@ -157,11 +159,11 @@ impl<'a> Binding<'a> {
         }
     }
 
-    /// The piece of an item whose flip is a sign, and whether it is to be negated.
+    /// The piece of an operand whose flip is a sign, and whether it is to be negated.
     fn part(&self, item: Item) -> (Piece, bool) {
         match &self.built[item.id.index()] {
             Some(built) => (built.piece.clone(), built.negative != item.flip),
-            // Parts are built before wholes.
+            // Operands are built before their users.
             None => (Piece::name(Tree::Constant(Rational::ZERO), "zero"), false),
         }
     }
@@ -173,12 +175,12 @@ impl<'a> Binding<'a> {
         )
     }
 
-    /// Where a term stands among those of its sign.
+    /// Sort key of a term among the terms of its sign.
     fn place_in_sum(&self, tree: &Tree) -> (u8, u32) {
         Monomial::of(tree, &self.products).map_or((2, 0), |monomial| monomial.place_in_sum())
     }
 
-    /// The piece of an item, with its sign.
+    /// The piece of an operand, with its sign.
     fn signed(&self, item: Item) -> Piece {
         let (piece, negative) = self.part(item);
         match (negative, &piece.tree) {
@@ -234,8 +236,8 @@ impl<'a> Binding<'a> {
         self.built[id.index()] = Some(built);
     }
 
-    /// The operands of a function, with their signs, defined before where they would not all fit on
-    /// the line.
+    /// The operands of a function, with their signs, bound beforehand where they would not all fit
+    /// on the line.
     fn operands<const N: usize>(&mut self, id: Id, items: [Item; N]) -> [Piece; N] {
         const CALL: usize = 26;
         let room = self.room(id).saturating_sub(CALL) / N;
@@ -264,7 +266,7 @@ impl<'a> Binding<'a> {
                 part.1 = false;
             }
         }
-        // `a - 2 b` instead of `a + -2 b`, as long as something positive comes first.
+        // `a - 2 b` instead of `a + -2 b`, if there is a positive term to start with.
         let positive = parts
             .iter()
             .any(|(piece, minus)| !minus && !piece.starts_negative());
@@ -336,7 +338,7 @@ impl<'a> Binding<'a> {
         (piece, negative)
     }
 
-    /// `a b c …`, with parts defined before where the line would be too long.
+    /// `a b c …`, with partial products bound beforehand where the line would be too long.
     fn chain(&mut self, id: Id, factors: Vec<Piece>) -> Option<Piece> {
         let room = self.room_of_product(id);
         let mut product: Option<Piece> = None;
@@ -353,8 +355,8 @@ impl<'a> Binding<'a> {
         product
     }
 
-    /// Two operands as they are, or the first one, or both, defined before where the line would be
-    /// too long.
+    /// Two operands unchanged, or the first or both of them bound beforehand where the line would
+    /// be too long.
     fn fitting(
         &mut self,
         id: Id,
@@ -384,7 +386,7 @@ impl<'a> Binding<'a> {
         (left, right)
     }
 
-    /// Columns for the tree of a node.
+    /// Columns available to the tree of a node.
     fn room(&self, id: Id) -> usize {
         let made_up = || {
             let consumer = self.outline.feeds[id.index()].and_then(|feed| self.given_name(feed));
@@ -397,7 +399,7 @@ impl<'a> Binding<'a> {
         COLUMNS.saturating_sub(FRAME + name).max(NARROWEST)
     }
 
-    /// Columns for a sum: with a name of its own it may go on, term by term, on the next lines.
+    /// Columns available to a sum: if it is bound, it may continue term by term on the next lines.
     fn room_of_sum(&self, id: Id) -> usize {
         let more = if self.outline.bound[id.index()] {
             MORE_LINES
@@ -407,7 +409,7 @@ impl<'a> Binding<'a> {
         self.room(id) + more
     }
 
-    /// Columns for a product: with a name of its own it may go on once.
+    /// Columns available to a product: if it is bound, it may continue on one more line.
     fn room_of_product(&self, id: Id) -> usize {
         let more = if self.outline.bound[id.index()] {
             MORE_LINES / 2
@@ -517,20 +519,21 @@ impl<'a> Binding<'a> {
         derived.or(label.map(|label| &label.0)).cloned()
     }
 
-    /// Name from the derivation; one that differentiation made up gives way to that of a result.
+    /// Name from the derivation; the name of a result takes precedence over one made up by
+    /// differentiation.
     fn derived_name(&self, id: Id) -> Option<Name> {
         let label = self.outline.labels[id.index()].as_ref();
         self.dag.names[id.index()].filter(|name| !name.automatic || label.is_none())
     }
 
-    /// Whether minus a node has its name, if anything has.
+    /// Whether the name of a node denotes minus the node; `None` without a name.
     fn sign_of_name(&self, id: Id) -> Option<bool> {
         let label = self.outline.labels[id.index()].as_ref();
         let derived = self.derived_name(id).map(|name| name.negative);
         derived.or(label.map(|label| label.1))
     }
 
-    /// Defines a value under the name that tells most. `negative` says that the piece is minus the
+    /// Binds a value to its most informative name. `negative` says that the piece is minus the
     /// node.
     fn named(&mut self, id: Id, piece: Piece, negative: bool) -> Built {
         let sign = self.sign_of_name(id);
@@ -542,7 +545,7 @@ impl<'a> Binding<'a> {
             Some(name) if self.takes_its_sign(id) => {
                 (self.define(&name, piece.opposite().tree), !negative)
             }
-            // What comes out with the other sign is told by how it is made.
+            // A value of the opposite sign is named after its own operation.
             _ => {
                 let hint = self.hint(id, negative);
                 (self.define_by_making(id, piece.tree, hint), negative)
@@ -551,14 +554,14 @@ impl<'a> Binding<'a> {
         Built { piece, negative }
     }
 
-    /// Whether a value that others need is told best by its factors, not by one of its uses.
+    /// Whether a shared value is better named after its factors than after one of its uses.
     fn tells_itself(&self, id: Id, piece: &Piece) -> bool {
         const FEW: usize = 3;
         self.outline.is_entry(id)
             && self.derived_name(id).is_none_or(|name| name.automatic)
             && self.outline.feeds_others(id)
             && Monomial::of(&piece.tree, &self.products).is_some_and(|product| {
-                // A hint adds a name and takes none away.
+                // A hint may add a name but not replace one.
                 let hinted = product.values().any(|value| self.hinted[value.0 as usize]);
                 !hinted
                     && product.length() <= FEW
@@ -566,15 +569,15 @@ impl<'a> Binding<'a> {
             })
     }
 
-    /// Whether a value that comes out with the wrong sign is negated for the sake of its name.
+    /// Whether a value computed with the opposite sign is negated to keep its name.
     fn takes_its_sign(&self, id: Id) -> bool {
         self.dag.names[id.index()].is_some()
             || keeps_its_name(self.dag, id)
             || !self.outline.is_shared(id)
     }
 
-    /// The name of a value that readers know, or what it is multiplied with; `negative` says that
-    /// minus the node is defined.
+    /// The name of a hint, or one made of the cofactors; `negative` says that minus the node is
+    /// bound.
     fn hint(&self, id: Id, negative: bool) -> Option<String> {
         let hint = self.hints[id.index()].and_then(|(number, opposite)| {
             let hint = &self.program.hints[number];
@@ -598,12 +601,12 @@ impl<'a> Binding<'a> {
         format!("{consumer}_{word}_{count}")
     }
 
-    /// Defines a part of a tree that is too wide for a line.
+    /// Binds a subtree that is too wide for a line.
     fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
         self.define_by_making(id, piece.tree, None)
     }
 
-    /// Defines a value under a name that tells how it is made.
+    /// Binds a value to a name made from its operation.
     fn define_by_making(&mut self, id: Id, tree: Tree, hint: Option<String>) -> Piece {
         let described = describe(&tree, &self.values, &self.products, &self.arguments);
         let product = described
@@ -647,7 +650,7 @@ impl<'a> Binding<'a> {
     }
 }
 
-/// Numbers first, then parameters, values and variables, each in their order, then sums in
+/// Sort key: numbers, then parameters, values and variables, each in their order, then sums in
 /// parentheses.
 fn reading_order(tree: &Tree) -> (u8, u32) {
     match tree {

@@ -2,9 +2,8 @@
 
 use super::dag::{Dag, Id, Item, Op};
 
-/// Distributes a division over a sum where a term loses a factor by that. The reciprocal takes the
-/// place of the product, so nothing is divided that was not divided before. Tells whether anything
-/// cancelled.
+/// Distributes a division over a sum where this cancels a factor of a term. The reciprocal replaces
+/// the product, so no new divisor is introduced. Returns whether anything changed.
 pub(super) fn cancel(dag: &mut Dag, order: &[Id]) -> bool {
     let mut any = false;
     let uses = dag.uses(order);
@@ -17,8 +16,8 @@ pub(super) fn cancel(dag: &mut Dag, order: &[Id]) -> bool {
     any
 }
 
-/// A sum among the factors of a product that nothing else uses, a divisor of the product, and the
-/// positions of the terms that have the divisor as a factor.
+/// A product with a single-use sum among its factors: the sum, a divisor of the product, and the
+/// positions of the terms that contain the divisor as a factor.
 fn candidate(dag: &Dag, uses: &[u32], id: Id) -> Option<(Id, Id, Vec<usize>)> {
     let private = |id: Id| {
         uses.get(id.index()).is_none_or(|&uses| uses == 1) && dag.names[id.index()].is_none()

@@ -1,11 +1,11 @@
-//! Counts what a schedule computes.
+//! Operation counts of a schedule.
 
 use std::fmt;
 
 use super::steps::{Operation, Schedule, Step, Tree};
 use crate::symbolic::Function;
 
-/// How many operations a schedule has.
+/// Operation counts of a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct OperationCount {
     /// Additions and subtractions.
@@ -14,13 +14,13 @@ pub struct OperationCount {
     pub multiply: usize,
     /// Divisions.
     pub divide: usize,
-    /// Changes of sign that no other operation absorbs.
+    /// Sign changes that no other operation absorbs.
     pub negate: usize,
     /// Pairs of sine and cosine; a lone sine or cosine counts as a pair.
     pub sin_cos: usize,
     /// Other functions.
     pub functions: usize,
-    /// Choices between two values.
+    /// Selects between two values.
     pub selects: usize,
     /// Solutions of linear systems; their inner operations are not counted.
     pub solves: usize,

@@ -1,8 +1,8 @@
-//! The working graph: n-ary sums and products that stages rewrite until they are cheap.
+//! The working graph: n-ary sums and products, rewritten by the passes to lower their cost.
 //!
-//! It differs from the symbolic graph in three ways. It holds only what one function needs. Sums
-//! and products do not flatten on their own, so `m·R·(x + y)` can stay factored. Numbers are plain
-//! factors, so `2·m` is shared like any other product.
+//! It differs from the symbolic graph in three ways. It contains only the nodes of one function.
+//! Sums and products are not flattened automatically, so `m·R·(x + y)` can stay factored. Numbers
+//! are ordinary factors, so `2·m` is shared like any other product.
 
 use std::hash::BuildHasher;
 
@@ -16,14 +16,14 @@ use crate::symbolic::{Function, Rational, Relation};
 pub(super) struct Id(u32);
 
 impl Id {
-    /// Its position in vectors that hold one entry per node.
+    /// Its index in per-node vectors.
     pub(super) fn index(self) -> usize {
         self.0 as usize
     }
 }
 
-/// A node as a part of another one. `flip` is a reciprocal among the factors of a product and a
-/// minus everywhere else.
+/// An operand. `flip` means a reciprocal among the factors of a product and a minus everywhere
+/// else.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Item {
     pub(super) id: Id,
@@ -31,12 +31,12 @@ pub(super) struct Item {
 }
 
 impl Item {
-    /// The node as it is.
+    /// The operand without a flip.
     pub(super) fn plain(id: Id) -> Self {
         Self { id, flip: false }
     }
 
-    /// Flipped where `flip` holds.
+    /// The operand, with its flip toggled if `flip` holds.
     #[must_use]
     pub(super) fn flipped_if(self, flip: bool) -> Self {
         Self {
@@ -46,7 +46,7 @@ impl Item {
     }
 }
 
-/// What a node is.
+/// The operation of a node.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(super) enum Op {
     /// A number, not negative.
@@ -63,9 +63,9 @@ pub(super) enum Op {
     Atan2([Item; 2]),
     /// `base^exponent`
     Power([Item; 2]),
-    /// Left, right, value where the relation holds, value elsewhere.
+    /// Compared left and right sides, value if the relation holds, value otherwise.
     Choice(Relation, [Item; 4]),
-    /// A quantity that a reader wants as it stands: no rewriting looks inside.
+    /// A quantity that is displayed unchanged: opaque to all rewriting.
     Kept(Id),
     /// One unknown of a linear system.
     Solution { system: u32, row: u32 },
@@ -87,7 +87,8 @@ pub(super) struct Name {
     pub(super) definition: u32,
     /// Whether it stands for minus the node.
     pub(super) negative: bool,
-    /// Whether differentiation made it up: it is of use only where several wholes need the value.
+    /// Whether differentiation generated it; such a name is used only for a value with several
+    /// users.
     pub(super) automatic: bool,
 }
 
@@ -95,7 +96,7 @@ pub(super) struct Name {
 #[derive(Debug, Clone, Default)]
 pub(super) struct Dag {
     ops: Vec<Op>,
-    /// Nodes by the hash of their operation; equal hashes follow each other.
+    /// Nodes by the hash of their operation, with linear probing.
     index: FxHashMap<u64, Id>,
     /// Names, one entry per node.
     pub(super) names: Vec<Option<Name>>,
@@ -106,22 +107,22 @@ pub(super) struct Dag {
 }
 
 impl Dag {
-    /// How many nodes there are, dead ones too.
+    /// The number of nodes, including dead ones.
     pub(super) fn len(&self) -> usize {
         self.ops.len()
     }
 
-    /// What a node is.
+    /// The operation of a node.
     pub(super) fn op(&self, id: Id) -> &Op {
         &self.ops[id.index()]
     }
 
-    /// Rewrites a node into something of the same value.
+    /// Replaces the operation of a node by one of equal value.
     pub(super) fn replace(&mut self, id: Id, op: Op) {
         self.ops[id.index()] = op;
     }
 
-    /// A graph with room for about so many nodes.
+    /// A graph with capacity for this many nodes.
     pub(super) fn with_capacity(nodes: usize) -> Self {
         let mut dag = Self::default();
         dag.ops.reserve(nodes);
@@ -130,7 +131,7 @@ impl Dag {
         dag
     }
 
-    /// The node of an operation.
+    /// The node of an operation, by hash consing.
     pub(super) fn intern(&mut self, op: Op) -> Id {
         let hash = FxBuildHasher.hash_one(&op);
         let mut slot = hash;
@@ -161,7 +162,7 @@ impl Dag {
         }
     }
 
-    /// The number a node is, if it is one.
+    /// The number that a node represents, if any.
     pub(super) fn as_number(&self, id: Id) -> Option<&Rational> {
         match self.op(id) {
             Op::Number(value) => Some(value),
@@ -174,7 +175,8 @@ impl Dag {
         matches!(self.op(id), Op::Number(_) | Op::Argument(_))
     }
 
-    /// Σ ± term. Numbers and equal terms meet; the sign is that of the first remaining term.
+    /// Σ ± term. Numbers and equal terms are combined; the sign is that of the first remaining
+    /// term.
     pub(super) fn sum(&mut self, mut terms: Vec<Item>) -> Item {
         terms.sort_unstable();
         let mut constant = Rational::ZERO;
@@ -221,7 +223,8 @@ impl Dag {
         }
     }
 
-    /// Π factor^±1. Numbers meet, and a factor meets its reciprocal. The result is never negative.
+    /// Π factor^±1. Numbers are combined, and reciprocal factors cancel. The result is never
+    /// negative.
     pub(super) fn product(&mut self, mut factors: Vec<Item>) -> Item {
         let mut coefficient = Rational::ONE;
         factors.retain(|factor| match self.as_number(factor.id) {
@@ -237,7 +240,7 @@ impl Dag {
             _ => true,
         });
         factors.sort_unstable();
-        // Equal nodes stand together, reciprocals last.
+        // Equal nodes are adjacent, reciprocals last.
         let mut kept: Vec<Item> = Vec::with_capacity(factors.len() + 1);
         for factor in factors {
             match kept.last() {
@@ -261,7 +264,7 @@ impl Dag {
         }
     }
 
-    /// A value that nothing looks into; numbers and arguments have no inside.
+    /// Makes a value opaque; numbers and arguments are returned unchanged.
     pub(super) fn kept(&mut self, item: Item) -> Item {
         if self.is_leaf(item.id) {
             return item;
@@ -272,7 +275,8 @@ impl Dag {
         }
     }
 
-    /// A function of one argument. Odd and even functions take no sign in.
+    /// A function of one argument. The sign of the argument is moved out of odd functions and
+    /// dropped in even ones.
     pub(super) fn function(&mut self, function: Function, argument: Item) -> Item {
         use Function::{Abs, Asin, Atan, Cos, Cosh, Sign, Sin, Sinh, Tanh};
         let odd = matches!(function, Sin | Asin | Atan | Sinh | Tanh | Sign);
@@ -287,7 +291,7 @@ impl Dag {
         }
     }
 
-    /// Calls `visit` with every part of a node, a part that occurs twice twice.
+    /// Calls `visit` with every operand of a node; one that occurs twice is visited twice.
     pub(super) fn for_each_part(&self, id: Id, mut visit: impl FnMut(Item)) {
         match self.op(id) {
             Op::Number(_) | Op::Argument(_) => {}
@@ -308,7 +312,7 @@ impl Dag {
         }
     }
 
-    /// The nodes that the results need, parts before wholes.
+    /// The nodes reachable from the results, operands before users.
     pub(super) fn order(&self) -> Vec<Id> {
         let roots: Vec<Id> = self.results.iter().map(|item| item.id).collect();
         let mut seen = vec![false; self.len()];
@@ -317,9 +321,9 @@ impl Dag {
         order
     }
 
-    /// Visits the nodes below `roots` that are not `seen`, parts before wholes.
+    /// Visits the nodes below `roots` that are not `seen`, operands before users.
     pub(super) fn visit_from(&self, roots: &[Id], seen: &mut [bool], mut visit: impl FnMut(Id)) {
-        // Explicit stack: a deep expression must not overflow the machine's.
+        // Explicit stack: deep expressions must not overflow the call stack.
         let mut stack: Vec<(Id, bool)> = roots.iter().rev().map(|&id| (id, false)).collect();
         while let Some((id, parts_done)) = stack.pop() {
             if parts_done {
@@ -338,7 +342,7 @@ impl Dag {
         }
     }
 
-    /// How often each node is a part of a needed node or a result.
+    /// Number of uses of each live node, by live nodes and results.
     pub(super) fn uses(&self, order: &[Id]) -> Vec<u32> {
         let mut uses = vec![0; self.len()];
         let mut systems_seen = vec![false; self.systems.len()];
@@ -357,7 +361,7 @@ impl Dag {
         uses
     }
 
-    /// Operations of the needed nodes, a division counted as `division` ones.
+    /// Operation count of the live nodes, with a division counted as `division` operations.
     pub(super) fn weight(&self, order: &[Id], division: usize) -> usize {
         order
             .iter()

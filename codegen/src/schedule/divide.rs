@@ -1,10 +1,11 @@
-//! Divisions are dear: what divides more than one product gets one reciprocal, independent
-//! denominators share one division, and a division that a late dividend waits for starts early.
+//! Reduces the cost of divisions: a divisor of several products gets one shared reciprocal,
+//! independent denominators share one division, and a division on the critical path is started
+//! early.
 
 use super::dag::{Dag, Id, Item, Op};
 
-/// Replaces divisions by multiplications with shared reciprocals. A denominator that only one
-/// product has stays a division, together with the other denominators of that product.
+/// Replaces divisions by multiplications with shared reciprocals. A denominator of a single product
+/// remains a division, combined with the other denominators of that product.
 pub(super) fn share_reciprocals(dag: &mut Dag, order: &[Id]) {
     let mut wholes = vec![0_u32; dag.len()];
     for &id in order {
@@ -39,7 +40,7 @@ pub(super) fn share_reciprocals(dag: &mut Dag, order: &[Id]) {
     }
 }
 
-/// What a node divides by, each once.
+/// The distinct divisors of a node.
 fn denominators(dag: &Dag, id: Id) -> Vec<Id> {
     let Op::Product(factors) = dag.op(id) else {
         return Vec::new();
@@ -53,8 +54,9 @@ fn denominators(dag: &Dag, id: Id) -> Vec<Id> {
     below
 }
 
-/// Divides early. Where the dividend comes late, the reciprocal of a denominator that is known by
-/// then costs one multiplication more, and the longest path is shorter by a division.
+/// Starts divisions early. Where the dividend is available only after the denominator, computing
+/// the reciprocal first costs one more multiplication and removes a division from the critical
+/// path.
 pub(super) fn divide_early(dag: &mut Dag, order: &[Id], division: usize) {
     let depths = depths(dag, order, division);
     for &id in order {
@@ -77,7 +79,7 @@ pub(super) fn divide_early(dag: &mut Dag, order: &[Id], division: usize) {
     }
 }
 
-/// Operations on the longest path to each node.
+/// Length of the longest path to each node, in operations.
 fn depths(dag: &Dag, order: &[Id], division: usize) -> Vec<usize> {
     let mut depths = vec![0; dag.len()];
     for &id in order {
@@ -94,7 +96,7 @@ fn depths(dag: &Dag, order: &[Id], division: usize) -> Vec<usize> {
     depths
 }
 
-/// Operations that a function or a linear system takes as long as, about.
+/// Approximate latency of a function or a linear solve, in operations.
 const FUNCTION: usize = 10;
 
 /// Most denominators that share a division. Their product must stay far from overflow, in single
@@ -104,8 +106,8 @@ const MOST: usize = 3;
 /// Computes the reciprocals of up to three denominators from one: with `j = 1/(a·b)`, `1/a = j·b`
 /// and `1/b = j·a`. Three multiplications replace a division, which takes longer.
 ///
-/// Sines, cosines and other functions keep divisions of their own. Where one of them vanishes, a
-/// coordinate is singular, and this must not spoil what does not depend on the coordinate.
+/// Sines, cosines and other functions are excluded. Where one of them vanishes, a coordinate is
+/// singular, and this must not affect values that do not depend on the coordinate.
 pub(super) fn join_divisions(dag: &mut Dag, order: &[Id]) {
     let bases = independent_denominators(dag, order);
     for group in bases.chunks(MOST) {
@@ -118,7 +120,7 @@ pub(super) fn join_divisions(dag: &mut Dag, order: &[Id]) {
     }
 }
 
-/// Denominators that may share a division. None of them needs another division first.
+/// Denominators that may share a division: none of them depends on another division.
 fn independent_denominators(dag: &Dag, order: &[Id]) -> Vec<Id> {
     let mut divided = vec![false; dag.len()];
     let mut bases = Vec::new();
@@ -133,7 +135,7 @@ fn independent_denominators(dag: &Dag, order: &[Id]) -> Vec<Id> {
         let function = !matches!(dag.op(base), Op::Sum(_) | Op::Product(_) | Op::Argument(_));
         !function && !divided[base.index()]
     });
-    // Once each, in the order in which they are needed.
+    // Each once, in order of first use.
     let mut seen = vec![false; dag.len()];
     bases.retain(|base| !std::mem::replace(&mut seen[base.index()], true));
     bases
@@ -164,7 +166,7 @@ fn joint_reciprocals(dag: &mut Dag, group: &[Id]) -> Vec<(Id, Id)> {
     reciprocals
 }
 
-/// Multiplies by the reciprocals where a product divided.
+/// Replaces divisions of a product by multiplications with the reciprocals.
 fn put_in(dag: &mut Dag, id: Id, reciprocals: &[(Id, Id)]) {
     let Op::Product(factors) = dag.op(id) else {
         return;
@@ -179,7 +181,7 @@ fn put_in(dag: &mut Dag, id: Id, reciprocals: &[(Id, Id)]) {
         })
         .collect();
     if new != *factors {
-        // A lone reciprocal becomes another name of the same value.
+        // A lone reciprocal becomes an alias of the shared one.
         dag.replace(
             id,
             if let [only] = new[..] {

@@ -1,4 +1,4 @@
-//! A schedule as text, for people and snapshots.
+//! Textual dump of a schedule, for debugging and snapshots.
 
 use std::fmt::Write;
 
@@ -8,7 +8,7 @@ use super::steps::{Schedule, Step, Tree, Value};
 use crate::program::Program;
 
 impl Schedule {
-    /// The steps and the results as text, one a line.
+    /// The steps and the results as text, one per line.
     pub fn dump(&self, program: &Program) -> String {
         dump(self, &ArgumentNames::of(program))
     }

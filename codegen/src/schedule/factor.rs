@@ -1,10 +1,10 @@
-//! Takes common factors out of sums: `m·R·x + m·R·y` becomes `m·R·(x + y)`.
+//! Factors sums: `m·R·x + m·R·y` becomes `m·R·(x + y)`.
 
 use super::dag::{Dag, Id, Item, Op};
 use super::preference::Preference;
 
-/// Takes factors out of all sums, the most frequent first. Only products that nothing else uses
-/// are opened: every step saves multiplications. Tells whether anything was taken out.
+/// Extracts common factors from all sums, the most frequent first. Only single-use products are
+/// opened, so every step saves multiplications. Returns whether anything was extracted.
 pub(super) fn factor(dag: &mut Dag, order: &[Id], preference: Preference, least: u32) -> bool {
     let mut any = false;
     let mut uses = dag.uses(order);
@@ -20,8 +20,8 @@ pub(super) fn factor(dag: &mut Dag, order: &[Id], preference: Preference, least:
     any
 }
 
-/// The factor that the most terms have, and which terms these are. `None` where no factor is
-/// common to two of them.
+/// The factor common to most terms, and the indices of these terms. `None` if no two terms have a
+/// common factor.
 fn best_factor(
     dag: &Dag,
     uses: &[u32],
@@ -51,7 +51,7 @@ fn best_factor(
     ))
 }
 
-/// The factors of a product that belongs to one sum alone.
+/// The factors of a product that is used by a single sum.
 fn opened<'a>(dag: &'a Dag, uses: &[u32], id: Id) -> Option<&'a [Item]> {
     match dag.op(id) {
         Op::Product(factors)
@@ -65,7 +65,7 @@ fn opened<'a>(dag: &'a Dag, uses: &[u32], id: Id) -> Option<&'a [Item]> {
     }
 }
 
-/// Rewrites `sum` with `factor` taken out of `members`, and returns the sum in the parentheses.
+/// Rewrites `sum` with `factor` extracted from `members`, and returns the sum in the parentheses.
 fn take_out(
     dag: &mut Dag,
     uses: &mut Vec<u32>,
@@ -109,7 +109,7 @@ pub(super) fn without(factors: &[Item], factor: Item) -> Vec<Item> {
     rest
 }
 
-/// One more use of a node that may be new.
+/// Counts one more use of a node that may be new.
 fn note_use(uses: &mut Vec<u32>, id: Id) {
     if uses.len() <= id.index() {
         uses.resize(id.index() + 1, 0);

@@ -1,8 +1,8 @@
-//! Distributivity where parts are known already. With `l x` at hand, `h l x - h y` becomes
-//! `h (l x - y)`; with `m a` and `m b` at hand, `m (a + b) + c` becomes `m a + m b + c`.
+//! Factoring and distribution with available expressions. If `l x` is available, `h l x - h y` becomes
+//! `h (l x - y)`; if `m a` and `m b` are available, `m (a + b) + c` becomes `m a + m b + c`.
 //!
-//! [`super::factor`] opens a product only where nothing else uses it. Here `h l` may be shared: it
-//! is the quotient that counts, and quotients are known by their values.
+//! [`super::factor`] opens only single-use products. Here `h l` may be shared: the quotient has to
+//! be available, which is looked up by its value number.
 
 use rustc_hash::FxHashMap;
 
@@ -10,7 +10,7 @@ use super::dag::{Dag, Id, Item, Op};
 use super::factor::without;
 use super::meet::{Value, made_of, over, values, without_sign};
 
-/// Takes factors out. Tells whether there were any; every one saves a multiplication.
+/// Factors sums. Returns whether anything changed; every step saves a multiplication.
 pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
     let known = Known::of(dag, order);
     let mut found = Vec::new();
@@ -31,8 +31,8 @@ pub(super) fn gather(dag: &mut Dag, order: &[Id]) -> bool {
     any
 }
 
-/// Multiplies products out whose terms are all known. Tells whether there were any; every one saves
-/// a multiplication.
+/// Distributes products whose expanded terms are all available. Returns whether anything changed;
+/// every step saves a multiplication.
 pub(super) fn scatter(dag: &mut Dag, order: &[Id]) -> bool {
     let known = Known::of(dag, order);
     let mut found = Vec::new();
@@ -57,14 +57,14 @@ pub(super) fn scatter(dag: &mut Dag, order: &[Id]) -> bool {
 /// Two terms with a common factor.
 struct Common {
     factor: Item,
-    /// What is known once the factor is taken out of it.
+    /// The available quotient of one term by the factor.
     term: Item,
     quotient: Item,
-    /// What has the factor in sight.
+    /// The term in which the factor is explicit.
     other: Item,
 }
 
-/// The nodes by their values.
+/// The nodes by value number.
 struct Known<'d> {
     dag: &'d Dag,
     uses: Vec<u32>,
@@ -89,7 +89,8 @@ impl<'d> Known<'d> {
         }
     }
 
-    /// The first two products of a sum with a common factor, one of which is known without it.
+    /// The first two products of a sum with a common factor, one of them with an available
+    /// quotient.
     fn common(&self, terms: &[Item]) -> Option<Common> {
         let products = || terms.iter().filter(|term| self.factors(**term).is_some());
         let pairs = products().flat_map(|term| products().map(move |other| (*term, *other)));
@@ -107,7 +108,7 @@ impl<'d> Known<'d> {
         })
     }
 
-    /// The factors of a product that one sum alone needs: its multiplication goes.
+    /// The factors of a product used by one sum only, whose multiplication is then saved.
     fn factors(&self, term: Item) -> Option<&'d [Item]> {
         match self.dag.op(term.id) {
             Op::Product(factors) if self.uses[term.id.index()] == 1 => Some(factors),
@@ -115,7 +116,7 @@ impl<'d> Known<'d> {
         }
     }
 
-    /// What is known of a term without a factor that is somewhere inside it.
+    /// The available quotient of a term by a factor nested in it.
     fn quotient(&self, term: Item, factor: Id) -> Option<Item> {
         if !is_inside(self.dag, factor, term.id) {
             return None;
@@ -124,7 +125,7 @@ impl<'d> Known<'d> {
         Some(self.node(quotient)?.flipped_if(term.flip))
     }
 
-    /// The terms with one product multiplied out.
+    /// The terms with one product distributed.
     fn scattered(&self, terms: &[Item]) -> Option<Vec<Item>> {
         terms.iter().enumerate().find_map(|(place, &term)| {
             let [a, b] = self.factors(term)? else {
@@ -138,7 +139,7 @@ impl<'d> Known<'d> {
         })
     }
 
-    /// The products of a factor with all terms of a sum that nothing else needs.
+    /// The products of a factor with all terms of a single-use sum.
     fn products(&self, factor: Item, sum: Item) -> Option<Vec<Item>> {
         let Op::Sum(terms) = self.dag.op(sum.id) else {
             return None;
@@ -176,7 +177,7 @@ fn take_out(dag: &mut Dag, sum: Id, common: &Common) {
     dag.replace(sum, Op::Sum(outer));
 }
 
-/// Whether a factor is one of the factors of a product, or of the products it is made of.
+/// Whether a factor occurs in a product, directly or through nested products.
 fn is_inside(dag: &Dag, factor: Id, product: Id) -> bool {
     match dag.op(product) {
         Op::Product(factors) => factors

@@ -1,4 +1,4 @@
-//! Executes a schedule step by step: the reference for emitted and compiled code.
+//! Interprets a schedule step by step: the reference for emitted and compiled code.
 
 use appell_runtime::dense::lu_solve_in_place;
 use appell_runtime::model::{Along, At};
@@ -42,7 +42,7 @@ pub fn enclose(schedule: &Schedule, time: Enclosure, p: &[f64], bounds: &mut [En
     enclose_along(schedule, &along, bounds);
 }
 
-/// Bounds on the results along a stretch of a motion, one array after the other.
+/// Bounds on the results along a trajectory segment, one array after the other.
 pub fn enclose_along(schedule: &Schedule, along: &Along<'_>, bounds: &mut [Enclosure]) {
     let p: Vec<Enclosure> = along.p.iter().map(|&p| Enclosure::constant(p)).collect();
     let unknown = |_: &mut [Enclosure], unknowns: &mut [Enclosure]| {
@@ -60,8 +60,8 @@ struct Machine<'a, T, S> {
     /// States, inputs, parameters, weights.
     arguments: [&'a [T]; 4],
     values: Vec<T>,
-    /// Matrices by factorisation. They are factorised anew with every right-hand side, which gives
-    /// the same bits.
+    /// Matrices by factorisation. They are factorised again for every right-hand side, which gives
+    /// bit-identical results.
     matrices: Vec<Vec<T>>,
     /// Solves a system in place.
     solve: S,

@@ -1,4 +1,4 @@
-//! From the symbolic graph to the working graph.
+//! Lowers the symbolic graph to the working graph.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -11,8 +11,8 @@ use crate::symbolic::{Expr, Graph, Node, Rational, SymbolId};
 ///
 /// # Panics
 ///
-/// If an expression contains a symbol that is not an argument of the program, which the derivation
-/// must not let happen.
+/// If an expression contains a symbol that is not an argument of the program, which would be a bug of the
+/// derivation.
 pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     let roots: Vec<Expr> = function
         .results
@@ -38,7 +38,7 @@ pub(super) fn lower(program: &Program, function: &Function) -> Dag {
     dag
 }
 
-/// The values that readers know, whether or not a function computes them.
+/// The hint values of the program, whether or not a function computes them.
 pub(super) fn hints(program: &Program) -> Dag {
     let graph = &program.graph;
     let mut lowering = Lowering {
@@ -60,7 +60,7 @@ pub(super) fn hints(program: &Program) -> Dag {
     dag
 }
 
-/// Definitions of the values of the stages.
+/// Definitions of the displayed intermediate values.
 fn kept(graph: &Graph, function: &Function) -> FxHashSet<u32> {
     let values = function.stages.iter().flat_map(|stage| &stage.values);
     values
@@ -103,16 +103,16 @@ struct Lowering<'a> {
     graph: &'a Graph,
     arguments: FxHashMap<SymbolId, Argument>,
     pi: Option<SymbolId>,
-    /// Definitions of the values of the stages.
+    /// Definitions of the displayed intermediate values.
     kept: FxHashSet<u32>,
     dag: Dag,
     known: FxHashMap<Expr, Item>,
-    /// Symbolic system to system of the working graph.
+    /// System index in the working graph, by symbolic system.
     systems: FxHashMap<u32, u32>,
 }
 
 impl Lowering<'_> {
-    /// One node; its parts are known.
+    /// Lowers one node; its operands are lowered already.
     fn node(&mut self, expr: Expr) -> Item {
         match self.graph.node(expr) {
             Node::Number(value) => self.dag.number(value),
@@ -174,7 +174,8 @@ impl Lowering<'_> {
         }
     }
 
-    /// A named value is the value itself; the name goes with it. A value of a stage is kept.
+    /// A named value lowers to the value itself, which takes the name. A displayed value becomes
+    /// opaque.
     fn named(&mut self, definition: u32) -> Item {
         let value = self.known[&self.graph.definition(definition).value];
         let name = &mut self.dag.names[value.id.index()];
@@ -192,7 +193,7 @@ impl Lowering<'_> {
         }
     }
 
-    /// `coefficient · expr`, the number among the factors.
+    /// `coefficient · expr`, with the number as a factor.
     fn term(&mut self, coefficient: &Rational, expr: Expr) -> Item {
         let value = self.known[&expr];
         let negative = value.flip != coefficient.is_negative();
@@ -207,8 +208,8 @@ impl Lowering<'_> {
         self.dag.product(factors).flipped_if(negative)
     }
 
-    /// Appends the factors of `base^exponent`. Small powers are written out, so that squares are
-    /// shared like other products; large ones are products of repeated squares.
+    /// Appends the factors of `base^exponent`. Small powers are written as repeated factors, so
+    /// that squares are shared like other products; large ones use repeated squaring.
     fn power(&mut self, base: Item, exponent: i32, factors: &mut Vec<Item>) {
         const WRITTEN_OUT: u32 = 4;
         let flip = exponent < 0;

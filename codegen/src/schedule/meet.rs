@@ -1,10 +1,9 @@
-//! Nodes of equal value meet, however they are written: `sin θ (m a - n b)` and
-//! `m a sin θ - n b sin θ`, which different passes put together. And a value that has a name in the
-//! derivation gets it back.
+//! Global value numbering modulo commutativity, associativity and distributivity: merges `sin θ (m a - n b)`
+//! and `m a sin θ - n b sin θ`, which different passes produce, and restores the names of the derivation.
 //!
-//! Values are compared at two random points of a prime field of 61 bits. Sums and products of
-//! degree `d` that are equal there are equal but for a chance of `(d/p)²`; other functions count
-//! as unknowns of their own, so that no identity between them is used.
+//! Value numbers are evaluations at two random points of a prime field of 61 bits. Different sums
+//! and products of degree `d` collide with probability at most `(d/p)²`; other functions are
+//! treated as independent unknowns, so no identity between them is used.
 
 use std::hash::{Hash, Hasher};
 
@@ -13,10 +12,10 @@ use rustc_hash::{FxHashMap, FxHasher};
 use super::dag::{Dag, Id, Item, Name, Op};
 use crate::symbolic::field::Element;
 
-/// A value at both points, up to its sign.
+/// A value at both points, up to sign.
 pub(super) type Value = [Element; 2];
 
-/// Lets nodes of equal value meet in the first of them. Tells whether any met.
+/// Merges nodes of equal value into the first of them. Returns whether any were merged.
 pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
     let values = values(dag, order);
     let mut place = vec![usize::MAX; dag.len()];
@@ -34,7 +33,7 @@ pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
         if !can_give_way(dag, id) {
             continue;
         }
-        // The shorter way is taken where it was known when the first one was.
+        // The shorter form is used if its operands precede the first node.
         let mut before = true;
         dag.for_each_part(id, |part| {
             before &= place[part.id.index()] < place[first.index()];
@@ -53,11 +52,11 @@ pub(super) fn meet(dag: &mut Dag, order: &[Id]) -> bool {
     any
 }
 
-/// Longer sums and products are left alone: pairs grow with the square of the length.
+/// Longer sums and products are skipped: the number of pairs is quadratic in the length.
 const LONGEST: usize = 12;
 
-/// Takes two factors, or two terms, together where their product, or sum, is a node already. Tells
-/// whether there were any.
+/// Replaces two factors, or two terms, by their product, or sum, where that is available. Returns
+/// whether anything changed.
 pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
     let values = values(dag, order);
     let mut place = vec![0; dag.len()];
@@ -68,7 +67,7 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
             known.entry(value).or_insert((id, sign));
         }
     }
-    // What was replaced stands for its value no longer.
+    // A replaced node no longer represents its value.
     let mut gone = vec![false; dag.len()];
     let mut any = false;
     for (position, &id) in order.iter().enumerate() {
@@ -95,7 +94,7 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
         };
         let mut together = Item { id: other, flip };
         if place[other.index()] > position {
-            // The other one comes later: both take a new node.
+            // The other node comes later: both use a new node.
             let pair = vec![items[i], items[j]];
             let node = if product {
                 dag.product(pair)
@@ -125,8 +124,8 @@ pub(super) fn meet_in_parts(dag: &mut Dag, order: &[Id]) -> bool {
     any
 }
 
-/// Writes a sum as a multiple of another node where it is one: `a (b c) + d (b e)` is `b` times the
-/// sum `a c + d e` that stands elsewhere. Tells whether there were any.
+/// Writes a sum as a multiple of an available node: `a (b c) + d (b e)` becomes `b` times the
+/// available sum `a c + d e`. Returns whether anything changed.
 pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
     let values = values(dag, order);
     let mut known: FxHashMap<Value, (Id, bool)> = FxHashMap::default();
@@ -160,14 +159,14 @@ pub(super) fn meet_in_multiples(dag: &mut Dag, order: &[Id]) -> bool {
     any
 }
 
-/// Whether nodes are made of another one, which then must not be made of them.
+/// Whether `nodes` depend on `part`; rewriting `part` in terms of them would then create a cycle.
 pub(super) fn made_of(dag: &Dag, nodes: &[Id], part: Id) -> bool {
     let (mut seen, mut found) = (vec![false; dag.len()], false);
     dag.visit_from(nodes, &mut seen, |node| found |= node == part);
     found
 }
 
-/// What could be a factor of all terms of a sum: factors of the products in its first term.
+/// Candidates for a factor common to all terms of a sum: factors nested in its first term.
 fn factors_inside(dag: &Dag, sum: Id) -> Vec<Id> {
     let Op::Sum(terms) = dag.op(sum) else {
         return Vec::new();
@@ -185,8 +184,8 @@ fn factors_inside(dag: &Dag, sum: Id) -> Vec<Id> {
     factors
 }
 
-/// Lets everything outside refer to values of stages by what is kept, so that equal wholes are made
-/// of equal parts. Tells whether anything is kept.
+/// Redirects uses of displayed values to their opaque nodes, so that equal expressions have equal
+/// operands. Returns whether there are opaque nodes.
 pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) -> bool {
     let mut kept: FxHashMap<Id, Id> = FxHashMap::default();
     for &id in order {
@@ -218,12 +217,12 @@ pub(super) fn refer_to_kept(dag: &mut Dag, order: &[Id]) -> bool {
     true
 }
 
-/// Places of all pairs in a list.
+/// Index pairs of a list.
 fn pairs(length: usize) -> impl Iterator<Item = (usize, usize)> {
     (1..length).flat_map(|j| (0..j).map(move |i| (i, j)))
 }
 
-/// Value of two factors, or of two terms.
+/// Value of the product or the sum of two operands.
 fn whole_of([a, b]: [Item; 2], product: bool, values: &[Option<Value>]) -> Option<Value> {
     let part = |item: Item| {
         let value = values[item.id.index()]?;
@@ -245,7 +244,7 @@ fn can_give_way(dag: &Dag, id: Id) -> bool {
     matches!(dag.op(id), Op::Sum(_) | Op::Product(_))
 }
 
-/// Gives nodes the names that values of the derivation have.
+/// Restores the derivation's names of nodes by value number.
 pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
     let mut names: FxHashMap<Value, (Name, bool)> = FxHashMap::default();
     let order = derived.order();
@@ -274,7 +273,8 @@ pub(super) fn name_again(dag: &mut Dag, derived: &Dag) {
     }
 }
 
-/// Which nodes are results of another graph: its number, and whether it is minus the node.
+/// For each node that equals a result of another graph up to sign: the result's index, and whether
+/// it is minus the node.
 pub(super) fn known_values(dag: &Dag, hints: &Dag) -> Vec<Option<(usize, bool)>> {
     let hinted = values(hints, &hints.order());
     let mut known: FxHashMap<Value, (usize, bool)> = FxHashMap::default();
@@ -297,7 +297,7 @@ pub(super) fn known_values(dag: &Dag, hints: &Dag) -> Vec<Option<(usize, bool)>>
     found
 }
 
-/// How many parts a sum or a product has; other nodes are as short as can be.
+/// Number of operands of a sum or a product; 0 for other nodes.
 fn parts(dag: &Dag, id: Id) -> usize {
     match dag.op(id) {
         Op::Sum(items) | Op::Product(items) => items.len(),
@@ -311,19 +311,19 @@ pub(super) fn without_sign([first, second]: Value) -> (Value, bool) {
     ([first, if flip { -second } else { second }], flip)
 }
 
-/// One value over another.
+/// The quotient of two values.
 pub(super) fn over([a, b]: Value, other: Value) -> Option<Value> {
     let [c, d] = inverse(other)?;
     Some([a * c, b * d])
 }
 
-/// An inverse costs some seventy products: one serves both points.
+/// An inverse costs some seventy multiplications: one is shared by both points.
 fn inverse([a, b]: Value) -> Option<Value> {
     let both = (a * b).inverse()?;
     Some([both * b, both * a])
 }
 
-/// Values of the nodes; `None` where the points hit a division by zero.
+/// Values of the nodes; `None` where a point gives a division by zero.
 pub(super) fn values(dag: &Dag, order: &[Id]) -> Vec<Option<Value>> {
     let mut values: Vec<Option<Value>> = vec![None; dag.len()];
     for &id in order {
@@ -355,7 +355,7 @@ fn value(dag: &Dag, id: Id, values: &[Option<Value>]) -> Option<Value> {
                 let [c, d] = if factor.flip { inverse(value)? } else { value };
                 Some([a * c, b * d])
             }),
-        // Nothing looks inside.
+        // Opaque.
         Op::Kept(inner) => values[inner.index()].map(|inner| draw((4_u64, inner))),
         Op::Function(function, argument) => {
             let argument = signed(argument)?;
@@ -376,12 +376,12 @@ fn value(dag: &Dag, id: Id, values: &[Option<Value>]) -> Option<Value> {
     }
 }
 
-/// The unknowns that something stands for: the same in every run.
+/// The pseudo-random value of an unknown, identical in every run.
 fn draw(of: impl Hash) -> Value {
     [1_u64, 2].map(|point| {
         let mut hasher = FxHasher::default();
         (point, &of).hash(&mut hasher);
-        // The finaliser of MurmurHash3 spreads what the hasher leaves in few bits.
+        // The finaliser of MurmurHash3 improves the distribution of the hash bits.
         let mut bits = hasher.finish();
         bits = (bits ^ (bits >> 33)).wrapping_mul(0xff51_afd7_ed55_8ccd);
         bits = (bits ^ (bits >> 33)).wrapping_mul(0xc4ce_b9fe_1a85_ec53);

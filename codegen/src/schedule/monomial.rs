@@ -1,21 +1,21 @@
-//! Names of products: by their factors, however they are multiplied. `m·(R·R)` and `(m·R)·R` are
-//! both `m_R_squared`, in every function.
+//! Names products by their factors, independent of association: `m·(R·R)` and `(m·R)·R` are both
+//! `m_R_squared`, in every function.
 
 use super::names::{ArgumentNames, LONGEST, joined_up_to};
 use super::steps::{Argument, Operation, Tree, Value};
 use crate::symbolic::Rational;
 
-/// Longest name of a product, or quotient, of two.
+/// Longest name of a product, or quotient, of two factors.
 const LONGEST_OF_TWO: usize = 40;
 
-/// A factor that is not a product of others, in the order in which names tell them.
+/// A factor that is not itself a product, in the order used in names.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Factor {
     /// A parameter by index.
     Parameter(u32),
     /// A value that is no product, or that the derivation named.
     Value(Value),
-    /// Anything else that is given.
+    /// Any other argument.
     Argument(Argument),
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Monomial {
 }
 
 impl Monomial {
-    /// The product that a tree is, if it is one. `products` says it of the values.
+    /// The monomial that a tree represents, if any. `products` holds the monomials of the values.
     pub(super) fn of(tree: &Tree, products: &[Option<Monomial>]) -> Option<Self> {
         match tree {
             Tree::Constant(value) => Some(Self {
@@ -82,7 +82,7 @@ impl Monomial {
         self
     }
 
-    /// How many factors there are to read, the number included.
+    /// The number of factors that are written, the numeric one included.
     pub(super) fn length(&self) -> usize {
         usize::from(!self.coefficient.is_one()) + self.powers.len()
     }
@@ -95,8 +95,8 @@ impl Monomial {
         })
     }
 
-    /// Where the product stands in a sum: products of parameters in the order in which these are
-    /// declared, then powers of one value in the order of their definition, then the others.
+    /// Sort key in a sum: products of parameters in the order of declaration, then powers of one
+    /// value in the order of definition, then the others.
     pub(super) fn place_in_sum(&self) -> (u8, u32) {
         let all_parameters = self
             .powers
@@ -133,7 +133,7 @@ impl Monomial {
                 _ => return None,
             });
         }
-        // sin over cos is a name of its own.
+        // sin over cos is named as a tangent.
         for cosine in 0..below.len() {
             let Some(angle) = below[cosine].strip_prefix("cos_") else {
                 continue;

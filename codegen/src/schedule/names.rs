@@ -1,4 +1,4 @@
-//! Identifiers: of arguments, of constants, and of values that the derivation did not name.
+//! Identifiers of arguments, constants and values without a name from the derivation.
 
 use rustc_hash::FxHashSet;
 
@@ -6,11 +6,11 @@ use super::steps::Argument;
 use crate::program::Program;
 use crate::symbolic::Rational;
 
-/// Longest name made up here.
+/// Longest generated name.
 pub(super) const LONGEST: usize = 31;
 
-/// `text` where it is a name of ASCII letters, digits and underscores; anything else is spelled in
-/// these.
+/// `text` if it consists of ASCII letters, digits and underscores; other characters are
+/// transliterated.
 pub(crate) fn identifier(text: &str) -> String {
     let mut name: String = text
         .chars()
@@ -19,7 +19,7 @@ pub(crate) fn identifier(text: &str) -> String {
     if !name.starts_with(|c: char| c.is_ascii_alphabetic() || c == '_') {
         name.insert(0, '_');
     }
-    // `_` alone and `__` are no names for people.
+    // Names of underscores only are rejected.
     if name.chars().all(|c| c == '_') {
         name.push_str("unnamed");
     }
@@ -33,7 +33,7 @@ pub(crate) struct Names {
 }
 
 impl Names {
-    /// A name like `wanted` that nothing else has.
+    /// `wanted`, made unique by a suffix if necessary.
     pub(crate) fn fresh(&mut self, wanted: &str) -> String {
         let wanted = identifier(wanted);
         let mut name = wanted.clone();
@@ -45,19 +45,19 @@ impl Names {
         name
     }
 
-    /// Whether a name is given away.
+    /// Whether a name is taken.
     pub(super) fn has(&self, name: &str) -> bool {
         self.taken.contains(name)
     }
 
-    /// Keeps a name from being given away.
+    /// Reserves a name.
     pub(super) fn reserve(&mut self, name: &str) {
         self.taken.insert(name.to_owned());
     }
 }
 
-/// Identifiers of the arguments of a program, no two equal. They name the fields of the argument
-/// structs and the locals of every function.
+/// Unique identifiers of the arguments of a program, used for the fields of the argument structs
+/// and the locals of every function.
 #[derive(Debug, Clone)]
 pub(crate) struct ArgumentNames {
     /// Time.
@@ -72,7 +72,7 @@ pub(crate) struct ArgumentNames {
     pub(crate) weights: Vec<String>,
     /// Weights of the adjoint of the outputs.
     pub(crate) output_weights: Vec<String>,
-    /// Given pseudo-accelerations, in functions that take some.
+    /// Given pseudo-accelerations, in functions that have them as arguments.
     pub(crate) accelerations: Vec<String>,
 }
 
@@ -124,7 +124,7 @@ impl ArgumentNames {
         }
     }
 
-    /// All names but those of accelerations, which most functions compute.
+    /// All names except those of accelerations, which are computed in most functions.
     pub(crate) fn iter(&self) -> impl Iterator<Item = &String> {
         let lists = self
             .states
@@ -136,8 +136,8 @@ impl ArgumentNames {
         std::iter::once(&self.time).chain(lists)
     }
 
-    /// Name of a number as a local: `half`, `three_quarters`, `c_17_over_35`. Equal names are
-    /// equal numbers, and none is the name of an argument.
+    /// Name of a numeric local: `half`, `three_quarters`, `c_17_over_35`. Equal names denote equal
+    /// numbers, and no argument has such a name.
     pub(crate) fn constant(&self, value: &Rational) -> String {
         let mut name = number_in_words(value);
         while self.iter().any(|argument| *argument == name) {
@@ -209,12 +209,12 @@ fn number_in_words(value: &Rational) -> String {
     }
 }
 
-/// `a` and `b` in one name, if that is short enough to read.
+/// `a` and `b` joined in one name, unless it becomes too long.
 pub(super) fn joined(parts: &[&str]) -> Option<String> {
     joined_up_to(LONGEST, parts)
 }
 
-/// The same for names of up to `longest` letters.
+/// The same for names of up to `longest` characters.
 pub(super) fn joined_up_to(longest: usize, parts: &[&str]) -> Option<String> {
     let name = parts.join("_");
     (name.len() <= longest && !name.contains("_part_")).then_some(name)

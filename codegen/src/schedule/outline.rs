@@ -1,4 +1,4 @@
-//! The plan of a function's text: what gets a binding, what it is for, and in which paragraph.
+//! Layout of a function's text: which nodes are bound, their consumers and their paragraphs.
 
 use rustc_hash::FxHashMap;
 
@@ -11,29 +11,29 @@ use crate::symbolic::Function as Elementary;
 /// Decisions about every node.
 pub(super) struct Outline<'a> {
     dag: &'a Dag,
-    /// The nodes, parts before wholes.
+    /// The nodes, operands before users.
     pub(super) order: Vec<Id>,
     uses: Vec<u32>,
-    /// Nodes that must not be written inside other trees.
+    /// Nodes that must not be inlined into other trees.
     pub(super) bound: Vec<bool>,
     /// Sine and cosine of the same angle: the partner.
     pub(super) partner: Vec<Option<Id>>,
-    /// What the node is called if it is a result, and whether minus the node is called so.
+    /// The result's name if the node is a result, and whether it denotes minus the node.
     pub(super) labels: Vec<Option<(String, bool)>>,
-    /// Nodes that are called after an entry of a matrix.
+    /// Nodes named after a matrix entry.
     entries: Vec<bool>,
-    /// The first named value or result that the node is a part of.
+    /// The first named value or result that depends on the node.
     pub(super) feeds: Vec<Option<Id>>,
-    /// What the node is a part of on its way there.
+    /// The immediate user of the node on the path to that consumer.
     pub(super) wholes: Vec<Option<Id>>,
-    /// Headings with the nodes that are computed under them before the results.
+    /// Headings with the intermediate values that are computed under them before the results.
     stages: Vec<(String, Vec<Id>)>,
-    /// The group that a node is computed with.
+    /// The group in which a node is computed.
     groups: Vec<Option<usize>>,
 }
 
 impl<'a> Outline<'a> {
-    /// The plan for a function.
+    /// The layout of a function.
     pub(super) fn new(program: &Program, function: &Function, dag: &'a Dag) -> Self {
         let order = dag.order();
         let mut outline = Self {
@@ -58,7 +58,7 @@ impl<'a> Outline<'a> {
         outline
     }
 
-    /// Results get bindings, and the names of their entries.
+    /// Binds the results, named after their entries.
     fn label_results(&mut self, function: &Function) {
         let texts = function.results.iter().flat_map(|array| {
             let entry = array.layout.has_columns();
@@ -74,7 +74,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Values of stages get bindings of their own.
+    /// Binds the displayed intermediate values.
     fn stages(&mut self, program: &Program, function: &Function) {
         let mut kept = FxHashMap::default();
         for &id in &self.order {
@@ -119,8 +119,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// What is used twice is computed once, and so is a reciprocal; what has a name is worth a line
-    /// of its own if it is more than one operation.
+    /// Binds values with several uses, reciprocals, and named values of more than one operation.
     fn choose_bound(&mut self) {
         for &id in &self.order {
             let i = id.index();
@@ -153,7 +152,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Goes from the results to what they need.
+    /// Propagates the consumers from the results to their operands.
     fn find_feeds(&mut self) {
         for &id in self.order.iter().rev() {
             let telling = self.dag.names[id.index()].is_some_and(|name| !name.automatic);
@@ -169,7 +168,7 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// Which nodes the function wants computed together.
+    /// Assigns nodes to the groups of the function.
     fn find_groups(&mut self, program: &Program, function: &Function) {
         for &id in &self.order {
             let Some(name) = self.dag.names[id.index()] else {
@@ -182,7 +181,8 @@ impl<'a> Outline<'a> {
         }
     }
 
-    /// The paragraphs, each after the groups that it is the first to need; `first` come before all.
+    /// The paragraphs, each preceded by the groups that it is the first to use; `first` precedes
+    /// all.
     fn with_groups(
         &self,
         function: &Function,
@@ -208,23 +208,23 @@ impl<'a> Outline<'a> {
         all
     }
 
-    /// Whether more than one whole or result needs a node.
+    /// Whether a node has several users or results.
     pub(super) fn is_shared(&self, id: Id) -> bool {
         self.uses[id.index()] > 1
     }
 
-    /// Whether the node is called after an entry of a matrix, if anything.
+    /// Whether the node is named after a matrix entry.
     pub(super) fn is_entry(&self, id: Id) -> bool {
         self.entries[id.index()] || self.labels[id.index()].is_none()
     }
 
-    /// Whether a node is a part of others, besides being a result.
+    /// Whether a node has users in addition to being a result.
     pub(super) fn feeds_others(&self, id: Id) -> bool {
         let results = self.dag.results.iter().filter(|result| result.id == id);
         self.uses[id.index()] as usize > results.count()
     }
 
-    /// Titles and the nodes to reach under them.
+    /// Titles and the root nodes of their paragraphs.
     pub(super) fn paragraphs(&self, function: &Function) -> Vec<(String, Vec<Id>)> {
         let order = &self.order;
         let mut only_parameters = vec![false; self.dag.len()];

@@ -1,11 +1,11 @@
-//! Trees under construction, with the width they have in print.
+//! Expression trees under construction, with their printed width.
 
 use super::monomial::Monomial;
 use super::names::{ArgumentNames, joined};
 use super::steps::{Operation, Schedule, Tree, Value};
 use crate::symbolic::{Function, Relation};
 
-/// How tightly the outermost operation of a tree binds.
+/// Precedence of the outermost operation of a tree.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Level {
     Sum,
@@ -14,7 +14,7 @@ pub(super) enum Level {
     Atom,
 }
 
-/// A tree, and how it prints.
+/// A tree with its printed width and precedence.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub(super) tree: Tree,
@@ -23,7 +23,7 @@ pub(super) struct Piece {
 }
 
 impl Piece {
-    /// Something that prints as a name.
+    /// A tree that prints as a name.
     pub(super) fn name(tree: Tree, name: &str) -> Self {
         Self {
             tree,
@@ -32,7 +32,7 @@ impl Piece {
         }
     }
 
-    /// Width where something that binds as tightly as `level` is needed.
+    /// Width including the parentheses required at precedence `level`.
     fn width_at(&self, level: Level) -> usize {
         self.width + if self.level < level { 2 } else { 0 }
     }
@@ -70,7 +70,7 @@ impl Piece {
         matches!(first, Tree::Constant(value) if value.is_negative())
     }
 
-    /// Minus the value, the sign as far inside as it goes without rounding differently.
+    /// Minus the value, with the sign moved inwards as far as rounding is unaffected.
     pub(super) fn opposite(self) -> Self {
         let width = self.width;
         match self.tree {
@@ -143,7 +143,7 @@ impl Piece {
         }
     }
 
-    /// Left, right, value where the relation holds, value elsewhere.
+    /// Compared left and right sides, value if the relation holds, value otherwise.
     pub(super) fn choice(relation: Relation, operands: [Self; 4]) -> Self {
         let width: usize = operands.iter().map(|operand| operand.width).sum();
         let [left, right, then, otherwise] = operands.map(|operand| operand.tree);
@@ -159,7 +159,7 @@ impl Piece {
     }
 }
 
-/// How tightly the operands of an operation have to bind, left and right.
+/// Precedences that an operation requires of its left and right operand.
 fn levels(operation: Operation) -> (Level, Level) {
     match operation {
         Operation::Add | Operation::Subtract => (Level::Sum, Level::Product),
@@ -167,7 +167,7 @@ fn levels(operation: Operation) -> (Level, Level) {
     }
 }
 
-/// Name of a function as a method.
+/// Method name of a function.
 pub(crate) fn method(function: Function) -> &'static str {
     match function {
         Function::Sin => "sin",
@@ -186,8 +186,8 @@ pub(crate) fn method(function: Function) -> &'static str {
     }
 }
 
-/// A name that says how a value is made, where a short one does: `R_squared`, `m_R`, `inv_D`,
-/// `tan_theta`, `a_minus_b`. `products` tells which values are products.
+/// A short name that describes the operation of a value, if there is one: `R_squared`, `m_R`,
+/// `inv_D`, `tan_theta`, `a_minus_b`. `products` marks the values that are products.
 pub(super) fn describe(
     tree: &Tree,
     values: &[String],
@@ -217,7 +217,7 @@ pub(super) fn describe(
     }
 }
 
-/// `sin_a_minus_b` and the like where a tree is written out by an addition theorem.
+/// `sin_a_minus_b` and the like for a tree expanded by an addition theorem.
 fn angle_sum(tree: &Tree, values: &[String]) -> Option<String> {
     let Tree::Binary(operation @ (Operation::Add | Operation::Subtract), left, right) = tree else {
         return None;

@@ -1,18 +1,18 @@
-//! Which of two candidates for a rewriting goes first.
+//! Tie-breaking between equally frequent rewriting candidates.
 
 use super::dag::Item;
 
-/// Which of two equally frequent candidates goes first.
+/// Tie-breaking between two equally frequent candidates.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Preference {
-    /// The one nearer to the arguments.
+    /// The one closer to the arguments.
     Early,
-    /// The one nearer to the results.
+    /// The one closer to the results.
     Late,
 }
 
 impl Preference {
-    /// The higher rank goes first.
+    /// The candidate of higher rank is rewritten first.
     pub(super) fn rank(self, item: Item) -> u64 {
         let position = 2 * item.id.index() as u64 + u64::from(item.flip);
         match self {

@@ -1,9 +1,9 @@
-//! Brings a rewritten graph back into order: dead nodes go, equal nodes meet, and sums and
-//! products that only one whole uses dissolve in it.
+//! Normalises a rewritten graph: eliminates dead nodes, merges identical ones, and flattens nested
+//! single-use sums and products.
 
 use super::dag::{Dag, Id, Item, Name, Op, System};
 
-/// Which named values dissolve like unnamed ones.
+/// Which named values are flattened like unnamed ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Dissolve {
     /// Unnamed ones only.
@@ -12,7 +12,7 @@ pub(super) enum Dissolve {
     Named,
 }
 
-/// The same results, in order again.
+/// The same results in a normalised graph.
 pub(super) fn rebuild(dag: &Dag, dissolve: Dissolve) -> Dag {
     let order = dag.order();
     let mut rebuilding = Rebuilding {
@@ -48,15 +48,15 @@ struct Rebuilding<'a> {
 }
 
 impl Rebuilding<'_> {
-    /// The new item of an old item whose flip is a sign.
+    /// The new operand of an old one whose flip is a sign.
     fn item(&self, old: Item) -> Item {
         self.known[old.id.index()]
             .unwrap_or(old)
             .flipped_if(old.flip)
     }
 
-    /// Whether a part has no life of its own. A name alone does not give it one if the part is too
-    /// small to be read under its own name.
+    /// Whether an operand is flattened into its user. A name prevents this only if the operand is
+    /// large enough to be displayed by itself.
     fn dissolves(&self, id: Id) -> bool {
         let small = || matches!(self.old.op(id), Op::Product(factors) if factors.len() <= 2);
         let named = self.old.names[id.index()].is_some_and(|name| !name.automatic);
@@ -143,7 +143,7 @@ impl Rebuilding<'_> {
         let Some(name) = self.old.names[old.index()] else {
             return;
         };
-        // A sine says itself what it is.
+        // A function node needs no generated name.
         let says_itself = name.automatic && matches!(self.new.op(new.id), Op::Function(..));
         let place = &mut self.new.names[new.id.index()];
         if place.is_none() && !says_itself {

@@ -1,20 +1,20 @@
-//! Moves numeric factors between sums and what they are multiplied with.
+//! Moves numeric factors between sums and their cofactors.
 //!
-//! `x/(4·a + 12·b)·8` has three multiplications by numbers; `2·x/(a + 3·b)` has two. For every
-//! sum the factor is taken out that leaves the fewest numbers in its terms and around it.
+//! `x/(4·a + 12·b)·8` has three multiplications by numbers; `2·x/(a + 3·b)` has two. From every sum
+//! the factor is extracted that minimises the number of numeric factors in its terms and uses.
 
 use super::dag::{Dag, Id, Item, Op, System};
 use crate::symbolic::Rational;
 
-/// Takes a number out of every unnamed sum where that saves multiplications. Tells whether there
-/// was any.
+/// Extracts a number from every unnamed sum where that saves multiplications. Returns whether
+/// anything changed.
 pub(super) fn scale(dag: &mut Dag, order: &[Id]) -> bool {
     let scales = Scales::choose(dag, order);
     if scales.taken_out.iter().all(Option::is_none) {
         return false;
     }
-    // The sums are about to change their values. Whoever looks for a product with one of them must
-    // not find a node that is yet to be rewritten: it would get the number twice.
+    // The sums are about to change their values. Hash consing must not return a node that is yet to
+    // be rewritten: the number would be extracted from it twice.
     let compound = |op: &Op| !matches!(op, Op::Number(_) | Op::Argument(_) | Op::Solution { .. });
     let derived: Vec<(Id, Op)> = order
         .iter()
@@ -26,7 +26,7 @@ pub(super) fn scale(dag: &mut Dag, order: &[Id]) -> bool {
     }
     for (id, op) in derived {
         if scales.taken_out(id).is_some() {
-            // What remains is not what the name stands for.
+            // The name does not denote the remaining factor.
             dag.names[id.index()] = None;
         }
         let new = scales.rewritten(dag, id, op);
@@ -51,7 +51,7 @@ pub(super) fn scale(dag: &mut Dag, order: &[Id]) -> bool {
 }
 
 struct Scales {
-    /// The number taken out of a sum: the sum is this number times what replaces it.
+    /// The number extracted from a sum: the sum is this number times its replacement.
     taken_out: Vec<Option<Rational>>,
 }
 
@@ -67,7 +67,7 @@ impl Scales {
             dag.for_each_part(id, |part| wholes[part.id.index()].push(id));
         }
         for result in &dag.results {
-            // As a result a sum stands alone.
+            // As a result, a sum has no cofactors.
             wholes[result.id.index()].push(result.id);
         }
         for &id in order {
@@ -129,7 +129,7 @@ impl Scales {
         self.taken_out.get(id.index()).and_then(Option::as_ref)
     }
 
-    /// An item whose flip is a sign, with the number that was taken out of it.
+    /// An operand whose flip is a sign, multiplied by the number extracted from it.
     fn whole(&self, dag: &mut Dag, item: Item) -> Item {
         let Some(scale) = self.taken_out(item.id) else {
             return item;
@@ -139,7 +139,8 @@ impl Scales {
             .flipped_if(item.flip)
     }
 
-    /// The operation of a node on parts of which numbers were taken out; its own is taken out, too.
+    /// The operation of a node whose operands were scaled; the number of the node itself is
+    /// extracted, too.
     fn rewritten(&self, dag: &mut Dag, id: Id, op: Op) -> Op {
         match op {
             Op::Number(_) | Op::Argument(_) | Op::Solution { .. } => op,
@@ -179,7 +180,7 @@ impl Scales {
                 Op::Sum(vec![dag.product(factors)])
             }
             Op::Function(function, argument) => Op::Function(function, self.whole(dag, argument)),
-            // Named sums keep their numbers, and what is kept has a name.
+            // Named sums are not scaled, and opaque values are named.
             Op::Kept(inner) => Op::Kept(inner),
             Op::Atan2(items) => Op::Atan2(items.map(|item| self.whole(dag, item))),
             Op::Power(items) => Op::Power(items.map(|item| self.whole(dag, item))),
@@ -190,7 +191,7 @@ impl Scales {
     }
 }
 
-/// The number among the factors of a product, or the number a node is.
+/// The number among the factors of a product, or the number that a node represents.
 fn coefficient(dag: &Dag, id: Id) -> Option<&Rational> {
     match dag.op(id) {
         Op::Product(factors) => factors.iter().find_map(|factor| dag.as_number(factor.id)),
@@ -208,7 +209,7 @@ fn exponent(dag: &Dag, whole: Id, part: Id) -> i32 {
     same.map(|factor| if factor.flip { -1 } else { 1 }).sum()
 }
 
-/// `value · base^exponent`, where the power is short enough to write.
+/// `value · base^exponent`, if the power is short enough to write.
 fn times(value: &Rational, base: &Rational, exponent: i32) -> Rational {
     match base.checked_pow(exponent) {
         Some(power) => value * &power,
@@ -216,7 +217,7 @@ fn times(value: &Rational, base: &Rational, exponent: i32) -> Rational {
     }
 }
 
-/// `number · item`, the number among the factors of a product.
+/// `number · item`, with the number as a factor of a product.
 fn multiplied(dag: &mut Dag, item: Item, number: &Rational) -> Item {
     let number = dag.number(number);
     let mut factors = vec![number];

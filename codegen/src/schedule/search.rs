@@ -1,4 +1,4 @@
-//! Tries several orders of rewriting and keeps the cheapest result.
+//! Tries several orderings of the passes and returns the cheapest result.
 
 use super::cancel::cancel;
 use super::dag::{Dag, Id};
@@ -12,7 +12,7 @@ use super::scale::scale;
 use super::share::{Within, share};
 use super::tuning::Tuning;
 
-/// One kind of rewriting.
+/// A rewriting pass.
 #[derive(Debug, Clone, Copy)]
 enum Pass {
     Factor,
@@ -20,17 +20,17 @@ enum Pass {
     Sums,
 }
 
-/// One way to the goal.
+/// An ordering of passes with its parameters.
 #[derive(Debug, Clone, Copy)]
 struct Plan {
-    /// Which named values dissolve.
+    /// Which named values are flattened.
     dissolve: Dissolve,
-    /// Whether numbers move between sums first.
+    /// Whether numeric factors are moved first.
     scale: bool,
     /// Passes of a round.
     passes: [Pass; 3],
     preference: Preference,
-    /// Least number of occurrences that is worth a rewriting, round by round.
+    /// Minimum number of occurrences for a rewriting, per round.
     levels: &'static [u32],
 }
 
@@ -73,13 +73,13 @@ const PLANS: [Plan; 6] = [
     },
 ];
 
-/// Operations that a name from the derivation is worth.
+/// Cost in operations at which a name from the derivation is valued.
 const NAME: usize = 1;
 
-/// How often nodes are looked for that are equal: one meeting makes others possible.
+/// Most iterations of value numbering: merging nodes makes further ones equal.
 const MEETINGS: usize = 4;
 
-/// The cheapest equivalent graph found. What is cheaper by nothing stays as derived.
+/// The cheapest equivalent graph found; on a tie the earlier plan wins.
 pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
     let weigh = |dag: &Dag| dag.weight(&dag.order(), tuning.division);
     let mut best = finish(rebuild(derived, Dissolve::Unnamed));
@@ -112,7 +112,7 @@ pub(super) fn cheapest(derived: &Dag, tuning: Tuning) -> Dag {
     best
 }
 
-/// Nodes of equal value met.
+/// Merges nodes of equal value.
 fn merged(mut dag: Dag) -> Dag {
     for pass in [refer_to_kept, meet_in_multiples] {
         let order = dag.order();
@@ -167,14 +167,14 @@ fn follow(derived: &Dag, plan: Plan) -> Dag {
     dag
 }
 
-/// Reciprocals come last: the other passes see through divisions.
+/// Reciprocals are shared last: the other passes handle divisions directly.
 fn finish(mut dag: Dag) -> Dag {
     let order = dag.order();
     share_reciprocals(&mut dag, &order);
     rebuild(&dag, Dissolve::Unnamed)
 }
 
-/// As few divisions as possible.
+/// Minimises the number of divisions.
 fn joined(dag: &Dag) -> Dag {
     let mut joint = dag.clone();
     let order = joint.order();

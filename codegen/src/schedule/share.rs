@@ -1,9 +1,9 @@
-//! Finds parts of sums and products that occur more than once: `m·R` inside `m·R·x` and `m·R·y`,
-//! `a + b` inside `a + b + c` and `d - a - b`.
+//! Common-subexpression elimination in sums and products: `m·R` inside `m·R·x` and `m·R·y`, `a + b`
+//! inside `a + b + c` and `d - a - b`.
 //!
-//! The pair of parts with the most occurrences gets a node of its own, again and again until no
-//! pair occurs twice (Breuer, "Generation of optimal code for expressions via factorization",
-//! Communications of the ACM 12(6), 1969). Longer common parts arise pair by pair.
+//! The most frequent pair of operands gets a node of its own, repeatedly until no pair occurs twice
+//! (Breuer, "Generation of optimal code for expressions via factorization", Communications of the
+//! ACM 12(6), 1969). Longer common subexpressions are built pair by pair.
 
 use std::collections::BinaryHeap;
 
@@ -12,7 +12,7 @@ use rustc_hash::FxHashMap;
 use super::dag::{Dag, Id, Item, Op};
 use super::preference::Preference;
 
-/// Where to look for common parts.
+/// Where common subexpressions are searched.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Within {
     /// Common terms, up to a common sign.
@@ -21,10 +21,10 @@ pub(super) enum Within {
     Products,
 }
 
-/// Longer sums and products are left alone: pairs grow with the square of the length.
+/// Longer sums and products are skipped: the number of pairs is quadratic in the length.
 const LONGEST: usize = 64;
 
-/// Shares the parts that at least `least` sums, or products, have in common. Tells whether there
+/// Eliminates subexpressions common to at least `least` sums or products. Returns whether there
 /// were any.
 pub(super) fn share(
     dag: &mut Dag,
@@ -75,14 +75,14 @@ type Pair = (Item, Item);
 struct Sharing {
     within: Within,
     preference: Preference,
-    /// Pairs that occur less often are left alone.
+    /// Pairs that occur less often are skipped.
     least: u32,
     owners: Vec<Id>,
     lists: Vec<Vec<Item>>,
-    /// By node, the lists that hold it, and some that held it once.
+    /// By node, the lists that contain it, and some that contained it once.
     holders: Vec<Vec<usize>>,
-    /// Occurrences of the pairs that occur often enough. The count of a pair never grows: what
-    /// changes a list takes parts away and puts a new node in.
+    /// Occurrences of the pairs that are frequent enough. The count of a pair never grows: a
+    /// rewriting removes operands from a list and adds only a new node.
     counts: FxHashMap<Pair, u32>,
     queue: BinaryHeap<(u32, (u64, u64), Pair)>,
 }
@@ -100,13 +100,13 @@ impl Sharing {
         self.lists.push(items.to_vec());
     }
 
-    /// The pair as it is looked up; both terms may have changed sign for that.
+    /// The canonical form of a pair; both signs may be flipped.
     fn normal(&self, a: Item, b: Item) -> Pair {
         let flip = self.within == Within::Sums && a.flip;
         (a.flipped_if(flip), b.flipped_if(flip))
     }
 
-    /// Calls `visit` with every pair of a list, as often as it fits in.
+    /// Calls `visit` with every pair of a list, with multiplicity.
     fn for_each_pair(&self, list: &[Item], mut visit: impl FnMut(Pair)) {
         let mut i = 0;
         while i < list.len() {
@@ -140,7 +140,7 @@ impl Sharing {
         self.enter(pairs);
     }
 
-    /// Enters new pairs, one per occurrence.
+    /// Registers new pairs, one per occurrence.
     fn enter(&mut self, mut pairs: Vec<Pair>) {
         pairs.sort_unstable();
         for same in pairs.chunk_by(|a, b| a == b) {
@@ -169,7 +169,7 @@ impl Sharing {
         None
     }
 
-    /// Gives the pair a node, and replaces it in all lists.
+    /// Creates a node for the pair, and replaces it in all lists.
     fn extract(&mut self, dag: &mut Dag, pair: Pair) {
         self.counts.remove(&pair);
         let node = match self.within {

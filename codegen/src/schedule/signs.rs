@@ -1,27 +1,27 @@
-//! Chooses which values are computed with the opposite sign, so that few are negated.
+//! Sign assignment: chooses the values to be computed with the opposite sign, minimising negations.
 //!
-//! A difference can be written either way round, and so can a product with a number or with such a
-//! difference. What a sum subtracts or adds costs the same. A result or an argument of a function
-//! that is wanted negative costs a negation.
+//! A difference can be computed in either order, and so can a product with a number or with such a
+//! difference. Addition and subtraction in a sum cost the same. A result or function argument of
+//! the opposite sign costs a negation.
 
 use std::collections::BTreeSet;
 
 use super::dag::{Dag, Id, Item, Op};
 
-/// Costs of what is to be avoided.
+/// Costs of undesired signs.
 const NEGATION: usize = 4;
-/// A value that comes out with the other sign than its name's is negated or loses its name.
+/// A value whose sign differs from that of its name is negated or renamed.
 const WRONG_SIGN: usize = 5;
-/// A product with a negative number reads worse than one with a positive number.
+/// A product with a negative number is less readable than one with a positive number.
 const MINUS_IN_NAME: usize = 10;
 
-/// So does a number whose minus takes back that of a factor, but less than a negation costs.
+/// So is a number whose minus cancels that of a factor, at less than the cost of a negation.
 const MINUS: usize = 1;
 
-/// How often all candidates are tried: what is flipped first may be better flipped back later.
+/// Passes over all candidates: an early flip may be worth undoing after later ones.
 const ROUNDS: usize = 2;
 
-/// For every node, whether minus its value is wanted.
+/// For every node, whether minus its value is to be computed.
 pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
     let mut signs = Signs::new(dag, order);
     for _ in 0..ROUNDS {
@@ -36,8 +36,8 @@ pub(super) fn choose_signs(dag: &Dag, order: &[Id]) -> Vec<bool> {
     signs.wanted
 }
 
-/// Whether a value is worth a negation for the sake of its name: a sum, or a product that cannot be
-/// told by its factors.
+/// Whether a value is negated to keep its name: a sum, or a product that its factors alone do not
+/// identify.
 pub(super) fn keeps_its_name(dag: &Dag, id: Id) -> bool {
     match dag.op(id) {
         Op::Sum(_) => true,
@@ -48,7 +48,7 @@ pub(super) fn keeps_its_name(dag: &Dag, id: Id) -> bool {
     }
 }
 
-/// Whether a product has a number, which takes any sign.
+/// Whether a product has a numeric factor, which can absorb any sign.
 fn has_number(dag: &Dag, id: Id) -> bool {
     matches!(dag.op(id), Op::Product(factors) if factors.iter().any(|f| dag.as_number(f.id).is_some()))
 }
@@ -56,27 +56,27 @@ fn has_number(dag: &Dag, id: Id) -> bool {
 struct Signs<'a> {
     dag: &'a Dag,
     order: &'a [Id],
-    /// Place of each node in the order.
+    /// Position of each node in the order.
     places: Vec<usize>,
-    /// What is made from each node.
+    /// The users of each node.
     users: Vec<Vec<Id>>,
-    /// By node: how many results want it as it is, and how many with the other sign.
+    /// By node: how many results require it with its own sign, and how many with the opposite sign.
     results: Vec<[usize; 2]>,
     wanted: Vec<bool>,
-    /// What the wishes lead to.
+    /// The state that the requested signs imply for each node.
     states: Vec<State>,
-    /// The first sign in which a result wants a node.
+    /// The sign in which the first result requires a node.
     labels: Vec<Option<bool>>,
-    /// Of all nodes together.
+    /// Total over all nodes.
     cost: usize,
 }
 
-/// What the wishes make of one node.
+/// The state that the requested signs imply for a node.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 struct State {
     /// Whether minus its value is computed.
     built: bool,
-    /// Whether it came out with the other sign than its name's.
+    /// Whether its sign differed from that of its name.
     wrong: bool,
     /// Whether it is a product whose number is written with a minus.
     minus: bool,
@@ -120,12 +120,13 @@ impl<'a> Signs<'a> {
         self.states[id.index()].built
     }
 
-    /// Wants the opposite of a node where all that follows then costs less.
+    /// Requests the opposite sign of a node and propagates this to its users; reverted unless the
+    /// cost decreases.
     fn flip_if_cheaper(&mut self, candidate: Id) {
         let before = self.cost;
         let mut undone = Vec::new();
         self.wanted[candidate.index()] ^= true;
-        // In order, so that the parts of a node are settled before it.
+        // In topological order, so that the operands of a node are final before it.
         let mut open = BTreeSet::from([self.places[candidate.index()]]);
         while let Some(place) = open.pop_first() {
             let id = self.order[place];
@@ -153,7 +154,7 @@ impl<'a> Signs<'a> {
         }
     }
 
-    /// What a node becomes where its parts are as they are.
+    /// The state of a node, given those of its operands.
     fn state(&self, id: Id) -> State {
         let (dag, place) = (self.dag, id.index());
         let negative = |item: &Item| item.flip != self.built(item.id);
@@ -200,7 +201,7 @@ impl<'a> Signs<'a> {
         if is_value && self.sign(id).is_some_and(|sign| sign != state.built) {
             state.wrong = true;
             state.cost += WRONG_SIGN;
-            // It is negated, or it gives up its name.
+            // It is negated, or loses its name.
             state.built ^= dag.names[place].is_some() || keeps_its_name(dag, id);
         }
         let [as_it_is, opposite] = self.results[place];
@@ -208,7 +209,7 @@ impl<'a> Signs<'a> {
         state
     }
 
-    /// The sign in which a value has its name.
+    /// Whether the name of a node denotes minus its value.
     fn sign(&self, id: Id) -> Option<bool> {
         let derived = self.dag.names[id.index()];
         derived
@@ -216,7 +217,7 @@ impl<'a> Signs<'a> {
             .or(self.labels[id.index()])
     }
 
-    /// Nodes whose opposite could save a negation, those that decide more than one last.
+    /// Nodes whose opposite could save a negation.
     fn candidates(&self) -> Vec<Id> {
         let dag = self.dag;
         let mut seen = vec![false; dag.len()];
@@ -229,7 +230,7 @@ impl<'a> Signs<'a> {
             }
         }
         for &id in self.order {
-            // A named sum of the wrong sign is mended by one of its terms, too.
+            // A named sum of the wrong sign can also be fixed in one of its terms.
             if self.states[id.index()].wrong {
                 dag.for_each_part(id, |part| roots.push(part.id));
                 roots.push(id);

@@ -11,7 +11,7 @@ pub struct Schedule {
     pub steps: Vec<Step>,
     /// Results, in the order of the function.
     pub results: Vec<ResultArray>,
-    /// Names of the values, by [`Value`]; unique identifiers in the function.
+    /// Unique identifiers of the values, indexed by [`Value`].
     pub names: Vec<String>,
 }
 
@@ -43,9 +43,9 @@ pub enum Argument {
 pub enum Step {
     /// `let value = tree;`
     Let {
-        /// What is defined.
+        /// The defined value.
         value: Value,
-        /// How it is computed.
+        /// Its expression.
         tree: Tree,
     },
     /// `let (sin, cos) = angle.sin_cos();`
@@ -66,7 +66,7 @@ pub enum Step {
         /// Entries, row by row.
         matrix: Vec<Tree>,
     },
-    /// Unknowns of a factorised system.
+    /// Solution of a factorised system.
     Solve {
         /// The factorisation.
         factorisation: u32,
@@ -82,14 +82,14 @@ pub enum Step {
     },
 }
 
-/// What a step computes: a small tree, evaluated left to right exactly as written.
+/// The expression of a step: a small tree, evaluated left to right exactly as written.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Tree {
     /// An earlier value.
     Value(Value),
     /// An argument.
     Argument(Argument),
-    /// An exact number, rounded to the scalar once.
+    /// An exact number, rounded once to the scalar type.
     Constant(Rational),
     /// `-a`
     Negate(Box<Tree>),
@@ -101,13 +101,13 @@ pub enum Tree {
     Atan2(Box<Tree>, Box<Tree>),
     /// `base^exponent`
     Power(Box<Tree>, Box<Tree>),
-    /// A choice between two values; both are computed.
+    /// A select between two values; both are computed.
     Choice {
         /// Relation.
         relation: Relation,
         /// Left and right side of the relation.
         compared: Box<[Tree; 2]>,
-        /// Value where it holds, value elsewhere.
+        /// Value if it holds, value otherwise.
         branches: Box<[Tree; 2]>,
     },
 }

@@ -1,13 +1,13 @@
-//! What schedules are made for.
+//! The cost model and the effort of the search for a schedule.
 
-/// What schedules are made for.
+/// The cost model and the effort of the search for a schedule.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Tuning {
-    /// A division takes as long as so many other operations. From about 5 on, independent
-    /// denominators share one division; that pays in vector registers.
+    /// Cost of a division in operations. From about 5 on, independent denominators share one
+    /// division; that pays in vector registers.
     pub division: usize,
-    /// Nodes that the search may pass over. Small functions try every plan within the default;
-    /// large ones only the two most promising plans.
+    /// Budget of nodes that the search processes. The default suffices to try every plan on small
+    /// functions; on large ones only the first two plans are tried.
     pub effort: usize,
 }
 

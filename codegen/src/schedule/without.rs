@@ -1,13 +1,13 @@
-//! A schedule without what some parameters that are zero bring into it.
+//! Partial evaluation of a schedule for parameters that are zero.
 //!
-//! Adding zero and multiplying by one change no number, so that the results are those of the whole schedule, but
-//! for the sign of zero and where a product of zero is not finite.
+//! Adding zero and multiplying by one are exact, so the results are those of the full schedule
+//! except for the sign of zero and for products of zero with a non-finite value.
 
 use super::steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use crate::symbolic::{Function, Rational};
 
 impl Schedule {
-    /// The steps that remain where the parameters of which `is_zero` holds are zero.
+    /// The residual schedule where the parameters for which `is_zero` holds are zero.
     #[must_use]
     pub fn without(&self, is_zero: impl Fn(usize) -> bool) -> Self {
         let mut fold = Fold {
@@ -31,10 +31,10 @@ impl Schedule {
     }
 }
 
-/// What is known so far.
+/// Constant and copy propagation.
 struct Fold<F> {
     is_zero: F,
-    /// Numbers, arguments and other values that values are equal to, possibly negated.
+    /// By value: the number, argument or other value that it equals, possibly negated.
     known: Vec<Option<Tree>>,
 }
 
@@ -206,7 +206,7 @@ fn is_leaf(tree: &Tree) -> bool {
     }
 }
 
-/// Drops the steps that no result needs.
+/// Dead-code elimination.
 fn keep_used(steps: &mut Vec<Step>, results: &[ResultArray], values: usize) {
     let mut used = Used {
         values: vec![false; values],
@@ -225,7 +225,7 @@ fn keep_used(steps: &mut Vec<Step>, results: &[ResultArray], values: usize) {
     *steps = kept;
 }
 
-/// What later steps and results use.
+/// Live values and factorisations.
 struct Used {
     values: Vec<bool>,
     factorisations: Vec<u32>,
@@ -236,7 +236,7 @@ impl Used {
         self.values[value.0 as usize]
     }
 
-    /// Whether a step is needed; then it needs what it uses.
+    /// Whether a step is live; its operands then become live.
     fn needs(&mut self, step: &Step) -> bool {
         match step {
             Step::Let { value, tree } if self.has(*value) => self.tree(tree),

@@ -1,4 +1,4 @@
-//! Canonical construction: every function here returns the one node of its value's normal form.
+//! Canonical construction: every function here returns the unique node of a normal form.
 
 use super::node::{Expr, Factor, Function, Node, Relation, Term};
 use super::{Graph, Rational};
@@ -95,10 +95,10 @@ impl Graph {
         factors.into_expr(self)
     }
 
-    /// `base^exponent`; the number 0 takes no negative exponent.
+    /// `base^exponent`; the number 0 must not have a negative exponent.
     pub fn pow(&mut self, base: Expr, exponent: i32) -> Expr {
         if exponent == i32::MIN {
-            // The one exponent without a negative.
+            // `i32::MIN` cannot be negated.
             let almost = self.pow(base, exponent + 1);
             return self.div(almost, base);
         }
@@ -122,7 +122,7 @@ impl Graph {
         self.function(Function::Cos, a)
     }
 
-    /// Tangent, as a quotient: sine and cosine of an angle are computed together anyway.
+    /// Tangent, as the quotient of sine and cosine, which share one evaluation.
     pub fn tan(&mut self, a: Expr) -> Expr {
         let (sin, cos) = (self.sin(a), self.cos(a));
         self.div(sin, cos)
@@ -133,7 +133,7 @@ impl Graph {
         self.function(Function::Sqrt, a)
     }
 
-    /// A function of one argument. Odd and even functions take the sign out of their argument.
+    /// A function of one argument. The sign is moved out of odd functions and dropped in even ones.
     pub fn function(&mut self, function: Function, argument: Expr) -> Expr {
         use Function::{Abs, Asin, Atan, Cos, Cosh, Exp, Ln, Sign, Sin, Sinh, Sqrt, Tanh};
         let odd = matches!(function, Sin | Asin | Atan | Sinh | Tanh | Sign);
@@ -207,7 +207,7 @@ impl Graph {
         })
     }
 
-    /// Whether the canonical form starts with a negative coefficient.
+    /// Whether the first coefficient of the canonical form is negative.
     pub fn leads_with_minus(&self, expr: Expr) -> bool {
         match self.node(expr) {
             Node::Number(n) => n.is_negative(),
@@ -216,8 +216,8 @@ impl Graph {
         }
     }
 
-    /// `expr = coefficient · rest`, where `rest` has no numeric factor and does not lead with a
-    /// minus. A sum gives up its content.
+    /// `expr = coefficient · rest`, where `rest` has no numeric factor and a positive leading coefficient.
+    /// The content of a sum goes into the coefficient.
     pub fn split_coefficient(&mut self, expr: Expr) -> (Rational, Expr) {
         match self.node(expr) {
             Node::Number(n) => (n.clone(), Self::ONE),
@@ -245,7 +245,7 @@ fn exact_square_root(number: &Rational) -> Option<Rational> {
     Some(Rational::new(root(n)?, root(d)?))
 }
 
-/// A sum under construction: like terms meet when it is sorted.
+/// A sum under construction: sorting combines like terms.
 #[derive(Default)]
 struct Terms {
     terms: Vec<Term>,
@@ -300,8 +300,8 @@ impl Terms {
     }
 }
 
-/// One application of `sin² + cos² = 1` that shortens a sum: `k s²X + k c²X = kX`, or
-/// `kX - k s²X = k c²X` and the same with the roles exchanged.
+/// One application of `sin² + cos² = 1` that shortens a sum: `k s²X + k c²X = kX`, or `kX - k s²X = k c²X`,
+/// and the same with sine and cosine exchanged.
 fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
     for (i, term) in terms.iter().enumerate() {
         let Node::Product(factors) = graph.node(term.expr) else {
@@ -357,12 +357,12 @@ fn pythagoras(graph: &mut Graph, terms: &[Term]) -> Option<Vec<Term>> {
     None
 }
 
-/// An exponent whose negative is an exponent too.
+/// An exponent that can be negated.
 fn fitting(exponent: Option<i32>) -> Option<i32> {
     exponent.filter(|&e| e != i32::MIN)
 }
 
-/// A product under construction: powers of the same base meet.
+/// A product under construction: powers of the same base are combined.
 struct Factors {
     coefficient: Rational,
     factors: Vec<Factor>,
@@ -382,7 +382,7 @@ impl Factors {
         if let Some(power) = coefficient.checked_pow(exponent) {
             self.coefficient = &self.coefficient * &power;
         } else {
-            // A number too long to write out stays a factor of its own.
+            // A number too long to multiply out remains a separate factor.
             let number = graph.number(coefficient);
             self.factors.push(Factor {
                 base: number,
@@ -405,7 +405,7 @@ impl Factors {
         };
         match powers {
             Some(powers) => self.factors.extend(powers),
-            // No product, or one whose powers are too high to write out: a factor of its own.
+            // Not a product, or one whose powers are too high to expand: a separate factor.
             None => self.factors.push(Factor {
                 base: rest,
                 exponent,
@@ -413,7 +413,7 @@ impl Factors {
         }
     }
 
-    /// Powers of the same base meet, as far as an exponent can count them.
+    /// Combines powers of the same base unless the exponent overflows.
     fn merge(&mut self) {
         self.factors.sort_unstable_by_key(|f| f.base);
         self.factors.dedup_by(|next, first| {
@@ -430,7 +430,7 @@ impl Factors {
             return Graph::ZERO;
         }
         self.merge();
-        // √x to an even power is a power of x, which may meet other powers of x or be a root itself.
+        // √x to an even power is a power of x, which may combine with other powers of x or be a root itself.
         loop {
             let roots: Vec<(Expr, i32)> = self
                 .factors

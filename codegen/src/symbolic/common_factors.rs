@@ -1,11 +1,11 @@
-//! Common factors of a sum in the graph, all terms at once: `a b + a c = a (b + c)`.
+//! Common factors of all terms of a sum: `a b + a c = a (b + c)`.
 
 use super::Graph;
 use super::node::{Expr, Factor, Node};
 
 impl Graph {
-    /// Takes the factors that all terms of a sum share in front of it: `a b + a c = a (b + c)`.
-    /// Anything but such a sum stays as it is.
+    /// Factors a sum by the factors common to all its terms: `a b + a c = a (b + c)`. Other expressions are
+    /// returned unchanged.
     pub fn take_out_common_factors(&mut self, expr: Expr) -> Expr {
         let Node::Sum(terms) = self.node(expr) else {
             return expr;
@@ -44,8 +44,8 @@ impl Graph {
         self.mul(common, rest)
     }
 
-    /// Nests a sum: the factor that most terms share is taken out of these, and both parts are
-    /// nested in turn. `a x + b x + c y = x (a + b) + c y`.
+    /// Nests a sum: the factor common to most terms is extracted from these, and both parts are nested
+    /// recursively. `a x + b x + c y = x (a + b) + c y`.
     pub fn nest(&mut self, expr: Expr) -> Expr {
         let Node::Sum(terms) = self.node(expr) else {
             return expr;
@@ -90,8 +90,8 @@ impl Graph {
         self.add(product, outside)
     }
 
-    /// `dividend = quotient · divisor + rest` for sums of products, as far as whole multiples of the
-    /// divisor stand in the dividend.
+    /// `dividend = quotient · divisor + rest` for sums of products, as far as the dividend contains complete
+    /// multiples of the divisor.
     pub fn divide_out(&mut self, dividend: Expr, divisor: Expr) -> (Expr, Expr) {
         let (Node::Sum(parts), Node::Sum(pattern)) = (self.node(dividend), self.node(divisor))
         else {
@@ -134,7 +134,7 @@ impl Graph {
         (quotient, rest)
     }
 
-    /// Numerator and denominator of a product; the numeric coefficient goes with the numerator.
+    /// Numerator and denominator of a product; the numeric coefficient belongs to the numerator.
     pub fn split_fraction(&mut self, expr: Expr) -> (Expr, Expr) {
         let (coefficient, rest) = self.split_coefficient(expr);
         let (mut over, mut under) = (vec![self.number(coefficient)], Vec::new());

@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::node::{Expr, Function, Node, SymbolId};
 use super::{Graph, Rational};
 
-/// Partial derivatives with respect to one symbol, remembered between calls.
+/// Partial derivatives with respect to one symbol, memoised.
 #[derive(Debug, Clone)]
 pub struct Derivatives {
     symbol: SymbolId,
@@ -31,12 +31,12 @@ impl Derivatives {
         self.get(expr)
     }
 
-    /// A derivative that is known: what does not hold the symbol has the derivative zero.
+    /// A memoised derivative; zero for expressions that do not contain the symbol.
     fn get(&self, expr: Expr) -> Expr {
         self.known.get(&expr).copied().unwrap_or(Graph::ZERO)
     }
 
-    /// Derivative of one node; those of its parts are known.
+    /// Derivative of one node; those of its operands are known.
     fn step(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
         match graph.node(expr).clone() {
             Node::Number(_) => Graph::ZERO,
@@ -134,7 +134,7 @@ impl Derivatives {
         }
     }
 
-    /// The derivative of a named quantity keeps a name of its own where it is worth one.
+    /// Names the derivative of a named quantity if it is worth a name.
     fn name_derivative(&self, graph: &mut Graph, id: u32, derivative: Expr) -> Expr {
         let worth_a_name = match graph.node(derivative) {
             Node::Sum(terms) => terms.len() > 1,
@@ -195,7 +195,7 @@ pub(super) fn outer_derivative(
             graph.scale(&Rational::new(1, 2), reciprocal)
         }
         Function::Abs => graph.function(Function::Sign, x),
-        // The jump at zero has no derivative; elsewhere it is zero.
+        // The derivative is zero except at the jump, where it is undefined.
         Function::Sign => Graph::ZERO,
     }
 }

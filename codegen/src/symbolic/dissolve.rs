@@ -1,11 +1,11 @@
-//! Expression to expression: the definitions of names put in their places.
+//! Replaces names by their definitions.
 
 use rustc_hash::FxHashSet;
 
 use super::print::visible;
 use super::{Expr, Graph, Node, Substitution};
 
-/// Puts definitions in the places of names; remembers what it has put in.
+/// Replaces names by their definitions, memoised.
 #[derive(Debug, Default)]
 pub struct Dissolved {
     definitions: Substitution,
@@ -13,8 +13,8 @@ pub struct Dissolved {
 }
 
 impl Dissolved {
-    /// `expr` with the definitions of its names put in, except for the names that `keeps` accepts.
-    /// `None` where a number is divided by zero on the way.
+    /// `expr` with its names replaced by their definitions, except for the names that `keeps` accepts. `None`
+    /// if this divides by the number zero.
     pub fn of(
         &mut self,
         graph: &mut Graph,
@@ -47,7 +47,7 @@ impl Dissolved {
     }
 }
 
-/// Names and unknowns of linear systems in an expression, with nothing done about them.
+/// Names and unknowns of linear systems in an expression, not yet processed.
 fn opaque_parts(graph: &Graph, expr: Expr) -> Vec<(Expr, bool)> {
     let opaque = |&part: &Expr| matches!(graph.node(part), Node::Named(_) | Node::Solution { .. });
     let parts = visible(graph, expr).into_iter();

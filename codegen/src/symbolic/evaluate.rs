@@ -4,25 +4,24 @@ use rustc_hash::FxHashMap;
 
 use super::{Expr, Function, Graph, Node, Relation};
 
-/// Values of `roots` where the symbol with id `i` has the value `values[i]`. A symbol without a value
-/// is NaN.
+/// Values of `roots` where the symbol with id `i` has the value `values[i]`. A symbol without a value is NaN.
 pub fn evaluate(g: &Graph, values: &[f64], roots: &[Expr]) -> Vec<f64> {
     let mut evaluation = Evaluation::new(g, roots);
     evaluation.compute(values);
     roots.iter().map(|&root| evaluation.of(root)).collect()
 }
 
-/// Values of the same expressions at one point after the other.
+/// Repeated evaluation of the same expressions at different points.
 pub struct Evaluation<'g> {
     graph: &'g Graph,
-    /// Parts before wholes.
+    /// Operands before users.
     order: Vec<Expr>,
-    /// By expression.
+    /// Values by expression.
     known: Vec<f64>,
 }
 
 impl<'g> Evaluation<'g> {
-    /// Of these expressions and of what they are built from.
+    /// Prepares the evaluation of these expressions and their operands.
     pub fn new(graph: &'g Graph, roots: &[Expr]) -> Self {
         let newest = roots.iter().max().map_or(0, |root| root.0 as usize + 1);
         Self {
@@ -32,12 +31,13 @@ impl<'g> Evaluation<'g> {
         }
     }
 
-    /// The value of one of the expressions where it was computed last.
+    /// The last computed value of an expression.
     pub fn of(&self, expr: Expr) -> f64 {
         self.known[expr.0 as usize]
     }
 
-    /// Computes all where the symbol with id `i` has the value `values[i]`; a symbol without a value is NaN.
+    /// Evaluates all expressions where the symbol with id `i` has the value `values[i]`; a symbol without a
+    /// value is NaN.
     pub fn compute(&mut self, values: &[f64]) {
         let Self {
             graph: g,
@@ -108,8 +108,7 @@ fn apply(function: Function, x: f64) -> f64 {
     }
 }
 
-/// Elimination with the largest pivot of each column. A singular matrix gives values that are not
-/// finite.
+/// Gaussian elimination with partial pivoting. A singular matrix gives non-finite values.
 fn solve(mut a: Vec<f64>, mut b: Vec<f64>) -> Vec<f64> {
     let n = b.len();
     for k in 0..n {

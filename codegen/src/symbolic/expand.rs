@@ -1,4 +1,4 @@
-//! Multiplying out, and counting what an expression costs.
+//! Expansion of products, and operation counts.
 
 use rustc_hash::FxHashMap;
 
@@ -6,15 +6,15 @@ use super::node::{Expr, Factor, Node, Term};
 use super::{Graph, Rational};
 
 impl Graph {
-    /// Multiplies out products and positive powers of sums. Names, functions and denominators stay as
-    /// they are. `None` where a sum would have more than `limit` terms.
+    /// Expands products and positive powers of sums. Names, functions and denominators are left unchanged.
+    /// `None` where a sum would have more than `limit` terms.
     pub fn expand(&mut self, expr: Expr, limit: usize) -> Option<Expr> {
         if self.is_expanded(expr) {
             return Some(expr);
         }
         let expanded = self.expanded(expr, limit);
         if let Err(too_long) = expanded {
-            // The next frame of a chain contains this one: its failure is not found again term by term.
+            // Also recorded for `expr`, so that expressions containing it fail at once.
             for part in [too_long, expr] {
                 let most = self.too_long.entry(part).or_default();
                 *most = limit.max(*most);
@@ -23,7 +23,7 @@ impl Graph {
         expanded.ok()
     }
 
-    /// An expression multiplied out, or the part of it that has more terms than `limit`.
+    /// An expanded expression, or the subexpression that has more terms than `limit`.
     fn expanded(&mut self, expr: Expr, limit: usize) -> Result<Expr, Expr> {
         let mut known: FxHashMap<Expr, Expr> = FxHashMap::default();
         let mut stack = vec![expr];
@@ -95,7 +95,7 @@ impl Graph {
         factor.exponent > 0 && matches!(self.node(factor.base), Node::Sum(_))
     }
 
-    /// Product of factors of which the sums are known multiplied out.
+    /// Product of expanded factors.
     fn multiply_out(
         &mut self,
         factors: &[Factor],
@@ -113,7 +113,7 @@ impl Graph {
             let sum = known[&factor.base];
             for _ in 0..factor.exponent {
                 let (left, right) = (self.terms(product), self.terms(sum));
-                // A bound on the work: like terms may still meet.
+                // A bound on the work: like terms may still be combined.
                 if left.len().saturating_mul(right.len()) > limit.saturating_mul(4) {
                     return None;
                 }
@@ -132,8 +132,8 @@ impl Graph {
         Some(product)
     }
 
-    /// An expression multiplied out, with `value` in the place of the square of a symbol. `None` where a sum would
-    /// have more than `limit` terms.
+    /// An expanded expression in which the square of a symbol is replaced by `value`. `None` where a sum
+    /// would have more than `limit` terms.
     pub fn with_square(
         &mut self,
         expr: Expr,
@@ -187,7 +187,7 @@ impl Graph {
     }
 }
 
-/// Operations of a node beside those of its parts; the system of a solution is counted where it is.
+/// Operations of a node without its operands; the linear system of a solution is counted separately.
 pub(super) fn operations_of(node: &Node) -> u32 {
     let count = match node {
         Node::Number(_) | Node::Symbol(_) | Node::Named(_) | Node::Solution { .. } => 0,
@@ -236,7 +236,7 @@ mod tests {
         assert_eq!(graph.expand(whole, 10), None);
         let beyond = graph.mul(whole, symbols[1]);
         assert_eq!(graph.expanded(beyond, 10), Err(whole));
-        // More terms may be allowed later.
+        // A larger limit may succeed later.
         let expanded = graph.expand(whole, 100).map(|e| graph.terms(e).len());
         assert_eq!(expanded, Some(17));
     }

@@ -1,7 +1,7 @@
 //! Arithmetic in a prime field and on its unit circle.
 //!
 //! The prime `p = 2^61 - 6157521` lies close below a power of two, so a product is reduced without a
-//! division. It was chosen for four more properties that [`identity`](super::identity) rests on:
+//! division. It has four more properties that [`identity`](super::identity) requires:
 //!
 //! - `-1` has no square root. So `1 + t²` is never zero and the rational parametrisation of the unit
 //!   circle is defined for every `t`.
@@ -47,7 +47,7 @@ impl Element {
         })
     }
 
-    /// Its representative below the prime.
+    /// The representative in `0..p`.
     pub(super) const fn get(self) -> u64 {
         self.0
     }
@@ -192,7 +192,7 @@ pub(super) struct Rotation {
 }
 
 impl Rotation {
-    /// No turn.
+    /// The identity rotation.
     pub(super) const NONE: Self = Self {
         cos: Element::ONE,
         sin: Element::ZERO,
@@ -207,7 +207,7 @@ impl Rotation {
     /// The point `((1 - t²) / (1 + t²), 2t / (1 + t²))`.
     pub(super) fn from_parameter(t: Element) -> Self {
         let square = t * t;
-        // 1 + t² = 0 has no solution; see the module's head.
+        // 1 + t² = 0 has no solution; see the module documentation.
         let scale = (Element::ONE + square).inverse().unwrap_or(Element::ONE);
         Self {
             cos: (Element::ONE - square) * scale,
@@ -215,7 +215,7 @@ impl Rotation {
         }
     }
 
-    /// The angles added.
+    /// Composition: the sum of the angles.
     pub(super) fn then(self, other: Self) -> Self {
         Self {
             cos: self.cos * other.cos - self.sin * other.sin,
@@ -245,7 +245,7 @@ impl Rotation {
     }
 }
 
-/// A pseudo-random element that is a function of its arguments.
+/// A pseudo-random element, a function of its arguments.
 ///
 /// Folded wide multiplications mix all bits; the constants are odd and without pattern.
 pub(super) fn keyed(key: u64, tag: u64, arguments: [u64; 2]) -> Element {

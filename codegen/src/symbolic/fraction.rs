@@ -1,11 +1,11 @@
-//! A rational expression as one fraction: everything over one denominator, cancelled.
+//! A rational expression as a single fraction in lowest terms.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::node::{Expr, Function, Node, Term};
 use super::{Graph, IdentityTest, Rational};
 
-/// `over / Π base^exponent`, with `over` multiplied out.
+/// `over / Π base^exponent`, with `over` expanded.
 #[derive(Debug, Clone)]
 struct Fraction {
     over: Expr,
@@ -22,10 +22,9 @@ impl Fraction {
 }
 
 impl Graph {
-    /// The same value as one fraction in the fewest operations that are found: over one denominator,
-    /// without factors that numerator and denominator share, with sines or cosines exchanged for
-    /// each other. Names and functions stay as they are. `None` where a sum would have more than
-    /// `limit` terms.
+    /// The same value as one fraction, with the fewest operations found: over a common denominator, with
+    /// common factors of numerator and denominator cancelled and sin² or cos² exchanged for each other. Names
+    /// and functions are left unchanged. `None` where a sum would have more than `limit` terms.
     pub fn one_fraction(
         &mut self,
         test: &mut IdentityTest,
@@ -45,7 +44,7 @@ impl Graph {
         best
     }
 
-    /// Number of different expressions that something is divided by.
+    /// Number of distinct divisors in an expression.
     pub fn divisor_count(&self, expr: Expr) -> usize {
         let mut divisors = FxHashSet::default();
         for part in self.in_order(&[expr]) {
@@ -57,7 +56,7 @@ impl Graph {
         divisors.len()
     }
 
-    /// Everything over one denominator; parts before wholes.
+    /// Converts an expression to a single fraction, operands before users.
     fn together(&mut self, expr: Expr, limit: usize) -> Option<Fraction> {
         let mut known: FxHashMap<Expr, Fraction> = FxHashMap::default();
         for part in self.in_order(&[expr]) {
@@ -136,7 +135,7 @@ impl Graph {
         Some(Fraction { over, under })
     }
 
-    /// Number and powers whose product a divisor is.
+    /// A divisor as a number times powers.
     fn divisors(&mut self, divisor: Expr) -> Option<(Rational, Vec<(Expr, i32)>)> {
         let divisor = self.take_out_common_factors(divisor);
         let (mut coefficient, core) = self.split_coefficient(divisor);
@@ -149,8 +148,8 @@ impl Graph {
         Some((coefficient, powers))
     }
 
-    /// A sum of products without higher powers of the other one of sine and cosine: `cos² = 1 - sin²`
-    /// where the sine is kept. `None` where there is nothing to exchange.
+    /// Reduces powers of sine or cosine in a sum of products by `cos² = 1 - sin²`, expressed in `kept`.
+    /// `None` where there is nothing to reduce.
     fn by_pythagoras(&mut self, sum: Expr, kept: Function, limit: usize) -> Option<Expr> {
         let other = match kept {
             Function::Sin => Function::Cos,
@@ -182,7 +181,7 @@ impl Graph {
         self.expand(sum, limit).filter(|_| exchanged)
     }
 
-    /// `over / Π base^exponent` without what both sides of the fraction line share.
+    /// `over / Π base^exponent` with common factors cancelled.
     fn cancel(
         &mut self,
         test: &mut IdentityTest,
@@ -205,8 +204,8 @@ impl Graph {
         self.div(over, below)
     }
 
-    /// `sum / divisor` where nothing is left over, by Horner's rule in a symbol that stands in one
-    /// term of the divisor alone, as a mass does in an inertia.
+    /// `sum / divisor` if the remainder is zero, by Horner's rule in a symbol that occurs in one term of the
+    /// divisor only, as a mass does in a moment of inertia.
     fn exact_quotient(
         &mut self,
         test: &mut IdentityTest,
@@ -260,7 +259,7 @@ impl Graph {
         None
     }
 
-    /// Coefficients of the powers of a symbol, from the zeroth; `None` where it stands elsewhere.
+    /// Coefficients of the powers of a symbol, from the zeroth; `None` if the sum is not a polynomial in it.
     fn by_powers(&mut self, sum: Expr, symbol: Expr) -> Option<Vec<Expr>> {
         let id = [self.as_symbol(symbol)?];
         let mut powers: Vec<Vec<(Rational, Expr)>> = Vec::new();

@@ -8,8 +8,8 @@ use super::differentiate::outer_derivative;
 use super::node::{Expr, Node, SymbolId};
 use super::{Graph, Rational};
 
-/// The gradient of `Σ weight · result` in symbols, for pairs of a result and its weight. The weights
-/// count as constants.
+/// The gradient of `Σ weight · result` with respect to symbols, for pairs of a result and its weight. The
+/// weights are treated as constants.
 pub fn gradient(graph: &mut Graph, weighted: &[(Expr, Expr)], by: &[SymbolId]) -> Vec<Expr> {
     let results: Vec<Expr> = weighted.iter().map(|&(result, _)| result).collect();
     let order = graph.in_order_where(&results, |part| graph.mentions(part, by));
@@ -39,17 +39,17 @@ pub fn gradient(graph: &mut Graph, weighted: &[(Expr, Expr)], by: &[SymbolId]) -
 /// Derivatives of the weighted sum with respect to expressions, during accumulation.
 #[derive(Default)]
 struct Sweep {
-    /// Shares that the wholes have passed on.
+    /// Adjoint contributions received from users.
     shares: FxHashMap<Expr, Vec<Expr>>,
     systems: FxHashMap<u32, Unknowns>,
 }
 
-/// The unknowns of a linear system: its parts wait for all of them.
+/// The unknowns of a linear system: the adjoints of its entries require those of all unknowns.
 #[derive(Default)]
 struct Unknowns {
-    /// Unknowns that have not passed on anything yet.
+    /// Unknowns whose adjoints are still to be propagated.
     open: usize,
-    /// Derivatives with respect to those that have, with their rows.
+    /// Adjoints of the others, with their rows.
     adjoints: Vec<(usize, Expr)>,
 }
 
@@ -60,8 +60,8 @@ impl Sweep {
         }
     }
 
-    /// The derivative with respect to an expression, once all expressions that contain it have
-    /// contributed. It is used for every part, so a sum gets a name.
+    /// The derivative with respect to an expression, once all expressions that contain it have contributed.
+    /// It is used for every operand, so a sum is given a name.
     fn take(&mut self, graph: &mut Graph, expr: Expr) -> Expr {
         let shares = self.shares.remove(&expr).unwrap_or_default();
         let sum = graph.sum(&shares);
@@ -179,7 +179,7 @@ mod tests {
     use super::*;
     use crate::symbolic::{Derivatives, Function, Relation, evaluate};
 
-    /// Both ways to differentiate, at a point.
+    /// Compares reverse accumulation with symbolic differentiation at a point.
     fn assert_same(graph: &mut Graph, results: &[Expr], symbols: &[Expr], at: &[f64]) {
         let ids: Vec<SymbolId> = symbols.iter().filter_map(|&s| graph.as_symbol(s)).collect();
         let weights: Vec<Expr> = (3_i64..)

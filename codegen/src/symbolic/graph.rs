@@ -11,10 +11,10 @@ use super::support::{Support, Supports};
 #[derive(Debug, Clone)]
 pub struct Graph {
     nodes: Vec<Node>,
-    /// Which symbols each node contains.
+    /// Symbols on which each node depends.
     supports: Vec<Support>,
     sets: Supports,
-    /// Operations of each node beside those of its parts.
+    /// Operations of each node without its operands.
     costs: Vec<u32>,
     index: FxHashMap<Node, Expr>,
     symbols: Vec<String>,
@@ -22,7 +22,7 @@ pub struct Graph {
     names: FxHashMap<Expr, Expr>,
     systems: Vec<System>,
     system_index: FxHashMap<System, u32>,
-    /// Expressions that were seen to have more terms than this when multiplied out.
+    /// Term counts that the expansion of these expressions is known to exceed.
     pub(super) too_long: FxHashMap<Expr, usize>,
 }
 
@@ -73,17 +73,17 @@ impl Graph {
         Expr(id)
     }
 
-    /// What an expression is.
+    /// The node of an expression.
     pub fn node(&self, expr: Expr) -> &Node {
         &self.nodes[expr.0 as usize]
     }
 
-    /// How many expressions the graph holds.
+    /// The number of expressions in the graph.
     pub fn len(&self) -> usize {
         self.nodes.len()
     }
 
-    /// Never: a graph holds at least two numbers.
+    /// Never: a graph contains at least two numbers.
     pub fn is_empty(&self) -> bool {
         self.nodes.is_empty()
     }
@@ -101,12 +101,12 @@ impl Graph {
         &self.symbols[symbol.0 as usize]
     }
 
-    /// How many symbols there are; their ids count from 0.
+    /// The number of symbols; their ids count from 0.
     pub fn symbol_count(&self) -> usize {
         self.symbols.len()
     }
 
-    /// The symbol an expression is, if it is one.
+    /// The symbol that an expression consists of, if any.
     pub fn as_symbol(&self, expr: Expr) -> Option<SymbolId> {
         match self.node(expr) {
             Node::Symbol(id) => Some(*id),
@@ -114,7 +114,7 @@ impl Graph {
         }
     }
 
-    /// The number an expression is, if it is one.
+    /// The number that an expression consists of, if any.
     pub fn as_number(&self, expr: Expr) -> Option<&Rational> {
         match self.node(expr) {
             Node::Number(value) => Some(value),
@@ -124,18 +124,18 @@ impl Graph {
 
     /// Gives an intermediate quantity a name, which emitted code and printed equations use.
     ///
-    /// Numbers, symbols and multiples of them stay as they are, and what already has a name keeps
-    /// it: a second name would only make people look twice.
+    /// Numbers, symbols and multiples of them are returned unchanged, and a quantity that has a name keeps
+    /// it, so that no two names denote the same value.
     pub fn name(&mut self, name: &str, value: Expr) -> Expr {
         self.define(name, value, false)
     }
 
-    /// [`Graph::name`] for a quantity that nobody asked for, such as a derivative on the way.
+    /// [`Graph::name`] for a generated intermediate quantity, such as a derivative.
     pub fn name_automatically(&mut self, name: &str, value: Expr) -> Expr {
         self.define(name, value, true)
     }
 
-    /// Gives a quantity the name of a definition.
+    /// Gives a quantity the name of an existing definition.
     pub(super) fn name_like(&mut self, definition: u32, value: Expr) -> Expr {
         let Definition {
             name, automatic, ..
@@ -177,12 +177,12 @@ impl Graph {
         &self.definitions[index as usize]
     }
 
-    /// The named expression that stands for `value`, if it has a name.
+    /// The named expression that denotes `value`, if it has a name.
     pub fn name_of(&self, value: Expr) -> Option<Expr> {
         self.names.get(&value).copied()
     }
 
-    /// What a named expression stands for.
+    /// The definition of a named expression.
     pub fn named_value(&self, expr: Expr) -> Option<Expr> {
         match self.node(expr) {
             Node::Named(id) => Some(self.definition(*id).value),
@@ -228,8 +228,8 @@ impl Graph {
         &self.systems[index as usize]
     }
 
-    /// Calls `visit` with every expression that `expr` is built from directly. Definitions of
-    /// names and the systems of solutions count as parts.
+    /// Calls `visit` with every direct operand of `expr`. Definitions of names and the entries of the systems
+    /// of solutions count as operands.
     pub fn for_each_part(&self, expr: Expr, mut visit: impl FnMut(Expr)) {
         match self.node(expr) {
             Node::Number(_) | Node::Symbol(_) => {}
@@ -254,22 +254,22 @@ impl Graph {
         }
     }
 
-    /// All expressions that `roots` are built from, parts before wholes, each once.
+    /// All subexpressions of `roots`, operands before users, each once.
     pub fn in_order(&self, roots: &[Expr]) -> Vec<Expr> {
         self.in_order_where(roots, |_| true)
     }
 
-    /// [`Graph::in_order`] without the expressions that fail `wanted` and what lies below them.
+    /// [`Graph::in_order`] without the expressions that fail `wanted` and their subexpressions.
     pub(super) fn in_order_where(
         &self,
         roots: &[Expr],
         wanted: impl Fn(Expr) -> bool,
     ) -> Vec<Expr> {
-        // Parts are older than wholes, so no index exceeds the roots'.
+        // Operands are older than users, so no index exceeds the roots'.
         let newest = roots.iter().max().map_or(0, |root| root.0 as usize);
         let mut visited = Marks(vec![0; newest / 64 + 1]);
         let mut order = Vec::new();
-        // Explicit stack: a deep expression must not overflow the machine's.
+        // Explicit stack: deep expressions must not overflow the call stack.
         let mut stack: Vec<(Expr, bool)> = roots.iter().rev().map(|&r| (r, false)).collect();
         while let Some((expr, parts_done)) = stack.pop() {
             if parts_done {
@@ -286,7 +286,7 @@ impl Graph {
         order
     }
 
-    /// Whether any of `symbols` occurs in `expr` as it is written.
+    /// Whether any of `symbols` occurs in `expr` syntactically.
     pub fn mentions(&self, expr: Expr, symbols: &[SymbolId]) -> bool {
         let support = self.support(expr);
         symbols
@@ -294,18 +294,19 @@ impl Graph {
             .any(|&symbol| self.sets.holds(support, symbol))
     }
 
-    /// Whether an expression can have a part with this support.
+    /// Whether an expression may contain a subexpression with this support.
     pub(super) fn may_hold(&self, expr: Expr, part: Support) -> bool {
         self.sets.contains(self.support(expr), part)
     }
 
-    /// Which symbols an expression contains.
+    /// The symbols on which an expression depends.
     pub(super) fn support(&self, expr: Expr) -> Support {
         self.supports[expr.0 as usize]
     }
 
-    /// How many additions, multiplications, divisions and function calls compute `roots`, each shared
-    /// part once. Names cost nothing and hide nothing. Signs are free, a comparison counts as one.
+    /// The number of additions, multiplications, divisions and function calls that compute `roots`, with
+    /// shared subexpressions counted once. Names cost nothing and are transparent. Signs are free, a
+    /// comparison counts as one.
     pub fn operations(&self, roots: &[Expr]) -> usize {
         let newest = roots.iter().max().map_or(0, |root| root.0 as usize);
         let mut visited = Marks(vec![0; newest / 64 + 1]);
@@ -317,7 +318,7 @@ impl Graph {
                 continue;
             }
             count += self.costs[expr.0 as usize] as usize;
-            // Elimination and back substitution, once for all unknowns.
+            // Elimination and back substitution, counted once per system.
             if let Node::Solution { system, .. } = self.node(expr)
                 && !systems.contains(system)
             {
@@ -334,7 +335,7 @@ impl Graph {
         count
     }
 
-    /// Whether an expression takes no operations: a number, a symbol, or a name or the negative of one.
+    /// Whether an expression needs no operations: a number, a symbol, or a name or the negative of one.
     pub fn is_free(&self, mut expr: Expr) -> bool {
         loop {
             expr = match self.node(expr) {
@@ -359,7 +360,7 @@ impl Graph {
     }
 }
 
-/// A set of expressions, one bit each.
+/// A set of expressions as a bit vector.
 struct Marks(Vec<u64>);
 
 impl Marks {
@@ -367,7 +368,7 @@ impl Marks {
         self.0[index as usize / 64] >> (index % 64) & 1 == 1
     }
 
-    /// Adds an expression; false where it was there before.
+    /// Adds an expression; false if it was already present.
     fn set(&mut self, expr: Expr) -> bool {
         let fresh = !self.holds(expr);
         self.0[expr.0 as usize / 64] |= 1 << (expr.0 % 64);

@@ -1,39 +1,39 @@
 //! Equality of expressions, decided by evaluation at random points of a finite field.
 //!
-//! Two spellings of one rational function have the same value wherever both are defined. Two
-//! different rational functions of degree `D` agree at no more than `D / p` of the points of a field
-//! with `p` elements (Schwartz and Zippel). So a few random points decide, and the arithmetic is
-//! exact. The field has nearly `2^61` elements; its prime is chosen in `field.rs`.
+//! Two forms of one rational function have the same value wherever both are defined. Two different rational
+//! functions of degree `D` agree at no more than a fraction `D / p` of the points of a field with `p`
+//! elements (Schwartz and Zippel). So a few random points decide, and the arithmetic is exact. The field has
+//! nearly `2^61` elements; its prime is defined in `field.rs`.
 //!
-//! What is not rational is modelled so that its identities hold exactly:
+//! Non-rational functions are modelled so that their identities hold exactly:
 //!
 //! - **Sine and cosine.** An angle is split into atoms, `Σ coefficient · atom`. The *value* of an atom
-//!   keys a pseudo-random point of the unit circle; equal atoms get equal points however they are
-//!   written. The circle is a cyclic group of `p + 1 = 48 q` elements. The point that is drawn stands for
-//!   `atom / 2304`; a coefficient `n / d` multiplies it by `2304 n / d`, where the part of `d` that does
-//!   not divide 2304 is divided by modulo the group's order. That is a homomorphism from the angles to
-//!   the circle, hence all addition theorems, multiples and parts of angles are exact. A coefficient
-//!   with `n d > 2^24`, or with more factors 2 and 3 in `d` than 2304 has, joins its atom: then nothing
-//!   relates the angle to other multiples of the atom. Angles are not multiplied out: `x (y + z)` and
-//!   `x y + x z` are different atoms. If the test is told which symbol is π, multiples of `π/24` are
-//!   the constants that they are, in agreement with `√2` and `√3`.
-//! - **exp, sinh, cosh, tanh.** The same with the multiplicative group and parts of `1/720`.
+//!   determines a pseudo-random point of the unit circle; equal atoms get equal points in whatever form they
+//!   are written. The circle is a cyclic group of `p + 1 = 48 q` elements. The point drawn represents
+//!   `atom / 2304`; a coefficient `n / d` multiplies it by `2304 n / d`, where the part of `d` that does not
+//!   divide 2304 is inverted modulo the group's order. That is a homomorphism from the angles to the circle,
+//!   hence all addition theorems and all formulas for multiples and fractions of angles are exact. A
+//!   coefficient with `n d > 2^24`, or with more factors 2 and 3 in `d` than 2304 has, becomes part of its
+//!   atom; the angle is then unrelated to other multiples of the atom. Angles are not expanded: `x (y + z)` and
+//!   `x y + x z` are different atoms. If the symbol of π is given, multiples of `π/24` have their exact values,
+//!   consistent with `√2` and `√3`.
+//! - **exp, sinh, cosh, tanh.** The same with the multiplicative group and multiples of `1/720`.
 //! - **Square root.** The root that is a square itself. Where the radicand is not a square, the point is
-//!   skipped. Of a radicand that is never found to be a non-square, such as `a²`, the sign of the root
-//!   cannot be told apart from that of `a`: nothing is claimed about such expressions. Roots of numbers
-//!   are constants of the field, if only primes up to 31 occur in them.
-//! - **Unit quaternions.** If the test is told which symbols are the components of one, they are drawn from the
-//!   unit sphere, by its stereographic projection.
-//! - **Choice.** `otherwise + w (then - otherwise)`, where `w` is a random function of the difference
-//!   of the compared expressions. Linear in the branches; that `w² = w` is not known.
-//! - **Everything else** is a random function of the values of its arguments, odd where the function is
+//!   skipped. If the radicand is a square at every point, such as `a²`, the sign of the root cannot be
+//!   distinguished from that of `a`: the test makes no claim about such expressions. Roots of numbers are
+//!   constants of the field, if only primes up to 31 occur in them.
+//! - **Unit quaternions.** If the symbols of their components are given, these are drawn from the unit
+//!   sphere, by its stereographic projection.
+//! - **Choice.** `otherwise + w (then - otherwise)`, where `w` is a random function of the difference of the
+//!   compared expressions. This is linear in the branches; the identity `w² = w` is not modelled.
+//! - **Every other function** is a random function of the values of its arguments, odd where the function is
 //!   odd. `|x|` is `x sign(x)`.
 //! - **Unknowns of a linear system** are solved for.
 //!
-//! Each of these models satisfies every identity it claims, so equal expressions can look different
-//! (a theorem that is not modelled), but different ones look equal only by the bad luck that
-//! [`IdentityTest::error_bound`] bounds; that holds for coefficients which the prime does not divide, as
-//! it divides no number that people write. Division by zero leaves a value undefined; questions about
+//! Each of these models satisfies every identity that it proves, so equal expressions can appear different
+//! (by a theorem that is not modelled), but different ones appear equal only with the probability that
+//! [`IdentityTest::error_bound`] bounds, provided that the prime does not divide the coefficients, which
+//! holds for all numbers met in practice. Division by zero leaves a value undefined; questions about
 //! expressions that are undefined at every point are answered with "no".
 
 mod bound;
@@ -51,16 +51,16 @@ use super::{Expr, Graph, SymbolId};
 const TRIALS: usize = 2;
 /// Points that are tried for an expression without square roots.
 const MOST_POINTS: usize = TRIALS + 2;
-/// Values that points with one symbol drawn again may remember.
+/// Values that points with one symbol redrawn may memoise.
 const MOST_REMEMBERED: usize = 1 << 21;
-/// Points that are tried for an expression with square roots. Each independent root is defined at
-/// every second point.
+/// Points that are tried for an expression with square roots. Each independent root is defined at half of the
+/// points on average.
 const MOST_POINTS_WITH_ROOTS: usize = 128;
 
-/// Identity testing on one graph, which may grow between the questions.
+/// Identity testing on one graph, which may grow between queries.
 ///
-/// Values are remembered by expression: the questions about all expressions of a graph together cost
-/// one evaluation of it per trial. The answers depend on the seed and the graph only.
+/// Values are memoised by expression: queries about all expressions of a graph together cost one evaluation
+/// of it per trial. The answers depend on the seed and the graph only.
 #[derive(Debug, Clone)]
 pub struct IdentityTest {
     seed: u64,
@@ -68,16 +68,16 @@ pub struct IdentityTest {
     quaternions: Vec<[SymbolId; 4]>,
     points: Vec<Point>,
     cones: Cones,
-    /// For [`IdentityTest::independent_of`]: the first points with one symbol drawn again.
+    /// For [`IdentityTest::independent_of`]: the first points with one symbol redrawn.
     redrawn: FxHashMap<(SymbolId, usize), Point>,
-    /// Values that these points remember.
+    /// Number of values memoised for these points.
     remembered: usize,
-    /// Sets of radicands that are known to be independent, or not.
+    /// Whether sets of radicands are independent, as far as tested.
     independent: FxHashMap<u32, bool>,
 }
 
 impl IdentityTest {
-    /// A test whose random points follow from `seed`.
+    /// A test whose random points are determined by `seed`.
     pub fn new(seed: u64) -> Self {
         Self {
             seed,
@@ -91,7 +91,7 @@ impl IdentityTest {
         }
     }
 
-    /// The same test with one symbol known to be the circle constant.
+    /// The same test with the symbol of π.
     #[must_use]
     pub fn with_pi(self, pi: SymbolId) -> Self {
         Self {
@@ -101,7 +101,7 @@ impl IdentityTest {
         }
     }
 
-    /// The same test with symbols that are known to be the components of unit quaternions, scalar parts first.
+    /// The same test with the symbols of unit quaternions, scalar parts first.
     #[must_use]
     pub fn with_quaternions(self, quaternions: Vec<[SymbolId; 4]>) -> Self {
         Self {
@@ -154,7 +154,7 @@ impl IdentityTest {
         if self.cones.symbols(e) & symbol_bit(symbol) == 0 {
             return true;
         }
-        // Each symbol has points of its own: together they would hold a value for each pair.
+        // The points differ for each symbol: together they would store a value for each pair.
         if self.remembered > MOST_REMEMBERED {
             self.redrawn.clear();
             self.remembered = 0;
@@ -197,10 +197,10 @@ impl IdentityTest {
         false
     }
 
-    /// A number that equal expressions share and different ones do not. `None` where nothing can be
-    /// said.
+    /// A number that is equal for equal expressions and different for different ones. `None` where the test
+    /// is inconclusive.
     ///
-    /// Expressions with square roots share it only if the same radicands occur in them.
+    /// Expressions with square roots have equal fingerprints only if the same radicands occur in them.
     pub fn fingerprint(&mut self, g: &Graph, e: Expr) -> Option<u128> {
         self.cones.extend(g);
         let roots = self.cones.roots(e);
@@ -242,23 +242,23 @@ impl IdentityTest {
         Some(u128::from(halves[0]) << 64 | u128::from(halves[1]))
     }
 
-    /// Bound on the probability that [`IdentityTest::is_zero`] calls `e` zero though it is not, over
-    /// the choice of the seed. For `are_equal(a, b)` ask about `a - b`.
+    /// Bound on the probability that [`IdentityTest::is_zero`] takes a nonzero `e` for zero, over the choice
+    /// of the seed. For `are_equal(a, b)` pass `a - b`.
     ///
-    /// With `D` the degree of `e` in the drawn elements (numerator and denominator added, over a
-    /// common denominator), `m` the number of random functions drawn in it and `A` the sum of their
-    /// arguments' degrees, two different arguments have the same value with probability at most
-    /// `m A / s` and else `e` vanishes with probability at most `D / s`. Here `s = p / 48` counts the
-    /// values that a drawn element takes when angles and exponents come in whole multiples. Each of
-    /// `k` square roots at most halves the defined points and doubles the degree. So a trial errs with
-    /// probability at most `4^k (D + m A) / s`, and two trials with its square.
+    /// With `D` the degree of `e` in the drawn elements (numerator and denominator added, over a common
+    /// denominator), `m` the number of random functions drawn in it and `A` the sum of their arguments'
+    /// degrees, two different arguments have the same value with probability at most `m A / s`, and otherwise
+    /// `e` vanishes with probability at most `D / s`. Here `s = p / 48` is the number of values that a drawn
+    /// element takes when angles and exponents are integer multiples. Each of `k` square roots at most halves
+    /// the defined points and doubles the degree. So a trial errs with probability at most `4^k (D + m A) / s`,
+    /// and two trials with its square.
     pub fn error_bound(&self, g: &Graph, e: Expr) -> f64 {
         bound::per_trial(g, e, &self.quaternions)
             .powi(i32::try_from(TRIALS).unwrap_or(1))
             .min(1.0)
     }
 
-    /// Value at a point that may be new.
+    /// Value at a point that is created on first use.
     fn value(&mut self, g: &Graph, index: usize, e: Expr) -> Option<Element> {
         while self.points.len() <= index {
             let key = keyed(self.seed, self.points.len() as u64, [0, 0]).get();
@@ -268,11 +268,11 @@ impl IdentityTest {
         self.points[index].evaluate(g, e, None)
     }
 
-    /// Whether the radicands are independent: each is no square of what can be built with the roots
-    /// of those before it.
+    /// Whether the radicands are independent: none is a square in the field extension by the roots of those
+    /// before it.
     ///
-    /// A point proves this for a radicand if it is no square there while all radicands before it are.
-    /// Then an expression in the roots that is zero at random points is zero for every sign of them.
+    /// A point proves this for a radicand that is not a square there while all radicands before it are. Then
+    /// an expression in the roots that is zero at random points is zero for every choice of their signs.
     fn roots_are_independent(&mut self, g: &Graph, roots: u32) -> bool {
         if roots == Cones::NO_ROOTS {
             return true;
@@ -303,7 +303,7 @@ impl IdentityTest {
         independent
     }
 
-    /// Keeps one of radicands that are the same function.
+    /// Removes duplicates among radicands that are the same function.
     fn drop_equal(&mut self, g: &Graph, radicands: &mut Vec<Expr>) {
         let all = std::mem::take(radicands);
         for candidate in all {
@@ -317,7 +317,7 @@ impl IdentityTest {
         }
     }
 
-    /// Whether two expressions agree wherever both are defined, square roots taken at face value.
+    /// Whether two expressions agree wherever both are defined, taking the square roots drawn.
     fn agree(&mut self, g: &Graph, a: Expr, b: Expr) -> bool {
         let mut agreed = 0;
         for index in 0..MOST_POINTS_WITH_ROOTS {
@@ -326,7 +326,7 @@ impl IdentityTest {
                     return false;
                 }
                 agreed += 1;
-                // Numbers of roots are small; the extra points guard against a root's sign.
+                // The expressions agree at enough points; the extra ones guard against the sign of a root.
                 if agreed == 8 * TRIALS {
                     return true;
                 }
@@ -336,7 +336,7 @@ impl IdentityTest {
     }
 }
 
-/// How many points are tried for an expression with a set of square roots.
+/// The number of points to try for an expression with a given set of square roots.
 fn most_points(roots: u32) -> usize {
     if roots == Cones::NO_ROOTS {
         MOST_POINTS
@@ -349,7 +349,7 @@ fn most_points(roots: u32) -> usize {
 mod tests {
     use super::*;
 
-    /// A point for each symbol would hold a value for each pair of a symbol and an expression.
+    /// A point for each symbol would store a value for each pair of a symbol and an expression.
     #[test]
     fn points_with_one_symbol_drawn_again_remember_what_depends_on_it() {
         const COUNT: usize = 300;

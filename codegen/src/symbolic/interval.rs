@@ -1,11 +1,11 @@
-//! Ranges of expressions over declared ranges of symbols, in the arithmetic of
+//! Interval bounds of expressions over declared ranges of symbols, in the arithmetic of
 //! [`appell_runtime::interval`].
 
 use super::{Expr, Function, Graph, Node, Relation, SymbolId};
 pub use appell_runtime::interval::Interval;
 use appell_runtime::interval::Range;
 
-/// Ranges on one graph, remembered by expression. The graph may grow between the questions.
+/// Interval bounds on one graph, memoised by expression. The graph may grow between queries.
 #[derive(Debug)]
 pub struct Intervals {
     symbols: Vec<Interval>,
@@ -14,12 +14,12 @@ pub struct Intervals {
 }
 
 impl Intervals {
-    /// Ranges that follow from those of symbols, each `(symbol, lowest, highest)`. A symbol without a
-    /// range can be any number.
+    /// Bounds that follow from ranges of symbols, each `(symbol, lowest, highest)`. A symbol without a range
+    /// is unbounded.
     pub fn new(g: &Graph, ranges: Vec<(SymbolId, f64, f64)>) -> Self {
         let mut symbols = vec![Interval::ALL; g.symbol_count()];
         for (symbol, lo, hi) in ranges {
-            // A range that is no range says nothing.
+            // An invalid range is ignored.
             if let Some(place) = symbols.get_mut(symbol.0 as usize)
                 && lo <= hi
             {
@@ -33,7 +33,7 @@ impl Intervals {
         }
     }
 
-    /// An interval that holds every value of `e`.
+    /// An interval that contains every value of `e`.
     pub fn of(&mut self, g: &Graph, e: Expr) -> Interval {
         self.range(g, e).interval
     }
@@ -53,7 +53,7 @@ impl Intervals {
             let index = expr.0 as usize;
             if self.known[index].is_none() {
                 let height = stack.len();
-                // The unknowns of a system are anything; its entries do not matter.
+                // The unknowns of a system are unbounded; its entries do not matter.
                 if !matches!(g.node(expr), Node::Solution { .. }) {
                     g.for_each_part(expr, |part| {
                         if self.known[part.0 as usize].is_none() {
@@ -76,7 +76,7 @@ impl Intervals {
         self.known[expr.0 as usize].unwrap_or(Range::ANY)
     }
 
-    /// The range of a node whose parts are known.
+    /// The bounds of a node whose operands are bounded.
     fn step(&self, g: &Graph, expr: Expr) -> Range {
         match g.node(expr) {
             Node::Number(n) => Range::number(n.to_f64(), n.is_zero()),

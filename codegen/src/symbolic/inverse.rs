@@ -1,16 +1,16 @@
-//! Sines and cosines of angles that inverse functions give: `cos(atan x) = 1/√(1 + x²)`.
+//! Sines and cosines of inverse trigonometric functions: `cos(atan x) = 1/√(1 + x²)`.
 //!
-//! The angle of a slope is known by its sine and cosine, which are algebraic. Written so, the identities
-//! of the slope hold, such as that a tangent has no part along the normal.
+//! Sine and cosine of a slope angle are algebraic. In this form the identities of the slope hold, such as a
+//! tangent having no component along the normal.
 
 use super::node::{Factor, Function, Node};
 use super::{Expr, Graph, Intervals, Rational};
 
-/// Highest multiple of an angle that is written out.
+/// Highest multiple of an angle that is expanded.
 const MOST_TURNS: i64 = 4;
 
 impl Graph {
-    /// Cosine and sine of an angle, where an inverse function is a part of it.
+    /// Cosine and sine of an angle that contains an inverse function.
     pub(super) fn cos_sin_of_inverse(&mut self, angle: Expr) -> Option<[Expr; 2]> {
         if let Some(turn) = self.cos_sin_of_atom(angle) {
             return Some(turn);
@@ -62,7 +62,7 @@ impl Graph {
             Node::Atan2(y, x) => {
                 let squares = [self.square(x), self.square(y)];
                 let norm = self.sum(&squares);
-                // The angle of the origin is zero, and has no such form.
+                // The angle of the origin is zero and has no such form.
                 if !self.is_evidently_positive(norm) {
                     return None;
                 }
@@ -73,7 +73,7 @@ impl Graph {
         }
     }
 
-    /// `√(1 − x²)`. Roots that divide `x` divide the result: `x = a/√b` gives `√(b − a²)/√b`.
+    /// `√(1 − x²)`, with the roots in the denominator of `x` factored: `x = a/√b` gives `√(b − a²)/√b`.
     fn other_leg(&mut self, x: Expr) -> Expr {
         let (_, rest) = self.split_coefficient(x);
         let factors = match self.node(rest) {
@@ -98,7 +98,7 @@ impl Graph {
         self.div(leg, under)
     }
 
-    /// Whether an expression is positive whatever its symbols are.
+    /// Whether an expression is positive for all values of its symbols.
     fn is_evidently_positive(&self, expr: Expr) -> bool {
         let mut intervals = Intervals::new(self, Vec::new());
         intervals.of(self, expr).lo >= 0.0 && intervals.cannot_vanish(self, expr)

@@ -6,19 +6,19 @@ use super::Rational;
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Expr(pub(super) u32);
 
-/// A symbol: a parameter, a coordinate, anything without a definition.
+/// A symbol: a parameter, a coordinate or another quantity without a definition.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct SymbolId(pub u32);
 
-/// What an expression is.
+/// The kinds of expressions.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub enum Node {
     /// An exact number.
     Number(Rational),
     /// A symbol.
     Symbol(SymbolId),
-    /// An intermediate quantity with a name and a definition; see
-    /// [`Graph::name`](super::Graph::name). Sums and products do not flatten through it.
+    /// An intermediate quantity with a name and a definition; see [`Graph::name`](super::Graph::name). Sums
+    /// and products are not flattened through it.
     Named(u32),
     /// `Σ coefficient · expr`, ordered by `expr`. The constant is the coefficient of the number 1.
     /// A lone term has a coefficient other than 1.
@@ -32,20 +32,20 @@ pub enum Node {
     Atan2(Expr, Expr),
     /// `base^exponent` with an exponent that is not an integer.
     Power(Expr, Expr),
-    /// `then` where the relation holds between the two compared expressions, else `otherwise`.
+    /// `then` if the relation holds between the two compared expressions, else `otherwise`.
     Choice {
         /// Relation.
         relation: Relation,
         /// Left and right side of the relation.
         compared: [Expr; 2],
-        /// Value where it holds, value elsewhere.
+        /// Value if it holds, value otherwise.
         branches: [Expr; 2],
     },
     /// One unknown of a linear system that is solved numerically.
     Solution {
         /// Index of the system; see [`Graph::system`](super::Graph::system).
         system: u32,
-        /// Which unknown.
+        /// Row of the unknown.
         row: u32,
     },
 }
@@ -53,7 +53,7 @@ pub enum Node {
 /// A term of a sum.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Term {
-    /// What is multiplied; the number 1 for the constant.
+    /// The multiplicand; the number 1 for the constant.
     pub expr: Expr,
     /// Its coefficient, not zero.
     pub coefficient: Rational,
@@ -62,7 +62,7 @@ pub struct Term {
 /// A factor of a product.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub struct Factor {
-    /// What is raised.
+    /// The base of the power.
     pub base: Expr,
     /// Its exponent, not zero.
     pub exponent: i32,
@@ -101,9 +101,9 @@ pub enum Relation {
 pub struct Definition {
     /// Its name, an ASCII identifier.
     pub name: String,
-    /// What it stands for.
+    /// Its definition.
     pub value: Expr,
-    /// Whether differentiation made it up: people look for it only where it is used more than once.
+    /// Whether differentiation generated it; such a name is displayed only for a value with several uses.
     pub automatic: bool,
 }
 

@@ -1,7 +1,7 @@
-//! Expressions for people: Unicode text, `LaTeX` and `MathML`.
+//! Typesets expressions as Unicode text, `LaTeX` and `MathML`.
 //!
-//! A [`Setter`] makes a formula of an expression: the order of terms and factors, what becomes a
-//! quotient, where brackets are needed. [`text()`], [`latex()`] and [`mathml()`] write a formula.
+//! A [`Setter`] converts an expression to a formula: it orders terms and factors, forms quotients and inserts
+//! brackets. [`text()`], [`latex()`] and [`mathml()`] write a formula.
 
 mod formula;
 mod latex;

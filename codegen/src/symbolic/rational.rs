@@ -1,4 +1,4 @@
-//! Exact rational numbers: machine integers while they fit, big integers beyond.
+//! Exact rational numbers: machine integers while they fit, big integers otherwise.
 
 use std::cmp::Ordering;
 use std::fmt;
@@ -10,13 +10,13 @@ use num_traits::{Signed, ToPrimitive, Zero};
 
 /// Bits of numerator and denominator together up to which a number is exact.
 const MOST_BITS: u64 = 1 << 12;
-/// Bits that are left of those of a longer one.
+/// Bits of a longer number after rounding.
 const KEPT_BITS: u64 = 128;
 
 /// An exact rational number in lowest terms; one that takes thousands of bits is rounded.
 ///
-/// `Big` is used only where `Small` cannot hold the value, so equal numbers are equal variants and
-/// the derived comparisons are those of the numbers.
+/// `Big` is used only where `Small` cannot represent the value, so equal numbers are equal variants and the
+/// derived comparisons are those of the numbers.
 #[derive(Clone, PartialEq, Eq, Hash)]
 pub struct Rational(Repr);
 
@@ -42,7 +42,7 @@ impl Rational {
     /// From a big rational, stored small where it fits.
     pub fn from_big(value: BigRational) -> Self {
         let value = rounded(value);
-        // i64::MIN has no negative and no absolute value; it stays big.
+        // i64::MIN has no negative and no absolute value; it is stored as `Big`.
         let small = |n: &BigInt| n.to_i64().filter(|&n| n != i64::MIN);
         match (small(value.numer()), small(value.denom())) {
             (Some(n), Some(d)) => Self(Repr::Small(Ratio::new_raw(n, d))),
@@ -50,7 +50,7 @@ impl Rational {
         }
     }
 
-    /// A double as it is, if it is finite.
+    /// A double, converted exactly, if it is finite.
     pub fn from_f64(value: f64) -> Option<Self> {
         BigRational::from_float(value).map(Self::from_big)
     }
@@ -71,7 +71,7 @@ impl Rational {
         }
     }
 
-    /// The integer it is, if it is one.
+    /// The integer that the number equals, if any.
     pub fn as_integer(&self) -> Option<i64> {
         self.as_small().filter(|&(_, d)| d == 1).map(|(n, _)| n)
     }
@@ -87,7 +87,7 @@ impl Rational {
         }
     }
 
-    /// Whether a double holds it: neither too large nor, unless it is zero, too small.
+    /// Whether it is in the range of doubles: neither overflowing nor, unless it is zero, underflowing.
     pub fn is_double(&self) -> bool {
         let value = self.to_f64();
         value.is_finite() && (value != 0.0 || self.is_zero())
@@ -130,7 +130,7 @@ impl Rational {
         }
     }
 
-    /// Integer power. `None` for zero to a negative exponent and where the result would be too long.
+    /// Integer power. `None` for zero to a negative exponent, or if the result would be too long.
     pub fn checked_pow(&self, exponent: i32) -> Option<Self> {
         if exponent == 1 || self.is_one() {
             return Some(self.clone());
@@ -144,7 +144,7 @@ impl Rational {
             .then(|| Self::from_big(num_traits::Pow::pow(base, exponent)))
     }
 
-    /// The positive number by which all of `values` are integers without a common divisor.
+    /// The positive number of which all of `values` are integer multiples without a common divisor.
     pub fn content<'a>(values: impl Iterator<Item = &'a Self>) -> Self {
         use num_integer::Integer;
         let mut small = (0_i64, 1_i64);
@@ -184,8 +184,9 @@ impl Rational {
     }
 }
 
-/// A number as it is, or with as many leading bits as any double has, and no exponent far beyond theirs: what is
-/// longer comes of numbers that no double holds, and must not cost more with each operation.
+/// Rounds a number of more than `MOST_BITS` bits to about `KEPT_BITS` leading bits, with a bounded exponent.
+/// Such numbers arise only from values outside the range of doubles, and must not slow down further
+/// operations.
 fn rounded(value: BigRational) -> BigRational {
     let (over, under) = (value.numer().bits(), value.denom().bits());
     if over + under <= MOST_BITS {
@@ -201,7 +202,7 @@ fn rounded(value: BigRational) -> BigRational {
     }
 }
 
-/// Both numbers, where they are integers: the common case needs no common denominator.
+/// Both numbers, if they are integers: the common case needs no common denominator.
 fn integers(a: &Rational, b: &Rational) -> Option<(i64, i64)> {
     Some((a.as_integer()?, b.as_integer()?))
 }

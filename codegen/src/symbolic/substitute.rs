@@ -6,13 +6,13 @@ use super::Graph;
 use super::node::{Expr, Node, SymbolId};
 use super::support::Support;
 
-/// A simultaneous replacement of symbols, remembered between calls. A name whose definition changes
-/// dissolves: it would stand for something else.
+/// A simultaneous, memoised replacement of symbols. A name whose definition changes is removed, since it
+/// would denote another quantity.
 #[derive(Debug, Default)]
 pub struct Substitution {
     known: FxHashMap<Expr, Expr>,
     keeps_names: bool,
-    /// What is replaced; an expression that cannot hold any of it stays as it is.
+    /// Supports of the replaced expressions; expressions that cannot contain any of these are unchanged.
     targets: Vec<Support>,
 }
 
@@ -32,7 +32,7 @@ impl Substitution {
         Self::of_parts(graph, &zeros)
     }
 
-    /// Replaces whole expressions, wherever they stand as parts.
+    /// Replaces whole subexpressions wherever they occur.
     pub fn of_parts(graph: &Graph, replacements: &[(Expr, Expr)]) -> Self {
         let targets = replacements
             .iter()
@@ -45,15 +45,14 @@ impl Substitution {
         }
     }
 
-    /// The same where the replacements are the values that the symbols stood in for all along: what
-    /// had a name is called so again.
+    /// The same if the symbols were stand-ins for the replacements: a named quantity keeps its name.
     #[must_use]
     pub fn keeping_names(mut self) -> Self {
         self.keeps_names = true;
         self
     }
 
-    /// Replaces one expression more. What was applied before must not hold it.
+    /// Adds a replacement. Expressions substituted before must not contain the replaced one.
     pub fn replace(&mut self, graph: &Graph, part: Expr, value: Expr) {
         let target = graph.support(part);
         if !self.targets.contains(&target) {
@@ -62,8 +61,7 @@ impl Substitution {
         self.known.insert(part, value);
     }
 
-    /// `expr` with the symbols replaced, in canonical form again. `None` where a number is divided
-    /// by zero on the way.
+    /// `expr` with the symbols replaced, in canonical form. `None` if this divides by the number zero.
     pub fn apply(&mut self, graph: &mut Graph, expr: Expr) -> Option<Expr> {
         let unknown = |e: Expr| {
             self.targets.iter().any(|&target| graph.may_hold(e, target))

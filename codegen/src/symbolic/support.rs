@@ -1,18 +1,18 @@
-//! Sets of symbols: which of them an expression contains. Equal sets are kept once, so that a set is as
-//! small as a number and what was united before is looked up.
+//! Interned sets of symbols on which expressions depend. Equal sets are stored once, so that a set is an
+//! index and unions are memoised.
 
 use rustc_hash::FxHashMap;
 
 use super::node::SymbolId;
 
-/// A set of symbols, by its place among all sets.
+/// A set of symbols, by its index.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct Support(u32);
 
 /// All sets of symbols of a graph; the first is empty.
 #[derive(Debug, Clone)]
 pub(super) struct Supports {
-    /// One bit per symbol, without zeros at the end.
+    /// One bit per symbol, without trailing zeros.
     sets: Vec<Box<[u64]>>,
     places: FxHashMap<Box<[u64]>, Support>,
     unions: FxHashMap<(Support, Support), Support>,
@@ -39,7 +39,7 @@ impl Supports {
         self.keep(bits)
     }
 
-    /// What either holds.
+    /// The union of two sets.
     pub(super) fn union(&mut self, a: Support, b: Support) -> Support {
         let (a, b) = (a.min(b), a.max(b));
         if a == b || a == Support::default() {
@@ -61,13 +61,13 @@ impl Supports {
         union
     }
 
-    /// Whether a set holds a symbol.
+    /// Whether a set contains a symbol.
     pub(super) fn holds(&self, set: Support, symbol: SymbolId) -> bool {
         let (word, bit) = place(symbol);
         self.bits(set).get(word).is_some_and(|word| word & bit != 0)
     }
 
-    /// Whether a set holds all of another.
+    /// Whether a set is a superset of another.
     pub(super) fn contains(&self, set: Support, other: Support) -> bool {
         let (bits, others) = (self.bits(set), self.bits(other));
         others.len() <= bits.len()
@@ -93,7 +93,7 @@ impl Supports {
     }
 }
 
-/// Word and bit of a symbol.
+/// Word and bit index of a symbol.
 fn place(SymbolId(symbol): SymbolId) -> (usize, u64) {
     (symbol as usize / 64, 1 << (symbol % 64))
 }

@@ -1,4 +1,4 @@
-//! Three components and their products.
+//! Vectors of three components and their products.
 
 use super::Graph;
 use super::node::Expr;

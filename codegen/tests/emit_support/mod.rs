@@ -16,7 +16,7 @@ use appell_test_kit::Random;
 /// A text that is hard to quote.
 pub(crate) const SPEC: &str = "# A spec with \"quotes\" and \"#.\nname = 'unicycle'\n";
 
-/// What the golden files are emitted with.
+/// The options of the golden files.
 pub(crate) fn golden_options(model_impl: bool) -> Options {
     Options {
         model_impl,
@@ -423,8 +423,8 @@ pub(crate) fn unicycle() -> Program {
     sketch.program
 }
 
-/// One of everything that is not a polynomial: functions, choices, numeric solutions, large powers,
-/// time, no inputs, names that are words of Rust.
+/// One of each non-polynomial operation: functions, choices, numeric solutions, large powers, time, no inputs,
+/// names that are keywords of Rust.
 pub(crate) fn mixture() -> Program {
     let mut sketch = Sketch::new(
         "type",

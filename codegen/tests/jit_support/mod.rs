@@ -133,7 +133,7 @@ pub(crate) fn targets() -> impl Iterator<Item = Target> {
     })
 }
 
-/// Every lane has the bits of scalar code, whatever instructions compute it.
+/// Every lane is bit-identical to scalar code, for all instruction sets.
 #[track_caller]
 pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
     let standard = points.each_ref().map(|point| interpreted(schedule, point));
@@ -160,7 +160,7 @@ pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
     }
 }
 
-/// The numbers of one place.
+/// The numbers of one point.
 pub(crate) fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
     blocks.iter().map(|block| block[lane]).collect()
 }

@@ -31,7 +31,7 @@ const FUNCTIONS: [Function; 13] = [
 pub(crate) enum Kind {
     /// Sums, products, quotients.
     Rational,
-    /// Sine and cosine beside them.
+    /// Sine and cosine in addition.
     Circular,
     /// Every node there is.
     Any,

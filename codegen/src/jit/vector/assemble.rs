@@ -1,8 +1,8 @@
-//! Instructions as the bytes of a function.
+//! Assembles instructions to machine code.
 //!
-//! The function receives the addresses of time, states, inputs, parameters, weights and of a list
-//! with the address of each result, in the System V convention. A frame that calls keeps them in
-//! registers that routines leave alone:
+//! The function receives the addresses of time, states, inputs, parameters, weights and of a list with the
+//! address of each result, in the System V convention. A function with calls keeps them in callee-saved
+//! registers:
 //!
 //! ```text
 //! rbp        saved rbp
@@ -25,17 +25,17 @@ use super::routines;
 use crate::schedule::Operation;
 use crate::symbolic::Relation;
 
-/// Bytes of eight numbers: from one entry of an argument or result to the next.
+/// Bytes of eight numbers: the stride of arguments and results.
 const BLOCK: i32 = 64;
-/// What the processor maps at once.
+/// Page size of the processor.
 const PAGE: i32 = 4096;
-/// Where the address of the list of results is kept, from the start of the frame.
+/// Offset of the saved address of the list of results from the frame pointer.
 const RESULTS: i32 = -48;
-/// Registers that a function has to leave as they were.
+/// Callee-saved registers.
 const KEPT: [General; 5] = [RBX, R12, R13, R14, R15];
-/// Registers that hold the addresses of results.
+/// Registers that cache the addresses of results.
 const HOLDERS: [General; 3] = [RAX, R10, R11];
-/// In registers of 256 bits, the one that holds masks.
+/// The mask register for vectors of 256 bits.
 const MASK: u8 = 15;
 
 impl Width {
@@ -63,7 +63,7 @@ impl Width {
     }
 }
 
-/// The bytes of a function.
+/// The machine code of a function.
 pub(super) fn assemble(allocated: &Allocated, width: Width, elementary: Elementary) -> Vec<u8> {
     let is_call = |instruction: &Instruction| matches!(instruction, Instruction::Call { .. });
     let mut assembler = Assembler {
@@ -86,7 +86,7 @@ pub(super) fn assemble(allocated: &Allocated, width: Width, elementary: Elementa
         constants,
         ..
     } = assembler;
-    // Only wide instructions spread one number to all lanes.
+    // Only wide instructions can broadcast a number to all lanes.
     let repeated = match width {
         Width::Ymm => 4,
         Width::Zmm => 1,
@@ -99,12 +99,12 @@ struct Assembler {
     code: Code,
     width: Width,
     elementary: Elementary,
-    /// Whether it calls anything.
+    /// Whether it has calls.
     calls: bool,
     /// Blocks of the frame.
     slots: u32,
     constants: Vec<u64>,
-    /// Numbers of the constants by their bits.
+    /// Indices of the constants by their bits.
     known: FxHashMap<u64, u32>,
     /// The results whose addresses are in [`HOLDERS`].
     holders: [Option<u32>; HOLDERS.len()],
@@ -133,7 +133,7 @@ impl Assembler {
         }
         let bytes = distance(self.slots, self.width.bytes());
         self.code.frame(bytes);
-        // A stack grows page by page.
+        // The stack has to be touched page by page.
         for page in (0..bytes / PAGE).rev() {
             self.code.store(RAX, RSP, page * PAGE);
         }
@@ -336,7 +336,7 @@ fn opcode(operation: Binary) -> Opcode {
     }
 }
 
-/// The number of a relation that does not hold for NaN, without exceptions for it.
+/// The predicate of a relation: false for NaN, quiet.
 fn predicate(relation: Relation, swapped: bool) -> u8 {
     match (relation, swapped) {
         (Relation::Less, false) => 0x11,

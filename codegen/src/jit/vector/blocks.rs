@@ -1,4 +1,4 @@
-//! Elementary functions of blocks.
+//! Elementary functions on blocks.
 
 use std::array::from_fn;
 
@@ -6,10 +6,10 @@ use appell_runtime::elementary::{self, ORDINARY_ANGLE};
 use appell_runtime::lanes::dispatch;
 use appell_runtime::real::{Functions, Own, Standard};
 
-/// Elementary functions of `N` numbers: each gets the bits of the scalar function.
+/// Elementary functions of `N` numbers, bit-identical to the scalar functions.
 ///
-/// Arguments and results are references: a block that passes through memory in smaller pieces costs
-/// as much as the function.
+/// Arguments and results are references: passing a block by value through memory in smaller pieces costs as
+/// much as the function.
 pub(in crate::jit) trait Blocks: Functions {
     fn sin_cos<const N: usize>(x: &[f64; N], to: &mut [[f64; N]; 2]);
     fn sin<const N: usize>(x: &[f64; N], to: &mut [f64; N]);
@@ -58,7 +58,7 @@ impl Blocks for Standard {
     );
 }
 
-/// In one loop, which is compiled for the vectors of the processor.
+/// In one loop, which is auto-vectorised for the processor.
 macro_rules! at_once {
     ($($name:ident($($x:ident),+)),+) => {
         $(
@@ -66,7 +66,7 @@ macro_rules! at_once {
                 dispatch(
                     #[inline(always)]
                     || {
-                        // Copies cannot overlap, which a loop over lanes has to know.
+                        // Copies cannot alias, which the vectoriser has to know.
                         $(let $x = *$x;)+
                         let mut all = [0.0; N];
                         for lane in 0..N {
@@ -123,7 +123,7 @@ impl Blocks for Own {
     );
 }
 
-/// Sine and cosine of angles that need more digits of π than others.
+/// Sine and cosine of angles that require extended precision of π in the reduction.
 #[cold]
 fn with_all_digits<const N: usize>(x: &[f64; N], [sin, cos]: &mut [[f64; N]; 2]) {
     for lane in (0..N).filter(|&lane| x[lane].abs() > ORDINARY_ANGLE) {

@@ -1,4 +1,4 @@
-//! Bytes of the instructions that are needed, and no others.
+//! Encodes the subset of instructions that is used.
 //!
 //! The encodings are those of the *Intel 64 and IA-32 Architectures Software Developer's Manual*,
 //! volume 2: EVEX for registers of 512 bits, VEX for 256.
@@ -6,7 +6,7 @@
 #[cfg(test)]
 mod tests;
 
-/// A general register by its number.
+/// A general-purpose register by its number.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct General(pub(super) u8);
 
@@ -36,14 +36,14 @@ pub(super) enum Width {
     Zmm,
 }
 
-/// What an instruction reads or writes besides registers of its own.
+/// A register or memory operand.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Place {
     /// A vector register.
     Vector(u8),
-    /// Memory at a distance from an address.
+    /// Memory at a displacement from an address.
     At(General, i32),
-    /// A constant beside the code, by its number.
+    /// A constant after the code, by its index.
     Constant(u32),
 }
 
@@ -66,38 +66,38 @@ impl Opcode {
     pub(super) const SUBTRACT: Self = Self(MAP_0F, 0x5c, true);
     pub(super) const DIVIDE: Self = Self(MAP_0F, 0x5e, true);
     pub(super) const COMPARE: Self = Self(MAP_0F, 0xc2, true);
-    /// One number to all lanes.
+    /// Broadcasts one number to all lanes.
     pub(super) const SPREAD: Self = Self(MAP_0F38, 0x19, true);
-    /// By a register of masks; AVX-512.
+    /// Blend by a mask register; AVX-512.
     pub(super) const BLEND: Self = Self(MAP_0F38, 0x65, true);
-    /// By the signs of a vector; AVX.
+    /// Blend by the signs of a vector; AVX.
     pub(super) const BLEND_BY_SIGN: Self = Self(MAP_0F3A, 0x4b, false);
 }
 
-/// Further parts of an instruction.
+/// Optional operands of an instruction.
 #[derive(Debug, Clone, Copy, Default)]
 pub(super) struct Options {
-    /// The first source; 0 where there is none.
+    /// The first source; 0 if there is none.
     pub(super) first: u8,
-    /// The register of masks; 0 for none.
+    /// The mask register; 0 for none.
     pub(super) mask: u8,
-    /// A byte at the end.
+    /// The immediate byte.
     pub(super) immediate: Option<u8>,
 }
 
-/// Machine code in the making.
+/// Machine code under construction.
 #[derive(Debug, Default)]
 pub(super) struct Code {
     pub(super) bytes: Vec<u8>,
-    /// Distances to constants: where they are written, where the instruction ends, which constant.
+    /// Displacements of constants: offset of the field, end of the instruction, index of the constant.
     distances: Vec<(usize, usize, u32)>,
 }
 
-/// How a distance is written as one byte: in units of so many bytes.
+/// Scale of a displacement of one byte, in bytes.
 type Unit = i32;
 
 impl Code {
-    /// An operation on vectors: `register` and the options, then `place`.
+    /// An operation on vectors with destination `register`, the options, and operand `place`.
     pub(super) fn vector(
         &mut self,
         width: Width,
@@ -125,7 +125,7 @@ impl Code {
             Place::Vector(number) | Place::At(General(number), _) => number,
             Place::Constant(_) => 0,
         };
-        // Except where it chooses an operation, W means nothing, and assemblers leave it out.
+        // Unless it selects an operation, W is ignored, and assemblers leave it 0.
         let wide = wide && !matches!(map, MAP_0F | MAP_0F38);
         let sources = bits(!o.first & 15, 3) | 1 << 2 | 1;
         if map == MAP_0F && base < 8 {
@@ -140,13 +140,13 @@ impl Code {
 
     fn evex(&mut self, opcode: Opcode, register: u8, place: Place, o: Options) -> Unit {
         let Opcode(map, _, wide) = opcode;
-        // A register needs five bits; the base of an address has four.
+        // A register number has five bits; a base register has four.
         let base = match place {
             Place::Vector(number) => inverse(number, 4, 6) | inverse(number, 3, 5),
             Place::At(General(number), _) => 1 << 6 | inverse(number, 3, 5),
             Place::Constant(_) => 1 << 6 | 1 << 5,
         };
-        // A constant is read once for all lanes.
+        // A constant is broadcast to all lanes.
         let spreads = matches!(place, Place::Constant(_)) && opcode != Opcode::SPREAD;
         let first = inverse(register, 3, 7) | base | inverse(register, 4, 4) | map;
         let second = u8::from(wide) << 7 | bits(!o.first & 15, 3) | 1 << 2 | 1;
@@ -159,7 +159,7 @@ impl Code {
         }
     }
 
-    /// The bytes that name a register and a place.
+    /// The ModRM byte with SIB and displacement.
     fn place(&mut self, register: u8, place: Place, unit: Unit, immediate: Option<u8>) {
         let register = bits(register & 7, 3);
         match place {
@@ -177,7 +177,7 @@ impl Code {
     }
 
     fn address(&mut self, register: u8, base: u8, distance: i32, unit: Unit) {
-        // Without a distance the number 5 would mean another kind of address.
+        // Without a displacement, base 5 would denote another addressing mode.
         let short = (distance % unit == 0)
             .then(|| i8::try_from(distance / unit).ok())
             .flatten();
@@ -197,7 +197,7 @@ impl Code {
         }
     }
 
-    /// An instruction on a general register of 64 bits and memory.
+    /// An instruction on a 64-bit general-purpose register and memory.
     fn general(&mut self, opcode: u8, register: General, base: General, distance: i32) {
         let prefix = 0x48 | (register.0 >> 3) << 2 | base.0 >> 3;
         self.bytes.extend([prefix, opcode]);
@@ -212,12 +212,12 @@ impl Code {
         self.general(0x89, from, base, distance);
     }
 
-    /// The address itself.
+    /// Loads an address.
     pub(super) fn address_of(&mut self, to: General, base: General, distance: i32) {
         self.general(0x8d, to, base, distance);
     }
 
-    /// The address of a constant.
+    /// Loads the address of a constant.
     pub(super) fn address_of_constant(&mut self, to: General, constant: u32) {
         self.bytes.extend([0x48 | (to.0 >> 3) << 2, 0x8d]);
         self.place(to.0, Place::Constant(constant), 1, None);
@@ -243,7 +243,7 @@ impl Code {
         self.bytes.push(0x58 | register.0 & 7);
     }
 
-    /// A number into a register.
+    /// Loads a number into a register.
     pub(super) fn number(&mut self, to: General, number: u64) {
         self.bytes.extend([0x48 | to.0 >> 3, 0xb8 | to.0 & 7]);
         self.bytes.extend(number.to_le_bytes());
@@ -256,7 +256,7 @@ impl Code {
         self.bytes.extend([0xff, 0xd0 | address.0 & 7]);
     }
 
-    /// Lowers the stack by so many bytes, to an address that 64 divides.
+    /// Lowers the stack pointer by a number of bytes, aligned to 64.
     pub(super) fn frame(&mut self, bytes: i32) {
         // sub rsp, bytes
         self.bytes.extend([0x48, 0x81, 0xec]);
@@ -265,8 +265,8 @@ impl Code {
         self.bytes.extend([0x48, 0x83, 0xe4, 0xc0]);
     }
 
-    /// Tells the processor that the upper halves of the registers are not in use, without which
-    /// other code may run slower.
+    /// Marks the upper halves of the registers as unused (`vzeroupper`), without which other code may run
+    /// slower.
     pub(super) fn clear_upper_halves(&mut self) {
         self.bytes.extend([0xc5, 0xf8, 0x77]);
     }
@@ -279,7 +279,7 @@ impl Code {
         self.bytes.push(0xc3);
     }
 
-    /// Constants behind the code, each as often as `repeated` says; then nothing can follow.
+    /// Appends the constants, each repeated `repeated` times; this completes the code.
     pub(super) fn constants(&mut self, constants: &[u64], repeated: usize) {
         let stride = repeated * size_of::<u64>();
         self.bytes
@@ -297,12 +297,12 @@ impl Code {
     }
 }
 
-/// A number at a place in a byte.
+/// A number shifted to a bit position.
 fn bits(number: u8, place: u8) -> u8 {
     number << place
 }
 
-/// One bit of a number, inverted, at another place.
+/// One bit of a number, inverted, at another position.
 fn inverse(number: u8, bit: u8, place: u8) -> u8 {
     (!number >> bit & 1) << place
 }

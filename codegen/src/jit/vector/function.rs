@@ -1,4 +1,4 @@
-//! A schedule at eight places at once.
+//! Compiled functions of eight points at once.
 
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
@@ -9,16 +9,16 @@ use super::super::{JitError, Sizes};
 use super::machine::{Machine, Target};
 use crate::schedule::{Schedule, interpret_weighted};
 
-/// One schedule in machine code for blocks of eight places. The code lives as long as this value;
-/// several threads may call it at the same time.
+/// One schedule in machine code for blocks of eight points. The code lives as long as this value; several
+/// threads may call it at the same time.
 ///
-/// Each lane gets the bits of a [`NativeFunction`] with the same elementary functions at its place. It
-/// is fastest where arguments and results start at multiples of 64 bytes.
+/// Each lane is bit-identical to a [`NativeFunction`] with the same elementary functions. It is fastest if
+/// arguments and results are aligned to 64 bytes.
 #[derive(Debug)]
 pub struct VectorFunction {
     how: How,
     sizes: Sizes,
-    /// How many weights it uses.
+    /// The number of weights used.
     weights: usize,
     /// Lengths of the results.
     results: Vec<usize>,
@@ -37,9 +37,8 @@ impl VectorFunction {
         Self::compile_for(schedule, sizes, Target::default())
     }
 
-    /// [`Self::compile`] with instructions and elementary functions of one's choice. Where the
-    /// processor lacks the instructions, or the code would be too long, places are evaluated one by
-    /// one.
+    /// [`Self::compile`] with the given instructions and elementary functions. If the processor lacks the
+    /// instructions, or the code would be too long, points are evaluated individually.
     pub fn compile_for(
         schedule: &Schedule,
         sizes: Sizes,
@@ -53,11 +52,11 @@ impl VectorFunction {
         Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
     }
 
-    /// [`Self::compile_for`], but interpreted where it cannot be compiled, with the functions of the standard library.
+    /// [`Self::compile_for`] with the interpreter as fallback, with the functions of the standard library.
     ///
     /// # Errors
     ///
-    /// If the schedule reads what it does not define.
+    /// If the schedule uses undefined values.
     pub fn compile_or_interpret(
         schedule: &Schedule,
         sizes: Sizes,
@@ -76,7 +75,7 @@ impl VectorFunction {
         })
     }
 
-    /// [`Self::compile_for`], but nothing where places would be evaluated one by one.
+    /// [`Self::compile_for`], but `None` if points would be evaluated individually.
     fn all_at_once(
         schedule: &Schedule,
         sizes: Sizes,
@@ -105,8 +104,8 @@ impl VectorFunction {
     ///
     /// # Panics
     ///
-    /// Where a slice has another length than the schedule's results and the sizes it was compiled
-    /// for; no code runs then.
+    /// If the length of a slice differs from the schedule's results or from the sizes it was compiled for; no
+    /// code is executed then.
     #[inline]
     pub fn call<const N: usize>(&self, at: AtLanes<'_>, results: [&mut [[f64; LANES]]; N]) {
         self.call_weighted(at, &[], results);
@@ -116,7 +115,7 @@ impl VectorFunction {
     ///
     /// # Panics
     ///
-    /// As [`Self::call`], and where there are fewer weights than the schedule uses.
+    /// As [`Self::call`], and if there are fewer weights than the schedule uses.
     #[inline]
     pub fn call_weighted<const N: usize>(
         &self,
@@ -144,7 +143,7 @@ impl VectorFunction {
         }
     }
 
-    /// Refuses slices of other lengths than the function was made for.
+    /// Panics if slices have other lengths than the function requires.
     #[inline]
     fn check_lengths(&self, at: AtLanes<'_>, weights: usize, results: &[&mut [[f64; LANES]]]) {
         let found = Sizes {

@@ -1,4 +1,4 @@
-//! Instructions with their registers and places in memory.
+//! Instructions with their registers and memory operands.
 
 use super::line::{Array, Binary, Routine};
 use crate::symbolic::Relation;
@@ -12,32 +12,32 @@ pub(super) struct Register(pub(super) u8);
 pub(super) enum Memory {
     /// An entry of an argument.
     Argument(Array, u32),
-    /// A number beside the code, by its bits.
+    /// A constant after the code, by its bits.
     Constant(u64),
     /// A block of the frame.
     Slot(u32),
 }
 
-/// What an instruction reads last: a register or memory.
+/// The last source operand: a register or memory.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Operand {
     Register(Register),
     Memory(Memory),
 }
 
-/// An instruction; all but calls and stores are one of the processor's.
+/// An instruction; all but calls and stores are single machine instructions.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum Instruction {
     Load {
         to: Register,
         from: Memory,
     },
-    /// To a block of the frame.
+    /// Spills a register to a block of the frame.
     Keep {
         slot: u32,
         from: Register,
     },
-    /// To an entry of a result.
+    /// Stores a register to an entry of a result.
     Store {
         result: u32,
         entry: u32,
@@ -53,10 +53,10 @@ pub(super) enum Instruction {
         to: Register,
         of: Operand,
     },
-    /// Into the mask.
+    /// Compares into the mask.
     Compare {
         relation: Relation,
-        /// Whether `right` stands on the left of the relation.
+        /// Whether `right` is the left side of the relation.
         swapped: bool,
         left: Register,
         right: Operand,
@@ -67,8 +67,8 @@ pub(super) enum Instruction {
         then: Operand,
         otherwise: Register,
     },
-    /// Calls a routine with the addresses of its arguments, then that of its results. It leaves no
-    /// register alone.
+    /// Calls a routine with the addresses of its arguments and of its results. All vector registers are
+    /// clobbered.
     Call {
         routine: Routine,
         given: Vec<Memory>,

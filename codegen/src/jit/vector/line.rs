@@ -1,9 +1,9 @@
-//! A function as one straight line of vector operations.
+//! A function as straight-line code of vector operations.
 
 use crate::schedule::Operation;
 use crate::symbolic::{Function, Relation};
 
-/// A value of the line, numbered in the order of the schedule: operands come first.
+/// A value, numbered in the order of the schedule: operands come first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Id(pub(super) u32);
 
@@ -23,7 +23,7 @@ pub(super) enum Array {
     Weights,
 }
 
-/// What a value is.
+/// The definition of a value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Node {
     /// An entry of an argument.
@@ -34,23 +34,23 @@ pub(super) enum Node {
     Binary(Binary, Id, Id),
     /// Square root.
     Sqrt(Id),
-    /// `branches[0]` where `compared` are ordered as asked, `branches[1]` elsewhere and for NaN.
+    /// `branches[0]` where the relation of `compared` holds, `branches[1]` otherwise and for NaN.
     Choice {
         relation: Relation,
         compared: [Id; 2],
         branches: [Id; 2],
     },
-    /// What a call writes, by the call and the position in its results.
+    /// A result of a call, by the call and the position among its results.
     Result(u32, u32),
 }
 
 impl Node {
-    /// Whether it lies in memory from the start.
+    /// Whether it is in memory from the start.
     pub(super) fn is_leaf(self) -> bool {
         matches!(self, Self::Argument(..) | Self::Constant(_))
     }
 
-    /// The values that it is computed from, in the order in which instructions take them.
+    /// Its operands, in instruction order.
     pub(super) fn operands(self) -> impl Iterator<Item = Id> {
         let operands = match self {
             Self::Argument(..) | Self::Constant(_) | Self::Result(..) => [None; 4],
@@ -70,14 +70,14 @@ impl Node {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Binary {
     Arithmetic(Operation),
-    /// Bits that both have.
+    /// Bitwise and.
     And,
-    /// Bits that one of them has.
+    /// Bitwise exclusive or.
     Xor,
 }
 
 impl Binary {
-    /// Whether the operands may change places without changing a bit.
+    /// Whether exchanging the operands leaves the result bit-identical.
     pub(super) fn is_commutative(self) -> bool {
         !matches!(
             self,
@@ -89,7 +89,7 @@ impl Binary {
 /// A routine that machine code calls with addresses of blocks.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Routine {
-    /// A function of one block; [`Function::Sqrt`] and its like are instructions instead.
+    /// A function of one block; [`Function::Sqrt`] and the like are instructions instead.
     Unary(Function),
     /// Sine and cosine, one block after the other.
     SinCos,
@@ -97,8 +97,8 @@ pub(super) enum Routine {
     Atan2,
     /// The first to the power of the second.
     Power,
-    /// Solution of a linear system of so many rows. Its matrix and its right-hand side lie side by
-    /// side.
+    /// Solution of a linear system with the given number of rows. Its matrix and right-hand side are
+    /// contiguous.
     System(u32),
 }
 
@@ -106,36 +106,36 @@ pub(super) enum Routine {
 #[derive(Debug, Clone)]
 pub(super) struct Call {
     pub(super) routine: Routine,
-    /// What the routine is given.
+    /// Arguments of the routine.
     pub(super) given: Vec<Id>,
-    /// What it writes, in order.
+    /// Its results, in order.
     pub(super) results: Vec<Id>,
 }
 
-/// What is done, in order.
+/// An action in order of execution.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Action {
     /// Computes a value.
     Compute(Id),
     /// Calls a routine.
     Call(u32),
-    /// Writes a value to an entry of a result: value, result, entry.
+    /// Stores a value to an entry of a result: value, result, entry.
     Store(Id, u32, u32),
 }
 
-/// The line.
+/// Straight-line code.
 #[derive(Debug)]
 pub(super) struct Line {
-    /// What the values are.
+    /// Definitions of the values.
     pub(super) nodes: Vec<Node>,
     /// The calls among the actions.
     pub(super) calls: Vec<Call>,
-    /// What is done; nothing that no result needs.
+    /// Live actions.
     pub(super) actions: Vec<Action>,
 }
 
 impl Line {
-    /// The values that an action needs, in the order in which instructions take them.
+    /// The operands of an action, in instruction order.
     pub(super) fn operands(&self, action: Action) -> impl Iterator<Item = Id> {
         let (node, given, stored) = match action {
             Action::Compute(id) => (Some(self.nodes[id.index()]), &[][..], None),

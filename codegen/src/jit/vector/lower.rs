@@ -1,8 +1,8 @@
-//! A checked schedule as a straight line of vector operations.
+//! Lowers a checked schedule to straight-line code of vector operations.
 //!
-//! Operations and their association are those of the schedule: each lane gets the bits of the
-//! scalar code. Operations whose bits are the same may be exchanged: `a + (-b)` is `a - b`. What
-//! is computed twice is computed once, and what no result needs is left out.
+//! Operations and their association are those of the schedule: each lane is bit-identical to the scalar code.
+//! Only bit-identical rewritings are applied, such as `a + (-b)` to `a - b`. Common subexpressions and dead
+//! code are eliminated.
 
 use rustc_hash::FxHashMap;
 
@@ -15,7 +15,7 @@ use crate::symbolic::{Function, Relation};
 /// Larger systems are solved by a routine, lane by lane.
 const MOST_ROWS_IN_LINE: usize = 12;
 
-/// All bits but the sign.
+/// All bits except the sign.
 const MAGNITUDE: u64 = u64::MAX >> 1;
 
 /// The line of a schedule.
@@ -42,19 +42,19 @@ pub(super) fn lower(checked: &Checked<'_>) -> Line {
 
 struct Lowering {
     nodes: Vec<Node>,
-    /// Values by what they are.
+    /// Values by definition, for hash consing.
     known: FxHashMap<Node, Id>,
     calls: Vec<Call>,
     /// Results of the steps.
     values: Vec<Id>,
-    /// Matrices and factors by their number.
+    /// Matrices and factors by the number of the factorisation.
     systems: FxHashMap<u32, System>,
 }
 
 enum System {
-    /// In the line.
+    /// Factorised inline.
     Factors(Factors),
-    /// For the routine.
+    /// Passed to a routine.
     Matrix(Vec<Id>),
 }
 
@@ -175,7 +175,7 @@ impl Lowering {
     }
 
     fn arithmetic(&mut self, operation: Operation, a: Id, b: Id) -> Id {
-        // Subtraction is addition of the negative, to the bit; NaN has no sign that counts.
+        // Subtraction equals addition of the negative bit by bit, except for the sign of NaN.
         let (operation, a, b) = match (operation, self.negated(a), self.negated(b)) {
             (Operation::Add, _, Some(b)) => (Operation::Subtract, a, b),
             (Operation::Add, Some(a), _) => (Operation::Subtract, b, a),
@@ -206,7 +206,7 @@ impl Lowering {
         self.binary(Binary::Xor, a, sign)
     }
 
-    /// The value of which this one is the negative, where it is written so.
+    /// The operand of an explicit negation.
     fn negated(&self, a: Id) -> Option<Id> {
         let is_sign = |id: Id| self.nodes[id.index()] == Node::Constant((-0.0_f64).to_bits());
         match self.nodes[a.index()] {
@@ -236,7 +236,7 @@ impl Lowering {
         match function {
             Function::Sqrt => self.node(Node::Sqrt(a)),
             Function::Abs => self.absolute(a),
-            // Zeros stay zero and NaN stays NaN, as in the runtime.
+            // Zero and NaN are preserved, as in the runtime.
             Function::Sign => {
                 let [zero, one, minus_one] = [0.0, 1.0, -1.0].map(|number| self.constant(number));
                 let below = self.choice(Relation::Less, [a, zero], [minus_one, a]);
@@ -344,6 +344,6 @@ impl Lowering {
 
 fn push(nodes: &mut Vec<Node>, node: Node) -> Id {
     nodes.push(node);
-    // The checked limits keep the number of values far below.
+    // The checked limits keep the number of values far below this.
     Id(u32::try_from(nodes.len() - 1).unwrap_or(u32::MAX))
 }

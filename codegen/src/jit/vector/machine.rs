@@ -14,9 +14,9 @@ use super::encode::Width;
 use super::lower::lower;
 use super::registers::allocate;
 
-/// Frames of more blocks are not made: with eight lanes they are half a mebibyte.
+/// Most blocks of a frame: with eight lanes this is half a mebibyte.
 const MOST_SLOTS: u32 = 8192;
-/// Longer code is not made.
+/// Longer code is rejected.
 const MOST_VALUES: usize = 1 << 20;
 
 /// The vector instructions that code may use.
@@ -26,7 +26,7 @@ pub enum Instructions {
     Avx512,
     /// Registers of four numbers.
     Avx2,
-    /// None: places are evaluated one by one.
+    /// None: points are evaluated individually.
     Scalar,
 }
 
@@ -38,7 +38,7 @@ impl Instructions {
         best.unwrap_or(Self::Scalar)
     }
 
-    /// Whether this processor has them, and calls as the code does.
+    /// Whether this processor has them and the platform uses the code's calling convention.
     pub fn exist(self) -> bool {
         match self {
             Self::Scalar => true,
@@ -55,17 +55,17 @@ impl Instructions {
     }
 }
 
-/// What vector code is made for.
+/// The target of vector code.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Target {
     /// The instructions that it uses.
     pub instructions: Instructions,
-    /// The elementary functions that it calls.
+    /// The elementary functions called by the code.
     pub elementary: Elementary,
 }
 
 impl Default for Target {
-    /// The widest instructions of this processor, and scalar code's functions.
+    /// The widest instructions of this processor, and the elementary functions of scalar code.
     fn default() -> Self {
         Self {
             instructions: Instructions::best(),
@@ -93,8 +93,7 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// Compiles a schedule; `None` where this processor lacks the instructions, or where it would be
-    /// too long.
+    /// Compiles a schedule; `None` if this processor lacks the instructions, or if the code would be too long.
     pub(super) fn compile(checked: &Checked<'_>, target: Target) -> Result<Option<Self>, JitError> {
         let width = match target.instructions {
             _ if !target.instructions.exist() => return Ok(None),
@@ -114,7 +113,7 @@ impl Machine {
         let isa = host::target(0, Use::Lasting)?;
         let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
         let defined = define(&mut module, &bytes);
-        // From here on the memory is freed, also where something failed.
+        // From here on the memory is freed, also on errors.
         let code = Code::new(module);
         let entry = defined?;
         Ok(Some(Self {
@@ -126,7 +125,7 @@ impl Machine {
         }))
     }
 
-    /// Runs the code.
+    /// Executes the code.
     ///
     /// # Safety
     ///
@@ -145,7 +144,7 @@ impl Machine {
         }
         let lanes = self.width.lanes();
         for first in (0..8).step_by(lanes) {
-            // An empty array has an address beyond which there is nothing.
+            // The pointer of an empty array is never dereferenced.
             let part = |blocks: &[[f64; 8]]| blocks.as_ptr().cast::<f64>().wrapping_add(first);
             let mut results = starts;
             for result in &mut results {

@@ -1,12 +1,12 @@
-//! The order of the operations: calls first, nothing that no result needs.
+//! Orders the live operations, calls early.
 //!
-//! Every vector register is lost at a call. What calls depend on therefore comes first, so that
-//! few values are alive then. A result is written where its value is known, so that it need not be
-//! kept. The order does not change a bit.
+//! All vector registers are clobbered at a call. Operands of calls are therefore computed first, so that few
+//! values are live across calls. A result is stored at its definition, which ends its live range. The order
+//! does not affect the results.
 
 use super::line::{Action, Call, Id, Line, Node};
 
-/// The line with these values, calls and results.
+/// Straight-line code with these values, calls and results.
 pub(super) fn order(nodes: Vec<Node>, calls: Vec<Call>, mut stores: Vec<Action>) -> Line {
     let stored = |action: &Action| match action {
         Action::Store(id, ..) => *id,
@@ -17,7 +17,7 @@ pub(super) fn order(nodes: Vec<Node>, calls: Vec<Call>, mut stores: Vec<Action>)
 
     let mut actions = Vec::with_capacity(nodes.len() + stores.len());
     let mut stores = stores.into_iter().peekable();
-    // Leaves that are results wait until the end.
+    // Leaves that are results are stored last.
     let mut at_the_end = Vec::new();
     let mut stores_of: Vec<(Id, Action)> = Vec::new();
     for store in stores.by_ref() {
@@ -57,7 +57,7 @@ pub(super) fn order(nodes: Vec<Node>, calls: Vec<Call>, mut stores: Vec<Action>)
     }
 }
 
-/// Which values some result needs, and which of them some call needs or gives.
+/// The live values, and those that calls use or define.
 fn needed(
     nodes: &[Node],
     calls: &[Call],

@@ -1,9 +1,9 @@
-//! Registers for the values of a line.
+//! Register allocation for straight-line code.
 //!
-//! In a straight line the next use of every value is known. Where registers run out, the value
-//! whose next use is furthest away leaves (Belady, *A study of replacement algorithms for a
-//! virtual-storage computer*, 1966). What lies in memory already, such as arguments and constants,
-//! is read there again; other values are written to the frame once.
+//! In straight-line code the next use of every value is known. On register pressure, the value with the
+//! furthest next use is evicted (Belady, *A study of replacement algorithms for a virtual-storage computer*,
+//! 1966). Values in memory, such as arguments and constants, are reloaded from there; other values are spilled
+//! once.
 
 #[cfg(test)]
 mod tests;
@@ -13,7 +13,7 @@ use super::line::{Action, Binary, Id, Line, Node, Routine};
 use super::slots::Slots;
 use crate::symbolic::Relation;
 
-/// Instructions, and what they need.
+/// Instructions, and the size of their frame.
 #[derive(Debug)]
 pub(super) struct Allocated {
     pub(super) instructions: Vec<Instruction>,
@@ -21,11 +21,11 @@ pub(super) struct Allocated {
     pub(super) slots: u32,
 }
 
-/// How much further away the next use of a value that is not in memory has to be than that of one
-/// that is, before it leaves a register first.
+/// Factor by which the next use of a value not in memory must be further away than that of a value in memory to
+/// be evicted first.
 const COST_OF_KEEPING: usize = 3;
 
-/// Instructions for a line, with so many registers.
+/// Allocates a given number of registers.
 pub(super) fn allocate(line: &Line, registers: u8) -> Allocated {
     let mut allocator = Allocator {
         line,
@@ -47,7 +47,7 @@ pub(super) fn allocate(line: &Line, registers: u8) -> Allocated {
     }
 }
 
-/// Where a value lies from the start.
+/// The initial memory location of a value.
 fn home(node: Node) -> Option<Memory> {
     match node {
         Node::Argument(array, index) => Some(Memory::Argument(array, index)),
@@ -56,7 +56,7 @@ fn home(node: Node) -> Option<Memory> {
     }
 }
 
-/// Blocks at the start of the frame on which systems are laid out.
+/// Blocks at the start of the frame reserved for the data of systems.
 fn staged(line: &Line) -> u32 {
     let systems = line.actions.iter().filter_map(|action| match action {
         Action::Call(call) => match line.calls[*call as usize].routine {
@@ -71,16 +71,16 @@ fn staged(line: &Line) -> u32 {
 struct Allocator<'a> {
     line: &'a Line,
     uses: Uses,
-    /// The value that a register holds.
+    /// The value in each register.
     held: Vec<Option<Id>>,
-    /// The register that holds a value.
+    /// The register of each value.
     register: Vec<Option<Register>>,
-    /// Where a value lies in memory.
+    /// The memory location of each value.
     home: Vec<Option<Memory>>,
     slots: Slots,
-    /// Slots that are free once the present instruction is written.
+    /// Slots to be freed after the current instruction.
     dead: Vec<u32>,
-    /// What the mask holds.
+    /// The comparison whose result is in the mask.
     mask: Option<(Relation, [Id; 2])>,
     instructions: Vec<Instruction>,
 }
@@ -120,7 +120,7 @@ impl Allocator<'_> {
                 self.compare(relation, compared);
                 self.select(id, branches);
             }
-            // Computed by nothing.
+            // Not computed by an instruction.
             Node::Argument(..) | Node::Constant(_) | Node::Result(..) => {}
         }
     }
@@ -140,12 +140,12 @@ impl Allocator<'_> {
         });
     }
 
-    /// Whether of two values that may change places the second should be read into a register.
+    /// Whether the second of two commutative operands should be loaded into a register.
     fn prefers_right(&self, a: Id, b: Id) -> bool {
         match (self.register[a.index()], self.register[b.index()]) {
             (Some(_), _) => false,
             (None, Some(_)) => true,
-            // The one that is used again sooner.
+            // The one with the sooner next use.
             (None, None) => self.uses.after(b) < self.uses.after(a),
         }
     }
@@ -223,11 +223,11 @@ impl Allocator<'_> {
         });
     }
 
-    /// A block in memory that holds a value in every lane.
+    /// The address of a block with a value in all lanes.
     fn address(&mut self, id: Id) -> Memory {
         match self.home[id.index()] {
             Some(memory @ (Memory::Argument(..) | Memory::Slot(_))) => memory,
-            // Constants lie there once for all lanes.
+            // Constants are stored once for all lanes.
             Some(Memory::Constant(_)) => {
                 let from = self.load(id, &[]);
                 let slot = self.slots.take(1);
@@ -242,7 +242,7 @@ impl Allocator<'_> {
         }
     }
 
-    /// The last operand of an instruction, in memory where it is there and not worth a register.
+    /// The last operand of an instruction, in memory if available there and not worth a register.
     fn operand(&mut self, id: Id, pinned: &[Id]) -> Operand {
         if let Some(register) = self.register[id.index()] {
             return Operand::Register(register);
@@ -253,7 +253,7 @@ impl Allocator<'_> {
         }
     }
 
-    /// Whether a value in memory is used again, and a register is free for it.
+    /// Whether a value in memory is used again and a register is free.
     fn is_worth_a_register(&self, id: Id) -> bool {
         self.uses.after(id) != NEVER && self.held.contains(&None)
     }
@@ -263,14 +263,14 @@ impl Allocator<'_> {
             return register;
         }
         let to = self.new_register(id, pinned);
-        // What is in no register is in memory: it was written there when it left.
+        // A value without a register is in memory, where eviction has stored it.
         if let Some(from) = self.home[id.index()] {
             self.instructions.push(Instruction::Load { to, from });
         }
         to
     }
 
-    /// A register for a value, which some other value may have to leave; not one of `pinned`.
+    /// Allocates a register for a value, evicting another one if necessary; not one of `pinned`.
     fn new_register(&mut self, id: Id, pinned: &[Id]) -> Register {
         let free = self.held.iter().position(Option::is_none);
         let place = free.unwrap_or_else(|| {
@@ -302,7 +302,7 @@ impl Allocator<'_> {
         furthest.map_or(0, |(place, _)| place)
     }
 
-    /// Takes a value out of its register and writes it to memory if it is needed there.
+    /// Removes a value from its register, spilling it if it is live and not in memory.
     fn evict(&mut self, id: Id) {
         if let Some(from) = self.register[id.index()].take() {
             self.held[usize::from(from.0)] = None;
@@ -319,7 +319,7 @@ impl Allocator<'_> {
         slot
     }
 
-    /// One use of a value is over.
+    /// Ends one use of a value.
     fn used(&mut self, id: Id) {
         self.uses.over(id);
         if self.uses.is_alive(id) {
@@ -328,7 +328,7 @@ impl Allocator<'_> {
         if let Some(register) = self.register[id.index()].take() {
             self.held[usize::from(register.0)] = None;
         }
-        // The present instruction may still read it.
+        // The current instruction may still read the slot.
         if let Some(Memory::Slot(slot)) = self.home[id.index()].take() {
             self.dead.push(slot);
         }
@@ -349,15 +349,15 @@ impl Allocator<'_> {
 /// No further use.
 const NEVER: u32 = u32::MAX;
 
-/// When values are used: the number of the use in the order of the line.
+/// Next-use information: the positions of uses in the code.
 struct Uses {
-    /// Uses of all values, those of a value together and in order.
+    /// Positions of all uses, grouped by value and sorted.
     times: Vec<u32>,
-    /// Where the uses of a value end in `times`.
+    /// End of a value's uses in `times`.
     ends: Vec<u32>,
     /// The next use of a value in `times`.
     cursors: Vec<u32>,
-    /// Uses that are over.
+    /// The number of finished uses.
     now: u32,
 }
 

@@ -1,4 +1,4 @@
-//! The routines that machine code calls with addresses of blocks.
+//! Run-time routines called by machine code with addresses of blocks.
 
 use appell_runtime::dense::lu_solve_in_place;
 use appell_runtime::real::{Own, Standard};
@@ -13,12 +13,12 @@ use crate::symbolic::Function;
 type Unary<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [f64; N]);
 /// From two blocks to a block.
 type Binary<const N: usize> = unsafe extern "C" fn(*const [f64; N], *const [f64; N], *mut [f64; N]);
-/// From a block to two in a row.
+/// From a block to two adjacent blocks.
 type Pair<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [[f64; N]; 2]);
-/// From the blocks of a matrix and a right-hand side to those of the unknowns, for so many rows.
+/// From the blocks of a matrix and a right-hand side to those of the solution, for a number of rows.
 type System<const N: usize> = unsafe extern "C" fn(*const [f64; N], *mut [f64; N], usize);
 
-/// Where a routine stands.
+/// The address of a routine.
 pub(super) fn address(routine: Routine, elementary: Elementary, width: Width) -> usize {
     match (elementary, width) {
         (Elementary::Standard, Width::Ymm) => of::<Standard, 4>(routine),
@@ -46,7 +46,7 @@ macro_rules! unary_routines {
         fn unary<B: Blocks, const N: usize>(function: Function) -> Option<Unary<N>> {
             Some(match function {
                 $(Function::$function => $name::<B, N>,)+
-                // Instructions do it.
+                // Computed by instructions.
                 Function::Sqrt | Function::Abs | Function::Sign => return None,
             })
         }

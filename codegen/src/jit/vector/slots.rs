@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-/// Which blocks of the frame are in use.
+/// Allocation of the blocks of the frame.
 #[derive(Debug)]
 pub(super) struct Slots {
     free: BTreeSet<u32>,
@@ -10,7 +10,7 @@ pub(super) struct Slots {
 }
 
 impl Slots {
-    /// The first blocks are in use for ever.
+    /// The first blocks are permanently allocated.
     pub(super) fn new(fixed: u32) -> Self {
         Self {
             free: BTreeSet::new(),
@@ -18,7 +18,7 @@ impl Slots {
         }
     }
 
-    /// The first of so many blocks in a row, the lowest that are free.
+    /// Allocates adjacent blocks at the lowest free position; returns the first.
     pub(super) fn take(&mut self, count: u32) -> u32 {
         let first = self.free_run(count).unwrap_or(self.len);
         for slot in first..first + count {
@@ -49,7 +49,7 @@ impl Slots {
         self.free.insert(slot);
     }
 
-    /// Blocks that were ever in use.
+    /// Number of blocks ever allocated.
     pub(super) fn len(&self) -> u32 {
         self.len
     }

@@ -1,6 +1,6 @@
-//! The solution link by link, without a mass matrix: what a link resists while the joints of all that it
-//! carries are free (R. Featherstone, 1983). Its cost grows with the number of links; that of a factorised
-//! mass matrix with its third power on a chain.
+//! The articulated-body algorithm: forward dynamics link by link without a mass matrix, by articulated-body
+//! inertias (R. Featherstone, 1983). Its cost grows with the number of links; that of a factorised mass matrix
+//! with its third power on a chain.
 
 use super::super::algebra::{Algebra, named3};
 use super::inertia::{Inertia, Wrench};
@@ -9,7 +9,7 @@ use super::movement::LinkMotion;
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph};
 
-/// What an acceleration of a link takes: `n = J α + K a` and `f = Kᵀ α + M a`.
+/// Articulated-body inertia: `n = J α + K a` and `f = Kᵀ α + M a`.
 #[derive(Debug, Clone)]
 struct Articulated {
     /// J.
@@ -24,15 +24,15 @@ struct Articulated {
 struct Pivot {
     speed: usize,
     column: Vec3,
-    /// What the column takes.
+    /// Force and moment per unit acceleration along the column.
     wrench: Wrench,
-    /// What the speed takes, D.
+    /// Articulated inertia along the speed, D.
     inertia: Expr,
-    /// What is left to accelerate it.
+    /// Generalised force minus bias along the speed.
     right: Expr,
 }
 
-/// An acceleration of a link beyond that where ω̇ = 0.
+/// An acceleration of a link relative to that at ω̇ = 0.
 #[derive(Clone, Copy)]
 struct Beyond {
     alpha: Vec3,
@@ -40,8 +40,7 @@ struct Beyond {
 }
 
 impl Links {
-    /// ω̇, from the motions where ω̇ = 0 and the forces along the speeds. None where a speed moves several
-    /// links.
+    /// ω̇, from the motions at ω̇ = 0 and the forces along the speeds. `None` if a speed moves several links.
     pub(super) fn articulated(
         &self,
         algebra: &mut Algebra,
@@ -109,7 +108,7 @@ impl Links {
         Some(self.outwards(algebra, &pivots))
     }
 
-    /// ω̇ from the ground outwards.
+    /// ω̇, propagated from the ground outwards.
     fn outwards(&self, algebra: &mut Algebra, pivots: &[Vec<Pivot>]) -> Vec<Expr> {
         let at_rest = Beyond {
             alpha: vector::ZERO,
@@ -121,7 +120,7 @@ impl Links {
             let carrier = link.parent.map_or(at_rest, |parent| beyond[parent]);
             let graph = &mut algebra.graph;
             let mut motion = link.carried(graph, carrier);
-            // The last column was eliminated with all others of the link still free.
+            // Columns were eliminated first to last, so they are solved in reverse.
             for pivot in pivots.iter().rev() {
                 let graph = &mut algebra.graph;
                 let resisted = [
@@ -162,7 +161,7 @@ impl Link {
         }
     }
 
-    /// The acceleration of the carrier as the link has it.
+    /// The acceleration of the carrier expressed at the link.
     fn carried(&self, graph: &mut Graph, carrier: Beyond) -> Beyond {
         match &self.step {
             Step::Rotation { turns, .. } => {
@@ -240,7 +239,7 @@ impl Articulated {
         }
     }
 
-    /// What is left where one speed accelerates freely: less `U Uᵀ / D`.
+    /// The articulated inertia with one speed free: minus `U Uᵀ / D`.
     fn without(&self, graph: &mut Graph, taken: Wrench, inertia: Expr) -> Self {
         let mut less = |t: &Mat3, left: Vec3, right: Vec3, symmetric: bool| {
             let mut rest = *t;
@@ -264,7 +263,8 @@ impl Articulated {
         }
     }
 
-    /// About an origin from which the own one is at `d`: `K + d× M` and `J − K d× + d× (K + d× M)ᵀ`.
+    /// Moves the reference point; the present one is at `d` from the new one: `K + d× M` and
+    /// `J − K d× + d× (K + d× M)ᵀ`.
     fn shifted(&self, graph: &mut Graph, d: Vec3) -> Self {
         let mut coupling = self.coupling;
         for column in 0..3 {
@@ -276,7 +276,7 @@ impl Articulated {
         }
         let mut moment = self.moment;
         for i in 0..3 {
-            // Row i of −K d× is d × (row i of K); column i of d× (K + d× M)ᵀ is d × (row i of it).
+            // Row i of −K d× is d × (row i of K); column i of d× (K + d× M)ᵀ is d × (row i of K + d× M).
             let first = graph.cross(d, self.coupling[i]);
             for j in 0..=i {
                 let second = graph.cross(d, coupling[j])[i];

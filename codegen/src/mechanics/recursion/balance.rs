@@ -1,4 +1,4 @@
-//! Inwards: the forces that a motion takes, and what each speed feels of them.
+//! Inward recursion: the forces required by a motion, and their projections on the speeds.
 
 use super::super::algebra::Algebra;
 use super::inertia::{Inertia, Wrench};
@@ -8,7 +8,7 @@ use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
 impl Inertia {
-    /// What a motion takes: `f = m a + (α× + ω× ω×) h` and `n = h × a + I α + ω × I ω`.
+    /// Inertial forces of a motion: `f = m a + (α× + ω× ω×) h` and `n = h × a + I α + ω × I ω`.
     pub(super) fn takes(&self, graph: &mut Graph, motion: &LinkMotion) -> Wrench {
         let inertial = graph.scale3(self.mass, motion.a);
         let turning = graph.mat_vec(&motion.turning, self.moment);
@@ -20,7 +20,7 @@ impl Inertia {
         }
     }
 
-    /// `I α + ω × I ω`, by the products of ω that the turning holds already.
+    /// `I α + ω × I ω`, using the products of ω in the turning matrix.
     pub(super) fn turns(&self, graph: &mut Graph, motion: &LinkMotion) -> Vec3 {
         let (t, l) = (&self.tensor, &motion.turning);
         let mut component = |i: usize| {
@@ -43,7 +43,7 @@ impl Inertia {
 }
 
 impl Links {
-    /// The forces on all links, each with those of what it carries.
+    /// The forces on all links, accumulated over their descendants.
     pub(super) fn wrenches(
         &self,
         algebra: &mut Algebra,
@@ -66,7 +66,7 @@ impl Links {
         wrenches
     }
 
-    /// What each speed feels of the forces on the links.
+    /// The projections of the links' forces on the speeds.
     pub(super) fn felt(&self, graph: &mut Graph, wrenches: &[Wrench]) -> Vec<Expr> {
         let mut parts = vec![Vec::new(); self.speeds.len()];
         for (link, &wrench) in self.all.iter().zip(wrenches) {

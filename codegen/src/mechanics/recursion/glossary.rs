@@ -1,9 +1,9 @@
-//! What the names of a recursion mean, and which of them stand in one paragraph: link by link.
+//! Glossary of the names of a recursion, and their paragraphs: link by link.
 
 use super::Recursion;
 use crate::program::{Group, Names, Term};
 
-/// Letters and their meaning; everything of a link is along its axes.
+/// Symbols and their meaning; all components are along the axes of the link.
 const MEANINGS: [(&str, &str); 24] = [
     ("w", "angular velocity of a link."),
     ("alpha", "angular acceleration of a link."),
@@ -72,7 +72,7 @@ impl Recursion {
         MEANINGS.iter().map(term).collect()
     }
 
-    /// Headings: how each link moves, what it carries, and what that takes.
+    /// Headings: motion, composite inertia and forces of each link.
     pub(in super::super) fn groups(&self) -> Vec<Group> {
         let mut named: Vec<&str> = Vec::new();
         let mut groups = Vec::new();

@@ -1,4 +1,4 @@
-//! Inwards: the inertia of all that a link carries, and the mass matrix from it.
+//! Inward recursion: composite inertias, and the mass matrix from them.
 
 use appell_spec::mechanism::{Body, BodyId, Mechanism};
 
@@ -48,7 +48,7 @@ impl Inertia {
         }
     }
 
-    /// About an origin from which the own one is at `d`.
+    /// Moves the reference point; the present one is at `d` from the new one.
     pub(super) fn shifted(&self, graph: &mut Graph, d: Vec3) -> Self {
         let added = graph.scale3(self.mass, d);
         let moment = graph.add3(self.moment, added);
@@ -65,7 +65,7 @@ impl Inertia {
         }
     }
 
-    /// What it takes to accelerate the origin by `a` and the axes by `alpha` from rest.
+    /// Force and moment for accelerations `a` of the origin and `alpha` of the axes from rest.
     pub(super) fn resists(&self, graph: &mut Graph, alpha: Vec3, a: Vec3) -> Wrench {
         let (inertial, turning) = (graph.scale3(self.mass, a), graph.cross(alpha, self.moment));
         let (moment, turned) = (
@@ -116,7 +116,7 @@ pub(super) fn with_products(
     sum
 }
 
-/// Of a body about its centre of mass.
+/// Inertia of a body about its centre of mass.
 pub(super) fn central_inertia(
     graph: &mut Graph,
     lowering: &Lowering<'_>,
@@ -145,7 +145,7 @@ impl Wrench {
         }
     }
 
-    /// Under names; `kind` tells forces of one motion from those of others.
+    /// With named components; `kind` distinguishes motions in the names.
     pub(super) fn named(self, algebra: &mut Algebra, kind: &str, of: &str) -> Self {
         Self {
             n: named3(algebra, &format!("n{kind}_{of}"), self.n),
@@ -155,7 +155,7 @@ impl Wrench {
 }
 
 impl Link {
-    /// The same force and moment as the carrier feels them.
+    /// The same force and moment at the carrier, in its axes.
     pub(super) fn on_carrier(&self, graph: &mut Graph, own: Wrench) -> Wrench {
         match &self.step {
             Step::Rotation { turns, .. } => {
@@ -177,7 +177,7 @@ impl Link {
         }
     }
 
-    /// What a force and a moment do along a column of the step.
+    /// The work of a force and a moment along a column of the step.
     pub(super) fn work(&self, graph: &mut Graph, column: Vec3, of: Wrench) -> Expr {
         match self.step {
             Step::Rotation { .. } => graph.dot(column, of.n),
@@ -201,7 +201,7 @@ impl Link {
 }
 
 impl Links {
-    /// The inertia of the bodies themselves, by link.
+    /// The inertia of each link without its descendants.
     pub(super) fn own_inertias(
         &self,
         algebra: &mut Algebra,
@@ -224,7 +224,7 @@ impl Links {
         Ok(inertias)
     }
 
-    /// The inertia of each link with all that it carries.
+    /// The composite inertia of each link and its descendants.
     pub(super) fn composites(&self, algebra: &mut Algebra, own: &[Inertia]) -> Vec<Inertia> {
         let mut composites = own.to_vec();
         for (place, link) in self.all.iter().enumerate().rev() {
@@ -238,7 +238,7 @@ impl Links {
         composites
     }
 
-    /// M: what each speed's acceleration takes from its link inwards.
+    /// M: the forces due to each speed's unit acceleration, projected on the speeds of its link and inwards.
     pub(super) fn mass_matrix(
         &self,
         algebra: &mut Algebra,
@@ -257,7 +257,7 @@ impl Links {
                     for &(other, along) in &link_here.columns {
                         let work = link_here.work(&mut algebra.graph, along, wrench);
                         parts[speed][other].push(work);
-                        // Within one step the other order comes by itself.
+                        // Within one step both orders are visited anyway.
                         if here != place {
                             parts[other][speed].push(work);
                         }
@@ -277,7 +277,7 @@ impl Links {
         matrix
     }
 
-    /// What a unit of acceleration along a column of a link takes.
+    /// Force and moment per unit acceleration along a column of a link.
     pub(super) fn resistance(
         &self,
         algebra: &mut Algebra,

@@ -1,5 +1,5 @@
-//! The tree of links. A link is a set of axes with an origin; each moves against the one that carries it by
-//! a rotation about the origin or by a shift of the origin along its axes.
+//! The tree of links. A link is a set of axes with an origin; each moves relative to its carrier by a rotation
+//! about the origin or by a translation of the origin along its axes.
 
 use appell_spec::mechanism::{FrameId, GROUND, Mechanism, ORIGIN, PointId};
 use rustc_hash::FxHashMap;
@@ -15,43 +15,43 @@ use crate::symbolic::{Expr, SymbolId};
 /// Axes with an origin.
 #[derive(Debug, Clone)]
 pub(super) struct Link {
-    /// How names call it.
+    /// Its name in the names of quantities.
     pub(super) name: String,
-    /// The link that carries it; none is the ground.
+    /// Its carrier; `None` for the ground.
     pub(super) parent: Option<usize>,
-    /// How it moves against that.
+    /// Its motion relative to the carrier.
     pub(super) step: Step,
-    /// Its velocity from there, by speed: angular of a rotation, linear of a shift.
+    /// Its relative partial velocities, by speed: angular for a rotation, linear for a translation.
     pub(super) columns: Vec<(usize, Vec3)>,
 }
 
-/// A motion of a link against the one that carries it.
+/// The motion of a link relative to its carrier.
 #[derive(Debug, Clone)]
 pub(super) enum Step {
-    /// Turns about the origin.
+    /// Rotation about the origin.
     Rotation {
         /// From the axes of the carrier to those of the link.
         turns: Vec<Rotation>,
         /// Angular velocity, in the axes of the link.
         w: Vec3,
-        /// What changes its components while all speeds are held.
+        /// Rate of its components at fixed speeds.
         w_dot: Vec3,
     },
-    /// The axes keep their directions.
+    /// Translation with fixed axes.
     Shift {
         /// Position of the origin.
         d: Vec3,
         /// Rate of its components.
         d_dot: Vec3,
-        /// What changes these while all speeds are held.
+        /// Rate of these at fixed speeds.
         d_ddot: Vec3,
     },
 }
 
-/// A place that moves with a link: its position from the origin.
+/// A point fixed in a link, by its position from the origin.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
-    /// The link; none is the ground.
+    /// The link; `None` for the ground.
     pub(super) link: Option<usize>,
     /// Position.
     pub(super) arm: Vec3,
@@ -67,18 +67,18 @@ impl Place {
     }
 }
 
-/// All links, carriers first, and where the bodies are.
+/// All links, carriers first, and the locations of the bodies.
 #[derive(Debug, Clone)]
 pub(super) struct Links {
     pub(super) all: Vec<Link>,
     /// Names of the speeds.
     pub(super) speeds: Vec<String>,
-    /// By body: the place of its centre in the link that it moves with.
+    /// By body: the location of its centre in its link.
     pub(super) bodies: Vec<Place>,
 }
 
 impl Links {
-    /// The tree of a mechanism; none where a body hangs on a frame that does not carry its axes.
+    /// The tree of a mechanism; `None` if a body hangs on a frame that does not carry its axes.
     pub(super) fn new(
         algebra: &mut Algebra,
         mechanism: &Mechanism,
@@ -128,28 +128,28 @@ impl Links {
     }
 }
 
-/// The tree while it grows.
+/// The tree under construction.
 struct Planting<'a, 'b> {
     algebra: &'a mut Algebra,
     mechanism: &'a Mechanism,
     kinematics: &'a Kinematics,
     time: &'a TimeDerivative<'b>,
-    /// What lets a position change.
+    /// Symbols on which a position may depend.
     changing: Vec<SymbolId>,
     links: Vec<Link>,
-    /// By frame and origin.
+    /// Locations by frame and origin.
     known: FxHashMap<(FrameId, PointId), Place>,
 }
 
 impl Planting<'_, '_> {
-    /// The frame along whose axes a point is placed.
+    /// The frame in whose axes the position of a point is given.
     fn axes_of(&self, point: PointId) -> FrameId {
         self.kinematics.offset(point).frame
     }
 
-    /// Where a point is, in the link that has the axes along which it is placed.
+    /// The location of a point, in the link with the axes in which its position is given.
     fn place(&mut self, point: PointId) -> Option<Place> {
-        // Points come after those they are placed from, so the way to the origin is short work for a loop.
+        // Points come after their reference points, so a loop suffices.
         let mut way = Vec::new();
         let (axes, mut at) = (self.axes_of(point), point);
         let start = loop {
@@ -211,8 +211,8 @@ impl Planting<'_, '_> {
         Some(place)
     }
 
-    /// What turns as the last of the frames does, whose axes are turned one against the other: as one link
-    /// where its angular velocity is then shorter than the rates of the turns, such as for a free body.
+    /// The link of a sequence of turned frames: a single one if its angular velocity is then shorter than the
+    /// rates of the turns, as for a free body.
     fn turned(&mut self, mut link: Option<usize>, way: &[FrameId]) -> Option<usize> {
         let frames = &self.kinematics.frames;
         let turns: Vec<(FrameId, Rotation)> = (way.iter())
@@ -283,7 +283,7 @@ impl Planting<'_, '_> {
         self.links.len() - 1
     }
 
-    /// Partial velocities, those that are not zero.
+    /// The nonzero partial velocities.
     fn columns(&mut self, velocity: Vec3) -> Vec<(usize, Vec3)> {
         let mut columns = Vec::new();
         for (place, &speed) in self.time.symbols.speeds.iter().enumerate() {

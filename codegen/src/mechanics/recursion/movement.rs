@@ -1,4 +1,4 @@
-//! Outwards: angular velocities and accelerations of the links.
+//! Outward recursion: angular velocities and accelerations of the links.
 
 use super::super::algebra::{Algebra, named3};
 use super::links::{Link, Links, Step};
@@ -14,22 +14,22 @@ pub(super) struct LinkMotion {
     pub(super) alpha: Vec3,
     /// Acceleration of the origin.
     pub(super) a: Vec3,
-    /// `α× + ω× ω×`: what it does to a position is its acceleration from the origin.
+    /// `α× + ω× ω×`: maps a position to its acceleration relative to the origin.
     pub(super) turning: Mat3,
 }
 
-/// What all links move with.
+/// Inputs of the outward recursion.
 pub(super) struct Driven<'a> {
     /// Acceleration of the ground.
     pub(super) ground: Vec3,
-    /// ω̇; none where all vanish.
+    /// ω̇; `None` if all vanish.
     pub(super) accelerations: Option<&'a [Expr]>,
-    /// What tells names of this motion from those of others.
+    /// Distinguishes this motion in names.
     pub(super) kind: &'a str,
 }
 
 impl LinkMotion {
-    /// Nothing turns.
+    /// A motion without rotation.
     pub(super) fn at_rest(a: Vec3) -> Self {
         Self {
             w: vector::ZERO,
@@ -81,7 +81,7 @@ impl Links {
 }
 
 impl Links {
-    /// The acceleration of the ground in the axes of all links, where nothing else moves.
+    /// The acceleration of the ground in the axes of all links at rest.
     pub(super) fn still(&self, algebra: &mut Algebra, ground: Vec3) -> Vec<Vec3> {
         let mut all: Vec<Vec3> = Vec::with_capacity(self.all.len());
         for link in &self.all {
@@ -100,7 +100,7 @@ impl Links {
 }
 
 impl Link {
-    /// The velocity of the step, or its rate, by the columns: `Σ column · speed`.
+    /// The relative velocity of the step, or its rate: `Σ column · speed`.
     pub(super) fn along(&self, graph: &mut Graph, speeds: &[Expr]) -> Vec3 {
         let mut sum = vector::ZERO;
         for &(speed, column) in &self.columns {

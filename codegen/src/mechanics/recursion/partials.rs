@@ -1,16 +1,16 @@
-//! How the forces that a motion takes change with the state, ω̇ held.
+//! Derivatives of the forces of a motion with respect to the state, at fixed ω̇.
 //!
-//! A coordinate or a speed changes the motion of the links whose step it drives, and with these all that they
-//! carry, which moves on rigidly. What is carried answers to changes δω, δα and δa of its link's motion as a
-//! whole. With β = δα + ω × δω, the composite mass m, first moment h and inertia I, their rates ḣ and İ and
-//! the angular momentum ℓ about the origin,
+//! A coordinate or a speed changes the motion of the link that it drives, and that of its descendants, as one
+//! rigid body. Their forces respond to changes δω, δα and δa of the link's motion together. With β = δα + ω ×
+//! δω, the composite mass m, first moment h and inertia I, their rates ḣ and İ and the angular momentum ℓ about
+//! the origin,
 //!
 //! ```text
 //! δf = m δa + β × h + 2 δω × ḣ        δn = h × δa + I β + İ δω − ℓ × δω
 //! ```
 //!
-//! in any axes that do not turn relative to the link. β is carried on unchanged, and δa by
-//! δa + β × d + 2 δω × u to an origin at d with the relative velocity u.
+//! in any axes that do not rotate relative to the link. β is transmitted unchanged to descendants, and δa
+//! becomes δa + β × d + 2 δω × u for an origin at d with the relative velocity u.
 
 use super::super::algebra::{Algebra, name_of, named3};
 use super::super::rotation::Rotation;
@@ -20,7 +20,7 @@ use super::movement::LinkMotion;
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph};
 
-/// How fast mass moves about in a link with all that it carries, seen from its origin, in its axes.
+/// Momentum and inertia rates of a link with its descendants, about its origin, in its axes.
 #[derive(Debug, Clone)]
 struct Flow {
     /// Rate of the first moment, ḣ.
@@ -42,16 +42,16 @@ struct Change {
     a: Vec3,
 }
 
-/// What a force along a column does for changes of the motion of a link.
+/// Derivatives of the force along a column with respect to the motion of a link.
 #[derive(Debug, Clone, Copy)]
 struct Answer {
-    /// To β and δa.
+    /// With respect to β and δa.
     wrench: Wrench,
-    /// To δω.
+    /// With respect to δω.
     w: Vec3,
 }
 
-/// The tree of links in a motion, ready to be differentiated.
+/// The tree of links in a motion, prepared for differentiation.
 #[derive(Debug, Clone)]
 pub struct Differentiable {
     /// Acceleration of the ground.
@@ -60,7 +60,7 @@ pub struct Differentiable {
     wrenches: Vec<Wrench>,
     composites: Vec<Inertia>,
     flows: Vec<Flow>,
-    /// By link: what the columns of the links that it carries answer, by speed, its own included.
+    /// By link: the derivatives for the columns of itself and its descendants, by speed.
     answers: Vec<Vec<(usize, Answer)>>,
 }
 
@@ -71,7 +71,7 @@ impl Flow {
         momentum: vector::ZERO,
     };
 
-    /// Of a rigid body that turns with the axes: `ω × h`, `ω× I − I ω×`, `I ω`.
+    /// For a rigid body fixed in the axes: `ω × h`, `ω× I − I ω×`, `I ω`.
     fn of_rigid(graph: &mut Graph, inertia: &Inertia, w: Vec3) -> Self {
         let mut half = [vector::ZERO; 3];
         for (i, row) in half.iter_mut().enumerate() {
@@ -103,7 +103,7 @@ impl Flow {
         }
     }
 
-    /// About an origin from which the own one is at `d` and moves away with `u`.
+    /// Moves the reference point; the present one is at `d` from the new one and has the relative velocity `u`.
     fn shifted(&self, graph: &mut Graph, inertia: &Inertia, (d, u): (Vec3, Vec3)) -> Self {
         let (added, arriving) = (graph.scale3(inertia.mass, d), graph.scale3(inertia.mass, u));
         let h = graph.add3(inertia.moment, added);
@@ -145,7 +145,7 @@ impl Flow {
 }
 
 impl Change {
-    /// The forces that it adds.
+    /// The resulting change of the forces.
     fn takes(&self, graph: &mut Graph, inertia: &Inertia, flow: &Flow) -> Wrench {
         let rigid = inertia.resists(graph, self.beta, self.a);
         let coriolis = graph.cross(self.w, flow.moment);
@@ -158,7 +158,7 @@ impl Change {
 }
 
 impl Answer {
-    /// Of a column of a link with its inertia.
+    /// The derivatives for a column of a link with its inertia.
     fn of_column(
         graph: &mut Graph,
         step: &Step,
@@ -193,7 +193,7 @@ impl Answer {
 }
 
 impl Differentiable {
-    /// The links in a motion with the weights as the acceleration of the ground.
+    /// The links in a motion, with gravity as acceleration of the ground.
     pub(super) fn new(
         algebra: &mut Algebra,
         links: &Links,
@@ -214,7 +214,7 @@ impl Differentiable {
         }
     }
 
-    /// What the forces along the speeds change with a coordinate, a speed or a signal.
+    /// The derivatives of the forces along the speeds with respect to a coordinate, a speed or a signal.
     pub(super) fn column(
         &self,
         algebra: &mut Algebra,
@@ -253,7 +253,7 @@ impl Differentiable {
         parts.iter().map(|parts| algebra.graph.sum(parts)).collect()
     }
 
-    /// What a variable changes of the motion of a link by its own step; none where nothing.
+    /// The direct change of a link's motion with a variable through its own step; `None` if zero.
     fn change(
         &self,
         algebra: &mut Algebra,
@@ -264,7 +264,7 @@ impl Differentiable {
     ) -> Option<Change> {
         let link = &links.all[place];
         let motion = &self.motions[place];
-        // ω̇ is held.
+        // ω̇ is fixed.
         let mut driving = vector::ZERO;
         for &(speed, column) in &link.columns {
             let by = derivative3(algebra, column, z);
@@ -282,7 +282,7 @@ impl Differentiable {
                 }
                 let graph = &mut algebra.graph;
                 if let (true, Some(x), [Rotation::Turn(_)]) = (still, axis, turns.as_slice()) {
-                    // What the link carries sees the motion turn back about the axis.
+                    // In the axes of the link, the carrier's motion rotates backwards about the axis.
                     return Some(Change {
                         w: graph.cross(motion.w, x),
                         beta: graph.mat_vec(&motion.turning, x),
@@ -344,7 +344,7 @@ impl Differentiable {
 }
 
 impl Links {
-    /// How mass moves about in all links.
+    /// Momentum and inertia rates of all links.
     fn flows(
         &self,
         algebra: &mut Algebra,
@@ -366,7 +366,7 @@ impl Links {
         flows
     }
 
-    /// What the columns of all links answer, by the links that carry them.
+    /// The derivatives for the columns of all links, by carrying link.
     fn answers(
         &self,
         algebra: &mut Algebra,
@@ -401,7 +401,7 @@ impl Links {
 }
 
 impl Link {
-    /// Velocity of the origin from that of the carrier, in axes that do not turn.
+    /// Velocity of the origin relative to the carrier's, in axes that do not rotate.
     fn leaving(&self, graph: &mut Graph, motions: &[LinkMotion]) -> Vec3 {
         match (&self.step, self.parent) {
             (Step::Shift { d, d_dot, .. }, Some(parent)) => {
@@ -465,7 +465,8 @@ impl Link {
         Answer { wrench, w }
     }
 
-    /// The change of what the carrier feels: of a change of the own force, and of the way to the carrier.
+    /// The change of the force transmitted to the carrier: by the change of the link's own force, and of the
+    /// transformation.
     fn change_on_carrier(
         &self,
         algebra: &mut Algebra,
@@ -506,8 +507,8 @@ fn derivative3(algebra: &mut Algebra, v: Vec3, z: Expr) -> Vec3 {
     v.map(|c| algebra.derivative(c, z))
 }
 
-/// The axis about which a variable turns what is behind the turns, in the axes there; none where a turn is
-/// no turn about an axis.
+/// The axis about which a variable rotates the axes after the turns, in components there; `None` if the
+/// derivative is not a rotation about an axis.
 fn axis(algebra: &mut Algebra, turns: &[Rotation], z: Expr) -> Option<Vec3> {
     let mut x = vector::ZERO;
     for turn in turns {

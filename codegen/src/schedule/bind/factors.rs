@@ -1,4 +1,4 @@
-//! Names of values by what they are multiplied by on their way.
+//! Names values by their cofactors on the path to the consumer.
 
 use super::Binding;
 use crate::schedule::dag::{Id, Item, Op};
@@ -6,8 +6,8 @@ use crate::schedule::names::joined;
 use crate::schedule::steps::{Tree, Value};
 
 impl Binding<'_> {
-    /// `consumer_per_a_b`: what is multiplied by `a` and `b` on its way to the consumer, and by
-    /// nothing else, with the sign that it has there.
+    /// `consumer_per_a_b`: a value whose only cofactors on the path to the consumer are `a` and
+    /// `b`, with the sign of that contribution.
     pub(super) fn by_factors(&self, id: Id, mut negative: bool) -> Option<String> {
         let feed = self.outline.feeds[id.index()]?;
         let mut factors: Vec<&str> = Vec::new();
@@ -42,7 +42,7 @@ impl Binding<'_> {
             .filter(|name| !self.names.has(name))
     }
 
-    /// The name of a factor that is no number and no quotient of this kind itself.
+    /// The name of a factor, unless it is a number or itself a quotient of this kind.
     fn name_of_factor(&self, tree: &Tree) -> Option<&str> {
         let name = match tree {
             Tree::Value(Value(value)) => self.values[*value as usize].as_str(),
@@ -53,7 +53,7 @@ impl Binding<'_> {
     }
 }
 
-/// The other factors of a product that has `part` once; nothing where anything is divided by.
+/// The cofactors of `part` in a product that has it once; `None` if the product has a divisor.
 fn others(factors: &[Item], part: Id) -> Option<impl Iterator<Item = &Item>> {
     let once = factors.iter().filter(|factor| factor.id == part).count() == 1;
     let whole = factors.iter().all(|factor| !factor.flip);

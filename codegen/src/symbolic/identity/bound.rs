@@ -1,4 +1,4 @@
-//! The degree of an expression in the elements that are drawn for it.
+//! The degree of an expression in the drawn field elements.
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
@@ -60,7 +60,7 @@ impl Degree {
     }
 }
 
-/// Bound on the probability that one trial takes `root` for zero; see
+/// Bound on the probability that one trial takes a nonzero `root` for zero; see
 /// [`IdentityTest::error_bound`](super::IdentityTest::error_bound).
 pub(super) fn per_trial(g: &Graph, root: Expr, quaternions: &[[SymbolId; 4]]) -> f64 {
     let order = g.in_order(&[root]);
@@ -85,7 +85,7 @@ pub(super) fn per_trial(g: &Graph, root: Expr, quaternions: &[[SymbolId; 4]]) ->
                 drawn += 1.0;
                 arguments += of(*x).total();
                 match function {
-                    // The parametrisation of the circle is quadratic above and below, and so is
+                    // The parametrisation of the circle is quadratic in numerator and denominator, and so is
                     // the hyperbolic sine in the exponential.
                     Function::Sin
                     | Function::Cos
@@ -150,14 +150,14 @@ pub(super) fn per_trial(g: &Graph, root: Expr, quaternions: &[[SymbolId; 4]]) ->
         };
         degrees.insert(expr, degree);
     }
-    // Common divisors of the units that are taken and the orders of the groups, 48 and 10.
+    // Common divisors of the multiples used and the orders of the groups, 48 and 10.
     let values = PRIME as f64 / 48.0;
     let degree = degrees.get(&root).map_or(0.0, |d| d.total());
     (4f64.powf(roots.len() as f64) * (degree + drawn * arguments) / values).min(1.0)
 }
 
-/// How often the unit of which all multiples in the expression are whole fits into the coefficients
-/// of an angle or an exponent: `Σ |coefficient| · unit`, at least 1.
+/// The coefficients of an angle or an exponent in multiples of the expression's common unit:
+/// `Σ |coefficient| · unit`, at least 1.
 fn multiples(g: &Graph, argument: Expr, unit: f64) -> f64 {
     let sum: f64 = coefficients(g, argument)
         .iter()
@@ -181,7 +181,7 @@ fn finest_part(g: &Graph, order: &[Expr]) -> f64 {
             .filter_map(Rational::as_small)
         {
             let d = d.unsigned_abs();
-            // What does not fit here is beyond any multiple that is related to others.
+            // Multiples that overflow are not related to others.
             if let Some(multiple) = (common / common.gcd(&d)).checked_mul(d) {
                 common = multiple;
             }
@@ -190,7 +190,7 @@ fn finest_part(g: &Graph, order: &[Expr]) -> f64 {
     common as f64
 }
 
-/// The coefficients of the atoms of a sum, names looked through.
+/// The coefficients of the atoms of a sum, with names replaced by their definitions.
 fn coefficients(g: &Graph, argument: Expr) -> Vec<Rational> {
     let mut found = Vec::new();
     let mut pending = vec![(Rational::ONE, argument)];

@@ -1,12 +1,12 @@
-//! What an expression depends on: its symbols, and the square roots in it.
+//! Dependencies of an expression: its symbols and square roots.
 
 use rustc_hash::FxHashMap;
 
 use super::super::{Expr, Function, Graph, Node};
 use super::point::symbol_bit;
 
-/// By expression: a superset of its symbols and the set of its radicands. Sets of radicands are
-/// numbered; most expressions share a few of them.
+/// By expression: a superset of its symbols and the set of its radicands. Sets of radicands are numbered,
+/// since most expressions share a few of them.
 #[derive(Debug, Clone)]
 pub(super) struct Cones {
     symbols: Vec<u64>,
@@ -32,7 +32,7 @@ impl Cones {
     /// The empty set of radicands.
     pub(super) const NO_ROOTS: u32 = 0;
 
-    /// Learns about the expressions that are new in the graph. Parts come before wholes in it.
+    /// Adds the expressions that are new in the graph, which stores operands before users.
     pub(super) fn extend(&mut self, g: &Graph) {
         for index in self.symbols.len()..g.len() {
             let Ok(id) = u32::try_from(index) else { return };
@@ -44,7 +44,7 @@ impl Cones {
             });
             match g.node(expr) {
                 Node::Symbol(symbol) => symbols |= symbol_bit(*symbol),
-                // A half may hide in the exponent, behind names. Roots of numbers are constants.
+                // The exponent may be a half behind names. Roots of numbers are constants.
                 Node::Function(Function::Sqrt, base) | Node::Power(base, _)
                     if g.as_number(*base).is_none() =>
                 {
@@ -68,12 +68,12 @@ impl Cones {
         &self.symbols
     }
 
-    /// The number of the set of radicands in an expression.
+    /// The index of an expression's set of radicands.
     pub(super) fn roots(&self, expr: Expr) -> u32 {
         self.roots[expr.0 as usize]
     }
 
-    /// A set of radicands, parts before wholes.
+    /// A set of radicands, operands before users.
     pub(super) fn radicands(&self, set: u32) -> &[Expr] {
         &self.sets[set as usize]
     }

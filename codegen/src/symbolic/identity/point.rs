@@ -5,7 +5,7 @@ use rustc_hash::FxHashMap;
 use super::super::field::{Element, PRIME, Rotation, keyed};
 use super::super::{Expr, Function, Graph, Node, Rational, Relation, SymbolId};
 
-/// What a pseudo-random value is drawn for.
+/// Domains of the pseudo-random values.
 mod tag {
     pub(super) const SYMBOL: u64 = 1;
     pub(super) const REDRAWN: u64 = 2;
@@ -18,18 +18,18 @@ mod tag {
     pub(super) const FUNCTION: u64 = 64;
 }
 
-/// Angles are multiples of `atom / ANGLE_PARTS`, so that parts of angles exist.
+/// Angles are multiples of `atom / ANGLE_PARTS`, which makes fractions of angles exact.
 const ANGLE_PARTS: u64 = 2304;
-/// A coefficient `n / d` of an angle takes part in addition theorems up to this `n d`.
+/// Largest `n d` of a coefficient `n / d` of an angle for which addition theorems are modelled.
 const MOST_TURNS: u64 = 1 << 24;
 /// The angle π in units of [`Rotation::PI_OVER_24`].
 const HALF_TURN: i64 = 24;
 /// Exponents are multiples of `atom / EXPONENT_PARTS`.
 const EXPONENT_PARTS: i64 = 720;
-/// The largest such multiple that takes part in `exp(a + b) = exp a exp b`.
+/// Largest such multiple for which `exp(a + b) = exp a exp b` is modelled.
 const MOST_EXPONENT_PARTS: i64 = 1 << 24;
 
-/// A remembered value.
+/// A memoised value.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Cell(u64);
 
@@ -51,9 +51,9 @@ impl From<Option<Element>> for Cell {
 /// Values by expression.
 #[derive(Debug, Clone)]
 enum Cells {
-    /// Of most expressions of the graph.
+    /// For most expressions of the graph.
     All(Vec<Cell>),
-    /// Of the few expressions that depend on one symbol.
+    /// For the few expressions that depend on one symbol.
     Few(FxHashMap<Expr, Cell>),
 }
 
@@ -81,11 +81,11 @@ impl Cells {
     }
 }
 
-/// One random point with the values of all expressions that were asked for.
+/// One random point with the values of all expressions evaluated so far.
 #[derive(Debug, Clone)]
 pub(super) struct Point {
     key: u64,
-    /// The symbol that stands for π.
+    /// The symbol of π.
     pi: Option<SymbolId>,
     /// Symbols that are components of unit quaternions.
     quaternions: Vec<[SymbolId; 4]>,
@@ -97,18 +97,18 @@ pub(super) struct Point {
     parts: Vec<(Rational, Expr)>,
 }
 
-/// The point that another one differs from in one symbol.
+/// A reference point from which another one differs in one symbol.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Redraw<'a> {
-    /// The original; it knows all values of the expression that is evaluated.
+    /// The original, at which all subexpressions are evaluated already.
     pub(super) original: &'a Point,
     /// The symbol with another value.
     pub(super) symbol: SymbolId,
-    /// By node: a set of symbols that holds all the node depends on.
+    /// By node: a superset of the symbols on which it depends.
     pub(super) symbols: &'a [u64],
 }
 
-/// The bit of a symbol in a set of symbols; sixty-four symbols apart share one.
+/// The bit of a symbol in a set of symbols; symbols whose ids differ by 64 share one.
 pub(super) fn symbol_bit(symbol: SymbolId) -> u64 {
     1 << (symbol.0 % 64)
 }
@@ -128,7 +128,7 @@ impl Point {
         }
     }
 
-    /// Another point with the same pseudo-random functions, which will differ in one symbol.
+    /// Another point with the same pseudo-random functions, to differ in one symbol.
     pub(super) fn sibling(&self) -> Self {
         Self {
             cells: Cells::Few(FxHashMap::default()),
@@ -136,7 +136,7 @@ impl Point {
         }
     }
 
-    /// How many values it remembers.
+    /// The number of memoised values.
     pub(super) fn len(&self) -> usize {
         match &self.cells {
             Cells::All(cells) => cells.len(),
@@ -144,7 +144,7 @@ impl Point {
         }
     }
 
-    /// The value of an expression; `None` where it has none at this point.
+    /// The value of an expression; `None` if it is undefined at this point.
     pub(super) fn evaluate(
         &mut self,
         g: &Graph,
@@ -174,7 +174,7 @@ impl Point {
         self.part(root, redraw)
     }
 
-    /// What is known of an expression: at the original, where it does not depend on the symbol drawn again.
+    /// The memoised value of an expression, from the original point if the redrawn symbol does not affect it.
     fn cell(&self, expr: Expr, redraw: Option<Redraw<'_>>) -> Cell {
         let stays =
             |redraw: &Redraw<'_>| redraw.symbols[expr.0 as usize] & symbol_bit(redraw.symbol) == 0;
@@ -186,7 +186,7 @@ impl Point {
             .unwrap_or_else(|| self.cells.get(expr))
     }
 
-    /// The value of a part.
+    /// The value of an operand.
     fn part(&self, expr: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
         self.cell(expr, redraw).value()
     }
@@ -195,7 +195,7 @@ impl Point {
         keyed(self.key, tag, [u64::from(symbol.0), 0])
     }
 
-    /// A component of a unit quaternion: (1 − s, 2 u) / (1 + s) with s = u · u for a vector u that is drawn.
+    /// A component of a unit quaternion: (1 − s, 2 u) / (1 + s) with s = u · u for a random vector u.
     fn on_sphere(&self, quaternion: &[SymbolId; 4], symbol: SymbolId) -> Option<Element> {
         let [scalar, vector @ ..] = *quaternion;
         let mut square = Element::ZERO;
@@ -213,7 +213,7 @@ impl Point {
         Some(numerator * scale)
     }
 
-    /// The value of a node whose parts are known.
+    /// The value of a node whose operands are evaluated.
     fn step(&mut self, g: &Graph, expr: Expr, redraw: Option<Redraw<'_>>) -> Option<Element> {
         match g.node(expr) {
             Node::Number(n) => Element::from_rational(n),
@@ -277,8 +277,8 @@ impl Point {
                     self.part(branches[0], redraw)?,
                     self.part(branches[1], redraw)?,
                 ];
-                // A weight instead of a decision: nothing looks equal only because the branch in
-                // which it differs was not taken.
+                // A weight instead of a branch: expressions that differ in the branch not taken must not
+                // appear equal.
                 let positive = |key, d: Element| keyed(key, tag::CONDITION, [d.get(), 0]);
                 let holds = match relation {
                     Relation::Less => positive(self.key, right - left),
@@ -336,7 +336,7 @@ impl Point {
                 }
             }
             Function::Sqrt => self.square_root(g, x, value),
-            // |x| = x sign x; the sign is an odd function about which nothing else is known.
+            // x| = x sign x; the sign is an uninterpreted odd function.
             Function::Asin | Function::Atan | Function::Sign => Some(self.odd(function, value)),
             Function::Abs => Some(value * self.odd(Function::Sign, value)),
             Function::Acos | Function::Ln => Some(keyed(
@@ -347,8 +347,8 @@ impl Point {
         }
     }
 
-    /// The root that is a square itself. A number without one in this field has a transcendental
-    /// stand-in, which hides that its square is the number.
+    /// The root that is a square itself. A number without one in this field gets a transcendental stand-in,
+    /// so the identity √n² = n is not modelled for it.
     fn square_root(&self, g: &Graph, radicand: Expr, value: Element) -> Option<Element> {
         value.square_root().or_else(|| {
             let number = g.as_number(radicand).filter(|n| !n.is_negative())?;
@@ -426,7 +426,7 @@ impl Point {
             }
         }
         let value = self.part(atom, redraw)?;
-        // A coefficient without useful multiples belongs to the atom.
+        // A coefficient without modelled multiples becomes part of the atom.
         let (value, multiple, backwards) = match turns(coefficient) {
             Some((multiple, backwards)) => (value, multiple, backwards),
             None => (self.scaled(coefficient, value)?, ANGLE_PARTS, false),
@@ -465,7 +465,7 @@ impl Point {
         let atoms = self.split(g, exponent);
         let mut product = Some(Element::ONE);
         for (coefficient, atom) in &atoms {
-            // The numeric part of a power's exponent is the caller's.
+            // The caller handles the numeric part of a power's exponent.
             if base != 0 && *atom == Graph::ONE {
                 continue;
             }
@@ -504,8 +504,8 @@ impl Point {
         }
     }
 
-    /// `base^exponent`: the numeric part of the exponent acts on the base, the rest is an
-    /// uninterpreted homomorphism of the exponent.
+    /// `base^exponent`: the numeric part of the exponent is applied to the base, the rest is an uninterpreted
+    /// homomorphism of the exponent.
     fn power(
         &mut self,
         g: &Graph,
@@ -523,7 +523,7 @@ impl Point {
             .filter(|(_, atom)| *atom == Graph::ONE)
             .fold(Rational::ZERO, |sum, (c, _)| &sum + c);
         self.parts = atoms;
-        // Shifted by one, since the exponential's base is 0.
+        // Shifted by one, since base 0 denotes the exponential.
         let symbolic = self.growth(g, exponent, value.get() + 1, redraw)?;
         Some(symbolic * self.rational_power(g, base, value, &constant)?)
     }
@@ -542,8 +542,8 @@ impl Point {
         let root = match d {
             1 => value,
             2 => self.square_root(g, base, value)?,
-            // An uninterpreted root: x^(1/d) to the power d is not known to be x, but whole powers
-            // of x are taken out first.
+            // An uninterpreted root: (x^(1/d))^d = x is not modelled, but integer powers of x are extracted
+            // first.
             _ => keyed(self.key, tag::ROOT, [value.get(), d.unsigned_abs()]),
         };
         let (whole, rest) = (n.div_euclid(d), n.rem_euclid(d));
@@ -606,7 +606,7 @@ fn turns(coefficient: &Rational) -> Option<(u64, bool)> {
     Some((u64::try_from(quotient).ok()?, n < 0))
 }
 
-/// Gauss's elimination; `None` for a singular matrix.
+/// Gaussian elimination; `None` for a singular matrix.
 fn solve(mut a: Vec<Element>, mut b: Vec<Element>) -> Option<Box<[Element]>> {
     let n = b.len();
     for k in 0..n {

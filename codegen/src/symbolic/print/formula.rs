@@ -1,4 +1,4 @@
-//! Expressions of the graph as formulas for people.
+//! Typesets expressions of the graph as formulas.
 
 use rustc_hash::FxHashMap;
 
@@ -6,11 +6,11 @@ use super::letter::Letter;
 use super::math::Math;
 use crate::symbolic::{Expr, Factor, Function, Graph, Node, Rational, Relation, SymbolId, Term};
 
-/// A part that would print wider than this becomes a letter of its own, defined apart.
+/// A subexpression that would print wider than this is replaced by a letter and defined separately.
 const WIDEST_PART: usize = 160;
-/// A part that nests deeper than this becomes a letter of its own.
+/// A subexpression nested deeper than this is replaced by a letter and defined separately.
 const DEEPEST_PART: usize = 12;
-/// A root or another function that prints wider becomes a letter of its own, where these are asked for.
+/// A root or another function wider than this is replaced by a letter, if requested.
 const WIDEST_FUNCTION: usize = 24;
 
 /// Letters of symbols and names, and their order in a product.
@@ -24,25 +24,25 @@ pub trait Vocabulary {
         }
     }
 
-    /// Place of a symbol in a product: before the names up to 4, behind them from 6 on. Symbols of
-    /// the same place stand in the order in which they were made.
+    /// Sort key of a symbol in a product: before the names up to 4, after them from 6 on. Symbols of equal
+    /// key are ordered by creation.
     fn place(&self, _graph: &Graph, _symbol: Expr) -> u8 {
         1
     }
 }
 
-/// Letters as their names spell them.
+/// Letters spelled as their names.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Spelled;
 
 impl Vocabulary for Spelled {}
 
-/// A formula and what it takes for granted.
+/// A formula and the quantities that it refers to.
 #[derive(Debug, Clone)]
 pub struct Formula {
     /// The formula.
     pub math: Math,
-    /// Named quantities and parts with letters that occur in it, in order of appearance.
+    /// Named quantities and lettered subexpressions that occur in it, in order of appearance.
     pub wants: Vec<Expr>,
     width: usize,
     depth: usize,
@@ -52,17 +52,17 @@ pub struct Formula {
 #[derive(Debug, Clone)]
 pub struct Setter<V> {
     vocabulary: V,
-    /// Whether definitions stand in the places of their names.
+    /// Whether names are replaced by their definitions.
     inline: bool,
-    /// Whether wide functions get letters.
+    /// Whether wide functions are replaced by letters.
     functions_apart: bool,
-    /// Parts that got a letter, by first use.
+    /// Lettered subexpressions, by first use.
     parts: FxHashMap<Expr, usize>,
-    /// Letters of parts and of unknowns, once they are chosen.
+    /// Letters of subexpressions and of unknowns, once they are chosen.
     bases: Option<[&'static str; 2]>,
 }
 
-/// Letters of parts, in order of preference.
+/// Letters of subexpressions, in order of preference.
 const PARTS: [&str; 4] = ["c", "k", "e", "a"];
 /// Letters of the unknowns of linear systems.
 const UNKNOWNS: [&str; 4] = ["s", "y", "w", "u"];
@@ -79,7 +79,7 @@ impl<V: Vocabulary> Setter<V> {
         }
     }
 
-    /// The letters of parts and of unknowns of linear systems: none that a symbol has.
+    /// The letters of subexpressions and of unknowns of linear systems: none that a symbol has.
     pub fn bases(&mut self, graph: &Graph) -> [&'static str; 2] {
         *self.bases.get_or_insert_with(|| {
             let symbols = (0u32..).take(graph.symbol_count()).map(SymbolId);
@@ -93,14 +93,14 @@ impl<V: Vocabulary> Setter<V> {
         })
     }
 
-    /// Writes the definitions of named quantities in their places.
+    /// Replaces named quantities by their definitions.
     #[must_use]
     pub fn with_definitions_inline(mut self) -> Self {
         self.inline = true;
         self
     }
 
-    /// Gives wide roots and other functions letters of their own.
+    /// Replaces wide roots and other functions by letters.
     #[must_use]
     pub fn with_functions_apart(mut self, apart: bool) -> Self {
         self.functions_apart = apart;
@@ -112,7 +112,7 @@ impl<V: Vocabulary> Setter<V> {
         &self.vocabulary
     }
 
-    /// Letter of a symbol, a name, an unknown or a part.
+    /// Letter of a symbol, a name, an unknown or a lettered subexpression.
     pub fn letter(&mut self, graph: &Graph, expr: Expr) -> Letter {
         match graph.node(expr) {
             Node::Named(_) | Node::Symbol(_) => self.vocabulary.letter(graph, expr),
@@ -127,7 +127,7 @@ impl<V: Vocabulary> Setter<V> {
         }
     }
 
-    /// The formula of an expression; what is large inside gets letters.
+    /// The formula of an expression; large subexpressions are replaced by letters.
     pub fn set(&mut self, graph: &Graph, expr: Expr) -> Formula {
         let mut known: FxHashMap<Expr, Formula> = FxHashMap::default();
         for part in written(graph, expr, self.inline) {
@@ -244,7 +244,7 @@ impl<V: Vocabulary> Setter<V> {
                 (minus, math)
             })
             .collect();
-        // A sum that can start with a plus does.
+        // A positive term comes first if there is one.
         if signed_terms[0].0
             && let Some(place) = signed_terms.iter().position(|(minus, _)| !minus)
         {
@@ -289,7 +289,7 @@ impl<V: Vocabulary> Setter<V> {
         assemble(coefficient, above, below)
     }
 
-    /// Terms follow the order of their first letters; a number comes last.
+    /// Terms are sorted by their first letters; a number comes last.
     fn reading_key(&self, graph: &Graph, term: Expr) -> Vec<(Place, i32)> {
         let mut key: Vec<(Place, i32)> = match graph.node(term) {
             Node::Product(factors) => factors
@@ -303,7 +303,7 @@ impl<V: Vocabulary> Setter<V> {
         key
     }
 
-    /// Where a factor stands: sums, then symbols by rank, names, functions.
+    /// Sort key of a factor: sums, then symbols by rank, names, functions.
     fn place(&self, graph: &Graph, base: Expr) -> Place {
         let group = match graph.node(base) {
             Node::Sum(_) => 0,
@@ -337,7 +337,7 @@ pub fn assemble(coefficient: &Rational, mut above: Vec<Math>, mut below: Vec<Mat
     Math::fraction(Math::product(above), Math::product(below))
 }
 
-/// A number. Only a number that stands alone can be negative.
+/// A number. Only a number that is the whole formula can be negative.
 fn signed(number: &Rational) -> Math {
     let big = number.abs().to_big();
     let size = if big.is_integer() {
@@ -368,7 +368,7 @@ fn power(base: Math, exponent: Math) -> Math {
     Math::Power(Box::new(base), Box::new(exponent))
 }
 
-/// Takes `sin^a cos^-b` of the same angle together: angles with the exponents of their tangents.
+/// Combines `sin^a cos^-b` of the same angle: angles with the exponents of their tangents.
 fn take_tangents(graph: &Graph, factors: &mut Vec<Factor>) -> Vec<(Expr, u32)> {
     let angle = |base: Expr, kind: Function| match graph.node(base) {
         Node::Function(function, angle) if *function == kind => Some(*angle),
@@ -393,8 +393,8 @@ fn take_tangents(graph: &Graph, factors: &mut Vec<Factor>) -> Vec<(Expr, u32)> {
     tangents
 }
 
-/// The parts that are written with an expression: not those behind numeric solutions, and those
-/// behind names only `inline`.
+/// The operands that are printed with an expression: not those of linear systems, and the definitions of
+/// names only if `inline`.
 fn each_written_part(graph: &Graph, expr: Expr, inline: bool, visit: impl FnMut(Expr)) {
     let stands_alone = match graph.node(expr) {
         Node::Named(_) => !inline,
@@ -406,7 +406,7 @@ fn each_written_part(graph: &Graph, expr: Expr, inline: bool, visit: impl FnMut(
     }
 }
 
-/// The written parts of an expression, parts before wholes.
+/// The printed subexpressions of an expression, operands before users.
 fn written(graph: &Graph, root: Expr, inline: bool) -> Vec<Expr> {
     let mut order = Vec::new();
     let mut seen = rustc_hash::FxHashSet::default();
@@ -422,7 +422,7 @@ fn written(graph: &Graph, root: Expr, inline: bool) -> Vec<Expr> {
     order
 }
 
-/// The parts of an expression that do not lie behind names.
+/// The subexpressions of an expression, without looking into names.
 pub fn visible(graph: &Graph, root: Expr) -> Vec<Expr> {
     written(graph, root, false)
 }

@@ -42,7 +42,7 @@ fn letter(letter: &Letter) -> String {
     format!("{before}{base}")
 }
 
-/// A label below a letter: Greek letters, axes and counters slanted, names upright.
+/// A subscript: Greek letters, axes and counters slanted, names upright.
 fn label(part: &str) -> String {
     if part.chars().all(|c| c.is_ascii_digit() || c == ',') {
         return part.to_owned();
@@ -58,7 +58,7 @@ fn label(part: &str) -> String {
     }
 }
 
-/// Characters in a formula: a name holds letters, digits and underscores.
+/// Characters in a formula: a name consists of letters, digits and underscores.
 fn mathematical(name: &str) -> String {
     name.chars()
         .map(|c| match c {
@@ -151,7 +151,7 @@ fn row(factors: &[Math]) -> String {
         let signs =
             matches!(factor, Math::Sign(_)) || k == 0 || matches!(factors[k - 1], Math::Sign(_));
         if !signs {
-            // Functions bring their own space.
+            // Functions insert their own space.
             let apart = !matches!(factor, Math::Call(..) | Math::Brackets(_));
             out.push_str(if apart { "\\, " } else { " " });
         }
@@ -182,7 +182,7 @@ fn bracketed(inner: &Math) -> String {
     }
 }
 
-/// A letter with a mark above gets braces before it is raised.
+/// A letter with a superscript needs braces before it is raised to a power.
 fn powered(base: &Math) -> String {
     match base {
         Math::Letter(l) if l.above.is_some() => format!("\\bigl({}\\bigr)", latex(base)),
@@ -208,7 +208,7 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
     }
 }
 
-/// Text that LaTeX prints and does not obey.
+/// Text with LaTeX's special characters escaped.
 pub fn latex_text(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in one_line(text).chars() {
@@ -240,7 +240,7 @@ pub fn latex_text(text: &str) -> String {
     out
 }
 
-/// A character beyond ASCII.
+/// A non-ASCII character.
 fn foreign(out: &mut String, c: char) {
     if let Some(command) = greek_command(c) {
         let _ = write!(out, "$\\{command}$");
@@ -260,7 +260,7 @@ fn foreign(out: &mut String, c: char) {
         ('—', _) => out.push_str("---"),
         ('’', _) => out.push('\''),
         ('…', _) => out.push_str("\\dots{}"),
-        // Latin letters with accents are known to every engine.
+        // Accented Latin letters are supported by every engine.
         ('À'..='ÿ' | 'Ā'..='ž', _) => out.push(c),
         _ => {
             let _ = write!(out, "\\other{{{}}}{{{:04X}}}", c as u32, c as u32);

@@ -1,4 +1,4 @@
-//! Letters: how a name is written in a formula.
+//! Letters: the form of a name in a formula.
 //!
 //! `omega_1` is ω with index 1, `theta` is θ, `x_G` is x with the label G, `m0` is m with index 0,
 //! `gamma_dot` is γ with a dot.
@@ -40,27 +40,27 @@ const GREEK: [(&str, char); 33] = [
     ("Omega", 'Ω'),
 ];
 
-/// A letter with its dots, index and exponent-like mark.
+/// A letter with its dots, subscripts and superscript.
 #[derive(Debug, Clone, PartialEq, Eq, Hash, Default)]
 pub struct Letter {
-    /// What is written: one letter, Greek or Latin, or a word.
+    /// The base: one letter, Greek or Latin, or a word.
     pub base: String,
     /// Whether it names a vector or a matrix.
     pub bold: bool,
     /// Dots above: time derivatives.
     pub dots: u8,
-    /// Labels below, in order.
+    /// Subscripts, in order.
     pub below: Vec<String>,
-    /// Mark above, such as the 0 of a⁰.
+    /// Superscript, such as the 0 of a⁰.
     pub above: Option<String>,
     /// δ before a virtual quantity, d before a differential, ∂ before a partial one.
     pub before: Option<char>,
-    /// For `∂letter/∂by`: what it is differentiated by.
+    /// The variable `by` of `∂letter/∂by`.
     pub by: Option<Box<Letter>>,
 }
 
 impl Letter {
-    /// A letter as it stands.
+    /// A letter without decoration.
     pub fn plain(base: &str) -> Self {
         Self {
             base: base.to_owned(),
@@ -76,8 +76,8 @@ impl Letter {
         }
     }
 
-    /// The letter of an identifier, which comes apart at its underscores: `omega_1_dot` is ω̇₁, `m_W`
-    /// is m with label W.
+    /// The letter of an identifier, which is split at its underscores: `omega_1_dot` is ω̇₁, `m_W` is m with
+    /// label W.
     ///
     /// Parts `dot` and `ddot` are dots. Digits at the end of a letter are an index, as in `x1`. A word
     /// as a base keeps its underscores: `wheel_radius` is one word. `d_a_d_b` is ∂a/∂b.
@@ -107,7 +107,7 @@ impl Letter {
         }
         let first = parts.first().copied().unwrap_or_default();
         let stem = first.trim_end_matches(|c: char| c.is_ascii_digit());
-        // Empty parts come from doubled underscores; only the whole identifier tells them apart.
+        // Empty parts come from doubled underscores; they are kept by using the whole identifier.
         if dots > 2 || stem.is_empty() || parts.iter().any(|p| p.is_empty()) {
             return Self::plain(identifier);
         }
@@ -134,35 +134,35 @@ impl Letter {
         }
     }
 
-    /// With a label below.
+    /// Adds a subscript.
     #[must_use]
     pub fn below(mut self, name: &str) -> Self {
         self.below.push(name.to_owned());
         self
     }
 
-    /// With the labels that another letter is written with, base included.
+    /// Adds another letter, with its subscripts, as a subscript.
     #[must_use]
     pub fn below_letter(mut self, other: &Self) -> Self {
         self.below.push(other.to_string());
         self
     }
 
-    /// With a mark above.
+    /// Sets the superscript.
     #[must_use]
     pub fn above(mut self, mark: &str) -> Self {
         self.above = Some(mark.to_owned());
         self
     }
 
-    /// With δ, d or ∂ before it.
+    /// Puts δ, d or ∂ before it.
     #[must_use]
     pub fn before(mut self, sign: char) -> Self {
         self.before = Some(sign);
         self
     }
 
-    /// One dot more.
+    /// Adds a dot.
     #[must_use]
     pub fn dot(mut self) -> Self {
         self.dots = self.dots.saturating_add(1);
@@ -180,7 +180,7 @@ fn greek(word: &str) -> Option<char> {
     GREEK.iter().find(|row| row.0 == word).map(|row| row.1)
 }
 
-/// A Greek name as its letter, anything else as it is.
+/// A Greek name as its letter, other text unchanged.
 fn label(part: &str) -> String {
     greek(part).map_or_else(|| part.to_owned(), String::from)
 }
@@ -218,7 +218,7 @@ impl std::fmt::Display for Letter {
         }
         let digits = |part: &String| part == "i" || part.chars().all(|c| c.is_ascii_digit());
         let numbers = self.below.iter().take_while(|part| digits(part)).count();
-        // Digits sit below the line while only digits came before them.
+        // Digits are subscript characters while only digits came before them.
         if numbers > 0 {
             let joined = self.below[..numbers].join(",");
             f.write_str(&joined.chars().map(subscript).collect::<String>())?;

@@ -1,8 +1,8 @@
-//! Formulas as trees, the same for every notation.
+//! Formulas as trees, independent of the output format.
 
 use super::letter::Letter;
 
-/// A formula. The trees that the writer builds are shallow: what is deep gets a letter of its own.
+/// A formula. The trees that the writer builds are shallow: deep subexpressions are replaced by letters.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Math {
     /// A whole number, in digits.
@@ -15,7 +15,7 @@ pub enum Math {
     Words(String),
     /// A sign between two formulas, such as `=`, `·` or `×`.
     Sign(&'static str),
-    /// Formulas side by side: a product.
+    /// Adjacent formulas: a product.
     Row(Vec<Math>),
     /// A sum; each term with whether it is subtracted.
     Sum(Vec<(bool, Math)>),
@@ -31,24 +31,24 @@ pub enum Math {
     Size(Box<Math>),
     /// A formula in brackets.
     Brackets(Box<Math>),
-    /// Components, side by side or below each other, and the frame they are written in.
+    /// Components, in a row or a column, and the frame in which they are given.
     Vector {
         /// Components.
         components: Vec<Math>,
         /// Frame of the components.
         frame: Option<String>,
-        /// Whether they stand below each other.
+        /// Whether they form a column.
         column: bool,
     },
     /// A matrix, row by row.
     Matrix(Vec<Vec<Math>>),
-    /// `value` where `condition` holds, else `otherwise`.
+    /// `value` if `condition` holds, else `otherwise`.
     Cases {
         /// Value where the condition holds.
         value: Box<Math>,
         /// The condition.
         condition: Box<Math>,
-        /// Value elsewhere.
+        /// Value otherwise.
         otherwise: Box<Math>,
     },
 }
@@ -117,7 +117,7 @@ impl Math {
         matches!(self, Self::Integer(digits) if digits == value)
     }
 
-    /// A product, flat and without brackets that are not needed.
+    /// A product, flattened and without redundant brackets.
     pub fn product(factors: Vec<Self>) -> Self {
         let several = factors.len() > 1;
         let mut row = Vec::with_capacity(factors.len());
@@ -140,7 +140,7 @@ impl Math {
         }
     }
 
-    /// A sum of signed terms, flat; zero where there is none.
+    /// A sum of signed terms, flattened; zero if there are none.
     pub fn sum(terms: Vec<(bool, Self)>) -> Self {
         let mut flat = Vec::with_capacity(terms.len());
         for (minus, term) in terms {
@@ -162,7 +162,7 @@ impl Math {
         Self::Fraction(Box::new(above), Box::new(below))
     }
 
-    /// A letter, or the quotient ∂a/∂b that its name stands for.
+    /// A letter, or the quotient ∂a/∂b that its name denotes.
     pub fn letter(mut letter: Letter) -> Self {
         match letter.by.take() {
             Some(by) => Self::partial(letter, *by),
@@ -178,7 +178,7 @@ impl Math {
         )
     }
 
-    /// Components in a frame, side by side where they are short.
+    /// Components in a frame, as a row if they are short.
     pub fn vector(components: Vec<Self>, frame: &str) -> Self {
         const LONGEST_ROW: usize = 34;
         let width: usize = components.iter().map(Self::width).sum();
@@ -190,7 +190,7 @@ impl Math {
         }
     }
 
-    /// Whether a quotient is among its outer parts, which makes it taller than a line.
+    /// Whether it contains a quotient outside functions, which makes it taller than a line.
     pub fn has_fraction(&self) -> bool {
         match self {
             Self::Fraction(..) => true,
@@ -203,7 +203,7 @@ impl Math {
         }
     }
 
-    /// How wide it is, roughly, in characters of a line.
+    /// Its approximate width in characters.
     pub fn width(&self) -> usize {
         super::text::columns(&super::text::text(self))
     }

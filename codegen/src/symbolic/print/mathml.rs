@@ -1,4 +1,4 @@
-//! Formulas as presentation `MathML`, within what browsers show by themselves.
+//! Formulas as presentation `MathML`, restricted to what browsers support natively.
 
 use std::fmt::Write;
 
@@ -7,7 +7,7 @@ use appell_spec::foreign::one_line;
 use super::letter::Letter;
 use super::math::Math;
 
-/// Text that HTML shows and does not obey.
+/// Text with HTML's special characters escaped.
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
     for c in one_line(text).chars() {
@@ -23,7 +23,7 @@ pub fn escaped(text: &str) -> String {
     out
 }
 
-/// A product that is not written, with a little air.
+/// Invisible multiplication with a little space.
 pub const TIMES: &str = "<mo lspace=\"0.08em\" rspace=\"0.08em\">\u{2062}</mo>";
 
 /// Plus or minus before a term.
@@ -110,7 +110,7 @@ fn row(factors: &[Math]) -> String {
     format!("<mrow>{out}</mrow>")
 }
 
-/// Brackets grow only with what is taller than a line: grown ones bring air of their own.
+/// Brackets are stretched only around content taller than a line, since stretched ones add space.
 fn bracketed(inner: &Math) -> String {
     let stretchy = inner.has_fraction();
     format!(
@@ -132,7 +132,7 @@ fn call(name: &str, exponent: u32, argument: &Math) -> String {
     format!("<mrow>{head}<mo>\u{2061}</mo>{argument}</mrow>")
 }
 
-/// Rows in brackets, which the style sheet draws as high as they are: fonts often have none that grow.
+/// Rows in brackets drawn by the style sheet, since fonts often lack stretchable ones.
 fn grid(rows: &[Vec<String>]) -> String {
     table("<mtable class=\"matrix\">", rows)
 }
@@ -214,7 +214,7 @@ fn letter(letter: &Letter) -> String {
     }
 }
 
-/// A label below a letter: Greek letters, axes and counters slanted, names upright.
+/// A subscript: Greek letters, axes and counters slanted, names upright.
 fn label(part: &str) -> String {
     let text = escaped(part);
     if part.chars().all(|c| c.is_ascii_digit()) {

@@ -140,12 +140,12 @@ fn ratio(n: &str, d: &str) -> String {
     known.to_owned()
 }
 
-/// Columns that a line takes.
+/// Width of a text in columns.
 pub fn columns(text: &str) -> usize {
     text.chars().filter(|&c| !is_combining(c)).count()
 }
 
-/// Whether a character takes no column of its own.
+/// Whether a character has zero width.
 fn is_combining(c: char) -> bool {
     matches!(c, '\u{300}'..='\u{36f}' | '\u{20d0}'..='\u{20ff}')
 }

@@ -1,4 +1,4 @@
-//! Bytes beside those of another assembler.
+//! Compares encodings with another assembler.
 
 #![allow(clippy::unwrap_used, reason = "a test may stop here")]
 
@@ -6,7 +6,7 @@ use super::*;
 
 const KNOWN: &str = include_str!("known.txt");
 
-/// General registers by their numbers.
+/// General-purpose registers by their numbers.
 const GENERAL: [&str; 16] = [
     "rax", "rcx", "rdx", "rbx", "rsp", "rbp", "rsi", "rdi", "r8", "r9", "r10", "r11", "r12", "r13",
     "r14", "r15",
@@ -52,7 +52,7 @@ fn number(text: &str) -> u64 {
     }
 }
 
-/// Writes one instruction of the list.
+/// Encodes one instruction of the list.
 fn write(code: &mut Code, text: &str) {
     let (name, operands) = text.split_once(' ').unwrap_or((text, ""));
     let operands: Vec<&str> = operands.split(", ").collect();

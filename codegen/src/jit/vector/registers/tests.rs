@@ -1,4 +1,4 @@
-//! Instructions, carried out on paper, give the values of their line.
+//! Simulates allocated instructions and compares the values with those of the straight-line code.
 
 use appell_test_kit::Random;
 
@@ -7,7 +7,7 @@ use super::super::order::order;
 use super::*;
 use crate::schedule::Operation;
 
-/// A number that depends on all that went into it, in its order.
+/// A hash of all arguments in order.
 fn mixed(parts: &[u64]) -> u64 {
     let mix = |sum: u64, &part: &u64| {
         (sum.rotate_left(9) ^ part).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ 0x5bd1
@@ -48,7 +48,7 @@ fn leaf(memory: Memory) -> u64 {
     }
 }
 
-/// The values of a line, one after the other.
+/// The values of straight-line code, in order.
 fn values(line: &Line) -> Vec<u64> {
     let mut values: Vec<u64> = Vec::new();
     for &node in &line.nodes {
@@ -173,7 +173,7 @@ impl Processor {
                     let value = routine(&given, result.into());
                     self.slots[(results + result) as usize] = value;
                 }
-                // Nothing survives a call but memory.
+                // Only memory survives a call.
                 self.registers.fill(7);
                 self.mask = !self.mask;
             }
@@ -181,14 +181,14 @@ impl Processor {
     }
 }
 
-/// A line of so many values, of which some are results.
+/// Random straight-line code with a given number of values, some of them results.
 fn random_line(random: &mut Random, len: usize) -> (Line, Vec<Action>) {
     let number = |n: usize| u32::try_from(n).unwrap_or(0);
     let mut nodes = vec![Node::Argument(Array::States, 0), Node::Constant(1)];
     let mut calls = Vec::new();
     while nodes.len() < len {
         let known = nodes.len();
-        // Mostly what is near, sometimes what is far away.
+        // Mostly nearby operands, sometimes distant ones.
         let any = |random: &mut Random| {
             let reach = if random.below(3) == 0 {
                 known

@@ -159,7 +159,7 @@ impl Code {
         }
     }
 
-    /// The ModRM byte with SIB and displacement.
+    /// The `ModRM` byte with SIB and displacement.
     fn place(&mut self, register: u8, place: Place, unit: Unit, immediate: Option<u8>) {
         let register = bits(register & 7, 3);
         match place {

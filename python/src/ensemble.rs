@@ -178,11 +178,11 @@ impl Study {
     }
 
     /// The statistics as JSON, as text, and as a page.
-    fn told(&self, py: Python<'_>) -> PyResult<(String, String, String)> {
+    fn summary(&self, py: Python<'_>) -> PyResult<(String, String, String)> {
         let summary = py.detach(|| self.ensemble.summary(self.store.as_ref()));
         let summary = summary.raise(py)?;
         let about = self.ensemble.about(&summary);
-        let told = json::ensemble(self.ensemble.columns(), &summary).to_string();
-        Ok((told, ensemble::text(&about), ensemble::page(&about)))
+        let fields = json::ensemble(self.ensemble.columns(), &summary).to_string();
+        Ok((fields, ensemble::text(&about), ensemble::page(&about)))
     }
 }

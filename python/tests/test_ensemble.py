@@ -32,7 +32,7 @@ def test_rows_are_arrays():
     assert path.shape == (60, 101)
     np.testing.assert_array_equal(path[:, -1], swings["reached"])
     np.testing.assert_array_equal(path[:, 0], swings["theta"])
-    assert swings.told["kept"]["reached"]["count"] == 60
+    assert swings.to_dict()["kept"]["reached"]["count"] == 60
     assert set(swings.reasons) == {""}
     with pytest.raises(KeyError, match="there are theta, reached"):
         swings["tetha"]

@@ -46,7 +46,9 @@ def test_a_gap_gets_a_cause_and_a_better_model(diagnosis, rig, tmp_path):
         diagnosis.apply(99)
     diagnosis.save(tmp_path / "gap.html")
     diagnosis.save(tmp_path / "gap.json")
-    assert json.loads((tmp_path / "gap.json").read_text()) == diagnosis.told
+    assert json.loads((tmp_path / "gap.json").read_text()) == diagnosis.to_dict()
+    with pytest.warns(DeprecationWarning, match="to_dict"):
+        assert diagnosis.told == diagnosis.to_dict()
     assert diagnosis._repr_html_().startswith("<iframe")
 
 

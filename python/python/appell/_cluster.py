@@ -28,11 +28,11 @@ def spread(
 
     ```python
     def diagnosed(folder):
-        return appell.diagnose(f"{folder}/recording.toml", progress=False).told
+        return appell.diagnose(f"{folder}/recording.toml", progress=False).to_dict()
 
     rigs = ["rigs/a", "rigs/b", "rigs/c"]
-    for number, told in appell.spread(diagnosed, [(rig,) for rig in rigs], "auto"):
-        print(rigs[number], told["verdict"])
+    for number, report in appell.spread(diagnosed, [(rig,) for rig in rigs], "auto"):
+        print(rigs[number], report["verdict"])
     ```
     """
     ray = _ray()

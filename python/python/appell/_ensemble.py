@@ -13,13 +13,14 @@ import numpy as np
 from . import _appell
 from ._cluster import spread
 from ._notebook import Page, framed
+from ._report import Report
 
 
 # Chunks in one call on a cluster, and the minimum number of calls.
 GROUP, FEWEST_CALLS = 16, 64
 
 
-class Ensemble:
+class Ensemble(Report):
     """The rows of a study, as far as they are computed; a page in a notebook.
 
     It can be sent to other processes, which then find the rows where they are kept.
@@ -102,7 +103,7 @@ class Ensemble:
 
     @cached_property
     def _all(self) -> tuple[str, str, str]:
-        return self._native.told()
+        return self._native.summary()
 
     @property
     def columns(self) -> list[str]:
@@ -145,9 +146,12 @@ class Ensemble:
         """Why each motion ended early; empty if it did not."""
         return self._rows[3]
 
-    @cached_property
-    def told(self) -> dict[str, Any]:
+    def to_dict(self) -> dict[str, Any]:
         """The statistics in SI, as `appell ensemble --json` writes them."""
+        return self._fields
+
+    @property
+    def _fields(self) -> dict[str, Any]:
         return json.loads(self._all[0])
 
     @property

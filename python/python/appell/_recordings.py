@@ -13,6 +13,7 @@ import numpy as np
 from . import _appell
 from ._model import Model
 from ._notebook import Page, Picture, Progress, framed, reporter
+from ._report import Report
 from ._values import many
 
 Paths = str | Path | Sequence[str | Path]
@@ -20,7 +21,7 @@ Paths = str | Path | Sequence[str | Path]
 Data = Any
 
 
-class Recordings(_appell.DataSet):
+class Recordings(_appell.DataSet, Report):
     """Recordings: a folder with a `recording.toml`, or CSV files of a mechanism; or data frames.
 
     A frame is one of pandas or polars, or a mapping of arrays by the name of the column; several are a list, or a
@@ -47,19 +48,22 @@ class Recordings(_appell.DataSet):
         return super().__new__(cls, [str(path) for path in paths], _name(model))
 
     @cached_property
-    def told(self) -> dict[str, Any]:
-        """Runs, channels, noise and findings, as `appell recording --json` writes them."""
+    def _fields(self) -> dict[str, Any]:
         return json.loads(self.json())
+
+    def to_dict(self) -> dict[str, Any]:
+        """Runs, channels, noise and findings, as `appell recording --json` writes them."""
+        return self._fields
 
     @property
     def runs(self) -> list[str]:
-        """Names of the runs; `told["findings"]` has the findings about them."""
-        return [run["run"] for run in self.told["runs"]]
+        """Names of the runs; `to_dict()["findings"]` has the findings about them."""
+        return [run["run"] for run in self._fields["runs"]]
 
     @property
     def channels(self) -> list[str]:
         """Names of the columns."""
-        return [channel["channel"] for channel in self.told["channels"]]
+        return [channel["channel"] for channel in self._fields["channels"]]
 
     def __getitem__(self, run: str) -> dict[str, np.ndarray]:
         """The columns of a run in SI, with the times `t` in s."""
@@ -73,21 +77,24 @@ class Recordings(_appell.DataSet):
         return f"<recordings {', '.join(self.runs)}: {', '.join(self.channels)}>"
 
 
-class Identification:
+class Identification(Report):
     """Estimated parameters with their intervals; a page in a notebook."""
 
     def __init__(self, native: _appell.Identified):
         self._native = native
 
     @cached_property
-    def told(self) -> dict[str, Any]:
-        """All results, as `appell identify --json` writes them."""
+    def _fields(self) -> dict[str, Any]:
         return json.loads(self._native.json())
+
+    def to_dict(self) -> dict[str, Any]:
+        """All results, as `appell identify --json` writes them."""
+        return self._fields
 
     @property
     def parameters(self) -> dict[str, dict[str, Any]]:
         """By name: `value`, `std`, `interval95`, `nominal`, `unit` …, in SI."""
-        return {one["name"]: one for one in self.told["parameters"]}
+        return {one["name"]: one for one in self._fields["parameters"]}
 
     @property
     def values(self) -> dict[str, float]:
@@ -111,7 +118,7 @@ class Identification:
         return self._native.text()
 
 
-class Diagnosis:
+class Diagnosis(Report):
     """A diagnosed gap: where it lies, what causes it, how far it closes. A page in a notebook."""
 
     def __init__(self, native: _appell.Gap):
@@ -123,9 +130,12 @@ class Diagnosis:
         return self._native.json()
 
     @cached_property
-    def told(self) -> dict[str, Any]:
-        """The gap report."""
+    def _fields(self) -> dict[str, Any]:
         return json.loads(self.json)
+
+    def to_dict(self) -> dict[str, Any]:
+        """The gap report."""
+        return self._fields
 
     @property
     def sentence(self) -> str:
@@ -136,7 +146,7 @@ class Diagnosis:
     def hypotheses(self) -> list[dict[str, Any]]:
         """Hypotheses, the most probable one first, each with `effects`, `probability`, `log_bayes_factor` and
         `parameters`. The effect `unknown` stands for the part that no effect of the library explains."""
-        return self.told["which"]
+        return self._fields["which"]
 
     @property
     def page(self) -> Page:

@@ -7,6 +7,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
+from ._report import Report
 from ._values import Vector, labelled
 
 
@@ -70,25 +71,24 @@ def _complex(pairs: Sequence[Sequence[float]]) -> np.ndarray:
     return np.array([complex(*pair) for pair in pairs])
 
 
-class SteadyMotion:
+class SteadyMotion(Report):
     """A steady motion with its stability, in SI."""
 
-    def __init__(self, told: dict[str, Any], names: tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]):
-        self.told = told
-        """All results, as `appell steady --json` writes them."""
+    def __init__(self, fields: dict[str, Any], names: tuple[tuple[str, ...], tuple[str, ...], tuple[str, ...]]):
+        self._fields = fields
         states, inputs, parameters = names
-        values = told["state"]
+        values = fields["state"]
         self.x: Vector = labelled([values[name] for name in states], states)
         """The state; components that the steady motion leaves free have the value of the spec."""
-        self.u: Vector = labelled([told["inputs"][name] for name in inputs], inputs)
+        self.u: Vector = labelled([fields["inputs"][name] for name in inputs], inputs)
         """The declared inputs."""
-        self.p: Vector = labelled([told["parameters"][name] for name in parameters], parameters)
+        self.p: Vector = labelled([fields["parameters"][name] for name in parameters], parameters)
         """The parameters."""
 
     @property
     def verdict(self) -> str:
         """`asymptotic`, `neutral`, `unstable` or `critical`."""
-        return self.told["verdict"]
+        return self._fields["verdict"]
 
     @property
     def stable(self) -> bool:
@@ -99,67 +99,66 @@ class SteadyMotion:
     @property
     def eigenvalues(self) -> np.ndarray:
         """Eigenvalues of the essential states in 1/s."""
-        return _complex(self.told["eigenvalues"])
+        return _complex(self._fields["eigenvalues"])
 
     def __repr__(self) -> str:
         return f"<steady motion, {self.verdict}: {self.x!r}>"
 
 
-class Design:
+class Design(Report):
     """Controllability about a steady motion, and the gains of a law u = u₀ - K (x - x₀)."""
 
-    def __init__(self, told: dict[str, Any], law: str | None):
-        self.told = told
-        """All results, as `appell control --json` writes them."""
+    def __init__(self, fields: dict[str, Any], law: str | None):
+        self._fields = fields
         self.law = law
         """The law as the text of a feedback file, for `simulate(feedback=...)`."""
 
     @property
     def A(self) -> np.ndarray:
         """Of the linear equations, in the order of `states`."""
-        return np.array(self.told["A"])
+        return np.array(self._fields["A"])
 
     @property
     def B(self) -> np.ndarray:
         """Of the linear equations, (states, inputs)."""
-        return np.array(self.told["B"])
+        return np.array(self._fields["B"])
 
     @property
     def states(self) -> tuple[str, ...]:
         """The order of A and B."""
-        return tuple(self.told["state_order"])
+        return tuple(self._fields["state_order"])
 
     @property
     def outputs(self) -> tuple[str, ...]:
         """The states that are fed back: the columns of K."""
-        return tuple(self.told["outputs"]["order"])
+        return tuple(self._fields["outputs"]["order"])
 
     @property
     def inputs(self) -> tuple[str, ...]:
         """The rows of K."""
-        return tuple(self.told["input_order"])
+        return tuple(self._fields["input_order"])
 
     @property
     def rank(self) -> int:
         """Rank of the controllability matrix."""
-        return self.told["controllability"]["rank"]
+        return self._fields["controllability"]["rank"]
 
     @property
     def K(self) -> np.ndarray | None:
         """The gains, (inputs, outputs)."""
-        law = self.told["law"]
+        law = self._fields["law"]
         return None if law is None else np.array(law["gains"])
 
     @property
     def stable(self) -> bool | None:
         """Whether the closed loop is stable; None without a law."""
-        law = self.told["law"]
+        law = self._fields["law"]
         return None if law is None else law["stable"]
 
     @property
     def poles(self) -> np.ndarray | None:
         """Poles of the closed loop in 1/s; of a sampled law in the z plane."""
-        law = self.told["law"]
+        law = self._fields["law"]
         return None if law is None else _complex(law["poles"])
 
     def __repr__(self) -> str:

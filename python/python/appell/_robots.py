@@ -73,13 +73,13 @@ def import_robot(
     """
     chosen = ",".join(many(parameters))
     values = lock.items() if isinstance(lock, Mapping) else ((joint, None) for joint in many(lock))
-    spec, told = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating, root and Path(root))
-    told = json.loads(told)
+    spec, fields = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating, root and Path(root))
+    fields = json.loads(fields)
     return Robot(
         spec=spec,
-        warnings={one["file"]: tuple(Diagnostic(**found) for found in one["findings"]) for one in told["warnings"]},
-        left_out=tuple(LeftOut(one["what"], one["file"], tuple(one["lines"]), one["effect"]) for one in told["left_out"]),
-        **{key: told[key] for key in ("name", "format", "bodies", "joints", "nearly_right_angles")},
+        warnings={one["file"]: tuple(Diagnostic(**found) for found in one["findings"]) for one in fields["warnings"]},
+        left_out=tuple(LeftOut(one["what"], one["file"], tuple(one["lines"]), one["effect"]) for one in fields["left_out"]),
+        **{key: fields[key] for key in ("name", "format", "bodies", "joints", "nearly_right_angles")},
     )
 
 

@@ -1,6 +1,47 @@
 //! Derives the equations of motion of a mechanism by the Gibbs-Appell method.
 //!
-//! One file per stage; `equations` calls them in order, and `ARCHITECTURE.md` lists them.
+//! One file per stage, in the order of `equations`; those from `outputs.rs` on run when their result is requested.
+//! Constraint rows need velocities with symbols for q̇, so `constraints.rs` calls `frames.rs` and `kinematics.rs`
+//! before their turn.
+//!
+//! | file | from | to |
+//! |---|---|---|
+//! | `symbols.rs` | names | symbols of coordinates, rates, speeds, accelerations, inputs, signals |
+//! | `expressions.rs` | expressions of the spec | expressions of the graph |
+//! | `explicit.rs` | position constraints | coordinates that they give explicitly; only contacts use these |
+//! | `constraints.rs`, `row.rs`, `ranges.rs` | constraints | scalar rows, linear in q̇; ranges of validity |
+//! | `rank.rs`, `redundancy.rs` | rows | rows that follow from others and are omitted |
+//! | `auxiliary.rs` | omitted rows | auxiliary motions that violate them; statically indeterminate reactions |
+//! | `contacts.rs` | rolling and one-sided constraints | points, normals and friction of contacts |
+//! | `positions.rs` | position constraints | f(q, t), ∂f/∂q, dependent coordinates |
+//! | `elimination.rs` | rows, definitions of the pseudo-velocities | q̇(q, ω), and a system where no pivot is safe |
+//! | `open_system.rs` | that system | its solution with pivoting, or quotients of symbols for display |
+//! | `cramer.rs`, `relations.rs` | small systems | solutions by nonvanishing determinants; division-free relations |
+//! | `quaternion.rs`, `rotation.rs`, `right_angles.rs` | rotations | R(e), ω, ė = ½ e ω; components in two frames |
+//! | `frames.rs` | frames | composed rotations, angular velocities without differentiated matrices |
+//! | `kinematics.rs` | points | velocities of points and of material points |
+//! | `recursion/` | trees of many links | motions, M, b, Π, ω̇ by recursion over links, not by sums over bodies |
+//! | `gibbs_appell.rs` | motions of the bodies | S, M, b |
+//! | `loads.rs` | loads | Π from virtual power; potential energy, power |
+//! | `dependent.rs`, `contact_rows.rs` | the system without a pivot | dependent speeds; M, b and Π without them |
+//! | `given.rs` | prescribed rates of pseudo-velocities | M, b, Π with these rates; forces of the drives |
+//! | `motion.rs`, `factorized.rs` | M, b, Π | ω̇ by blocks of M, eliminated or factorised |
+//! | `initial.rs` | the equations | singularities at the initial state |
+//! | `reactions.rs` | violated constraints | constraint forces by auxiliary pseudo-velocities |
+//! | `reacting_loads.rs` | reactions without such loads | Π and ω̇ with loads that depend on reactions |
+//! | `creep.rs` | reactions | q̇, M, b, Π of creeping contacts, to first order |
+//! | `motions.rs`, `responses.rs` | names in a spec such as `speed(P)`, `force(spring)` | their values |
+//! | `outputs.rs` | outputs, A, B | values and derivatives |
+//! | `inverse.rs`, `regressor.rs` | M, b, Π, or the recursion | required forces for given ω̇; linear in the parameters |
+//! | `linear.rs`, `linear_bound.rs` | M ω̇ = Π − b | A, B, P by implicit differentiation |
+//! | `adjoint.rs` | ẋ, A, B, M, outputs | gradients of weighted sums of their entries |
+//! | `prescribed.rs` | velocities, loads, ω̇ | power of prescribed motions |
+//! | `switches.rs`, `systems.rs` | ẋ | switching functions; the systems that are solved with pivoting |
+//! | `assemble.rs` | all of these | a [`Program`](crate::program::Program) |
+//!
+//! Used by all: `algebra.rs` (graph, identity test, shortest form), `time.rs` (derivatives along a motion), `divisors.rs`
+//! (divisors that vanish identically), `finding.rs` (errors and warnings). For readers of emitted code: `glossary.rs`,
+//! `hints.rs`, `letters.rs`, `info.rs`, `contributions.rs`.
 
 mod adjoint;
 pub mod algebra;

@@ -3,6 +3,21 @@
 //! The emitted Rust, the in-process compiler and the interpreter all execute a [`Schedule`] with
 //! the same operations in the same order, so their results differ only by the last bits of the
 //! elementary functions.
+//!
+//! | file | pass |
+//! |---|---|
+//! | `lower.rs`, `dag.rs` | the symbolic graph as a working graph of n-ary sums and products |
+//! | `search.rs`, `tuning.rs`, `preference.rs` | several orders of the rewriting passes; the cheapest result |
+//! | `factor.rs`, `gather.rs` | common factors; distribution where the parts are available |
+//! | `share.rs` | common-subexpression elimination inside sums and products |
+//! | `cancel.rs`, `divide.rs` | cancelled denominators; shared reciprocals |
+//! | `scale.rs`, `signs.rs` | positions of numeric factors and signs |
+//! | `meet.rs` | global value numbering at random points of the prime field; names of the derivation restored |
+//! | `rebuild.rs` | dead-code elimination and merging, after every pass |
+//! | `names.rs`, `monomial.rs` | identifiers of arguments, constants, values and products |
+//! | `bind.rs`, `outline.rs`, `piece.rs` | named values, their order, paragraphs and width |
+//! | `steps.rs` | the result, a [`Schedule`] |
+//! | `cost.rs`, `dump.rs`, `interpret.rs`, `without.rs`, `pi.rs` | counts; text; interpreter; zero parameters; π |
 
 mod bind;
 mod cancel;

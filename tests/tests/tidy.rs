@@ -141,7 +141,7 @@ const NAME_NO_MECHANISM: [&str; 16] = [
     "appell",
     "lsp",
     "watch",
-    "python/src",
+    "python",
 ];
 
 fn read(path: &Path) -> String {

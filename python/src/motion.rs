@@ -391,7 +391,7 @@ impl Simulated {
         Ok(told)
     }
 
-    /// The summary of `appell simulate --json`.
+    /// The summary of a simulation as JSON.
     fn summary(&self) -> String {
         appell::json::motion(&self.simulated.trajectory, self.failure()).to_string()
     }

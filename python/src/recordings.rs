@@ -235,7 +235,7 @@ impl Identified {
 
 #[pymethods]
 impl Gap {
-    /// The text that `appell diagnose --json` writes.
+    /// The gap report as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
         let report = appell::json::diagnosis(&self.report, None, &self.findings);
         let text = serde_json::to_string_pretty(&report);

@@ -28,7 +28,7 @@ const QUARTER_LOW: f64 = 3.061_616_997_868_383e-17;
 /// The distances are not both zero, nor both infinite.
 #[inline(always)]
 fn angle(x: Pair, y: Pair, left: bool) -> f64 {
-    // A rotation by a multiple of π/4 brings the point near the x axis.
+    // A rotation by a multiple of π/4 maps the point to the vicinity of the x axis.
     let near_x = y.high <= TAN_OF_EIGHTH * x.high;
     let near_y = x.high <= TAN_OF_EIGHTH * y.high;
     let (difference, total) = (sum(y.high, -x.high), sum(x.high, y.high));

@@ -175,7 +175,7 @@ impl Rk4 {
 
 /// Attempts to end a step before a switch.
 const MOST_TRIES: usize = 12;
-/// Fraction of the way to a switch at which a step ends, and the distance below which it may pass the switch.
+/// Fraction of the distance to a switch at which a step ends, and the distance below which it may pass the switch.
 const NEARLY: f64 = 0.999;
 const AT_ONCE: f64 = 1e-9;
 

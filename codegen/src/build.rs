@@ -1,4 +1,4 @@
-//! For build scripts: specs in, Rust modules in `OUT_DIR` out.
+//! For build scripts: compiles specs to Rust modules in `OUT_DIR`.
 //!
 //! ```ignore
 //! // build.rs
@@ -34,12 +34,12 @@ use crate::mechanics::assemble;
 use crate::program::FunctionKind;
 use crate::program::Program;
 
-/// Compiles one spec. Where it is wrong, prints what to change and ends the build script.
+/// Compiles one spec. If it is invalid, prints the diagnostics and ends the build script.
 pub fn build(spec: impl Into<PathBuf>) {
     Build::new().spec(spec).run();
 }
 
-/// What a build script wants.
+/// Options of a build script.
 #[derive(Debug, Clone, Default)]
 pub struct Build {
     specs: Vec<PathBuf>,
@@ -63,7 +63,7 @@ pub struct Generated {
     pub emitted: Emitted,
 }
 
-/// Why nothing was compiled.
+/// Why compilation failed.
 #[derive(Debug, Error)]
 pub enum BuildError {
     /// A file or folder cannot be read or written.
@@ -71,21 +71,21 @@ pub enum BuildError {
     Io {
         /// The file.
         path: PathBuf,
-        /// What the system says.
+        /// The error of the operating system.
         cause: io::Error,
     },
-    /// The specs are wrong: one report after the other.
+    /// Invalid specs: the concatenated reports.
     #[error("{reports}")]
     Specs {
-        /// Rendered.
+        /// Rendered reports.
         reports: String,
     },
     /// A program cannot be written as Rust.
     #[error("{}: {cause}", spec.display())]
     Emit {
-        /// Its spec.
+        /// The spec.
         spec: PathBuf,
-        /// Why.
+        /// The error.
         cause: emit::Error,
     },
     /// Two specs describe mechanisms of the same name, so that their modules collide.
@@ -98,7 +98,7 @@ pub enum BuildError {
         /// The other.
         second: PathBuf,
     },
-    /// No folder to write to.
+    /// Neither an output folder nor `OUT_DIR` is set.
     #[error(
         "`OUT_DIR` is not set: call this from a build script, or choose a folder with `out_dir`"
     )]
@@ -106,7 +106,7 @@ pub enum BuildError {
 }
 
 impl Build {
-    /// Nothing yet.
+    /// A build without specs.
     pub fn new() -> Self {
         Self::default()
     }
@@ -139,32 +139,32 @@ impl Build {
         self
     }
 
-    /// Emits the adjoints of rates and outputs as well, which make gradients of likelihoods exact
-    /// and fast: about as much code as everything else together.
+    /// Also emits the adjoints of rates and outputs, which make gradients of likelihoods exact and fast; this about
+    /// doubles the amount of code.
     #[must_use]
     pub fn adjoints(mut self) -> Self {
         self.adjoints = true;
         self
     }
 
-    /// Emits P = ∂ẋ/∂p of mechanisms with more than 64 parameters as well, which makes most of their code; without it
-    /// `Model::parameter_jacobian` takes differences.
+    /// Also emits P = ∂ẋ/∂p of mechanisms with more than 64 parameters, which then makes up most of the code; without
+    /// it `Model::parameter_jacobian` uses differences.
     #[must_use]
     pub fn parameter_jacobians(mut self) -> Self {
         self.parameter_jacobians = true;
         self
     }
 
-    /// Writes the equations as C99 too: `NAME.h` and `NAME.c`, where `NAME` is that of the mechanism in C.
+    /// Also writes the equations in C99: `NAME.h` and `NAME.c`, where `NAME` is that of the mechanism in C.
     #[must_use]
     pub fn c(mut self, options: c::Options) -> Self {
         self.c = Some(options);
         self
     }
 
-    /// Compiles every spec to `NAME.rs` and `NAME.md`. All wrong specs are reported together.
+    /// Compiles every spec to `NAME.rs` and `NAME.md`. All invalid specs are reported together.
     ///
-    /// With the environment variable `GENERATED_DIR` a copy goes to that folder, for reading.
+    /// If the environment variable `GENERATED_DIR` is set, copies are written to that folder, for reading.
     pub fn generate(&self) -> Result<Vec<Generated>, BuildError> {
         println!("cargo::rerun-if-env-changed=GENERATED_DIR");
         let out_dir = match (&self.out_dir, std::env::var_os("OUT_DIR")) {
@@ -183,7 +183,7 @@ impl Build {
                 path: spec.clone(),
                 cause,
             })?;
-            // The same name in messages and comments on every system.
+            // Path separators in messages and comments do not depend on the system.
             let file = spec.to_string_lossy().replace('\\', "/");
             match program(&file, &text, |parameters| self.kinds(parameters)) {
                 Ok(program) => compiled.push(self.emitted(spec, text, program)?),
@@ -251,13 +251,13 @@ impl Build {
         })
     }
 
-    /// [`Build::generate`] for a `main` without error handling: prints mistakes in full, then ends
-    /// the build script.
+    /// [`Build::generate`] for a `main` without error handling: prints diagnostics in full, then ends the build
+    /// script.
     pub fn run(&self) -> Vec<Generated> {
         match self.generate() {
             Ok(generated) => generated,
             Err(error) => {
-                // Cargo shows what a failed build script wrote to standard error.
+                // Cargo prints the standard error output of a failed build script.
                 eprintln!("{error}");
                 std::process::exit(1)
             }
@@ -265,7 +265,7 @@ impl Build {
     }
 }
 
-/// The program of a spec; what looks unintended in it is told as warnings of the build.
+/// The program of a spec; suspicious parts of it are reported as build warnings.
 fn program(
     file: &str,
     text: &str,
@@ -289,8 +289,8 @@ fn program(
         .map_err(|findings| report(&mechanism, text, &findings))
 }
 
-/// Cargo runs build scripts in the folder of their crate; a relative folder for copies is one of
-/// the place where Cargo was called, which the crates of a workspace share.
+/// Cargo runs build scripts in the folder of their crate; a relative folder for copies is resolved in the folder
+/// where Cargo was called, which the crates of a workspace share.
 fn copies(folder: &Path) -> PathBuf {
     let called = || std::env::var_os("PWD").map(PathBuf::from);
     if folder.is_absolute() {
@@ -300,7 +300,7 @@ fn copies(folder: &Path) -> PathBuf {
     }
 }
 
-/// Writes a file at once or not at all, and only where its text changes.
+/// Writes a file atomically, and only if its text changes.
 pub fn write(path: &Path, text: &str) -> Result<(), BuildError> {
     if fs::read(path).is_ok_and(|old| old == text.as_bytes()) {
         return Ok(());
@@ -318,7 +318,7 @@ pub fn write(path: &Path, text: &str) -> Result<(), BuildError> {
     fs::write(&draft, text)
         .and_then(|()| fs::rename(&draft, path))
         .map_err(|cause| {
-            // The draft is of no use; that it cannot be removed would only hide the cause.
+            // A failure to remove the temporary file would only hide the cause.
             let _ = fs::remove_file(&draft);
             told(cause)
         })

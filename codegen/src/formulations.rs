@@ -1,14 +1,12 @@
-//! Three formulations, one answer: the derived equations against Kane's and against Lagrange's with
-//! multipliers.
+//! Verifies the derived equations against Kane's equations and Lagrange's equations with multipliers.
 //!
-//! Both are written a second time, in the ground and by the textbook: rotation matrices are
-//! multiplied out, positions are differentiated, nothing is simplified. With the derivation they share
-//! the reading of expressions, the graph, the [derivative along a motion](crate::mechanics::time), the
-//! [question of rank](crate::mechanics::rank), and q̇ as functions of the pseudo-velocities, which are
-//! first held against the definitions and the constraints.
+//! Both are derived independently in the ground frame, following the textbook: rotation matrices are multiplied out,
+//! positions are differentiated, nothing is simplified. They share with the derivation the lowering of expressions,
+//! the graph, the [derivative along a motion](crate::mechanics::time), the [rank test](crate::mechanics::rank), and
+//! q̇ as functions of the pseudo-velocities, which are first checked against the definitions and the constraints.
 //!
-//! Equality is decided by the [identity test](crate::symbolic::identity). Where that cannot tell,
-//! because a theorem about a function is not known to it, the values at random points decide.
+//! Equality is decided by the [identity test](crate::symbolic::identity). If that is inconclusive, because it lacks a
+//! theorem about a function, values at random points decide.
 
 mod comparison;
 mod inertial;
@@ -38,43 +36,43 @@ pub use typed::{Typed, compare_typed};
 
 /// Largest admissible error probability of an identity proof.
 const GREATEST_ERROR: f64 = 1e-9;
-/// Tests with points of their own that together may prove an identity.
+/// Maximum number of independent tests that together prove an identity.
 const MOST_TESTS: i32 = 4;
 
-/// What Kane's equations tell.
+/// Quantities compared with Kane's equations.
 const BY_KANE: [&str; 4] = ["mass matrix", "bias", "forces", "accelerations"];
-/// What Lagrange's equations tell.
+/// Quantities compared with Lagrange's equations.
 const BY_LAGRANGE: [&str; 2] = ["accelerations", "constraint forces"];
 
-/// A quantity as the derivation has it, and as another formulation has it.
+/// A quantity by the derivation and by another formulation.
 struct Claim {
     against: Against,
     quantity: &'static str,
-    /// None where time was up before they were derived.
+    /// `None` if the time limit was reached before they were derived.
     pairs: Option<Vec<Pair>>,
 }
 
-/// Compares a derivation with the other formulations of the same mechanism. Fails where their
-/// equations take more expressions than a mechanism of bodies needs.
+/// Compares a derivation with the other formulations of the same mechanism. Fails if their equations exceed the limit
+/// on the number of expressions.
 pub fn compare(mechanism: &Mechanism, derivation: &Derivation) -> Outcome<FormulationComparison> {
     compare_while(mechanism, derivation, &|| true)
 }
 
-/// [`compare`] as long as `is_time` says so, which is asked before every formulation and every entry.
+/// [`compare`] within a time limit: `is_time` is queried before every formulation and every entry.
 pub fn compare_while(
     mechanism: &Mechanism,
     derivation: &Derivation,
     is_time: &dyn Fn() -> bool,
 ) -> Outcome<FormulationComparison> {
     let symbols = &derivation.symbols;
-    // A graph of its own: the emitted equations do not depend on the comparison.
+    // A separate graph: the emitted equations do not depend on the comparison.
     let graph = derivation.algebra.graph.clone();
     let mut algebra = Algebra::new(graph, mechanism, symbols);
     let claims = claims(&mut algebra, mechanism, derivation, is_time)?;
     Ok(decide(&mut algebra, mechanism, derivation, claims, is_time))
 }
 
-/// Everything that has to agree.
+/// All quantities to be compared.
 fn claims(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -174,7 +172,7 @@ fn claims(
     Ok(claims)
 }
 
-/// What is not compared because time is up.
+/// Quantities not compared because the time limit was reached.
 fn not_reached(against: Against, quantities: &[&'static str]) -> impl Iterator<Item = Claim> {
     quantities.iter().map(move |&quantity| Claim {
         against,
@@ -203,7 +201,7 @@ fn reaction_claims(
         &derivation.motion.accelerations,
         &derivation.reactions_in_loads,
     )?;
-    // What the multipliers tell of each place; what geometry holds they do not know.
+    // Reactions at each site from the multipliers, which do not include those of geometry.
     let mut known = vec![[Some(Graph::ZERO); 3]; forces.len()];
     let graph = &mut algebra.graph;
     for (row, &multiplier) in rows.iter().zip(&lagrange.multipliers) {
@@ -241,7 +239,7 @@ fn reaction_claims(
         quantity: BY_LAGRANGE[1],
         pairs: Some(pairs),
     }];
-    // What drives bring has a reaction somewhere.
+    // The actuators of prescribed motions also have reactions.
     let is_driven = !derivation.given.is_empty();
     if !rows.is_empty() && !is_driven && rests_on_contacts(derivation, mechanism) {
         let mut sum = [Graph::ZERO; 3];
@@ -257,12 +255,12 @@ fn reaction_claims(
     Ok(claims)
 }
 
-/// Whether nothing but contacts whose reactions are told holds the mechanism: bodies that hang from
-/// one point, and no second point on which geometry could pull from outside.
+/// Whether the mechanism is supported only by contacts with reported reactions: all bodies are connected to one
+/// point, and geometry transmits no other external force.
 fn rests_on_contacts(derivation: &Derivation, mechanism: &Mechanism) -> bool {
     let constraints = &derivation.constraints;
     let mut rows = constraints.rows.iter();
-    // A position that a contact keeps has no force of its own.
+    // A position constraint maintained by a contact has no separate reaction.
     let told = |row: &row::Row| match constraints.reported(row) {
         Some(_) => row.root.is_some(),
         None => row.of_position && row.redundant,
@@ -299,7 +297,7 @@ fn generalized_accelerations(
     Ok(all)
 }
 
-/// Proves what can be proven; the rest is compared at points.
+/// Proves identities where possible and compares the other quantities at points.
 fn decide(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
@@ -323,7 +321,7 @@ fn decide(
     }
 }
 
-/// Decides whether spellings agree, and adds up by how much its proofs may err.
+/// Decides whether expressions agree, and sums the error probabilities of its proofs.
 struct Judge<'a> {
     mechanism: &'a Mechanism,
     derivation: &'a Derivation,
@@ -341,7 +339,7 @@ impl<'a> Judge<'a> {
         }
     }
 
-    /// A proof where there is one, a comparison at points elsewhere.
+    /// A proof if possible, otherwise a comparison at points.
     fn agreement(
         &mut self,
         algebra: &mut Algebra,
@@ -362,8 +360,8 @@ impl<'a> Judge<'a> {
     }
 }
 
-/// The probability with which a proof that all pairs are the same functions may err. `None` where
-/// there is no proof, or no time for one.
+/// Bound on the error probability of a proof that all pairs are the same functions. `None` if there is no proof, or
+/// no time for one.
 fn proof(
     algebra: &mut Algebra,
     pairs: &[Pair],
@@ -385,7 +383,7 @@ fn proof(
         let mut differences = differences.iter();
         differences.all(|&d| is_time() && test.is_zero(graph, d))
     };
-    // Every further test draws points of its own.
+    // Every test draws its own random points.
     let more =
         (1..tests).map(|number| test.reseeded(seed.wrapping_add(number.unsigned_abs().into())));
     let more: Vec<IdentityTest> = more.collect();

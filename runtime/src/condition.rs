@@ -1,17 +1,17 @@
-//! How far the linear systems of a model are from being singular.
+//! Condition numbers of the linear systems of a model.
 
 use crate::dense::solved_in_place;
 use crate::model::{At, Model};
 
-/// Power iterations; a condition number is wanted to one digit.
+/// Power iterations; one digit of a condition number suffices.
 const ITERATIONS: usize = 40;
 
-/// The smallest condition number that a choice of units for rows and columns can give a matrix,
-/// `n` × `n`, row by row: the spectral radius of |A⁻¹| |A| (F. L. Bauer, Numerische Mathematik 5,
-/// 1963; N. J. Higham, *Accuracy and Stability of Numerical Algorithms*, section 7.3).
+/// The minimum of the condition number of a matrix over all row and column scalings, `n` × `n`, row by row: the
+/// spectral radius of |A⁻¹| |A| (F. L. Bauer, Numerische Mathematik 5, 1963; N. J. Higham, *Accuracy and Stability of
+/// Numerical Algorithms*, section 7.3).
 ///
-/// 1 for a diagonal matrix, infinite for a singular one; about log₁₀ of it are the digits that a
-/// solution loses. NaN where an entry is not finite or the length is not n².
+/// 1 for a diagonal matrix, infinite for a singular one; a solution loses about log₁₀ of it in digits. NaN if an
+/// entry is not finite or the length is not n².
 pub fn condition_number(matrix: &[f64], n: usize) -> f64 {
     if matrix.len() != n * n || matrix.iter().any(|entry| !entry.is_finite()) {
         return f64::NAN;
@@ -22,8 +22,8 @@ pub fn condition_number(matrix: &[f64], n: usize) -> f64 {
     let Some(inverse) = inverse(matrix, n) else {
         return f64::INFINITY;
     };
-    // |A⁻¹| |A| has no negative entry and none below 1 on the diagonal: powers of it approach its
-    // largest eigenvalue from any positive vector.
+    // |A⁻¹| |A| is non-negative with a diagonal of at least 1: power iteration converges to its largest eigenvalue
+    // from any positive vector.
     let (mut x, mut radius) = (vec![1.0; n], 1.0);
     for _ in 0..ITERATIONS {
         x = absolute_product(&inverse, &absolute_product(matrix, &x));
@@ -35,7 +35,7 @@ pub fn condition_number(matrix: &[f64], n: usize) -> f64 {
     radius
 }
 
-/// A⁻¹, row by row; nothing for a matrix that is singular up to rounding.
+/// A⁻¹, row by row; `None` if the matrix is singular up to rounding.
 fn inverse(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     let mut factors = matrix.to_vec();
     let mut inverse = vec![0.0; n * n];
@@ -43,15 +43,15 @@ fn inverse(matrix: &[f64], n: usize) -> Option<Vec<f64>> {
     solved_in_place(&mut factors, &mut inverse, n).then_some(inverse)
 }
 
-/// How far the pseudo-velocities are from not determining the generalised velocities, in SI: the
-/// Frobenius norms of G = ∂q̇/∂ω and of its pseudo-inverse, multiplied and divided by the number of
-/// pseudo-velocities. 1 where G keeps lengths and angles, infinite where q̇ is not finite.
+/// Condition number of the map from pseudo-velocities to generalised velocities, in SI: the product of the Frobenius
+/// norms of G = ∂q̇/∂ω and of its pseudo-inverse, divided by the number of pseudo-velocities. 1 if G preserves
+/// lengths and angles, infinite if q̇ is not finite.
 pub fn velocity_condition(model: &dyn Model, at: At<'_>) -> f64 {
     let (n, s) = (model.info().state_len(), model.info().speeds);
     if s == 0 {
         return 1.0;
     }
-    // q̇ is linear in ω, but for a part that time prescribes.
+    // q̇ is affine in ω: the constant part is prescribed by time.
     let mut x = at.x.to_vec();
     let mut rates_for = |speed: Option<usize>| {
         x[..s].fill(0.0);
@@ -96,7 +96,7 @@ pub struct Conditions {
     pub mass_matrix: f64,
     /// Of the map from pseudo-velocities to generalised velocities; see [`velocity_condition`].
     pub velocities: f64,
-    /// Of each system of [`Model::system_sizes`], which are solved for generalised velocities.
+    /// Of each linear system of [`Model::system_sizes`], solved for generalised velocities.
     pub systems: Vec<f64>,
 }
 
@@ -124,13 +124,13 @@ impl Conditions {
         }
     }
 
-    /// All of them in the order of the fields, named for people by [`Conditions::names`].
+    /// All of them in the order of the fields; [`Conditions::names`] lists their names.
     pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
         let first = [self.mass_matrix, self.velocities];
         first.into_iter().chain(self.systems.iter().copied())
     }
 
-    /// What they are of: `mass_matrix`, `velocities`, `system_1`, ….
+    /// Names of the systems: `mass_matrix`, `velocities`, `system_1`, ….
     pub fn names(model: &dyn Model) -> impl Iterator<Item = String> {
         let systems = 1..=model.system_sizes().len();
         let first = ["mass_matrix", "velocities"].map(str::to_owned);

@@ -1,26 +1,25 @@
-//! What surfaces have to give at the contacts of a model: normal force, tangential force, and the
-//! friction that these ask for.
+//! Contact forces of a model: normal force, tangential force, and the friction coefficient that they require.
 //!
-//! A contact pushes and does not pull, and friction carries only a part of the normal force
-//! (Coulomb). Equations of motion know neither limit: a constraint holds whatever it takes.
+//! A contact can push but not pull, and friction is bounded by the normal force (Coulomb). The equations of motion
+//! respect neither limit: their constraints are bilateral.
 
 use crate::model::{At, Contact, Model};
 
 /// The force at one contact.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ContactForce {
-    /// N, the push of the surface along its normal, in N. Negative where only a glue could hold
-    /// the contact. For a contact of a position constraint in W per unit of the constraint.
+    /// N, the push of the surface along its normal, in N. Negative if only an adhesive bond could sustain the
+    /// contact. For a contact of a position constraint in W per unit of the constraint.
     pub normal: f64,
-    /// Size of the force along the surface, in the same unit.
+    /// Magnitude of the force along the surface, in the same unit.
     pub tangential: f64,
-    /// Coefficient of friction, where the spec tells one.
+    /// Coefficient of friction, if the spec gives one.
     pub friction: Option<f64>,
 }
 
 impl ContactForce {
-    /// Tangential over normal force, the coefficient of friction below which the contact slips. Infinite where nothing
-    /// presses.
+    /// Tangential over normal force, the coefficient of friction below which the contact slips. Infinite without a
+    /// compressive normal force.
     pub fn demand(&self) -> f64 {
         if self.normal > 0.0 {
             self.tangential / self.normal
@@ -31,8 +30,8 @@ impl ContactForce {
         }
     }
 
-    /// μ times the normal force less the tangential one, for a coefficient of friction μ: what is
-    /// left before the contact slips; negative where it does.
+    /// μ times the normal force minus the tangential force, for a coefficient of friction μ: the margin against
+    /// slipping, negative if the contact slips.
     pub fn grip(&self, friction: f64) -> f64 {
         friction * self.normal - self.tangential
     }
@@ -48,13 +47,13 @@ pub struct ContactForces {
 }
 
 impl ContactForces {
-    /// Sized at the first use.
+    /// The arrays are allocated at the first use.
     pub fn new() -> Self {
         Self::default()
     }
 
-    /// One force per entry of [`ModelInfo::contacts`](crate::model::ModelInfo::contacts). Not a
-    /// number where the equations have no finite solution.
+    /// One force per entry of [`ModelInfo::contacts`](crate::model::ModelInfo::contacts). NaN if the equations have
+    /// no finite solution.
     pub fn at(&mut self, model: &dyn Model, at: At<'_>) -> &[ContactForce] {
         let info = model.info();
         if info.contacts.is_empty() {
@@ -68,7 +67,7 @@ impl ContactForces {
         &self.forces
     }
 
-    /// [`Self::at`] where the constraint forces are known.
+    /// [`Self::at`] for known constraint forces.
     pub fn of(&mut self, model: &dyn Model, at: At<'_>, reactions: &[f64]) -> &[ContactForce] {
         let info = model.info();
         self.forces.clear();
@@ -87,7 +86,7 @@ impl ContactForces {
     }
 }
 
-/// Splits a reaction along a normal of any length.
+/// Decomposes a reaction along a normal of any length.
 fn force(contact: &Contact, reaction: &[f64], normal: &[f64], friction: f64) -> ContactForce {
     let along = |direction: &[f64]| -> f64 {
         let products = reaction.iter().zip(direction).map(|(f, n)| f * n);

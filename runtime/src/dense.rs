@@ -1,9 +1,8 @@
 //! Factorisation of small dense matrices.
 //!
-//! Emitted equations call these where a pivot could vanish symbolically. Pivots are chosen by
-//! [`Real::if_less`] instead of branches, so duals differentiate through the factorisation and
-//! each lane of a batch has its own row order. No input panics: a singular matrix leads to
-//! non-finite numbers.
+//! Emitted equations call these where a pivot may be zero. Pivots are selected by [`Real::if_less`] instead of
+//! branches, so dual numbers differentiate through the factorisation and each lane of a batch has its own row order.
+//! Nothing panics: a singular matrix gives non-finite numbers.
 
 use crate::Real;
 use core::array::from_fn;
@@ -20,8 +19,8 @@ pub struct Lu<T, const N: usize> {
 
 /// Factors `matrix`, `N` × `N`, row by row.
 ///
-/// In column k each lower row in turn takes the pivot's place if its entry is larger. The last
-/// holder has the largest entry, as in the textbook; only the order of the other rows differs.
+/// In column k each lower row in turn is exchanged with the pivot row if its entry is larger. The final pivot is the
+/// largest entry, as in the textbook; only the order of the other rows differs.
 #[inline]
 pub fn lu_factor<T: Real, const N: usize>(matrix: [[T; N]; N]) -> Lu<T, N> {
     let (zero, one) = (T::constant(0.0), T::constant(1.0));
@@ -87,8 +86,7 @@ impl<T: Real, const N: usize> Lu<T, N> {
         from_fn(|k| self.factors[k][k])
     }
 
-    /// The smallest absolute pivot, in the unit of the matrix; 0 for a matrix that is singular or
-    /// holds a NaN.
+    /// The smallest absolute pivot, in the unit of the matrix; 0 for a singular matrix or one with a NaN.
     #[inline]
     pub fn smallest_pivot(&self) -> T {
         let infinity = T::constant(f64::INFINITY);
@@ -97,9 +95,8 @@ impl<T: Real, const N: usize> Lu<T, N> {
             .fold(infinity, |smallest, pivot| smaller(smallest, pivot.abs()))
     }
 
-    /// 1 / (‖A‖₁ ‖A⁻¹‖₁): 1 for the identity, near machine precision where solutions have lost
-    /// all digits. `matrix` is the matrix that was factored. Costs `N` solutions. A singular
-    /// matrix gives 0 or NaN.
+    /// 1 / (‖A‖₁ ‖A⁻¹‖₁): 1 for the identity, near machine precision if solutions lose all digits. `matrix` is the
+    /// matrix that was factored. Costs `N` solutions. A singular matrix gives 0 or NaN.
     pub fn reciprocal_condition(&self, matrix: &[[T; N]; N]) -> T {
         let zero = T::constant(0.0);
         let (mut norm, mut inverse_norm) = (zero, zero);
@@ -130,13 +127,13 @@ fn absolute_sum<T: Real, const N: usize>(column: [T; N]) -> T {
         .fold(T::constant(0.0), |sum, entry| sum + entry.abs())
 }
 
-/// The smaller of two numbers; 0 where `b` is NaN.
+/// The minimum of two numbers; 0 if `b` is NaN.
 #[inline]
 fn smaller<T: Real>(a: T, b: T) -> T {
     T::if_less(b, a, b, T::if_less_or_equal(a, b, a, T::constant(0.0)))
 }
 
-/// The larger of two numbers; NaN in `b` wins.
+/// The maximum of two numbers; NaN in `b` propagates.
 #[inline]
 fn larger<T: Real>(a: T, b: T) -> T {
     T::if_less(b, a, a, b)
@@ -144,10 +141,10 @@ fn larger<T: Real>(a: T, b: T) -> T {
 
 /// Solves A X = B in place for sizes known at run time and returns the smallest absolute pivot.
 ///
-/// `matrix` holds A, n × n row by row, and leaves with its factors; `right` holds B, n × c row by
-/// row, and leaves with X. The operations are those of [`lu_factor`] and [`lu_solve`] in the same
-/// order, so the results agree bit for bit. A singular A gives non-finite X. Slices whose lengths
-/// do not fit n are left alone and the answer is NaN.
+/// `matrix` holds A, n × n row by row, and is overwritten with its factors; `right` holds B, n × c row by row, and is
+/// overwritten with X. The operations and their order are those of [`lu_factor`] and [`lu_solve`], so the results
+/// agree bit for bit. A singular A gives non-finite X. If the lengths of the slices do not match n they are left
+/// unchanged and the result is NaN.
 pub fn lu_solve_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> f64 {
     if n == 0 || matrix.len() != n * n || !right.len().is_multiple_of(n) {
         return f64::NAN;
@@ -194,14 +191,14 @@ pub fn lu_solve_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> f64
     smallest_pivot
 }
 
-/// The same where only a solution counts: X replaces B. False for a matrix that is singular up to
-/// rounding or not finite; `right` is worthless then.
+/// The same without the pivot: X replaces B. False for a matrix that is singular up to rounding or not finite;
+/// `right` is then invalid.
 pub fn solved_in_place(matrix: &mut [f64], right: &mut [f64], n: usize) -> bool {
     let pivot = lu_solve_in_place(matrix, right, n);
     pivot > 0.0 && right.iter().all(|entry| entry.is_finite())
 }
 
-/// |x| by clearing the sign bit; `f64::abs` under a name that every feature set has.
+/// |x| by clearing the sign bit; `f64::abs` is not available in every feature set.
 #[inline]
 fn magnitude(x: f64) -> f64 {
     f64::from_bits(x.to_bits() & (u64::MAX >> 1))

@@ -1,18 +1,17 @@
-//! Derivatives of exact derivatives by central differences, for models that have no formulas for
-//! them.
+//! Derivatives of exact derivatives by central differences, for models without formulas for them.
 
 use crate::model::{At, Gradient, Model};
 
-/// Step of a central difference, relative to the size of what is varied: truncation and rounding
-/// are of the same order.
+/// Step of a central difference, relative to the magnitude of the variable: truncation and rounding errors are of the
+/// same order.
 const STEP: f64 = 6e-6;
 
 fn step(value: f64) -> f64 {
     STEP * value.abs().max(1.0)
 }
 
-/// What [`Model::adjoint`] writes, to about nine digits. The weighted Jacobians are differentiated
-/// along one direction for each column that has a weight: `∇⟨Λ, J⟩ = Σ_j ∂(Jᵀ Λ_j)/∂z_j`.
+/// [`Model::adjoint`] by differences, to about nine digits. The weighted Jacobians are differentiated along one
+/// direction for each column that has a weight: `∇⟨Λ, J⟩ = Σ_j ∂(Jᵀ Λ_j)/∂z_j`.
 pub fn adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64], mut by: Gradient<'_>) {
     let info = model.info();
     let (n, m, k, s) = (at.x.len(), at.u.len(), at.p.len(), info.speeds);
@@ -70,14 +69,14 @@ pub fn adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64], mut by
     }
 }
 
-/// What [`Model::parameter_jacobian`] writes, to about nine digits.
+/// [`Model::parameter_jacobian`] by differences, to about nine digits.
 pub fn parameter_jacobian<M: Model + ?Sized>(model: &M, at: At<'_>, p: &mut [f64]) {
     columns(at.p, p, at.p.len(), |p, column| {
         model.rates(At { p, ..at }, column);
     });
 }
 
-/// What [`Model::inverse_dynamics`] writes, from M, b and Π.
+/// [`Model::inverse_dynamics`] from M, b and Π.
 pub fn inverse_dynamics<M: Model + ?Sized>(
     model: &M,
     at: At<'_>,
@@ -93,7 +92,7 @@ pub fn inverse_dynamics<M: Model + ?Sized>(
     }
 }
 
-/// What [`Model::inverse_dynamics_jacobians`] writes, by differences: to about nine digits.
+/// [`Model::inverse_dynamics_jacobians`] by differences, to about nine digits.
 pub fn inverse_dynamics_jacobians<M: Model + ?Sized>(
     model: &M,
     at: At<'_>,
@@ -111,7 +110,7 @@ pub fn inverse_dynamics_jacobians<M: Model + ?Sized>(
     model.appell(at, mass, &mut vec![0.0; s], &mut vec![0.0; s]);
 }
 
-/// What [`Model::output_jacobians`] writes, to about nine digits.
+/// [`Model::output_jacobians`] by differences, to about nine digits.
 pub fn output_jacobians<M: Model + ?Sized>(
     model: &M,
     at: At<'_>,
@@ -130,8 +129,8 @@ pub fn output_jacobians<M: Model + ?Sized>(
     });
 }
 
-/// What [`Model::output_adjoint`] writes: to about nine digits where the model has formulas for
-/// the Jacobians of its outputs, else to about seven.
+/// [`Model::output_adjoint`] by differences: to about nine digits if the model has formulas for the Jacobians of its
+/// outputs, otherwise to about seven.
 pub fn output_adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
     let (n, m) = (at.x.len(), at.u.len());
     let l = model.info().output_len();
@@ -149,8 +148,8 @@ pub fn output_adjoint<M: Model + ?Sized>(model: &M, at: At<'_>, weights: &[f64],
     wide_slopes(at.p, p, |p| weighted(At { p, ..at }));
 }
 
-/// The slopes of a scalar that may hold differences itself: of order four, so that a step far above
-/// their rounding does.
+/// Gradient of a scalar that may itself contain differences: of order four, with a step far above their rounding
+/// errors.
 fn wide_slopes(at: &[f64], by: &mut [f64], mut scalar: impl FnMut(&[f64]) -> f64) {
     let mut varied = at.to_vec();
     for j in 0..at.len() {
@@ -167,7 +166,7 @@ fn wide_slopes(at: &[f64], by: &mut [f64], mut scalar: impl FnMut(&[f64]) -> f64
     }
 }
 
-/// Adds the slopes of a scalar by each variable from `first` on.
+/// Adds the gradient of a scalar with respect to the variables from `first` on.
 fn slopes(at: &[f64], by: &mut [f64], first: usize, mut scalar: impl FnMut(&[f64]) -> f64) {
     let mut varied = at.to_vec();
     for j in first..at.len() {
@@ -180,7 +179,7 @@ fn slopes(at: &[f64], by: &mut [f64], first: usize, mut scalar: impl FnMut(&[f64
     }
 }
 
-/// Slopes of a vector, a column of `matrix` for each variable.
+/// Jacobian of a vector function, one column of `matrix` per variable.
 fn columns(
     at: &[f64],
     matrix: &mut [f64],
@@ -221,7 +220,7 @@ impl Jacobians {
         }
     }
 
-    /// Adds `factor` times the gradient of ⟨λ, ẋ⟩ at a place.
+    /// Adds `factor` times the gradient of ⟨λ, ẋ⟩ at a point.
     fn pull<M: Model + ?Sized>(
         &mut self,
         model: &M,

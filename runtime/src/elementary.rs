@@ -1,20 +1,19 @@
-//! Elementary functions that give the same bits on every machine and in any number of lanes.
+//! Elementary functions with bitwise reproducible results on every machine and for any number of lanes.
 //!
-//! The standard library calls what the platform has, one number at a time: no loop around it becomes
-//! vector code, and two machines may differ in the last digit. These are polynomials in straight
-//! code without branches or tables, which compilers turn into vector code. They use sums, products,
-//! quotients, square roots and fused multiply-adds alone, all of which IEEE 754 defines to the last bit.
+//! The functions of the standard library are scalar calls into the platform: loops around them are not vectorised,
+//! and results may differ in the last digit between machines. The functions here are branch-free polynomials without
+//! tables, which compilers vectorise. They use only sums, products, quotients, square roots and fused multiply-adds,
+//! which IEEE 754 defines to the last bit.
 //!
-//! Every function is within one unit in the last place over all its arguments; a test holds them
-//! against values with fifty digits (`tests/tests/elementary.rs`). Arguments of sine, cosine and
-//! tangent beyond [`ORDINARY_ANGLE`] go to `libm`, which reduces them with as many digits of π as
-//! they need.
+//! The error of every function is at most one unit in the last place for all arguments; a test compares them with
+//! values to fifty digits (`tests/tests/elementary.rs`). Sine, cosine and tangent of arguments beyond
+//! [`ORDINARY_ANGLE`] are computed by `libm`, which reduces them with as many digits of π as they need.
 //!
-//! The files: [`arithmetic`] computes with pairs of numbers, [`trigonometric`], [`inverse`],
-//! [`exponential`], [`hyperbolic`], [`logarithm`] and [`power`] hold the functions.
+//! The files: [`arithmetic`] implements double-double arithmetic, [`trigonometric`], [`inverse`], [`exponential`],
+//! [`hyperbolic`], [`logarithm`] and [`power`] contain the functions.
 
-// A function that is not inlined has no lanes: it would be called once for each of them. Special values
-// are told exactly, without branches.
+// All functions must be inlined to be vectorised over lanes. Special values are compared exactly and selected without
+// branches.
 #![allow(
     clippy::inline_always,
     clippy::float_cmp,

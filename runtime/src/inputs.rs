@@ -1,4 +1,4 @@
-//! What drives a model: inputs as functions of time and state.
+//! Inputs of a model as functions of time and state.
 
 use crate::model::{Along, Interpolation, ModelInfo, SignalTable, Switching};
 use crate::real::{Enclosure, Real};
@@ -6,30 +6,30 @@ use crate::signal::{Signal, SignalError, differentiated, enclosed};
 
 /// The declared inputs of a model as functions of time and state.
 ///
-/// At a time where an input jumps the right-hand limit is wanted; the integrator evaluates the
-/// left-hand limit just before it, provided the time is among [`InputSource::switching_times`].
+/// At a discontinuity of an input the right-hand limit is required; the integrator evaluates the left-hand limit just
+/// before it if the time is among [`InputSource::switching_times`].
 pub trait InputSource {
     /// Writes the declared inputs at `t` in s and state `x`, all in SI.
     fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]);
 
-    /// Times in s at which the inputs jump or lose smoothness, in any order.
+    /// Times in s at which the inputs are discontinuous or not smooth, in any order.
     fn switching_times(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Bounds on the declared inputs along a stretch of a motion, whose inputs do not matter.
+    /// Bounds on the declared inputs along a segment of a motion, whose own inputs are ignored.
     fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
         let _ = along;
         u.fill(Enclosure::UNKNOWN);
     }
 
-    /// What switches the inputs at times that are not known in advance, where anything does.
+    /// Switching functions of the inputs at times that are not known in advance, if any.
     fn switching(&self) -> Option<&dyn Switching> {
         None
     }
 }
 
-/// A smooth function of time and state is a source.
+/// A smooth function of time and state is an input source.
 impl<F: Fn(f64, &[f64], &mut [f64])> InputSource for F {
     fn inputs(&self, t: f64, x: &[f64], u: &mut [f64]) {
         self(t, x, u);
@@ -81,8 +81,8 @@ impl TabulatedInputs {
         Self { signals }
     }
 
-    /// Zero-order hold: `columns[i][k]` is input i from `times[k]` up to `times[k + 1]`. The first
-    /// row also holds before, the last one after.
+    /// Zero-order hold: `columns[i][k]` is input i from `times[k]` up to `times[k + 1]`. Before the first and after
+    /// the last row the value of that row applies.
     pub fn held(times: &[f64], columns: &[Vec<f64>]) -> Result<Self, SignalError> {
         let signal = |(i, values): (usize, &Vec<f64>)| {
             Signal::new(&SignalTable {
@@ -155,8 +155,7 @@ impl<'a> ModelInputs<'a> {
         })
     }
 
-    /// Writes all inputs of the model at `t` in s and state `x`, in SI. A signal that does not
-    /// exist is NaN.
+    /// Writes all inputs of the model at `t` in s and state `x`, in SI. A missing signal gives NaN.
     pub fn fill(&self, t: f64, x: &[f64], u: &mut [f64]) {
         let (declared, signals) = u.split_at_mut(self.declared.min(u.len()));
         self.source.inputs(t, x, declared);
@@ -168,7 +167,7 @@ impl<'a> ModelInputs<'a> {
         }
     }
 
-    /// Bounds on all inputs of the model along a stretch of a motion.
+    /// Bounds on all inputs of the model along a segment of a motion.
     pub fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
         let (declared, signals) = u.split_at_mut(self.declared.min(u.len()));
         self.source.bounds(along, declared);
@@ -183,12 +182,12 @@ impl<'a> ModelInputs<'a> {
         }
     }
 
-    /// What switches the declared inputs at times that are not known in advance.
+    /// Switching functions of the declared inputs at times that are not known in advance.
     pub fn switching(&self) -> Option<&dyn Switching> {
         self.source.switching()
     }
 
-    /// Times in s at which an input jumps or loses smoothness.
+    /// Times in s at which an input is discontinuous or not smooth.
     pub fn switching_times(&self) -> Vec<f64> {
         let mut times = self.source.switching_times();
         times.extend(self.signals.iter().flat_map(Signal::knots));

@@ -1,8 +1,8 @@
 //! Initial value problems ẋ = f(t, x).
 //!
-//! [`Solver`] runs the embedded pairs [`Dop853`] and [`Dopri5`] with step-size control, [`Rk4`]
-//! keeps a fixed step. All of them interpolate between steps, find events, land exactly on
-//! switching times and end with a typed error where the motion cannot be continued.
+//! [`Solver`] runs the embedded pairs [`Dop853`] and [`Dopri5`] with step-size control, [`Rk4`] uses a fixed step.
+//! All of them provide dense output, locate events, end steps exactly at switching times, and return a typed error
+//! where the motion cannot be continued.
 //!
 //! ```
 //! use appell_runtime::integrate::{Dop853, NoObserver, Options, Solver, Watch};

@@ -1,8 +1,8 @@
-//! Arithmetic of intervals.
+//! Interval arithmetic.
 //!
-//! Every operation rounds outwards, so the true value lies in the interval. Beside the interval each
-//! value carries whether it can be zero: a product of positive numbers stays positive where its
-//! lower bound underflows, and `exp` never vanishes though its infimum is 0.
+//! Every operation rounds outwards, so the interval contains the true value. In addition each value records whether
+//! it can be zero: a product of positive numbers stays positive where its lower bound underflows, and `exp` never
+//! vanishes though its infimum is 0.
 
 /// All numbers from `lo` to `hi`; the bounds may be infinite.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -34,12 +34,12 @@ impl Interval {
         hi: f64::INFINITY,
     };
 
-    /// Whether `x` lies in it.
+    /// Whether it contains `x`.
     pub fn contains(self, x: f64) -> bool {
         self.lo <= x && x <= self.hi
     }
 
-    /// Wider by one rounding on each side. An undefined bound is no bound.
+    /// Widened by one rounding on each side. A NaN bound becomes infinite.
     fn widened(self) -> Self {
         let lo = if self.lo.is_nan() {
             f64::NEG_INFINITY
@@ -54,7 +54,7 @@ impl Interval {
         Self { lo, hi }
     }
 
-    /// Wider by the errors of the elementary functions in a mathematical library.
+    /// Widened by the errors of the elementary functions in a mathematical library.
     fn loosened(self) -> Self {
         let margin = |x: f64| x.abs() * 4.0 * f64::EPSILON + f64::MIN_POSITIVE;
         Self {
@@ -88,7 +88,7 @@ impl Range {
         nonzero: false,
     };
 
-    /// The angles of points of the plane.
+    /// The range of `atan2`.
     pub const ANGLE: Self = Self {
         interval: Interval {
             lo: -PI_UP,
@@ -105,7 +105,7 @@ impl Range {
         }
     }
 
-    /// A number, up to its rounding unless it is a whole one.
+    /// A number, up to its rounding unless it is an integer.
     pub fn number(value: f64, is_zero: bool) -> Self {
         let exact = value.fract() == 0.0 && value.abs() < 9e15;
         let interval = Interval {
@@ -147,7 +147,7 @@ impl Range {
             lo: a.lo + b.lo,
             hi: a.hi + b.hi,
         };
-        // Adding nothing rounds nothing.
+        // Adding zero is exact.
         let zero = Interval { lo: 0.0, hi: 0.0 };
         if a != zero && b != zero {
             interval = interval.widened();
@@ -171,7 +171,7 @@ impl Range {
     #[must_use]
     pub fn times(self, other: Self) -> Self {
         let (a, b) = (self.interval, other.interval);
-        // A bound of infinity stands for large numbers, and those times zero are zero.
+        // Infinite bounds represent large finite numbers, whose product with zero is zero.
         let mul = |x: f64, y: f64| if x == 0.0 || y == 0.0 { 0.0 } else { x * y };
         let corners = [
             mul(a.lo, b.lo),
@@ -215,7 +215,7 @@ impl Range {
             .widened()
             .meet(0.0, f64::INFINITY)
         } else if hi <= 0.0 {
-            // -0.0 would send the bound to the other infinity.
+            // -0.0 would give the infinity of the wrong sign.
             Interval {
                 lo: -1.0 / hi.abs(),
                 hi: 1.0 / lo,
@@ -231,7 +231,7 @@ impl Range {
         }
     }
 
-    /// A power with a whole exponent.
+    /// A power with an integer exponent.
     #[must_use]
     pub fn power(self, exponent: i32) -> Self {
         if exponent < 0 {
@@ -280,7 +280,7 @@ impl Range {
         }
     }
 
-    /// `a^b`. The exponent may be an integer by chance, so a negative base has a power.
+    /// `a^b`. The exponent may happen to be an integer, so a negative base has a power.
     #[must_use]
     pub fn real_power(self, exponent: Self) -> Self {
         let base = self.interval;
@@ -429,12 +429,12 @@ impl Range {
         })
     }
 
-    /// An interval of values that vanish where these do.
+    /// The given interval with the zeros of this value.
     fn alike(self, interval: Interval) -> Self {
         Self { interval, ..self }
     }
 
-    /// Whether all values are below those of another range; nothing where some are and some are not.
+    /// Whether all values are below those of another range; `None` if only some are.
     pub fn is_less(self, other: Self) -> Option<bool> {
         if self.interval.hi < other.interval.lo {
             Some(true)
@@ -445,7 +445,7 @@ impl Range {
         }
     }
 
-    /// The values of both ranges, and those between.
+    /// The convex hull of both ranges.
     #[must_use]
     pub fn or(self, other: Self) -> Self {
         Self {
@@ -457,7 +457,7 @@ impl Range {
         }
     }
 
-    /// The values that both ranges hold.
+    /// The intersection of both ranges.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         let Interval { lo, hi } = other.interval;
@@ -487,9 +487,9 @@ impl Range {
     /// Range of `cos(x - peak)`.
     fn circular(self, peak: f64) -> Self {
         use std::f64::consts::PI;
-        /// Angles beyond this are not reduced: their sine can be anything.
+        /// Angles beyond this are not reduced: their sine is bounded by ±1 only.
         const FAR: f64 = 1e12;
-        /// Generous against the rounding of the reduction of small angles.
+        /// A generous bound on the rounding error of the reduction of small angles.
         const SLACK: f64 = 1e-8;
         let Interval { lo, hi } = self.interval;
         if !(lo >= -FAR && hi <= FAR) {

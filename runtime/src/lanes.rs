@@ -1,19 +1,17 @@
-//! Eight places at once.
+//! Evaluation of eight points at once.
 //!
-//! A *block* is [`LANES`] places that are evaluated together, component by component: component i of
-//! place l lies at `x[i][l]`. The processor does a block as one vector of eight numbers, as two of
-//! four, or number by number; what it has is found out when the program runs. A block has eight places in
-//! all cases, and every lane goes the same way, so that no result depends on the processor. Where
-//! places are left over, repeat the last one.
+//! A *block* is [`LANES`] points that are evaluated together, component by component: component i of point l is
+//! `x[i][l]`. The processor evaluates a block as one vector of eight numbers, as two of four, or number by number, as
+//! detected at run time. Blocks always have eight points, and every lane executes the same operations, so that no
+//! result depends on the processor. Fill an incomplete block by repeating the last point.
 
-// What is not inlined is not compiled for the vectors of the processor.
+// Only inlined functions are compiled for the vector instructions of the processor.
 #![allow(clippy::inline_always)]
 
-/// How many places a block has.
+/// Number of points of a block.
 pub const LANES: usize = 8;
 
-/// Where equations are evaluated, several places at once. All numbers in SI, in the order of the
-/// model's vectors.
+/// Several points at which equations are evaluated. All numbers in SI, in the order of the model's vectors.
 #[derive(Debug, Clone, Copy)]
 pub struct AtLanes<'a> {
     /// Times in seconds.
@@ -26,8 +24,8 @@ pub struct AtLanes<'a> {
     pub p: &'a [[f64; LANES]],
 }
 
-/// Runs a task that is compiled for the widest vectors of this processor: AVX-512, or AVX2 with fused
-/// multiply-adds. Only what is inlined into the task is: mark it, and all it calls, `#[inline(always)]`.
+/// Runs a task that is compiled for the widest vectors of this processor: AVX-512, or AVX2 with fused multiply-adds.
+/// This applies to inlined code only: mark the task, and all it calls, `#[inline(always)]`.
 #[inline(always)]
 pub fn dispatch(task: impl FnMut()) {
     #[cfg(target_arch = "x86_64")]

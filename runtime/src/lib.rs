@@ -4,15 +4,15 @@
 //!
 //! - [`model`]: the trait that emitted models and models made at run time implement;
 //! - [`signal`]: tabulated functions of time;
-//! - [`inputs`]: what drives a model;
+//! - [`inputs`]: inputs of a model as functions of time and state;
 //! - [`integrate`]: initial value problems, events, typed failures;
-//! - [`lanes`]: blocks of eight places;
-//! - [`interval`]: bounds that prove that no jump of the equations is missed; [`switching`]: how many there may be;
+//! - [`lanes`]: blocks of eight evaluation points;
+//! - [`interval`]: interval arithmetic, to locate all switches; [`switching`]: numbers of switching functions;
 //! - [`linearise`]: A and B in the independent states;
 //! - [`positions`]: states consistent with position constraints;
 //! - [`simulate`] and [`trajectory`]: motions of a model and their files;
-//! - [`differences`]: derivatives, and inverse dynamics, that a model has no formulas for;
-//! - [`contact`] and [`condition`]: where a model stops being valid.
+//! - [`differences`]: derivatives and inverse dynamics by differences, for models without formulas;
+//! - [`contact`] and [`condition`]: contact forces and condition numbers, to check validity.
 //!
 //! Without it the crate is `no_std` and holds what emitted code needs: the scalar trait [`Real`], dual
 //! numbers that implement it, small dense systems in [`dense`], and the arithmetic of structs in

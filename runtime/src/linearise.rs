@@ -1,8 +1,8 @@
-//! Linearisation where coordinates depend on each other.
+//! Linearisation of models with dependent coordinates.
 //!
-//! A and B of [`Model::jacobians`] hold every coordinate as if it were free. Position constraints
-//! f(q, t) = 0 tie the dependent ones to the others, `∂f/∂q δq = 0`: a mode or a controller of the
-//! mechanism is one of the states that remain.
+//! A and B of [`Model::jacobians`] treat all coordinates as independent. Position constraints f(q, t) = 0 couple the
+//! dependent ones to the others, `∂f/∂q δq = 0`: modes and controllers of the mechanism are those of the independent
+//! states.
 
 use crate::dense::solved_in_place;
 use crate::model::{At, Model};
@@ -17,14 +17,14 @@ pub struct Linearisation {
     pub a: Vec<f64>,
     /// B, row by row: a column for each input and signal.
     pub b: Vec<f64>,
-    /// The dependent coordinates, one per position constraint: those that the model declares, unless others
-    /// follow much better at this state.
+    /// The dependent coordinates, one per position constraint: those that the model declares, unless others are much
+    /// better conditioned at this state.
     pub dependent: Vec<usize>,
-    /// How they follow: a row for each, a column for each independent state.
+    /// Their dependence: a row for each, a column for each independent state.
     pub dependence: Vec<f64>,
 }
 
-/// The position constraints determine no coordinates at this state.
+/// The position constraints do not determine the dependent coordinates at this state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error(
     "the position constraints do not determine the dependent coordinates at this state; choose other \
@@ -33,8 +33,7 @@ pub struct Linearisation {
 pub struct Undetermined;
 
 impl Linearisation {
-    /// About a state that satisfies the position constraints. Without any it is A and B of the
-    /// model.
+    /// About a state that satisfies the position constraints. Without constraints these are A and B of the model.
     pub fn about(model: &dyn Model, at: At<'_>) -> Result<Self, Undetermined> {
         let info = model.info();
         let (n, m) = (info.states.len(), info.inputs.len());

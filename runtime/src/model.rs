@@ -1,4 +1,4 @@
-//! The interface between equations and everything that uses them.
+//! The interface between equations of motion and their users.
 
 use std::borrow::Cow;
 
@@ -11,17 +11,17 @@ pub type Text = Cow<'static, str>;
 /// A list that is static in emitted models and owned in models made at run time.
 pub type List<T> = Cow<'static, [T]>;
 
-/// A named quantity with its unit. All numbers of a model are in SI; `unit` and `scale` say how
-/// people read and write the quantity: `value_in_unit = value / scale`.
+/// A named quantity with its unit. All numbers of a model are in SI; `unit` and `scale` define the display unit:
+/// `value_in_unit = value / scale`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Quantity {
     /// Identifier in the spec.
     pub name: Text,
-    /// One sentence for people.
+    /// One sentence that describes it.
     pub about: Text,
-    /// Unit for people, e.g. `rad/s`.
+    /// Display unit, e.g. `rad/s`.
     pub unit: Text,
-    /// One of `unit` in SI.
+    /// Size of `unit` in SI.
     pub scale: f64,
     /// Parameter value or initial value in SI; 0 for inputs and outputs.
     pub value: f64,
@@ -63,39 +63,37 @@ impl Quantity {
         self
     }
 
-    /// A value in SI, in the unit for people.
+    /// Converts a value from SI to the display unit.
     pub fn to_unit(&self, si: f64) -> f64 {
         si / self.scale
     }
 
-    /// The same without what rounding adds to it: 120, not 119.99999999999999.
+    /// The same without rounding errors of the conversion: 120, not 119.99999999999999.
     pub fn shown(&self, si: f64) -> f64 {
         tidy(self.to_unit(si))
     }
 
-    /// A value in the unit for people, in SI.
+    /// Converts a value from the display unit to SI.
     pub fn to_si(&self, value: f64) -> f64 {
         value * self.scale
     }
 }
 
-/// A number without what rounding of conversions adds to it, for people.
+/// A number without rounding errors of conversions, for display.
 pub fn tidy(x: f64) -> f64 {
     format!("{x:.13e}").parse().unwrap_or(x)
 }
 
-/// How a tabulated signal runs between its rows. Before the first and after the last row every
-/// signal keeps the end value.
+/// Interpolation of a tabulated signal. Before the first and after the last row the value at that end applies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Interpolation {
-    /// Constant from a row's time up to the next row's.
+    /// Piecewise constant, from a row's time up to the next.
     Hold,
-    /// Straight from row to row.
+    /// Piecewise linear.
     Linear,
-    /// Natural cubic spline: two continuous derivatives, no curvature at the ends. Where it does
-    /// not end level, its first derivative jumps to zero at the end: a body that an imposed motion
-    /// carries stops without an impulse in the equations. Let such tables begin and end at rest, or
-    /// reach beyond the motion.
+    /// Natural cubic spline: twice continuously differentiable, zero curvature at the ends. If its slope at an end is
+    /// not zero, the first derivative is discontinuous there: a body with prescribed motion stops without an impulse
+    /// in the equations. Such tables should start and end at rest, or extend beyond the motion.
     Cubic,
 }
 
@@ -108,24 +106,24 @@ pub struct SignalTable {
     pub times: List<f64>,
     /// Values in SI, one per time.
     pub values: List<f64>,
-    /// How the signal runs between the times.
+    /// Interpolation between the times.
     pub interpolation: Interpolation,
 }
 
 /// The reaction of a constraint.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Reaction {
-    /// Name of the point that feels it, or of the constraint that has no point.
+    /// Name of the point at which it acts, or of the constraint that has no point.
     pub name: Text,
-    /// N for the force on a point. For a multiplier the unit of a power divided by the constrained
-    /// rate, in SI; empty if it cannot be written.
+    /// N for the force on a point. For a multiplier the unit of a power divided by the constrained rate, in SI; empty
+    /// if it cannot be written.
     pub unit: Text,
     /// Whether it is the force on a point.
     pub on_point: bool,
 }
 
 impl Reaction {
-    /// The force on a point, three components in the ground.
+    /// The force on a point, three components in the ground frame.
     pub const fn on_point(name: Text) -> Self {
         Self {
             name,
@@ -144,43 +142,42 @@ impl Reaction {
     }
 }
 
-/// A contact with a surface, which can push a body but not pull it.
+/// A unilateral contact with a surface, which can push a body but not pull it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Contact {
     /// Name of its reaction.
     pub name: Text,
     /// Index into [`ModelInfo::reactions`].
     pub reaction: usize,
-    /// Direction in which the surface pushes, in the ground, at the initial state of the spec;
-    /// [`Model::contacts`] tells it everywhere.
+    /// Surface normal towards the body, in the ground frame, at the initial state of the spec; [`Model::contacts`]
+    /// evaluates it at any state.
     pub normal: [f64; 3],
-    /// Whether friction holds the body along the surface, so that it could slip.
+    /// Whether friction constrains the body along the surface, so that it could slip.
     pub grips: bool,
-    /// Coefficient of friction at the initial state, where the spec tells one.
+    /// Coefficient of friction at the initial state, if the spec gives one.
     pub friction: Option<f64>,
 }
 
-/// What a model is made of, in the order of its vectors.
+/// Names, units and sizes of a model, in the order of its vectors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ModelInfo {
     /// Name of the mechanism.
     pub name: Text,
-    /// One line for people.
+    /// Title in one line.
     pub title: Text,
-    /// Where the model comes from; may be empty.
+    /// Reference for the model; may be empty.
     pub source: Text,
     /// The state: pseudo-velocities first, then coordinates.
     pub states: List<Quantity>,
-    /// How many of the states are pseudo-velocities.
+    /// Number of pseudo-velocities among the states.
     pub speeds: usize,
     /// Inputs; signals follow the declared inputs.
     pub inputs: List<Quantity>,
-    /// How many of the inputs are declared; the others are signals and their rates.
+    /// Number of declared inputs; the others are signals and their derivatives.
     pub declared_inputs: usize,
     /// Tabulated functions of time.
     pub signals: List<SignalTable>,
-    /// What the inputs after the declared ones are: an index into `signals` and the order of the
-    /// time derivative, 0, 1 or 2.
+    /// The inputs after the declared ones: an index into `signals` and the order of the time derivative, 0, 1 or 2.
     pub signal_inputs: List<(usize, u8)>,
     /// Parameters.
     pub parameters: List<Quantity>,
@@ -188,9 +185,9 @@ pub struct ModelInfo {
     pub outputs: List<Quantity>,
     /// Velocity constraints, one name per scalar row.
     pub constraint_rows: List<Text>,
-    /// Constrained points, or constraints without a point, that have a reaction.
+    /// Reactions of constrained points, or of constraints without a point.
     pub reactions: List<Reaction>,
-    /// Those of the reactions that can only push.
+    /// Unilateral contacts among the reactions.
     pub contacts: List<Contact>,
     /// Whether the equations depend on time explicitly.
     pub explicit_time: bool,
@@ -202,7 +199,7 @@ impl ModelInfo {
         self.states.len()
     }
 
-    /// Number of inputs with the signals, m.
+    /// Number of inputs including the signals, m.
     pub fn input_len(&self) -> usize {
         self.inputs.len()
     }
@@ -230,22 +227,22 @@ impl ModelInfo {
         self.states.iter().map(|state| state.value).collect()
     }
 
-    /// Position of a pseudo-velocity or coordinate in the state.
+    /// Index of a pseudo-velocity or coordinate in the state.
     pub fn state_index(&self, name: &str) -> Option<usize> {
         index_of(&self.states, name)
     }
 
-    /// Position of an input or signal in the inputs.
+    /// Index of an input or signal in the inputs.
     pub fn input_index(&self, name: &str) -> Option<usize> {
         index_of(&self.inputs, name)
     }
 
-    /// Position of a parameter.
+    /// Index of a parameter.
     pub fn parameter_index(&self, name: &str) -> Option<usize> {
         index_of(&self.parameters, name)
     }
 
-    /// Position of an output.
+    /// Index of an output.
     pub fn output_index(&self, name: &str) -> Option<usize> {
         index_of(&self.outputs, name)
     }
@@ -276,7 +273,7 @@ fn index_of(quantities: &[Quantity], name: &str) -> Option<usize> {
     quantities.iter().position(|quantity| quantity.name == name)
 }
 
-/// Where a model is evaluated. All slices in SI, in the order of [`ModelInfo`].
+/// Arguments of a model. All slices in SI, in the order of [`ModelInfo`].
 #[derive(Debug, Clone, Copy)]
 pub struct At<'a> {
     /// Time in seconds.
@@ -289,7 +286,7 @@ pub struct At<'a> {
     pub p: &'a [f64],
 }
 
-/// The gradient of a scalar at a place: as many numbers as states, inputs and parameters.
+/// The gradient of a scalar at a point: as many numbers as states, inputs and parameters.
 #[derive(Debug)]
 pub struct Gradient<'a> {
     /// With respect to the state.
@@ -300,16 +297,16 @@ pub struct Gradient<'a> {
     pub p: &'a mut [f64],
 }
 
-/// Energies, and the power that changes their sum.
+/// Energies, and the power supplied to their sum.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Energies {
     /// Kinetic energy in J.
     pub kinetic: f64,
     /// Potential energy of gravity and springs in J.
     pub potential: f64,
-    /// Power of all loads that have no potential, and of what keeps up a prescribed motion, in W.
+    /// Power of all non-conservative loads and of prescribed motions, in W.
     pub power: f64,
-    /// Acceleration energy (Gibbs function) S in W/s, without the terms free of accelerations.
+    /// Acceleration energy (Gibbs function) S in W/s, without the terms independent of accelerations.
     pub acceleration: f64,
 }
 
@@ -323,8 +320,8 @@ pub trait Model: Sync {
     fn rates(&self, at: At<'_>, rates: &mut [f64]);
     /// ẋ (`n`), A = ∂ẋ/∂x (`n·n`), B = ∂ẋ/∂u (`n·m`).
     fn jacobians(&self, at: At<'_>, rates: &mut [f64], a: &mut [f64], b: &mut [f64]);
-    /// P = ∂ẋ/∂p (`n·k`). Models of many parameters may have no formulas for it: the answer of this trait is made of
-    /// differences, right to some nine digits.
+    /// P = ∂ẋ/∂p (`n·k`). Models with many parameters may have no formulas for it: the default implementation uses
+    /// differences, accurate to about nine digits.
     fn parameter_jacobian(&self, at: At<'_>, p: &mut [f64]) {
         differences::parameter_jacobian(self, at, p);
     }
@@ -334,17 +331,17 @@ pub trait Model: Sync {
     fn energies(&self, at: At<'_>) -> Energies;
     /// Constraint rows evaluated with the generalised velocities of the state; zero up to rounding.
     fn constraint_residual(&self, at: At<'_>, residual: &mut [f64]);
-    /// Reactions in the ground, three components per entry of [`ModelInfo::reactions`].
+    /// Reactions in the ground frame, three components per entry of [`ModelInfo::reactions`].
     fn constraint_forces(&self, at: At<'_>, forces: &mut [f64]);
-    /// Surfaces at the contacts: directions in which they push, in the ground and of any length
-    /// (three components per entry of [`ModelInfo::contacts`]), and coefficients of friction (one
-    /// per entry; 0 where the spec tells none). Most surfaces are the same everywhere.
+    /// Surfaces at the contacts: normals towards the body, in the ground frame and of any length (three components
+    /// per entry of [`ModelInfo::contacts`]), and coefficients of friction (one per entry; 0 if the spec gives none).
+    /// Most are constant.
     fn contacts(&self, at: At<'_>, normals: &mut [f64], friction: &mut [f64]) {
         let _ = at;
         self.info().initial_contacts(normals, friction);
     }
-    /// Sizes of the linear systems of several unknowns that are solved with pivoting on the way to
-    /// the rates; most models have none.
+    /// Sizes of the linear systems of several unknowns that are solved with pivoting to obtain the rates; most models
+    /// have none.
     fn system_sizes(&self) -> &[usize] {
         &[]
     }
@@ -356,19 +353,19 @@ pub trait Model: Sync {
     }
     /// Outputs of the spec.
     fn outputs(&self, at: At<'_>, outputs: &mut [f64]);
-    /// Bounds on the outputs along a stretch of a motion, where the model has them.
+    /// Bounds on the outputs along a segment of a motion, if the model has them.
     fn outputs_within(&self, along: &Along<'_>, outputs: &mut [Enclosure]) {
         let _ = along;
         outputs.fill(Enclosure::UNKNOWN);
     }
-    /// Inverse dynamics: the pseudo-forces M ω̇ + b − Π that given pseudo-accelerations take beyond the
+    /// Inverse dynamics: the pseudo-forces M ω̇ + b − Π required for given pseudo-accelerations in addition to the
     /// loads (`s`).
     fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
         differences::inverse_dynamics(self, at, accelerations, demand);
     }
-    /// [`Model::inverse_dynamics`] with its Jacobians with respect to the state (`s·n`), the inputs
-    /// (`s·m`) and the pseudo-accelerations, which is M (`s·s`). The answer of this trait is made of
-    /// differences, right to some nine digits.
+    /// [`Model::inverse_dynamics`] with its Jacobians with respect to the state (`s·n`), the inputs (`s·m`) and the
+    /// pseudo-accelerations, which is M (`s·s`). The default implementation uses differences, accurate to about nine
+    /// digits.
     fn inverse_dynamics_jacobians(
         &self,
         at: At<'_>,
@@ -381,14 +378,14 @@ pub trait Model: Sync {
         let results = [demand, by_state, by_inputs, mass];
         differences::inverse_dynamics_jacobians(self, at, accelerations, results);
     }
-    /// Whether the derivatives below are formulas. The answers of this trait are differences of the
-    /// functions above: slower, and right to some nine digits.
+    /// Whether the derivatives below are formulas. The default implementations use differences of the functions
+    /// above: slower, and accurate to about nine digits.
     fn has_adjoint(&self) -> bool {
         false
     }
-    /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩, where brackets are sums over all products of
-    /// entries. `weights` are λ (`n`), Λ (`n·n`), Γ (`n·m`), K (`s·s`), one after the other. It is
-    /// what the adjoint equations of a motion and of its variation need.
+    /// Gradient of ⟨λ, ẋ⟩ + ⟨Λ, A⟩ + ⟨Γ, B⟩ + ⟨K, M⟩, where brackets are sums over all products of entries. `weights`
+    /// are λ (`n`), Λ (`n·n`), Γ (`n·m`), K (`s·s`), one after the other. It provides the adjoint equations of a
+    /// motion and of its variation.
     fn adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
         differences::adjoint(self, at, weights, by);
     }
@@ -400,7 +397,7 @@ pub trait Model: Sync {
     fn output_adjoint(&self, at: At<'_>, weights: &[f64], by: Gradient<'_>) {
         differences::output_adjoint(self, at, weights, by);
     }
-    /// Coordinates that follow from the others, one per position constraint; most models have none.
+    /// Dependent coordinates, one per position constraint; most models have none.
     fn dependent_coordinates(&self) -> &[usize] {
         &[]
     }
@@ -411,32 +408,32 @@ pub trait Model: Sync {
         residual.fill(0.0);
         jacobian.fill(0.0);
     }
-    /// What switches the equations, where anything does: an integrator ends a step at each switch, where the rates
-    /// jump or bend.
+    /// Switching functions of the equations, if any: an integrator ends a step at each switch, where the rates are
+    /// discontinuous or not smooth.
     fn switching(&self) -> Option<&dyn Switching> {
         None
     }
 }
 
-/// Where equations, or inputs, jump or bend: at zeros of the differences that relations compare and of the arguments of
-/// signs and absolute values.
+/// Discontinuities and kinks of equations or inputs: zeros of the differences that relations compare and of the
+/// arguments of signs and absolute values.
 pub trait Switching {
-    /// How many of each there are.
+    /// Numbers of functions of each kind.
     fn counts(&self) -> Counts;
-    /// The answers of what time alone decides, such as the truth of `t < t_brake`: 1 or 0, or a sign. `x` and `u`
-    /// do not matter.
+    /// Signs and truth values that depend on time alone, such as that of `t < t_brake`: 1 or 0, or a sign. `x` and
+    /// `u` are ignored.
     fn answers(&self, at: At<'_>, answers: &mut [f64]);
-    /// Over an interval of time, the functions whose signs are the answers, followed by the other functions of
-    /// time alone that rise and fall.
+    /// Over an interval of time, the functions whose signs are the answers, followed by the other functions of time
+    /// alone that have pulses.
     fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]);
-    /// The functions whose signs the state or the inputs decide as well, followed by the functions of them that rise
-    /// and fall within a small part of their arguments' range.
+    /// The switching functions that depend on the state or the inputs, followed by the functions of them that have
+    /// pulses, within a small part of their arguments' range.
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]);
-    /// Bounds on these along a stretch of a motion.
+    /// Bounds on these along a segment of a motion.
     fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]);
 }
 
-/// A stretch of a motion within a step; otherwise as [`At`].
+/// A segment of a motion within a step; otherwise as [`At`].
 #[derive(Debug, Clone, Copy)]
 pub struct Along<'a> {
     /// Start of the step in s, from which tables are polynomials.
@@ -451,7 +448,7 @@ pub struct Along<'a> {
     pub p: &'a [f64],
 }
 
-/// A model whose numbers have names, as those of emitted models do.
+/// A model with named vector entries, such as an emitted one.
 pub trait Named: Model {
     /// Pseudo-velocities and coordinates.
     type State;
@@ -459,7 +456,7 @@ pub trait Named: Model {
     type Inputs;
     /// Outputs of the spec.
     type Outputs;
-    /// The numbers of a place, and the outputs there.
+    /// The entries of the vectors at a point, and the outputs there.
     ///
     /// # Panics
     ///
@@ -467,7 +464,7 @@ pub trait Named: Model {
     fn named(&self, at: At<'_>) -> Row<Self>;
 }
 
-/// A time and its numbers by name, in SI.
+/// A time with the named entries of the vectors, in SI.
 pub struct Row<M: Named + ?Sized> {
     /// Time in seconds.
     pub t: f64,

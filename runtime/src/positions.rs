@@ -1,27 +1,27 @@
-//! Position constraints f(q, t) = 0: consistent states, and what keeps them consistent.
+//! Position constraints f(q, t) = 0: consistent states and projection.
 //!
-//! The equations of motion hold the derivative of f at zero, so f itself drifts by the integration
-//! error. After every step the coordinates go back to f = 0 by the shortest way (Hairer, Lubich and
-//! Wanner, Geometric Numerical Integration, section IV.4). The step's error estimate stays as it is:
-//! the way back is no longer than the error.
+//! The equations of motion keep the derivative of f at zero, so f itself drifts by the integration error. After every
+//! step the coordinates are projected orthogonally onto f = 0 (Hairer, Lubich and Wanner, Geometric Numerical
+//! Integration, section IV.4). The error estimate of the step stays unchanged: the correction is no longer than the
+//! error.
 
 use crate::dense::solved_in_place;
 use crate::model::{At, Model, ModelInfo};
 
-/// Newton steps before giving up.
+/// Maximum number of Newton steps.
 const MOST_STEPS: usize = 20;
-/// Residuals that count as zero, in units of rounding of the coordinates.
+/// Tolerance of the residuals, in units of rounding of the coordinates.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A coordinate whose slope in its constraint is less than this share of the largest one follows poorly.
+/// Dependent coordinates whose entry in ∂f/∂q is below this fraction of the largest one are replaced.
 const POOR: f64 = 0.2;
 
-/// Which coordinates move.
+/// Coordinates that are adjusted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Moving {
-    /// The dependent ones: the others are what the caller wants.
+    /// The dependent ones: the others keep their values.
     Dependent,
-    /// All, as little as possible in SI.
+    /// All, with the smallest correction in SI.
     All,
 }
 
@@ -33,12 +33,12 @@ pub enum Moving {
 pub struct Inconsistent {
     /// Largest residual where the search ended, in SI.
     pub residual: f64,
-    /// The coordinate, among the states, that follows by the constraint which has it.
+    /// The dependent coordinate of the constraint with that residual, as a state index.
     pub state: usize,
 }
 
 impl Inconsistent {
-    /// What is wrong and what to do, in the names of a model.
+    /// The error and its remedy, in the names of a model.
     pub fn describe(&self, info: &ModelInfo) -> String {
         format!(
             "no value of `{}` near its initial one satisfies the position constraint that determines it (off by \
@@ -54,7 +54,7 @@ impl Inconsistent {
 pub struct Positions {
     count: usize,
     coordinates: usize,
-    /// Coordinates that follow from the others, one per constraint.
+    /// The dependent coordinates, one per constraint.
     dependent: Vec<usize>,
     residual: Vec<f64>,
     jacobian: Vec<f64>,
@@ -62,7 +62,7 @@ pub struct Positions {
 }
 
 impl Positions {
-    /// For a model that has any.
+    /// For a model; `None` if it has no position constraints.
     pub fn of(model: &dyn Model) -> Option<Self> {
         let count = model.dependent_coordinates().len();
         let coordinates = model.info().states.len() - model.info().speeds;
@@ -76,7 +76,7 @@ impl Positions {
         })
     }
 
-    /// Lets those coordinates follow that do so best at a place: of a unit quaternion no component does
+    /// Chooses the dependent coordinates that are best conditioned at a point: of a unit quaternion no component is
     /// everywhere. Returns them, one per constraint.
     pub fn choose_dependent(&mut self, model: &dyn Model, at: At<'_>) -> &[usize] {
         model.position_constraints(at, &mut self.residual, &mut self.jacobian);
@@ -88,8 +88,7 @@ impl Positions {
         &self.dependent
     }
 
-    /// Moves coordinates of `x` until the constraints hold up to rounding. `u` are inputs and
-    /// signals at time `t`.
+    /// Adjusts coordinates of `x` until the constraints hold up to rounding. `u` are inputs and signals at time `t`.
     pub fn restore(
         &mut self,
         model: &dyn Model,
@@ -109,7 +108,7 @@ impl Positions {
             let by_size = |a: &(usize, &f64), b: &(usize, &f64)| a.1.abs().total_cmp(&b.1.abs());
             worst = (self.residual.iter().enumerate().max_by(by_size)).map_or(0, |(row, _)| row);
             let scale = largest(&x[speeds..]).max(1.0);
-            // Below rounding, or as small as rounding lets it become.
+            // Below rounding, or stagnating close to it.
             if size <= ROUNDING * scale || (size >= last && size <= 1e3 * ROUNDING * scale) {
                 return Ok(());
             }
@@ -124,7 +123,7 @@ impl Positions {
         })
     }
 
-    /// One Newton step; false where the Jacobian is singular.
+    /// One Newton step; false if the Jacobian is singular.
     fn step(&mut self, q: &mut [f64], moving: Moving) -> bool {
         let row = |i: usize| i * self.coordinates..(i + 1) * self.coordinates;
         let dependent = &self.dependent;
@@ -157,8 +156,8 @@ impl Positions {
     }
 }
 
-/// The coordinates that follow from the others where ∂f/∂q is `jacobian`, row by row: the declared ones, or
-/// others that determine themselves much better here.
+/// The dependent coordinates for a Jacobian ∂f/∂q, row by row: the declared ones, or others that are much better
+/// conditioned here.
 pub(crate) fn followers(jacobian: &[f64], coordinates: usize, declared: &[usize]) -> Vec<usize> {
     let mut rows = jacobian.to_vec();
     let mut chosen: Vec<usize> = Vec::with_capacity(declared.len());
@@ -184,7 +183,7 @@ pub(crate) fn followers(jacobian: &[f64], coordinates: usize, declared: &[usize]
 }
 
 fn largest(values: &[f64]) -> f64 {
-    // A NaN stays one.
+    // A NaN propagates.
     let max = |a: f64, b: &f64| {
         if b.abs() > a || b.is_nan() {
             b.abs()

@@ -1,4 +1,4 @@
-//! The scalar of emitted code.
+//! The scalar type of emitted code.
 
 mod dual;
 #[cfg(feature = "std")]
@@ -20,10 +20,10 @@ pub use lanes::Lanes;
 
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// A real number, or something that computes like one: `f32`, `f64`, dual numbers, lanes.
+/// A real number, or a type with the same arithmetic: `f32`, `f64`, dual numbers, lanes.
 ///
-/// Emitted equations ask for nothing else, so one text serves simulation, embedded targets,
-/// automatic differentiation and batches.
+/// Emitted equations are generic in it, so the same source serves simulation, embedded targets, automatic
+/// differentiation and batches.
 pub trait Real:
     Copy
     + Add<Output = Self>

@@ -3,16 +3,16 @@
 use crate::model::{Interpolation, SignalTable};
 use crate::real::{Enclosure, Real};
 
-/// Why a table is not a function of time.
+/// Why a table is not a valid function of time.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum SignalError {
-    /// No rows.
+    /// The table has no rows.
     #[error("signal `{name}` has no rows")]
     Empty {
         /// The signal.
         name: String,
     },
-    /// Not as many values as times.
+    /// The numbers of times and values differ.
     #[error("signal `{name}` has {times} times and {values} values")]
     Lengths {
         /// The signal.
@@ -22,7 +22,7 @@ pub enum SignalError {
         /// Number of values.
         values: usize,
     },
-    /// A time that does not follow its predecessor, or is not finite.
+    /// A time that is not greater than its predecessor, or is not finite.
     #[error("signal `{name}`: time {t} s of row {row} is not later than the row before")]
     TimesNotIncreasing {
         /// The signal.
@@ -44,24 +44,24 @@ pub enum SignalError {
     },
 }
 
-/// A polynomial of the time since some moment, up to the third power.
+/// A cubic polynomial of the time since some reference time.
 pub type Cubic = [f64; 4];
 
-/// Bounds on a polynomial over an interval of the time since its moment.
+/// Bounds on a polynomial over an interval of the time since its reference.
 pub fn enclosed(cubic: Cubic, since: Enclosure) -> Enclosure {
     let [a, b, c, d] = cubic.map(Enclosure::constant);
     a + since * (b + since * (c + since * d))
 }
 
-/// The derivative of a polynomial of some order.
+/// The derivative of a polynomial of a given order.
 pub fn differentiated(polynomial: Cubic, order: u8) -> Cubic {
     (0..order).fold(polynomial, |[_, b, c, d], _| [b, 2.0 * c, 3.0 * d, 0.0])
 }
 
-/// A table ready to be evaluated.
+/// An interpolated table.
 ///
-/// Between two rows it is a polynomial; the rows' times are where an integrator has to stop, see
-/// [`Signal::knots`]. At a row's time the right-hand limit is returned.
+/// Between two rows it is a polynomial; integration steps must end at the times of the rows, see [`Signal::knots`].
+/// At such a time the right-hand limit is returned.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Signal {
     times: Vec<f64>,
@@ -72,7 +72,7 @@ pub struct Signal {
 }
 
 impl Signal {
-    /// Checks a table and, for a spline, solves for its curvatures.
+    /// Checks a table and, for a spline, computes the second derivatives.
     pub fn new(table: &SignalTable) -> Result<Self, SignalError> {
         let name = || table.name.to_string();
         let (times, values) = (table.times.as_ref(), table.values.as_ref());
@@ -127,7 +127,7 @@ impl Signal {
         &self.values
     }
 
-    /// The second derivatives at the knots, from the right: those of a spline, zeros elsewhere.
+    /// The second derivatives at the knots, from the right: those of a spline, otherwise zeros.
     pub fn curvatures(&self) -> &[f64] {
         &self.curvatures
     }

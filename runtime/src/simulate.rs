@@ -1,4 +1,4 @@
-//! The motion of a model under its inputs.
+//! Simulation of a model with given inputs.
 
 mod describe;
 mod prepared;
@@ -21,21 +21,21 @@ pub use prepared::{Prepared, Viewer, observe_together};
 pub use recorder::{Recorder, Sampling};
 pub use validity::{Breach, Limit, Response, Validity};
 
-/// How the equations are integrated.
+/// Integration methods.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Method {
-    /// Order 8 with step-size control.
+    /// Dormand–Prince of order 8 with step-size control.
     Dop853,
-    /// Order 5 with step-size control.
+    /// Dormand–Prince of order 5 with step-size control.
     Dopri5,
-    /// Order 4 with steps of this many seconds; the tolerances do not matter.
+    /// Runge–Kutta of order 4 with a fixed step; the tolerances are ignored.
     Rk4 {
         /// The step in s.
         step: f64,
     },
 }
 
-/// A simulation to be run. The fields are public: set what differs from [`Simulation::new`].
+/// A simulation to be run. Its fields are public; [`Simulation::new`] sets defaults.
 pub struct Simulation<'a> {
     /// Equations of motion.
     pub model: &'a dyn Model,
@@ -51,13 +51,13 @@ pub struct Simulation<'a> {
     pub method: Method,
     /// Its tolerances and limits.
     pub options: Options,
-    /// What is recorded when.
+    /// Recording times.
     pub sampling: Sampling,
-    /// What is recorded besides states and inputs.
+    /// Columns recorded in addition to states and inputs.
     pub extras: Extras,
-    /// What happens where the model stops being valid.
+    /// Response to states at which the model is not valid.
     pub validity: Validity,
-    /// Events to be found.
+    /// Event functions.
     pub events: Vec<Event<'a>>,
     /// Called with the time in s after each step.
     pub progress: Option<Box<dyn FnMut(f64) + 'a>>,
@@ -78,48 +78,48 @@ impl std::fmt::Debug for Simulation<'_> {
     }
 }
 
-/// A motion that was shown to an observer.
+/// The result of a simulation with an observer.
 #[derive(Debug, Clone)]
 pub struct Observed {
-    /// When it ended, in s.
+    /// Final time in s.
     pub t: f64,
-    /// The state there, in SI.
+    /// Final state, in SI.
     pub state: Vec<f64>,
     /// Why it ended.
     pub ending: Result<Ending, Cause>,
-    /// Events found, in the order of time.
+    /// Events located, in the order of time.
     pub events: Vec<EventHit>,
-    /// Limits of the model that it passes.
+    /// Limits of the model that it exceeds.
     pub breaches: Vec<Breach>,
-    /// Its cost.
+    /// Statistics of the integration.
     pub statistics: Statistics,
 }
 
 /// Why there is no complete trajectory.
 #[derive(Debug, Clone, thiserror::Error)]
 pub enum SimulationError {
-    /// A table of the model is not a function of time.
+    /// A table of the model is not a valid function of time.
     #[error(transparent)]
     Signal(#[from] SignalError),
-    /// A vector does not fit the model.
+    /// The length of a vector does not match the model.
     #[error("{what}: {found} numbers given, {expected} needed")]
     Length {
-        /// Which vector.
+        /// Name of the vector.
         what: &'static str,
         /// Length of the model's vector.
         expected: usize,
-        /// Length that was given.
+        /// Length of the given vector.
         found: usize,
     },
     /// The initial state contradicts the position constraints.
     #[error("{message}")]
     Inconsistent {
-        /// How far off.
+        /// Residual of the constraints.
         source: Inconsistent,
-        /// The same in the names of the mechanism, and what to do.
+        /// Description in the names of the mechanism, with a remedy.
         message: String,
     },
-    /// The pseudo-velocities do not determine the motion at the start.
+    /// The pseudo-velocities do not determine the generalised velocities at the start.
     #[error(
         "at the start the pseudo-velocities do not determine the generalised velocities (condition number \
          {condition:.1e}): start elsewhere, or choose pseudo-velocities that are independent there; state:{state}"
@@ -136,7 +136,7 @@ pub enum SimulationError {
         /// The interval in s.
         interval: f64,
     },
-    /// The interval, the tolerances or the step have no answer.
+    /// An invalid interval, tolerance or step.
     #[error("{what} cannot be {value}")]
     Argument {
         /// Name of the argument.
@@ -147,14 +147,14 @@ pub enum SimulationError {
     /// The motion cannot be continued.
     #[error("{}", describe(failure, trajectory.info()))]
     Integration {
-        /// The reason, with time and state.
+        /// The cause, with time and state.
         failure: Failure,
-        /// The motion up to there, with what it cost.
+        /// The motion up to the failure, with its statistics.
         trajectory: Box<Trajectory>,
     },
 }
 
-/// The motion that a recorder saw.
+/// The trajectory of a recorded motion.
 fn recorded(
     model: &dyn Model,
     p: &[f64],
@@ -165,7 +165,7 @@ fn recorded(
     recorder.finish(observed.t, &observed.state);
     let fill = |t: f64, x: &[f64], u: &mut [f64]| inputs.fill(t, x, u);
     let (times, mut states) = (recorder.times, recorder.states);
-    // Between steps the interpolant is as far off as the tolerances allow.
+    // Dense output is as accurate as the tolerances.
     if let Some(mut projection) = projection(model, p, inputs) {
         let rows = states.chunks_mut(observed.state.len().max(1));
         for (&t, state) in times.iter().zip(rows) {
@@ -217,8 +217,8 @@ pub fn run_together<'w>(
 }
 
 impl<'a> Simulation<'a> {
-    /// Ten seconds from the spec's initial state with the spec's parameters and without inputs,
-    /// recorded at the steps, with ranges watched.
+    /// Ten seconds from the spec's initial state with the spec's parameters and zero inputs, recorded at the steps,
+    /// with ranges checked.
     pub fn new(model: &'a dyn Model) -> Self {
         let info = model.info();
         Self {
@@ -250,8 +250,8 @@ impl<'a> Simulation<'a> {
         recorded(model, &p, &inputs, extras, (observed, recorder))
     }
 
-    /// Integrates and shows each step to an observer, who is made for the span and the state at its start; nothing is
-    /// recorded.
+    /// Integrates and passes each step to an observer, which is created for the span and the initial state; nothing
+    /// is recorded.
     pub fn observe<O: Observer>(
         self,
         observer: impl FnOnce([f64; 2], &[f64]) -> O,
@@ -282,7 +282,7 @@ impl<'a> Simulation<'a> {
         Ok((prepared.observed(x, result, own)?, observer))
     }
 
-    /// Runs the integrator of choice; `x` goes from the first to the last state.
+    /// Runs the selected integrator; `x` is overwritten with the final state.
     fn integrate<O: Observer>(
         &self,
         rates: impl FnMut(f64, &[f64], &mut [f64]),

@@ -1,20 +1,20 @@
-//! How many functions switch equations; [`Switching`](crate::model::Switching) tells which.
+//! Numbers of switching functions; see [`Switching`](crate::model::Switching).
 
-/// How many functions switch.
+/// Numbers of switching functions and of functions with pulses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Counts {
-    /// Answers of what time alone decides.
+    /// Signs and truth values that depend on time alone.
     pub answers: usize,
-    /// Functions of time alone that rise and fall.
+    /// Functions of time alone with pulses.
     pub shapes: usize,
-    /// Functions of the state, and of inputs.
+    /// Switching functions of the state and of inputs.
     pub crossings: usize,
-    /// Functions of these that rise and fall.
+    /// Functions of these with pulses.
     pub pulses: usize,
 }
 
 impl Counts {
-    /// Whether nothing switches.
+    /// Whether there are none.
     pub fn is_none(self) -> bool {
         self == Self::default()
     }

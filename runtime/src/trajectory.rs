@@ -1,4 +1,4 @@
-//! The recorded course of a motion.
+//! Trajectories: recorded motions.
 
 use crate::condition::Conditions;
 use crate::contact::ContactForces;
@@ -7,7 +7,7 @@ use crate::model::{At, Contact, Model, ModelInfo, Named, Quantity, Reaction, Row
 use crate::simulate::Breach;
 use std::io::{self, Write};
 
-/// What is recorded besides states and inputs.
+/// Columns recorded in addition to states and inputs.
 // Independent switches.
 #[allow(clippy::struct_excessive_bools)]
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -16,11 +16,11 @@ pub struct Extras {
     pub outputs: bool,
     /// `kinetic_energy`, `potential_energy` in J and the `power` of the other loads in W.
     pub energies: bool,
-    /// `reaction_<name>_x`, `_y`, `_z` in the ground: the force on a point in N; of a constraint
-    /// without a point its multiplier, in W per unit of the constraint, as `_x`.
+    /// `reaction_<name>_x`, `_y`, `_z` in the ground frame: the force on a point in N; of a constraint without a
+    /// point its multiplier, in W per unit of the constraint, as `_x`.
     pub reactions: bool,
-    /// At each contact its `normal_force_<name>`, and where it could slip its
-    /// `tangential_force_<name>` and `friction_demand_<name>`, the tangential over the normal force.
+    /// `normal_force_<name>` of each contact, and where it could slip `tangential_force_<name>` and
+    /// `friction_demand_<name>`, the ratio of tangential to normal force.
     pub contacts: bool,
     /// `condition_<name>` for each of [`Conditions::names`].
     pub conditions: bool,
@@ -29,7 +29,7 @@ pub struct Extras {
 }
 
 impl Extras {
-    /// Everything.
+    /// All columns.
     pub const ALL: Self = Self {
         outputs: true,
         energies: true,
@@ -40,42 +40,42 @@ impl Extras {
     };
 }
 
-/// A column with values that are infinite or no numbers.
+/// A column with infinite or NaN values.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct NotFinite {
     /// The column.
     pub column: usize,
     /// The first such row.
     pub first: usize,
-    /// How many rows have such a value.
+    /// Number of rows with such a value.
     pub rows: usize,
 }
 
 /// Columns of [`Extras::energies`].
 const ENERGIES: usize = 3;
 
-/// Rows over time; each row holds the state, the inputs, and the extras asked for. All in SI.
+/// Rows over time; each row contains the state, the inputs, and the selected extras. All in SI.
 ///
-/// No two columns have the same name: what a spec does not name itself, such as the rate of a
-/// signal or an energy, gets a number where the spec uses its name for something else.
+/// Column names are unique: a name that the spec does not define, such as the rate of a signal or an energy, gets a
+/// numeric suffix if the spec uses it for another quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Trajectory {
     info: ModelInfo,
     parameters: Vec<f64>,
     times: Vec<f64>,
     extras: Extras,
-    /// What condition numbers there are.
+    /// Names of the condition numbers.
     conditions: Vec<String>,
     columns: Vec<Quantity>,
     rows: Vec<f64>,
-    /// Why the motion ended; nothing if it failed.
+    /// Why the motion ended; `None` if it failed.
     pub ending: Option<Ending>,
-    /// Events found.
+    /// Events located.
     pub events: Vec<EventHit>,
-    /// Limits of the model that the motion passes, in the order of time. The last one ended a motion
-    /// whose ending is [`Ending::Stopped`].
+    /// Violations of limits of the model, in the order of time. The last one ended a motion whose ending is
+    /// [`Ending::Stopped`].
     pub breaches: Vec<Breach>,
-    /// Cost of the integration.
+    /// Statistics of the integration.
     pub statistics: Statistics,
 }
 
@@ -162,8 +162,8 @@ impl Trajectory {
         }
     }
 
-    /// The inputs, outputs and energies that are infinite or no numbers, as where an inverse cosine is taken of 1.01:
-    /// each by its column, with the first row and the number of rows.
+    /// The inputs, outputs and energies with infinite or NaN values, as of an inverse cosine of 1.01: each with its
+    /// column, the first such row and their number.
     pub fn not_finite(&self) -> Vec<NotFinite> {
         let info = &self.info;
         let outputs = usize::from(self.extras.outputs) * info.output_len();
@@ -183,22 +183,22 @@ impl Trajectory {
         (0..checked).filter_map(of_column).collect()
     }
 
-    /// The model it belongs to.
+    /// The model.
     pub fn info(&self) -> &ModelInfo {
         &self.info
     }
 
-    /// What is recorded besides states and inputs.
+    /// Columns recorded in addition to states and inputs.
     pub fn extras(&self) -> Extras {
         self.extras
     }
 
-    /// The parameters it was made with, in SI.
+    /// The parameters, in SI.
     pub fn parameters(&self) -> &[f64] {
         &self.parameters
     }
 
-    /// What condition numbers the model has, in the order of [`Conditions::names`].
+    /// Names of the condition numbers, in the order of [`Conditions::names`].
     pub fn conditions(&self) -> &[String] {
         &self.conditions
     }
@@ -218,7 +218,7 @@ impl Trajectory {
         &self.times
     }
 
-    /// What the columns are, without the time.
+    /// The columns without the time.
     pub fn columns(&self) -> &[Quantity] {
         &self.columns
     }
@@ -227,7 +227,7 @@ impl Trajectory {
     ///
     /// # Panics
     ///
-    /// Like the other accessors of rows, if there is no such row.
+    /// Like the other accessors of rows, if the row does not exist.
     pub fn row(&self, row: usize) -> &[f64] {
         &self.rows[row * self.columns.len()..][..self.columns.len()]
     }
@@ -237,12 +237,12 @@ impl Trajectory {
         &self.row(row)[..self.info.state_len()]
     }
 
-    /// The inputs of a row, signals included.
+    /// The inputs of a row, including signals.
     pub fn inputs(&self, row: usize) -> &[f64] {
         &self.row(row)[self.info.state_len()..][..self.info.input_len()]
     }
 
-    /// The constraint forces of a row, three components a reaction in the ground, where they are recorded.
+    /// The constraint forces of a row, three components per reaction in the ground frame, if recorded.
     pub fn reactions(&self, row: usize) -> Option<&[f64]> {
         let Extras {
             outputs, energies, ..
@@ -255,7 +255,7 @@ impl Trajectory {
         self.extras.reactions.then(forces)
     }
 
-    /// The rows with the names of their model; `None` where the trajectory is one of another model.
+    /// The rows with the named entries of their model; `None` if the trajectory is that of another model.
     pub fn named<'a, M: Named>(
         &'a self,
         model: &'a M,
@@ -275,7 +275,7 @@ impl Trajectory {
         self.len().checked_sub(1).map_or(&[], |row| self.state(row))
     }
 
-    /// What is called otherwise because the spec uses the name: what it would be, what it is.
+    /// Columns renamed because the spec uses the name: default name and actual name.
     pub fn renamed(&self) -> Vec<[Text; 2]> {
         let wanted = wanted_columns(&self.info, &self.conditions, self.extras);
         let pairs = wanted.iter().zip(&self.columns);
@@ -285,7 +285,7 @@ impl Trajectory {
             .collect()
     }
 
-    /// Position of a column.
+    /// Index of a column.
     pub fn column_index(&self, name: &str) -> Option<usize> {
         self.columns.iter().position(|column| column.name == name)
     }
@@ -296,7 +296,7 @@ impl Trajectory {
         Some((0..self.len()).map(|row| self.row(row)[index]).collect())
     }
 
-    /// A column over time in its unit for people.
+    /// A column over time in its display unit.
     pub fn column_in_unit(&self, name: &str) -> Option<Vec<f64>> {
         let quantity = &self.columns[self.column_index(name)?];
         Some(
@@ -309,10 +309,9 @@ impl Trajectory {
 
     /// Writes a header row `t,<names>` and one row per time.
     ///
-    /// Values are in the units of the spec, `t` in s. Numbers have the shortest form that reads
-    /// back to the same number; what is not finite is written as `nan`. With
-    /// [`CsvOptions::comments`] lines that begin with `#` and tell the mechanism, the parameters
-    /// and the units precede the header.
+    /// Values are in the units of the spec, `t` in s. Numbers have the shortest form that parses to the same number;
+    /// values that are not finite are written as `nan`. With [`CsvOptions::comments`] lines that begin with `#` and
+    /// contain the mechanism, the parameters and the units precede the header.
     pub fn write_csv(&self, mut to: impl Write, options: CsvOptions) -> io::Result<()> {
         if options.comments {
             self.write_comments(&mut to)?;
@@ -367,7 +366,7 @@ impl Trajectory {
     }
 }
 
-/// How a trajectory is written.
+/// Options of the CSV format.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct CsvOptions {
     /// Whether comment lines precede the header.
@@ -375,7 +374,7 @@ pub struct CsvOptions {
 }
 
 impl Default for CsvOptions {
-    /// With comments, so that the file tells its units.
+    /// With comments, so that the file contains the units.
     fn default() -> Self {
         Self { comments: true }
     }
@@ -383,20 +382,20 @@ impl Default for CsvOptions {
 
 fn write_number(to: &mut impl Write, value: f64) -> io::Result<()> {
     if value.is_finite() {
-        // `Debug` is the shortest form that reads back, with an exponent where that is shorter.
+        // `Debug` gives the shortest form that parses to the same number, with an exponent where that is shorter.
         write!(to, "{value:?}")
     } else {
         write!(to, "nan")
     }
 }
 
-/// The columns that a trajectory of a model has, with names of their own.
+/// The columns of a trajectory of a model, with unique names.
 pub fn recorded(model: &dyn Model, extras: Extras) -> Vec<Quantity> {
     let conditions: Vec<String> = Conditions::names(model).collect();
     columns(model.info(), &conditions, extras)
 }
 
-/// The columns with names of their own.
+/// The columns with unique names.
 fn columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Vec<Quantity> {
     let mut columns = wanted_columns(info, conditions, extras);
     let spec = info.state_len() + info.declared_inputs;
@@ -423,7 +422,7 @@ fn columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Vec<Quant
     columns
 }
 
-/// The columns, some of which may bear the name of another.
+/// The columns with default names, which may not be unique.
 fn wanted_columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Vec<Quantity> {
     let mut columns = info.states.to_vec();
     columns.extend_from_slice(&info.inputs);
@@ -461,7 +460,7 @@ fn wanted_columns(info: &ModelInfo, conditions: &[String], extras: Extras) -> Ve
     columns
 }
 
-/// What a contact has to give, in the unit of its reaction.
+/// Columns of a contact, in the unit of its reaction.
 fn contact_columns(info: &ModelInfo, contact: &Contact) -> impl Iterator<Item = Quantity> {
     let name = &contact.name;
     let reaction = info.reactions.get(contact.reaction);

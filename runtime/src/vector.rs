@@ -1,10 +1,10 @@
-//! What the structs of emitted models have in common: they are vectors with named entries.
+//! Vector arithmetic of the structs of emitted models, which have named entries.
 
-/// Makes a struct `Name<T>` of numbers, whose fields are listed in their order, a vector: it converts
-/// from and to `[T; len]`, and has sums, differences, multiples, and a function of every entry.
+/// Implements vector operations for a struct `Name<T>` of numbers, whose fields are listed in order: conversion from
+/// and to `[T; len]`, sums, differences, scalar multiples, and entrywise maps.
 ///
-/// `vector!(Name { … }, Rates)` adds that `Rates<T>`, times a step of time, moves a `Name<T>`. A vector
-/// without entries is a `Name` without a scalar, and has nothing to compute.
+/// `vector!(Name { … }, Rates)` in addition implements adding `Rates<T>`, times a time step, to a `Name<T>`. A vector
+/// without entries is a `Name` without a scalar, and has no arithmetic.
 ///
 /// ```
 /// #[derive(Debug, Clone, Copy, PartialEq)]
@@ -71,7 +71,7 @@ macro_rules! vector {
         }
 
         impl<T> $name<T> {
-            /// The same in every entry.
+            /// The same value in every entry.
             #[must_use]
             #[inline]
             pub fn splat(value: T) -> Self
@@ -81,14 +81,14 @@ macro_rules! vector {
                 Self { $($field: value),+ }
             }
 
-            /// The entries in their order.
+            /// The entries in order.
             #[must_use]
             #[inline]
             pub fn to_array(self) -> [T; { [$(stringify!($field)),+].len() }] {
                 self.into()
             }
 
-            /// A function of every entry.
+            /// Applies a function to every entry.
             #[must_use]
             #[inline]
             pub fn map<U>(self, function: impl FnMut(T) -> U) -> $name<U> {

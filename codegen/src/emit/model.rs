@@ -1,4 +1,4 @@
-//! `INFO` and the implementation of `Model`, which need the standard library.
+//! Emits `INFO` and the implementation of `Model`, which need the standard library.
 
 use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity, Reaction};
 use proc_macro2::{Literal, TokenStream};
@@ -11,7 +11,7 @@ use super::syntax::{ident, known, number, path};
 use super::types::Types;
 use crate::program::{FunctionKind, Layout, Program, Space};
 
-/// Types of the emitted text beside the results of functions, which the model's own type must not
+/// Names in the emitted text, in addition to the result types of functions, that the type of the model must not
 /// collide with.
 const TYPES: &[&str] = &[
     "Parameters",
@@ -72,7 +72,7 @@ pub(super) fn type_name(types: &Types<'_>) -> String {
     name
 }
 
-/// The statics that `INFO` is made of, and `INFO`.
+/// `INFO` and its statics.
 pub(super) fn info(info: &ModelInfo) -> TokenStream {
     let quantities = |name: &'static str, about: &str, list: &[Quantity]| {
         let name = known(name);
@@ -182,7 +182,7 @@ fn contact(contact: &Contact) -> TokenStream {
     }
 }
 
-/// A quantity, short where it is plain.
+/// A quantity, in short form where defaults apply.
 fn quantity(quantity: &Quantity) -> TokenStream {
     let Quantity {
         name,
@@ -411,7 +411,7 @@ fn method(types: &Types<'_>, kind: FunctionKind, arguments: &[&str]) -> Result<T
     })
 }
 
-/// [`method`] where the program has the function; the trait has an answer for the others.
+/// [`method`] if the program has the function; the trait has a default implementation for the others.
 fn provided(
     types: &Types<'_>,
     kind: FunctionKind,
@@ -464,7 +464,7 @@ fn appell_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     })
 }
 
-/// Energies, the acceleration energy among them.
+/// Energies, including the acceleration energy.
 fn energies_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     required(types.program, FunctionKind::Energies)?;
     let acceleration = required(types.program, FunctionKind::AccelerationEnergy)?;
@@ -486,7 +486,7 @@ fn energies_method(types: &Types<'_>) -> Result<TokenStream, Error> {
     })
 }
 
-/// Position constraints; the trait has an answer for models without any.
+/// Position constraints; the trait has a default implementation for models without any.
 fn position_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     let dependent = &types.program.dependent;
     if dependent.is_empty() {
@@ -505,7 +505,7 @@ fn position_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     })
 }
 
-/// Systems solved with pivoting; the trait has an answer for models without any.
+/// Systems solved with pivoting; the trait has a default implementation for models without any.
 fn system_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     if types.program.function(FunctionKind::Systems).is_none() {
         return Ok(TokenStream::new());
@@ -523,7 +523,7 @@ fn system_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     })
 }
 
-/// The adjoint of the rates; the trait differentiates by differences where there is none.
+/// The adjoint of the rates; the default implementation of the trait uses differences.
 fn adjoint_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     let kind = FunctionKind::Adjoint;
     if types.program.function(kind).is_none() {
@@ -540,7 +540,7 @@ fn adjoint_methods(types: &Types<'_>) -> Result<TokenStream, Error> {
     })
 }
 
-/// A method that writes the gradient of a weighted sum, where the program has it.
+/// A method that writes the gradient of a weighted sum, if the program has it.
 fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> Result<TokenStream, Error> {
     if types.program.function(kind).is_none() {
         return Ok(TokenStream::new());
@@ -557,7 +557,7 @@ fn gradient_method(types: &Types<'_>, kind: FunctionKind) -> Result<TokenStream,
     })
 }
 
-/// A method of given pseudo-accelerations, where the program has it.
+/// A method of given pseudo-accelerations, if the program has it.
 fn inverse_method(
     types: &Types<'_>,
     kind: FunctionKind,
@@ -582,7 +582,7 @@ fn inverse_method(
     })
 }
 
-/// The rows of a trajectory with the names of the model.
+/// The rows of a trajectory with the named entries of the model.
 fn named(types: &Types<'_>, model: &syn::Path) -> TokenStream {
     let [state, inputs, outputs] = [Space::State, Space::Inputs, Space::Outputs]
         .map(|space| types.vector(space, &quote!(f64)));
@@ -611,7 +611,7 @@ fn named(types: &Types<'_>, model: &syn::Path) -> TokenStream {
     }
 }
 
-/// A function that `impl Model` cannot do without.
+/// A function that `impl Model` requires.
 fn required(program: &Program, kind: FunctionKind) -> Result<&crate::program::Function, Error> {
     program.function(kind).ok_or(Error::MissingFunction(kind))
 }

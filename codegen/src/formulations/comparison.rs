@@ -1,8 +1,8 @@
-//! Quantities of the derivation against other formulations.
+//! Comparison of derived quantities with other formulations.
 
 use crate::symbolic::Expr;
 
-/// What the derived equations are held against.
+/// The reference for the derived equations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Against {
     /// The definitions of the pseudo-velocities and the constraints.
@@ -16,7 +16,7 @@ pub enum Against {
 }
 
 impl Against {
-    /// Its name for people.
+    /// Its display name.
     pub const fn word(self) -> &'static str {
         match self {
             Self::Spec => "spec",
@@ -27,41 +27,41 @@ impl Against {
     }
 }
 
-/// How two spellings of one quantity compare.
+/// The result of comparing two expressions of one quantity.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Agreement {
     /// The same functions, by the identity test.
     Identical,
     /// The same values at random points.
     AtPoints {
-        /// At how many.
+        /// Number of points.
         points: usize,
         /// Largest deviation, relative to the largest entry there.
         deviation: f64,
     },
     /// Different values.
     Different {
-        /// The entry that is off most.
+        /// The entry with the largest deviation.
         entry: String,
         /// Its values by the derivation and by the other formulation.
         values: [f64; 2],
         /// Their deviation, relative to the largest entry there.
         deviation: f64,
     },
-    /// No values: at no random point both are finite.
+    /// No comparison: both were finite at no random point.
     Undefined,
-    /// Time was up before.
+    /// The time limit was reached first.
     NotReached,
 }
 
-/// A quantity of the derivation against another formulation.
+/// The comparison of a quantity with another formulation.
 #[derive(Debug, Clone)]
 pub struct Comparison {
-    /// What it is held against.
+    /// The reference.
     pub against: Against,
-    /// What is compared.
+    /// Name of the quantity.
     pub quantity: &'static str,
-    /// With what result.
+    /// The result.
     pub agreement: Agreement,
 }
 
@@ -77,7 +77,7 @@ impl Comparison {
 pub struct FormulationComparison {
     /// One per quantity and formulation.
     pub comparisons: Vec<Comparison>,
-    /// Bound on the probability that any quantity was taken for identical though it is not.
+    /// Bound on the probability that any quantity was wrongly taken for identical.
     pub error_bound: f64,
 }
 

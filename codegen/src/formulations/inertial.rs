@@ -1,5 +1,5 @@
-//! A mechanism in the ground: every vector in components of the inertial frame, every velocity the
-//! derivative of a position.
+//! Kinematics of a mechanism in the ground frame: all vectors in components of the inertial frame, all velocities as
+//! derivatives of positions.
 
 use appell_spec::expr::{Expr as Spec, Motion as Quantity, Response};
 use appell_spec::mechanism::{
@@ -15,10 +15,10 @@ use crate::mechanics::time::TimeDerivative;
 use crate::symbolic::vector::{self, Mat3, Vec3};
 use crate::symbolic::{Expr, Graph, Substitution};
 
-/// An expression of a spec in the graph.
+/// A lowered expression of a spec.
 pub(super) type Lowered<T> = Result<T, DivisionByZero>;
 
-/// Calls a step that may divide by zero and may make many expressions.
+/// Runs a step that may divide by zero and may create many expressions.
 pub(super) fn room<T>(
     algebra: &mut Algebra,
     step: impl FnOnce(&mut Algebra) -> Lowered<T>,
@@ -34,24 +34,24 @@ pub(super) struct Inertial<'a> {
     pub(super) symbols: &'a Symbols,
     /// Generalised velocities: symbols, or functions of the pseudo-velocities.
     pub(super) rates: &'a [Expr],
-    /// From the components of each frame to those of the ground.
+    /// Rotation matrices from each frame to the ground frame.
     rotations: List<FrameId, Mat3>,
     positions: List<PointId, Vec3>,
     velocities: List<PointId, Vec3>,
     /// Angular velocities of the frames.
     turning: List<FrameId, Vec3>,
-    /// Symbols of the forces that loads name, with their values.
+    /// Symbols of the forces that loads define, with their values.
     forces: Vec<(Expr, Expr)>,
 }
 
 /// A scalar constraint on velocities.
 pub(super) struct Row {
-    /// Of which constraint.
+    /// Index of the constraint.
     pub(super) constraint: ConstraintId,
-    /// What has to vanish.
+    /// Vanishes if the constraint is satisfied.
     pub(super) value: Expr,
-    /// Where a unit of its reaction acts: the force in the ground, or the multiplier as first
-    /// component where the constraint has no point.
+    /// Direction of its reaction: the unit force in the ground frame, or the multiplier as first component if the
+    /// constraint has no point.
     pub(super) direction: Vec3,
 }
 
@@ -124,7 +124,7 @@ impl<'a> Inertial<'a> {
         Ok(inertial)
     }
 
-    /// Derivatives along the motion, pseudo-velocities held.
+    /// Derivatives along the motion, with constant pseudo-velocities.
     pub(super) fn time(&self) -> TimeDerivative<'a> {
         TimeDerivative {
             symbols: self.symbols,
@@ -138,7 +138,7 @@ impl<'a> Inertial<'a> {
         self.told(algebra, value)
     }
 
-    /// With kinematic quantities that the spec names in their places; frames and points have none.
+    /// Substitutes kinematic quantities named in the spec; frames and points contain none.
     fn told(&self, algebra: &mut Algebra, value: Expr) -> Lowered<Expr> {
         let is_whole = self.velocities.len() == self.mechanism.points.len();
         let plain = self.symbols.motions.is_empty() && self.forces.is_empty();
@@ -170,14 +170,14 @@ impl<'a> Inertial<'a> {
         told.apply(graph, value).ok_or(DivisionByZero)
     }
 
-    /// A component of a vector that is given in the ground.
+    /// A component of a vector given in the ground frame.
     fn along(&self, graph: &mut Graph, v: Vec3, axis: Axis, frame: FrameId) -> Expr {
         let rotation = &self.rotations[frame];
         let column = [0, 1, 2].map(|row| rotation[row][axis.index()]);
         graph.dot(column, v)
     }
 
-    /// A velocity in the generalised velocities: pseudo-velocities stand for their definitions.
+    /// A velocity in terms of the generalised velocities: pseudo-velocities are replaced by their definitions.
     pub(super) fn velocity_along(&self, algebra: &mut Algebra, velocity: &Spec) -> Lowered<Expr> {
         let velocity = self.lower(algebra, velocity)?;
         let mut defined = Vec::new();
@@ -198,7 +198,7 @@ impl<'a> Inertial<'a> {
         Ok(lowered)
     }
 
-    /// A vector that is written in a frame.
+    /// Transforms a vector from a frame to the ground frame.
     pub(super) fn in_ground(
         &self,
         algebra: &mut Algebra,
@@ -316,7 +316,7 @@ impl<'a> Inertial<'a> {
     }
 }
 
-/// The columns e i ē, e j ē, e k ē: what a unit quaternion makes of the axes.
+/// The columns e i ē, e j ē, e k ē: the images of the axes under a unit quaternion.
 fn products(graph: &mut Graph, e: [Expr; 4]) -> Mat3 {
     let conjugate = [e[0], graph.neg(e[1]), graph.neg(e[2]), graph.neg(e[3])];
     let columns = vector::IDENTITY.map(|[x, y, z]| {

@@ -9,7 +9,7 @@ use crate::mechanics::finding::Outcome;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
 
-/// Kane's equations in the letters of Appell's.
+/// Kane's equations in the notation of Appell's.
 pub(super) struct Kane {
     /// M, row by row.
     pub(super) mass_matrix: Vec<Vec<Expr>>,
@@ -19,11 +19,11 @@ pub(super) struct Kane {
     pub(super) forces: Vec<Expr>,
     /// Pseudo-accelerations.
     pub(super) accelerations: Vec<Expr>,
-    /// Sum of all reactions by Newton's law for the whole, at given pseudo-accelerations.
+    /// Sum of all reactions by Newton's law for the whole mechanism, at given pseudo-accelerations.
     pub(super) total_reaction: Vec3,
 }
 
-/// The motion of a body along every pseudo-velocity.
+/// Partial velocities of a body.
 struct Partial {
     mass: Expr,
     /// ∂v/∂ω of the centre of mass.
@@ -36,8 +36,8 @@ struct Partial {
     inertial: [Vec3; 2],
 }
 
-/// Kane's equations of velocities in terms of the pseudo-velocities; `actual` are the
-/// pseudo-accelerations of Newton's law, `given` those that take the place of an equation.
+/// Kane's equations for velocities in terms of the pseudo-velocities; `actual` are the pseudo-accelerations of
+/// Newton's law, `given` the prescribed ones, which replace an equation.
 pub(super) fn kane(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
@@ -106,7 +106,7 @@ pub(super) fn kane(
     })
 }
 
-/// Lets a drive give the rate of a speed: what that takes of the others is known.
+/// Prescribes the rate of a speed and moves its terms in the other equations to the bias.
 fn give(
     graph: &mut Graph,
     (mass_matrix, bias): (&mut [Vec<Expr>], &mut [Expr]),

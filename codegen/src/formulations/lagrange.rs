@@ -1,6 +1,6 @@
 //! Lagrange's equations with multipliers: `d/dt ∂T/∂q̇ - ∂T/∂q + ∂V/∂q = Q + Cᵀ λ`, `C q̈ + ċ = 0`.
 //!
-//! T is written in all generalised velocities, as if there were no constraints.
+//! T is expressed in all generalised velocities, before constraints are applied.
 
 use super::inertial::{Inertial, Lowered, room};
 use super::loads::{Which, efforts, generalized_force, potential};
@@ -14,10 +14,10 @@ use crate::symbolic::{Expr, Graph, Rational, Substitution};
 pub(super) struct Lagrange {
     /// Generalised accelerations q̈.
     pub(super) accelerations: Vec<Expr>,
-    /// Multiplier of each constraint row; `None` where it does not appear in the equations, because
-    /// geometry or other rows satisfy the row.
+    /// Multiplier of each constraint row; `None` if it does not appear in the equations, because geometry or other
+    /// rows already imply the row.
     pub(super) multipliers: Vec<Option<Expr>>,
-    /// Whether rows follow from others, so that multipliers are a matter of choice.
+    /// Whether rows are redundant, so that the multipliers are not unique.
     pub(super) redundant: bool,
 }
 
@@ -27,7 +27,7 @@ struct Equation {
     right: Expr,
 }
 
-/// Lagrange's equations of velocities with symbols for q̇, solved where q̇ = `rates`. A given pseudo-acceleration
+/// Lagrange's equations for velocities with symbols for q̇, solved at q̇ = `rates`. A prescribed pseudo-acceleration
 /// is a constraint on q̈.
 pub(super) fn lagrange(
     algebra: &mut Algebra,
@@ -55,7 +55,7 @@ pub(super) fn lagrange(
     let active = independent(algebra, &constraints);
     let moving = constraints.iter().filter(|row| row.moves(algebra)).count();
 
-    // M q̈ - Cᵀ λ = right, C q̈ = -ċ, in the motion that the constraints allow.
+    // M q̈ - Cᵀ λ = right, C q̈ = -ċ, for the constrained motion.
     let size = n + active.len();
     let mut matrix = vec![Graph::ZERO; size * size];
     let mut right = Vec::with_capacity(size);
@@ -141,8 +141,8 @@ fn kinetic_energy(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lowered<Exp
     Ok(algebra.graph.scale(&Rational::new(1, 2), twice))
 }
 
-/// The rate of what is a function of coordinates, generalised velocities and time:
-/// `Σ ∂f/∂q̇ q̈ = df/dt - (∂f/∂q q̇ + ∂f/∂t)`, with what stands without q̈ for a df/dt of zero.
+/// The rate of a function of coordinates, generalised velocities and time:
+/// `Σ ∂f/∂q̇ q̈ = df/dt - (∂f/∂q q̇ + ∂f/∂t)`, with the terms without q̈ for df/dt = 0.
 fn differentiated(algebra: &mut Algebra, inertial: &Inertial<'_>, f: Expr) -> Equation {
     let rates = inertial.symbols.rates.iter();
     let coefficients = rates.map(|&rate| algebra.derivative(f, rate)).collect();
@@ -154,14 +154,14 @@ fn differentiated(algebra: &mut Algebra, inertial: &Inertial<'_>, f: Expr) -> Eq
 }
 
 impl Equation {
-    /// Whether any acceleration takes part in it.
+    /// Whether any acceleration appears in it.
     fn moves(&self, algebra: &mut Algebra) -> bool {
         let Algebra { graph, test, .. } = algebra;
         self.coefficients.iter().any(|&c| !test.is_zero(graph, c))
     }
 }
 
-/// The rows that are no sum of rows before them.
+/// The rows that are not linear combinations of preceding rows.
 fn independent(algebra: &mut Algebra, rows: &[Equation]) -> Vec<usize> {
     let mut linear = Vec::with_capacity(rows.len());
     for row in rows {

@@ -1,4 +1,4 @@
-//! Applied loads in the ground: as forces with the velocities along which they work, and as potentials.
+//! Applied loads in the ground frame: as forces with the velocities conjugate to them, and as potentials.
 
 use appell_spec::mechanism::{Connection, LoadKind};
 
@@ -7,24 +7,24 @@ use crate::mechanics::algebra::Algebra;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational};
 
-/// A force, torque or force along a coordinate, and the velocity with which it works.
+/// A force, torque or generalised force, and the velocity conjugate to it.
 #[derive(Clone, Copy)]
 pub(super) struct Effort {
     pub(super) force: Vec3,
     pub(super) velocity: Vec3,
-    /// Whether it is a force on the mechanism from outside.
+    /// Whether it is an external force on the mechanism.
     pub(super) external: bool,
 }
 
-/// Which loads are told as forces.
+/// Loads represented as forces.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Which {
     All,
-    /// Only those that [`potential`] does not tell.
+    /// Only those without a [`potential`].
     WithoutPotential,
 }
 
-/// Everything that acts.
+/// All applied loads.
 pub(super) fn efforts(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
@@ -115,15 +115,14 @@ pub(super) fn efforts(
     Ok(all)
 }
 
-/// The force of a load as expressions name it: in the ground, or as first component where it is one
-/// number.
+/// The force of a load as named in expressions: in the ground frame, or as first component if it is a scalar.
 pub(super) fn acting(
     algebra: &mut Algebra,
     inertial: &Inertial<'_>,
     load: &LoadKind,
 ) -> Lowered<Vec3> {
     let force = match load {
-        // Expressions do not name it.
+        // Cannot be named in expressions.
         LoadKind::Gravity { .. } => Graph::ZERO,
         LoadKind::Force { frame, vector, .. } | LoadKind::Torque { frame, vector, .. } => {
             return inertial.in_ground(algebra, *frame, vector);
@@ -150,10 +149,10 @@ pub(super) fn acting(
     Ok([force, Graph::ZERO, Graph::ZERO])
 }
 
-/// What a spring or damper pulls along.
+/// The line of action of a spring or damper.
 struct Line {
     length: Expr,
-    /// Unit vector along which the length grows, and the velocity of one end from the other.
+    /// Unit vector along which the length grows, and the relative velocity of the ends.
     direction: Vec3,
     velocity: Vec3,
 }
@@ -183,7 +182,7 @@ impl Line {
         }
     }
 
-    /// A tension works against the growth of the length.
+    /// A tension opposes the growth of the length.
     fn under(self, graph: &mut Graph, tension: Expr) -> Effort {
         let pull = graph.neg(tension);
         Effort {
@@ -194,7 +193,7 @@ impl Line {
     }
 }
 
-/// Virtual power in a unit of the velocity `direction`, of which all velocities are linear functions.
+/// Virtual power per unit of the velocity `direction`, in which all velocities are linear.
 pub(super) fn generalized_force(
     algebra: &mut Algebra,
     efforts: &[Effort],

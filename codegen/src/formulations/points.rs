@@ -11,12 +11,11 @@ use crate::symbolic::{Expr, Graph, SymbolId, evaluate};
 
 /// Points at which expressions are compared.
 const COUNT: usize = 24;
-/// Points that are tried: expressions may have no value outside the range that nobody declared.
+/// Maximum number of random points: expressions may be undefined at some if ranges are not declared.
 const MOST: usize = 4 * COUNT;
-/// What rounding in a thousand operations may do to an entry, relative to the size of what was added
-/// up.
+/// Rounding error of a thousand operations in an entry, relative to the magnitude of its terms.
 const ROUNDING: f64 = 1e-9;
-/// Relative change of every argument that shows how much rounding is amplified.
+/// Relative perturbation of every argument, to measure the amplification of rounding errors.
 const DISTURBANCE: f64 = 4.0 * f64::EPSILON;
 
 /// Scales the components of a quaternion.
@@ -27,19 +26,19 @@ fn normalise(point: &mut [f64], quaternion: &[SymbolId]) {
     }
 }
 
-/// Random points, each with a neighbour at the distance of rounding.
+/// Random points, each with a neighbour perturbed by rounding.
 pub(super) struct Points {
     all: Vec<[Vec<f64>; 2]>,
 }
 
 impl Points {
-    /// Angles and lengths without a range stay within ±1.2, velocities within ±2, inputs and signals
-    /// within ±5; parameters are up to 30 % off the spec's.
+    /// Angles and lengths without a range are within ±1.2, velocities within ±2, inputs and signals within ±5;
+    /// parameters are within 30 % of the spec's.
     pub(super) fn new(graph: &Graph, mechanism: &Mechanism, symbols: &Symbols) -> Self {
         let mut random = Random(SplitMix64::seed_from_u64(seed(mechanism)));
         let mut domains: Vec<(Expr, [f64; 2])> = Vec::new();
         for (&symbol, q) in symbols.coordinates.iter().zip(&mechanism.coordinates) {
-            // The middle nine tenths: at the ends of a range the equations may be singular.
+            // The central 90 %: at the ends of a range the equations may be singular.
             let range = q.range.map_or([-1.2, 1.2], |[low, high]| {
                 let edge = 0.05 * (high - low);
                 [low + edge, high - edge]
@@ -89,7 +88,7 @@ impl Points {
         Self { all }
     }
 
-    /// Compares at the first points where all expressions have a value.
+    /// Compares at the first points where all expressions are finite.
     pub(super) fn compare(&self, graph: &Graph, pairs: &[Pair]) -> Agreement {
         let derived = pairs.iter().map(|pair| pair.derived);
         let other = pairs.iter().map(|pair| pair.other);
@@ -103,7 +102,7 @@ impl Points {
         if values.is_empty() {
             return Agreement::Undefined;
         }
-        // What cancels in an entry is as large as its rounding errors say.
+        // Cancelling terms are as large as their rounding errors indicate.
         let noise = values.iter().flat_map(|[a, b]| a.iter().zip(b));
         let noise = noise.fold(0.0, |most: f64, (a, b)| most.max((a - b).abs()));
         let (mut entry, mut worst, mut deviation) = (0, [0.0; 2], 0.0);

@@ -1,4 +1,4 @@
-//! Equations of motion that somebody typed, against the derived ones.
+//! Comparison of user-supplied equations of motion with the derived ones.
 
 use appell_spec::mechanism::Mechanism;
 
@@ -8,21 +8,20 @@ use crate::mechanics::Derivation;
 use crate::mechanics::algebra::Algebra;
 use crate::symbolic::Expr;
 
-/// How typed equations compare with the derived ones.
+/// The result of comparing user-supplied equations with the derived ones.
 #[derive(Debug, Clone)]
 pub struct Typed {
     /// One per equation.
     pub agreements: Vec<Agreement>,
-    /// Bound on the probability that any equation was taken for identical though it is not.
+    /// Bound on the probability that any equation was wrongly taken for identical.
     pub error_bound: f64,
 }
 
-/// Compares rates of states, by their index, with what was typed for them. The expressions belong to the
-/// graph of the derivation.
+/// Compares rates of states, by index, with user-supplied expressions. These belong to the graph of the derivation.
 ///
 /// # Panics
 ///
-/// If there is no state of an index.
+/// If a state index is out of range.
 pub fn compare_typed(
     mechanism: &Mechanism,
     derivation: &Derivation,

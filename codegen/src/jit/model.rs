@@ -1,4 +1,4 @@
-//! A program in machine code, behind the trait of all models.
+//! A program compiled to machine code that implements the trait `Model`.
 
 use std::fmt;
 use std::slice::from_mut;
@@ -18,26 +18,25 @@ use crate::symbolic::Rational;
 
 /// A model compiled in this process.
 ///
-/// The rates are compiled at once, every other function when it is first used: most users need
-/// few of them, and finding a short schedule for all derivatives takes longer than compiling it.
-/// Threads that ask for the same function meanwhile wait for it. A function that cannot be
-/// compiled, because it is too long, is interpreted with the same results; [`Self::interpreted`]
-/// lists these.
+/// The rates are compiled immediately, every other function at its first use: most users need few of them, and
+/// finding a short schedule for all derivatives takes longer than compiling it. Concurrent calls of the same function
+/// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results;
+/// [`Self::interpreted`] lists these.
 ///
-/// [`Self::without`] makes a shorter one for parameters that are zero.
+/// [`Self::without`] specialises it for parameters that are zero.
 pub struct JitModel {
     program: Arc<Program>,
     sizes: Sizes,
     /// By [`FunctionKind`], in the order of its variants.
     parts: Vec<OnDemand>,
-    /// What it is a part of.
+    /// The general model, if this one is specialised.
     whole: Option<Whole>,
 }
 
-/// A model with more in it.
+/// The model without specialisation.
 struct Whole {
     model: Arc<JitModel>,
-    /// The parameters that are zero in the part.
+    /// The parameters that are zero in the specialised model.
     zeros: Vec<usize>,
 }
 
@@ -46,7 +45,7 @@ impl Whole {
         self.zeros.iter().any(|&index| p[index] != 0.0)
     }
 
-    /// The schedule of a function of the part.
+    /// The schedule of a function of the specialised model.
     fn schedule(&self, kind: FunctionKind) -> Schedule {
         let Self { model, zeros } = self;
         let is_zero = |index: usize| zeros.binary_search(&index).is_ok();
@@ -68,10 +67,10 @@ impl Whole {
     }
 }
 
-/// The results that the trait asks for, with their lengths.
+/// The results required by the trait, with their lengths.
 ///
-/// What a function computes beyond them is left out of the machine code. The numbers that remain
-/// do not change: the schedule is that of the whole function.
+/// Other results of a function are omitted from the machine code. The remaining values do not change: the schedule is
+/// that of the whole function.
 fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> {
     let info = &program.info;
     let (n, m, k) = (info.state_len(), info.input_len(), info.parameter_len());
@@ -85,7 +84,7 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
         }
         FunctionKind::GeneralizedForces => vec![("generalized_forces", speeds)],
         FunctionKind::Rates => vec![("rates", n)],
-        // Derivatives, which motions do without; a program may lack them.
+        // Derivatives, not needed for simulation; a program may lack them.
         FunctionKind::Jacobians | FunctionKind::ParameterJacobian
             if program.function(kind).is_none() =>
         {
@@ -122,7 +121,7 @@ fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> 
             let entries = program.systems.iter().map(|size| size * size);
             vec![("matrices", entries.sum())]
         }
-        // What a program may lack.
+        // Optional functions that the program lacks.
         _ if program.function(kind).is_none() => vec![],
         FunctionKind::Adjoint | FunctionKind::OutputAdjoint => {
             vec![("x", n), ("u", m), ("p", k)]
@@ -159,13 +158,13 @@ impl JitModel {
             parts,
             whole: None,
         };
-        // A processor without a compiler shows here and not in the middle of a simulation.
+        // An unsupported processor is detected here and not during a simulation.
         model.part(FunctionKind::Rates).compile(program, sizes)?;
         Ok(model)
     }
 
-    /// The same model, faster as long as some parameters are zero. Derivatives with respect to these are then zero
-    /// too: nobody asks for them. Where one of them is not zero, the whole model is evaluated.
+    /// The same model, specialised for zero parameters. Derivatives with respect to these are omitted and read as
+    /// zero. If one of them is not zero, the general model is evaluated.
     pub fn without(self: &Arc<Self>, zeros: &[usize]) -> Result<Self, JitError> {
         let parts = FunctionKind::ALL
             .iter()
@@ -210,7 +209,7 @@ impl JitModel {
         part
     }
 
-    /// The model that has to be evaluated at some parameters.
+    /// The model to be evaluated at given parameters.
     fn at(&self, p: &[f64]) -> &Self {
         match &self.whole {
             Some(whole) if whole.is_needed(p) => &whole.model,
@@ -234,7 +233,7 @@ impl JitModel {
     }
 }
 
-/// Every method panics where a slice has another length than the trait asks for.
+/// Every method panics if a slice does not have the length required by the trait.
 impl Model for JitModel {
     fn info(&self) -> &ModelInfo {
         &self.program.info
@@ -420,7 +419,7 @@ impl fmt::Debug for JitModel {
 mod tests {
     use super::*;
 
-    /// The kind after another one. A new kind needs an arm here, and with it a place in the list.
+    /// The kind after another one. A new kind needs an arm here, and with it an entry in the list.
     fn after(kind: FunctionKind) -> Option<FunctionKind> {
         use FunctionKind as Kind;
         Some(match kind {

@@ -1,4 +1,4 @@
-//! Numbers with about twice the digits, as sums of two.
+//! Double-double arithmetic: numbers with about twice the digits, as sums of two.
 
 /// Adding and subtracting it rounds a number below 2⁵¹ to an integer; the last bits of the sum are
 /// those of the integer.
@@ -84,7 +84,7 @@ impl Pair {
         sum_of_ordered(high, low + cross)
     }
 
-    /// The quotient by another pair. A quotient of zero or infinity has a `low` without meaning.
+    /// The quotient by another pair. If it is zero or infinite, `low` is meaningless.
     #[inline(always)]
     pub(super) fn over(self, other: Self) -> Self {
         let high = self.high / other.high;

@@ -20,7 +20,7 @@ const SERIES: [f64; 11] = [
     2.091_468_696_808_687_6e-9,
 ];
 
-/// Beyond, eˣ is infinite or zero.
+/// Beyond this, eˣ is infinite or zero.
 const LARGEST: f64 = 710.0;
 const SMALLEST: f64 = -746.0;
 
@@ -30,11 +30,11 @@ pub(super) struct Power {
     pub(super) k: f64,
 }
 
-/// The exponential of `x + low`, where `low` is small beside `x` and |x| ≤ 1000.
+/// The exponential of `x + low`, where |`low`| ≪ |`x`| and |x| ≤ 1000.
 #[inline(always)]
 pub(super) fn power(x: f64, low: f64) -> Power {
     let k = fused(x, core::f64::consts::LOG2_E, ROUNDER) - ROUNDER;
-    // Exact: what is left is a multiple of the last place of ln 2 or x, and less than a half.
+    // Exact: the remainder is a multiple of the last place of ln 2 or x, and less than a half.
     let first = fused(-k, LN_2[0], x);
     let rest = fused(-k, LN_2[1], first);
     let Pair { high: rest, low } = sum(rest, low + fused(-k, LN_2[1], first - rest));
@@ -58,7 +58,7 @@ pub fn exp(x: f64) -> f64 {
 #[inline(always)]
 pub(super) fn exp_of_pair(Pair { high, low }: Pair) -> f64 {
     let x = clamped(high, SMALLEST, LARGEST);
-    // A sum out of range may have a meaningless second part.
+    // `low` may be meaningless after overflow.
     let low = if x == high { low } else { 0.0 };
     let Power { value, k } = power(x, low);
     scaled(value.high, k)

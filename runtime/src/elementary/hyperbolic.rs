@@ -15,7 +15,7 @@ const SERIES: [f64; 8] = [
     2.844_529_742_637_889_5e-15,
 ];
 
-/// Beyond, the hyperbolic sine and cosine are infinite.
+/// Beyond this, the hyperbolic sine and cosine are infinite.
 const LARGEST: f64 = 711.0;
 
 /// Sine and cosine of |x| in units of 2ᵏ.
@@ -34,7 +34,7 @@ fn hyperbolic(x: f64) -> Hyperbolic {
         low: 0.0,
     };
     let inverse = one.over(value);
-    // e⁻ˣ in the unit of eˣ; below its last place it counts no more.
+    // e⁻ˣ in the unit of eˣ; negligible below its last place.
     let unit = power_of_two(-2.0 * clamped(k, 0.0, 500.0));
     let (far, farther) = (inverse.high * unit, inverse.low * unit);
     let half = |high: f64, low: f64| Pair {
@@ -46,7 +46,7 @@ fn hyperbolic(x: f64) -> Hyperbolic {
     let both = sum_of_ordered(value.high, -far);
     let sinh = sum_of_ordered(both.high, both.low + (value.low - farther));
     let (sinh, cosh) = (half(sinh.high, sinh.low), half(cosh.high, cosh.low));
-    // Near zero the difference loses digits.
+    // Near zero the difference suffers from cancellation.
     let square = x * x;
     let near = sum_of_ordered(x, x * square * polynomial(square, SERIES));
     let is_near = x < 1.0;

@@ -1,4 +1,4 @@
-//! Inverse trigonometric functions: all of them angles of a point.
+//! Inverse trigonometric functions, all as the angle of a point.
 
 use super::arithmetic::{Pair, fused, polynomial, square_root, sum};
 use core::f64::consts::{FRAC_PI_2, FRAC_PI_4, PI};
@@ -28,7 +28,7 @@ const QUARTER_LOW: f64 = 3.061_616_997_868_383e-17;
 /// The distances are not both zero, nor both infinite.
 #[inline(always)]
 fn angle(x: Pair, y: Pair, left: bool) -> f64 {
-    // Turned by a multiple of π/4, the point comes near the x axis.
+    // A rotation by a multiple of π/4 maps the point to the vicinity of the x axis.
     let near_x = y.high <= TAN_OF_EIGHTH * x.high;
     let near_y = x.high <= TAN_OF_EIGHTH * y.high;
     let (difference, total) = (sum(y.high, -x.high), sum(x.high, y.high));
@@ -45,7 +45,7 @@ fn angle(x: Pair, y: Pair, left: bool) -> f64 {
         low: pick(x.low, y.low, total.low + (x.low + y.low)),
     };
     let slope = above.over(along);
-    // The correction of a slope that overflowed or vanished means nothing.
+    // The correction is meaningless if the slope overflowed or underflowed.
     let low = if slope.low.abs() <= slope.high.abs() {
         slope.low
     } else {
@@ -92,11 +92,11 @@ pub fn atan(x: f64) -> f64 {
 #[must_use]
 pub fn atan2(y: f64, x: f64) -> f64 {
     let (right, up) = (x.abs(), y.abs());
-    // Far out and far in, points with the same angle take their place.
+    // Very large and very small points are scaled to others with the same angle.
     let larger = if right > up { right } else { up };
     let scale = if larger > 1e300 { 0.25 } else { 1.0 };
     let scale = if larger < 1e-250 { TWO_200 } else { scale };
-    // A point at the origin lies on the x axis, infinite ones on diagonals.
+    // A point at the origin is placed on the x axis, infinite ones on diagonals.
     let (far_right, far_up) = (right == f64::INFINITY, up == f64::INFINITY);
     let right = if far_right { f64::MAX } else { right };
     let up = if far_up { f64::MAX } else { up };
@@ -118,7 +118,7 @@ pub fn atan2(y: f64, x: f64) -> f64 {
 
 const TWO_200: f64 = 1.606_938_044_258_990_3e60;
 
-/// √(1 − x²) with twice the digits.
+/// √(1 − x²) in double-double precision.
 #[inline(always)]
 fn complement(x: f64) -> Pair {
     let square = x * x;

@@ -33,7 +33,7 @@ pub(super) fn split(x: f64) -> Split {
     let bits = if subnormal { x * TWO_54 } else { x }.to_bits();
     let biased = bits.wrapping_sub(ROOT_OF_HALF).wrapping_add(ONE) >> 52;
     let fraction = f64::from_bits(bits.wrapping_sub(biased << 52).wrapping_add(ONE));
-    // An integer behind the bits of 2⁵² is that number plus 2⁵².
+    // An integer in the mantissa bits of 2⁵² represents that number plus 2⁵².
     let number = f64::from_bits(TWO_52.to_bits() | biased) - (TWO_52 + 1023.0);
     Split {
         fraction,
@@ -70,7 +70,7 @@ pub fn ln(x: f64) -> f64 {
     special(x, ln)
 }
 
-/// The logarithm where there is none by formula.
+/// The logarithm of zero, negative, infinite and NaN arguments.
 #[inline(always)]
 pub(super) fn special(x: f64, ln: f64) -> f64 {
     let ln = if x < f64::INFINITY { ln } else { x };

@@ -66,7 +66,7 @@ pub fn powf(x: f64, exponent: f64) -> f64 {
         high: along.high,
         low: fused(ln.low, exponent, along.low),
     });
-    // Zero and infinity have no logarithm to count with.
+    // Zero and infinity have no finite logarithm.
     let falls = exponent < 0.0;
     let (at_zero, at_infinity) = if falls {
         (f64::INFINITY, 0.0)
@@ -104,7 +104,7 @@ struct Parity {
     odd: bool,
 }
 
-/// Whether a number is an integer, and an odd one.
+/// Whether a number is an integer, and whether it is odd.
 #[inline(always)]
 fn parity(x: f64) -> Parity {
     let size = x.abs();

@@ -2,7 +2,7 @@
 
 use super::arithmetic::{Pair, ROUNDER, fused, polynomial, product, sum_of_ordered};
 
-/// Up to this angle, in radians of either sign, straight code is right: 2³⁰.
+/// Largest angle in radians, of either sign, for which the branch-free code is accurate: 2³⁰.
 pub const ORDINARY_ANGLE: f64 = 1_073_741_824.0;
 
 /// π/2 = `HALF_PI[0] + HALF_PI[1] + HALF_PI[2]` to 160 bits.
@@ -33,8 +33,8 @@ const COSINE: [f64; 6] = [
     -1.138_263_154_771_670_8e-11,
 ];
 
-/// An angle modulo π/2, `high − minus_low`, and the number of quarter turns that were taken away, in the
-/// last two bits of `quarters` (Cody and Waite, *Software Manual for the Elementary Functions*, 1980).
+/// An angle modulo π/2, `high − minus_low`, and the number of quarter turns that were subtracted, in the last two
+/// bits of `quarters` (Cody and Waite, *Software Manual for the Elementary Functions*, 1980).
 struct Reduced {
     high: f64,
     minus_low: f64,
@@ -45,10 +45,10 @@ struct Reduced {
 fn reduced(x: f64) -> Reduced {
     let rounded = fused(x, core::f64::consts::FRAC_2_PI, ROUNDER);
     let count = rounded - ROUNDER;
-    // Exact: what is left is a multiple of the last place of π/2 or x, and less than one.
+    // Exact: the remainder is a multiple of the last place of π/2 or x, and less than one.
     let first = fused(-count, HALF_PI[0], x);
     let second = product(count, HALF_PI[1]);
-    // Exact too, also where almost nothing is left.
+    // Exact too, even after severe cancellation.
     let high = first - second.high;
     let rounding = (high - first) + second.high;
     Reduced {
@@ -58,7 +58,7 @@ fn reduced(x: f64) -> Reduced {
     }
 }
 
-/// What `high` has to lose to be the sine of a reduced angle. In this form the sine of −0 is −0.
+/// `high` minus the sine of a reduced angle. In this form the sine of −0 is −0.
 #[inline(always)]
 fn off_sine(angle: &Reduced, square: f64) -> f64 {
     let series = polynomial(square, SINE);
@@ -75,7 +75,7 @@ fn cosine(angle: &Reduced, square: f64) -> [f64; 2] {
     [high, fused(square * square, series, rest)]
 }
 
-/// Sine and cosine of an angle up to [`ORDINARY_ANGLE`]; without meaning beyond.
+/// Sine and cosine of an angle up to [`ORDINARY_ANGLE`]; meaningless beyond.
 #[inline(always)]
 #[must_use]
 pub fn ordinary_sin_cos(x: f64) -> (f64, f64) {
@@ -93,7 +93,7 @@ pub fn ordinary_sin_cos(x: f64) -> (f64, f64) {
     )
 }
 
-/// Tangent of an angle up to [`ORDINARY_ANGLE`]; without meaning beyond.
+/// Tangent of an angle up to [`ORDINARY_ANGLE`]; meaningless beyond.
 #[inline(always)]
 #[must_use]
 fn ordinary_tan(x: f64) -> f64 {
@@ -114,7 +114,7 @@ fn ordinary_tan(x: f64) -> f64 {
     };
     let tan = pick(minus_cos, sin).over(pick(sin, cos));
     let tan = tan.high + tan.low;
-    // The correction takes the sign of zero.
+    // The correction loses the sign of zero.
     if x == 0.0 { x } else { tan }
 }
 

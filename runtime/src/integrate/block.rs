@@ -21,15 +21,15 @@ use crate::lanes::LANES;
 
 /// An adaptive integrator for many motions of one system, eight at a time, with its work arrays.
 ///
-/// Every operation of a step acts on eight motions, and each has a step size, events and an end of its own: it is, bit
-/// for bit, the motion that [`Solver`](super::Solver) gives, whichever others are beside it. Where one ends, the next
-/// takes its lane.
+/// Every operation of a step acts on eight motions. Each motion has its own step size, events and end, and agrees bit
+/// for bit with that of [`Solver`](super::Solver), whatever the other lanes contain. When one ends, the next takes
+/// its lane.
 #[derive(Debug, Clone)]
 pub struct BlockSolver<P> {
     stages: BlockStages,
     clock: Clock,
     dense: DenseOutput,
-    /// States and rates of one motion at both ends of a step.
+    /// State and rates of one motion at both ends of a step.
     ends: [Vec<f64>; 4],
     pair: PhantomData<P>,
 }
@@ -56,7 +56,7 @@ struct Clock {
 }
 
 impl Clock {
-    /// Times of a node. Up to a switching time the rates are those before it.
+    /// Times of a node, not beyond a switching time, before which the old rates apply.
     fn at(&self, node: f64) -> Block {
         let mut times = self.last;
         for (l, time) in times.iter_mut().enumerate() {
@@ -74,27 +74,27 @@ impl Clock {
         times
     }
 
-    /// A lane begins a step.
+    /// Sets the step of a lane.
     fn set(&mut self, l: usize, t: f64, stride: Stride) {
         (self.t[l], self.h[l]) = (t, stride.h);
         (self.t_new[l], self.last[l]) = (stride.t_new, stride.last);
     }
 
-    /// A lane without a motion stands still where another one is.
+    /// An empty lane copies the time of another one, with a step of zero.
     fn idle(&mut self, l: usize, beside: usize) {
         let t = self.t[beside];
         self.set(l, t, Stride::none(t));
     }
 }
 
-/// What a motion remembers of its steps.
+/// Step-size control of one motion.
 struct Steps {
     size: StepSize,
-    /// The step that is suggested; guessed where it is not known.
+    /// The proposed step; estimated as a first step if unknown.
     next_h: Option<f64>,
-    /// A guess may not be longer: the step before was rejected.
+    /// Upper bound on an estimated first step after a rejection.
     longest: f64,
-    /// Whether the step that is tried is a guess.
+    /// Whether the current step is an estimated first step.
     is_guess: bool,
 }
 
@@ -120,9 +120,8 @@ impl<P: EmbeddedPair> BlockSolver<P> {
 
     /// Integrates ẋ = f(t, x) for each motion; returns how each ended.
     ///
-    /// `f(which, places, rates)` writes the rates of the motions `which`, component by component as their states are
-    /// given. Where fewer than eight are left, some lanes are evaluated beside others, and what is written there is
-    /// ignored.
+    /// `f(which, places, rates)` writes the rates of the motions `which`, component by component in the layout of
+    /// their states. With fewer than eight motions, empty lanes hold copies and their rates are ignored.
     ///
     /// # Panics
     ///
@@ -183,14 +182,14 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         all(results)
     }
 
-    /// Rates where motions begin or begin anew, and the step that each tries next.
+    /// Evaluates the rates at starts and restarts, and sets the next step of each motion.
     fn start<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
     where
         F: FnMut(Places<'_>, &mut [Block]),
         O: Observer,
     {
         if on_their_way(lanes).any(|(_, lane)| lane.restart) {
-            // Stage 1 serves as a place to write: the rates of the others are known.
+            // Stage 1 is used as scratch space: the rates of the others are known.
             for (l, lane) in on_their_way(lanes) {
                 self.clock.t[l] = lane.t;
             }
@@ -214,7 +213,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
             self.first_steps(f, lanes, options);
         }
         for (l, lane) in on_their_way(lanes) {
-            // Every motion on its way has a step by now.
+            // Every active motion has a step by now.
             let h = lane.steps.next_h.unwrap_or(0.0);
             lane.stride = lane.watcher.stops.stride(lane.t, h);
             lane.steps.next_h = Some(h);
@@ -222,7 +221,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         }
     }
 
-    /// First steps from the sizes of x, ẋ and ẍ, not beyond the next stops.
+    /// First steps from the norms of x, ẋ and ẍ, limited by the next stops.
     fn first_steps<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options)
     where
         F: FnMut(Places<'_>, &mut [Block]),
@@ -230,7 +229,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
     {
         let begins = |(_, lane): &(usize, &mut Lane<'_, '_, O>)| lane.steps.next_h.is_none();
         let mut t = self.clock.t;
-        // Those whose step has to be guessed: guess, longest step.
+        // Lanes that need a first step: initial estimate, longest step.
         let mut guesses: [Option<[f64; 2]>; LANES] = [None; LANES];
         for (l, lane) in on_their_way(lanes).filter(begins) {
             let stop = lane.watcher.stops.known_after(lane.t);
@@ -267,7 +266,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         }
     }
 
-    /// Norms of a state and its rates over the tolerances, which stay in the second of the ends.
+    /// Weighted norms of a state and its rates, with the weights in the second of the ends.
     fn sizes(&mut self, l: usize, options: &Options) -> [f64; 2] {
         let [x, scale, ..] = &mut self.ends;
         gather(&self.stages.x, l, x);
@@ -278,7 +277,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         [norm(x.iter().copied(), scale), norm(rates, scale)]
     }
 
-    /// All stages of a step; the errors over the tolerances, NaN where a new state is not finite.
+    /// All stages of a step; the weighted errors, NaN where a new state is not finite.
     fn attempt<F, O>(&mut self, f: &mut F, lanes: &mut Lanes<'_, '_, O>, options: &Options) -> Block
     where
         F: FnMut(Places<'_>, &mut [Block]),
@@ -323,7 +322,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         }
     }
 
-    /// Accepts the steps that are exact enough and shows them to their watchers; shortens the others.
+    /// Accepts steps with errors within the tolerances and passes them to their watchers; rejects the others.
     fn decide<F, O>(
         &mut self,
         f: &mut F,
@@ -356,7 +355,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         if !P::ERROR_USES_NEW_RATES {
             self.new_rates(f, lanes, accepted);
         }
-        // Whether the step is accepted, where that can be told.
+        // Whether the step is accepted; `None` if dense output is needed to decide.
         let accept = |this: &mut Self, l: usize, lane: &mut Lane<'_, '_, O>, within: bool| {
             let ends = ends::<P>(&this.stages, &mut this.ends, l, lane);
             if within {
@@ -386,7 +385,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
                 scatter(lane.x, l, &mut this.stages.x_new);
             }
             let suggested = lane.stride.h * lane.steps.size.accepted(errors[l], powers[l]);
-            // A step cut short to land says nothing against the longer one.
+            // A step shortened to end at a stop is no reason to propose a shorter one.
             let suggested = match lane.steps.next_h {
                 Some(h) if lane.stride.lands || switched.is_some() => suggested.max(h),
                 _ => suggested,
@@ -417,7 +416,7 @@ impl<P: EmbeddedPair> BlockSolver<P> {
         self.stages.advance(accepted, new_rates);
     }
 
-    /// Why no step of a motion is accepted.
+    /// The cause of failure if no step of a motion is accepted.
     fn stuck(&self, l: usize, h: f64, error: f64) -> Cause {
         let mut stages = 1..P::TABLEAU.new_rates();
         let not_finite = stages

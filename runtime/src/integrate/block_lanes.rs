@@ -1,4 +1,4 @@
-//! The lanes of a block, and the motions that have them one after the other.
+//! The lanes of a block, and the motions assigned to them one after the other.
 
 use super::block_stages::Block;
 use super::error::{Cause, IntegrationError};
@@ -12,19 +12,19 @@ use crate::lanes::LANES;
 pub struct BlockMotion<'a, O> {
     /// Start and end in s.
     pub span: [f64; 2],
-    /// The initial state; leaves with the last one, also after an error.
+    /// The initial state; overwritten with the final one, also after an error.
     pub x: Vec<f64>,
     /// Its parameters.
     pub parameters: &'a [f64],
     /// Switching times, ranges and events.
     pub watch: Watch<'a>,
-    /// Who sees the accepted steps.
+    /// Receives the accepted steps.
     pub observer: O,
 }
 
-/// A motion on its way; `S` is what the method remembers of its steps.
+/// An active motion; `S` is the step-size control of the method.
 pub(super) struct Lane<'m, 'a, O, S> {
-    /// Its number.
+    /// Index of the motion.
     pub(super) motion: usize,
     pub(super) x: &'m mut [f64],
     pub(super) watcher: Watcher<'m, 'a, O>,
@@ -76,11 +76,11 @@ impl<'m, 'a, O: Observer, S> Lane<'m, 'a, O, S> {
 /// The lanes of a block; those without a motion are empty.
 pub(super) type Lanes<'m, 'a, O, S> = [Option<Lane<'m, 'a, O, S>>; LANES];
 
-/// What became of motions, as far as they have ended.
+/// Results of the motions that have ended.
 pub(super) type Results = [Option<Result<Outcome, IntegrationError>>];
 
-/// Concludes the motions that have ended, and begins others in their lanes as long as there are some. A lane in use;
-/// nothing once all have ended.
+/// Concludes the motions that have ended and assigns waiting ones to their lanes. Returns an active lane, or `None`
+/// once all motions have ended.
 pub(super) fn refill<'m, 'a, O: Observer, S>(
     lanes: &mut Lanes<'m, 'a, O, S>,
     begin: &mut impl FnMut(usize) -> Option<Lane<'m, 'a, O, S>>,
@@ -101,12 +101,12 @@ pub(super) fn refill<'m, 'a, O: Observer, S>(
     lanes.iter().position(Option::is_some)
 }
 
-/// Lanes without a motion.
+/// Empty lanes.
 pub(super) fn idle_lanes<O, S>(lanes: &Lanes<'_, '_, O, S>) -> Vec<usize> {
     (0..LANES).filter(|&l| lanes[l].is_none()).collect()
 }
 
-/// The motions that have not ended, by their lanes.
+/// The active motions, with their lanes.
 pub(super) fn on_their_way<'l, 'm, 'a, O, S>(
     lanes: &'l mut Lanes<'m, 'a, O, S>,
 ) -> impl Iterator<Item = (usize, &'l mut Lane<'m, 'a, O, S>)> {
@@ -119,7 +119,7 @@ pub(super) fn on_their_way<'l, 'm, 'a, O, S>(
 pub(super) fn all(
     results: Vec<Option<Result<Outcome, IntegrationError>>>,
 ) -> Vec<Result<Outcome, IntegrationError>> {
-    // None is left out: lanes are refilled until nothing waits.
+    // Every motion has a result: lanes are refilled until none is waiting.
     let unseen = || {
         Err(IntegrationError::InvalidArgument {
             what: "motion",
@@ -132,14 +132,14 @@ pub(super) fn all(
         .collect()
 }
 
-/// The numbers of a lane.
+/// Copies the entries of a lane.
 pub(super) fn gather(blocks: &[Block], l: usize, to: &mut [f64]) {
     for (to, block) in to.iter_mut().zip(blocks) {
         *to = block[l];
     }
 }
 
-/// Writes the numbers of a lane.
+/// Writes the entries of a lane.
 pub(super) fn scatter(from: &[f64], l: usize, blocks: &mut [Block]) {
     for (from, block) in from.iter().zip(blocks) {
         block[l] = *from;

@@ -1,9 +1,9 @@
 //! Explicit Runge–Kutta steps of eight motions at once: the arrays they work on.
 //!
-//! Every sum is formed in the order of [`super::tableau::Stages`], so that a motion has the same bits in
-//! a block as alone.
+//! Every sum is formed in the order of [`super::tableau::Stages`], so that a motion in a block agrees bit for bit
+//! with one integrated alone.
 
-// What is not inlined is not compiled for the vectors of the processor.
+// Only inlined functions are compiled for the vector instructions of the processor.
 #![allow(clippy::inline_always)]
 
 use super::options::Options;
@@ -13,7 +13,7 @@ use crate::lanes::{LANES, dispatch};
 /// One number for each of eight motions.
 pub(super) type Block = [f64; LANES];
 
-/// Where eight motions are, one in each lane: state i of the motion in lane l is `x[i][l]`.
+/// Evaluation points of eight motions, one in each lane: state i of the motion in lane l is `x[i][l]`.
 #[derive(Debug, Clone, Copy)]
 pub struct Places<'a> {
     /// Times in s.
@@ -24,7 +24,7 @@ pub struct Places<'a> {
     pub p: &'a [[f64; LANES]],
 }
 
-/// Accumulators of a mean square, as of a motion alone.
+/// Number of accumulators of a mean square, as for a single motion.
 const SUMS: usize = 4;
 
 /// States and stage rates of one step of eight motions, allocated once.
@@ -42,7 +42,7 @@ pub(super) struct BlockStages {
     x_stage: Vec<Block>,
     /// Stage rates one after the other.
     rates: Vec<Block>,
-    /// The tolerated errors.
+    /// The error scales.
     scale: Vec<Block>,
 }
 
@@ -92,7 +92,7 @@ impl BlockStages {
         );
     }
 
-    /// Takes over the rates of one motion in a stage as those of another stage.
+    /// Copies the rates of one motion from one stage to another.
     pub(super) fn copy_rates(&mut self, lane: usize, from: usize, to: usize) {
         for i in 0..self.n {
             self.rates[to * self.n + i][lane] = self.rates[from * self.n + i][lane];
@@ -113,7 +113,7 @@ impl BlockStages {
         );
     }
 
-    /// All stages after the first, and the new states x + h Σ b k. `time` tells the times of a node.
+    /// All stages after the first, and the new states x + h Σ b k. `time` returns the times of a node.
     #[inline]
     pub(super) fn step<F>(
         &mut self,
@@ -137,7 +137,7 @@ impl BlockStages {
         }
     }
 
-    /// The new states of some motions and their rates become the start of their next steps.
+    /// The new states of the selected motions and their rates become the start of their next steps.
     pub(super) fn advance(&mut self, which: [bool; LANES], new_rates: usize) {
         let (rates, new_rates) = self.rates.split_at_mut(new_rates * self.n);
         for (old, new) in [(&mut self.x[..], &self.x_new[..]), (rates, new_rates)] {
@@ -161,7 +161,7 @@ impl BlockStages {
         );
     }
 
-    /// A motion begins in a lane.
+    /// Sets the initial state and parameters of a lane.
     pub(super) fn begin(&mut self, lane: usize, x: &[f64], p: &[f64]) {
         self.p.resize(p.len(), [0.0; LANES]);
         let blocks = self.x.iter_mut().chain(&mut self.p);
@@ -170,7 +170,7 @@ impl BlockStages {
         }
     }
 
-    /// A lane takes over parameters, state and rates of another one.
+    /// Copies parameters, state and rates to another lane.
     pub(super) fn copy(&mut self, from: usize, to: usize) {
         let blocks = self.x.iter_mut().chain(&mut self.rates[..self.n]);
         for block in blocks.chain(&mut self.p) {
@@ -178,13 +178,13 @@ impl BlockStages {
         }
     }
 
-    /// Sets the tolerated errors from the sizes of the states at both ends; tells which new states are finite.
+    /// Sets the error scales from the states at both ends; returns which new states are finite.
     pub(super) fn scale_by(&mut self, options: &Options) -> [bool; LANES] {
         let mut finite = [true; LANES];
         dispatch(
             #[inline(always)]
             || {
-                // Zero unless something is infinite or not a number.
+                // Zero unless an entry is infinite or NaN.
                 let mut zero = [0.0; LANES];
                 let ends = self.x.iter().zip(&self.x_new);
                 for (scale, (x, x_new)) in self.scale.iter_mut().zip(ends) {
@@ -201,7 +201,7 @@ impl BlockStages {
         finite
     }
 
-    /// Mean square of Σ w k over the tolerated errors, of all motions.
+    /// Mean square of Σ w k over the error scales, of all motions.
     pub(super) fn mean_squares(&self, row: Row) -> Block {
         let mut squares = [0.0; LANES];
         dispatch(
@@ -231,7 +231,7 @@ impl BlockStages {
             let [combination] = combinations::<1>(row, &self.rates, self.n, first + i);
             add_squares(sums, &combination, scale);
         }
-        // In the order of a motion alone.
+        // In the order of summation of a single motion.
         let mut all = [0.0; LANES];
         for sums in &sums {
             for lane in 0..LANES {
@@ -273,7 +273,7 @@ fn add_squares(sums: &mut Block, combination: &Block, scale: &Block) {
     }
 }
 
-/// Components that are summed side by side, so that no sum waits for another.
+/// Components that are summed in parallel, to hide the latency of the additions.
 const PANEL: usize = 4;
 
 /// `out` = x + h Σ w k.

@@ -1,8 +1,8 @@
-//! Where the state of a motion switches its equations within a step, and how long steps may be lest they pass over
-//! what the state does.
+//! Zeros of switching functions of the state within a step, and step sizes that do not step over pulses of functions
+//! of the state.
 //!
-//! Bounds on the switching functions along the interpolant decide: where they keep a function off zero it does not
-//! switch, where they keep its slope off zero it switches once at most, and what remains is halved.
+//! Interval bounds along the interpolant decide: where they exclude zero from a function there is no switch, where
+//! they exclude zero from its slope there is at most one, and any other interval is bisected.
 
 use super::dense_output::{DenseOutput, Ends};
 use super::pace::Pace;
@@ -11,15 +11,15 @@ use super::switches::{Stretch, Switches};
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
-/// Stretches that are looked at in one step; what is not decided then is left to samples.
+/// Most intervals examined in one step; beyond that the functions are sampled.
 const MOST_STRETCHES: usize = 512;
-/// The shortest of them, in parts of the step.
+/// The shortest of them, as a fraction of the step.
 const SHORTEST: f64 = 1e-13;
-/// The time after which a function that begins at zero has a sign, in parts of the step.
+/// The time after which the sign of a function that is zero at the start is taken, as a fraction of the step.
 const SOON: f64 = 1e-9;
-/// Rounding of a state in the equations, relative to it.
+/// Relative rounding error of a state in the equations.
 const BEYOND: f64 = 64.0 * f64::EPSILON;
-/// The arrays in which crossings are sought.
+/// Work arrays of the search.
 #[derive(Debug, Default)]
 pub(super) struct CrossingSearch {
     /// Signs at the start of the step.
@@ -43,17 +43,17 @@ impl CrossingSearch {
         }
     }
 
-    /// Whether the state switches the equations.
+    /// Whether there are switching functions of the state.
     pub(super) fn has_crossings(&self) -> bool {
         !self.signs.is_empty()
     }
 
-    /// Whether the state lets functions rise and fall.
+    /// Whether there are functions of the state with pulses.
     pub(super) fn has_pulses(&self) -> bool {
         self.pulses > 0
     }
 
-    /// The first time within a step at which its interpolant switches the equations, with the state there.
+    /// The first zero of a switching function along the interpolant of a step, with the state there.
     pub(super) fn first(
         &mut self,
         switches: &mut Switches<'_>,
@@ -75,13 +75,13 @@ impl CrossingSearch {
             first = change.map(|[_, other]| other).or(first);
         }
         let first = first?;
-        // As far beyond as rounding may hide it from the rates.
+        // Beyond the zero by the rounding error, so that the rates see the new sign.
         let t_new = (first + BEYOND * first.abs()).min(t_new);
         dense.state(t_new, &mut self.x);
         Some((t_new, &self.x))
     }
 
-    /// The longest step from its start that passes over nothing that the state does along an interpolant.
+    /// The longest step from its start that does not step over a pulse along an interpolant.
     pub(super) fn longest(
         &mut self,
         switches: &mut Switches<'_>,
@@ -147,7 +147,7 @@ impl CrossingSearch {
         &self.bounds
     }
 
-    /// Takes the signs at the start of a step.
+    /// Determines the signs at the start of a step.
     fn start(&mut self, switches: &mut Switches<'_>, ends: &Ends<'_>, dense: &DenseOutput) {
         let count = self.signs.len();
         let [t, t_new] = ends.t;
@@ -155,7 +155,7 @@ impl CrossingSearch {
         (switches.crossings)(t, ends.x[0], &mut self.values);
         self.signs.copy_from_slice(&self.values[..count]);
         if self.signs.contains(&0.0) {
-            // Whoever begins at zero has the sign that follows.
+            // A function that is zero at the start takes the sign just after it.
             self.at(switches, t + (t_new - t) * SOON, dense);
             for (sign, value) in self.signs.iter_mut().zip(&self.values) {
                 if *sign == 0.0 {
@@ -165,8 +165,8 @@ impl CrossingSearch {
         }
     }
 
-    /// The first time at which one of the functions switches of which there are bounds. These are marked, unless it
-    /// remains open.
+    /// The first zero among the functions that have bounds. These are marked as known, unless the search is
+    /// inconclusive.
     fn by_bounds(
         &mut self,
         switches: &mut Switches<'_>,

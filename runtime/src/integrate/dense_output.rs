@@ -1,4 +1,4 @@
-//! The solution between the ends of a step.
+//! Dense output: the solution between the ends of a step.
 
 use crate::real::Enclosure;
 
@@ -18,7 +18,7 @@ pub(super) const HERMITE: usize = 4;
 
 /// A polynomial through both ends of the current step.
 ///
-/// In θ, the part of the step that has passed, and with θ̄ = 1 − θ, it reads c₀ + θ (c₁ + θ̄ (c₂ + θ (c₃ + θ̄ (…
+/// In θ, the fraction of the step, and θ̄ = 1 − θ, it reads c₀ + θ (c₁ + θ̄ (c₂ + θ (c₃ + θ̄ (…
 /// (Hairer, Nørsett and Wanner, section II.6). Four coefficients are the cubic Hermite
 /// polynomial, five belong to order 5 and eight to order 8(5,3).
 #[derive(Debug, Clone, Default)]
@@ -31,8 +31,8 @@ pub struct DenseOutput {
 }
 
 impl DenseOutput {
-    /// The state at `t`, written to `x`, as long as the state. Meant for times within the step;
-    /// elsewhere the polynomial is extrapolated.
+    /// The state at `t`, written to `x`, which has as many entries. Valid within the step; elsewhere the polynomial
+    /// is extrapolated.
     pub fn state(&self, t: f64, x: &mut [f64]) {
         let factors = self.factors(t);
         let mut coefficients = self
@@ -74,13 +74,13 @@ impl DenseOutput {
         (value, slope)
     }
 
-    /// What multiplies everything after coefficients 0, 2, … and after 1, 3, …: θ and θ̄.
+    /// The factors in front of the coefficients after 0, 2, … and after 1, 3, …: θ and θ̄.
     fn factors(&self, t: f64) -> [f64; 2] {
         let theta = (t - self.t_old) / self.h;
         [theta, 1.0 - theta]
     }
 
-    /// How many states it has.
+    /// Number of states.
     pub(super) fn states(&self) -> usize {
         self.n
     }
@@ -91,7 +91,7 @@ impl DenseOutput {
         let factors = self.factors(from + half);
         let turns = [half / self.h, -half / self.h];
         let orders = self.coefficients.len() / self.n.max(1);
-        // In the departure from the middle, in halves of the time.
+        // In the distance from the midpoint, in units of half the interval.
         let mut polynomial = vec![0.0; orders];
         x.clear();
         for i in 0..self.n {
@@ -110,15 +110,14 @@ impl DenseOutput {
         }
     }
 
-    /// Sizes the polynomial for `n` states and `count` coefficients.
+    /// Allocates the polynomial for `n` states and `count` coefficients.
     pub(super) fn prepare(&mut self, n: usize, count: usize) {
         self.n = n;
         self.coefficients.clear();
         self.coefficients.resize(n * count, 0.0);
     }
 
-    /// Sets the interval and the four coefficients of the cubic Hermite polynomial, which every
-    /// method starts from.
+    /// Sets the interval and the four coefficients of the cubic Hermite polynomial, common to all methods.
     pub(super) fn set_hermite(&mut self, ends: &Ends<'_>) {
         let n = self.n;
         let Ends { t, x, rates } = ends;

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 /// Why there is no [`Outcome`](super::Outcome).
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 pub enum IntegrationError {
-    /// A request that has no answer, such as an interval that ends before it begins.
+    /// An invalid argument, such as an interval that ends before it begins.
     #[error("{what} cannot be {value}")]
     InvalidArgument {
         /// Name of the argument.
@@ -20,7 +20,7 @@ pub enum IntegrationError {
     Failure(#[from] Failure),
 }
 
-/// A motion that cannot be continued: the reason, and how far it came.
+/// A motion that cannot be continued: the cause, the time and the state reached.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("at t = {t} s, x = {}: {cause}", list(state))]
 pub struct Failure {
@@ -30,22 +30,22 @@ pub struct Failure {
     pub t: f64,
     /// State at that time, in SI.
     pub state: Vec<f64>,
-    /// Events found until then, in the order of time.
+    /// Events located until then, in the order of time.
     pub hits: Vec<EventHit>,
-    /// What it cost until then.
+    /// Statistics up to that time.
     pub statistics: Statistics,
 }
 
 /// The reason of a failure.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 pub enum Cause {
-    /// The rates stop being numbers, however short the step, or the start is none.
+    /// The rates are not finite, however short the step, or the initial state is not.
     #[error("state {component} or its rate is not finite")]
     NonFinite {
         /// The first state whose rate, or whose value, is infinite or not a number.
         component: usize,
     },
-    /// The tolerances ask for a step that no longer changes the time.
+    /// The tolerances require a step that no longer changes the time.
     #[error(
         "the step shrank to {h} s; the motion is singular here, or stiffer than this method can follow"
     )]
@@ -53,7 +53,7 @@ pub enum Cause {
         /// The step that would have been needed, in s.
         h: f64,
     },
-    /// The equations are switched to and fro without getting on.
+    /// The equations switch infinitely often within a finite time (Zeno behaviour or chattering).
     #[error(
         "the equations are switched to and fro without end, by time ever faster or because what they switch drives the \
          motion back to where it is switched; smooth it, as `smooth_sign` does"

@@ -1,9 +1,9 @@
-//! Where a function of the motion crosses zero.
+//! Zeros of functions along a motion.
 
 use super::dense_output::{DenseOutput, Ends};
 use super::pieces::{Piece, Sought, Walk};
 
-/// Which crossings of zero count.
+/// Sign changes that count as events.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Direction {
     /// From negative to positive.
@@ -24,27 +24,27 @@ impl Direction {
     }
 }
 
-/// Whether a function may do more in a piece of a step, which starts at a time in s, than its values show; boxed.
+/// Whether a function may vary more within a piece than its values show, given the start of the step; boxed.
 pub type HidingFunction<'a> = Box<dyn FnMut(&Piece, f64, &DenseOutput) -> bool + 'a>;
 /// g(t, x), boxed.
 pub type EventFunction<'a> = Box<dyn FnMut(f64, &[f64]) -> f64 + 'a>;
 
-/// A function g(t, x) whose zeros are wanted.
+/// An event function g(t, x), whose zeros are located.
 ///
-/// A crossing counts when g reaches zero or changes its sign. Where g is zero at the start of
-/// the integration there is no crossing: its sign is taken from the first instant it has one.
-/// Within a step g is resolved to some 1e-7 of its size; what lies between the samples of a shortest piece, which are up
-/// to a fifth of `longest` apart, can be missed unless `hides` tells.
+/// An event occurs when g reaches zero or changes its sign. A zero at the start of the integration is no event: the
+/// first nonzero value determines the sign. Within a step g is resolved to about 1e-7 of its magnitude; variations
+/// between the samples of a shortest piece, up to a fifth of `longest` apart, can be missed unless `hides` detects
+/// them.
 pub struct Event<'a> {
     /// The function.
     pub function: EventFunction<'a>,
-    /// Which crossings count.
+    /// Sign changes that count.
     pub direction: Direction,
-    /// Whether the integration ends at the first crossing that counts.
+    /// Whether the integration ends at the first event.
     pub terminal: bool,
-    /// The longest time in s on which the function is taken for a polynomial, however long the steps are.
+    /// The longest interval in s on which the function is approximated by one polynomial.
     pub longest: f64,
-    /// Tells whether the function may do more in a piece of a step than its values show, where that is known.
+    /// Whether the function may vary within a piece of a step more than its values show, where that is known.
     pub hides: Option<HidingFunction<'a>>,
 }
 
@@ -79,12 +79,12 @@ impl std::fmt::Debug for Event<'_> {
     }
 }
 
-/// A crossing that was found.
+/// A located event.
 #[derive(Debug, Clone, PartialEq)]
 pub struct EventHit {
     /// Index of the event.
     pub event: usize,
-    /// When, in s.
+    /// Time in s.
     pub t: f64,
     /// State at that time.
     pub state: Vec<f64>,
@@ -94,7 +94,7 @@ pub struct EventHit {
 #[derive(Debug, Default)]
 pub(super) struct Crossings {
     signs: Vec<i8>,
-    /// The largest absolute value of each so far.
+    /// The largest absolute value of each function so far.
     sizes: Vec<f64>,
     x: Vec<f64>,
     found: Vec<(f64, usize)>,
@@ -102,7 +102,7 @@ pub(super) struct Crossings {
 }
 
 impl Crossings {
-    /// Takes the signs at the start.
+    /// Initialises the signs.
     pub(super) fn start(&mut self, events: &mut [Event<'_>], t: f64, x: &[f64]) {
         self.x.clear();
         self.x.resize(x.len(), 0.0);
@@ -116,7 +116,7 @@ impl Crossings {
         self.sizes.resize(events.len(), 0.0);
     }
 
-    /// The crossings of one step in the order of time, as (time, event).
+    /// The events of one step in the order of time, as (time, index).
     pub(super) fn in_step(
         &mut self,
         events: &mut [Event<'_>],
@@ -140,7 +140,7 @@ impl Crossings {
             x: &mut x,
             crossings: self,
         };
-        // What drives the motion may jump where the step ends.
+        // Inputs may be discontinuous at the end of the step.
         let before = to.next_down().max(from);
         walk.walk([from, before], longest, &mut seen);
         for index in 0..seen.events.len() {
@@ -153,7 +153,7 @@ impl Crossings {
     }
 }
 
-/// Events during a step.
+/// The search for events in a step.
 struct Seen<'s, 'a> {
     events: &'s mut [Event<'a>],
     ends: &'s Ends<'s>,
@@ -169,7 +169,7 @@ impl Seen<'_, '_> {
         (self.events[index].function)(t, x)
     }
 
-    /// The next value of an event, after the one at another time.
+    /// Compares the value of an event function with its last sign.
     fn point(&mut self, index: usize, last: f64, t: f64, value: f64) {
         let Some(after) = sign(value) else {
             return;
@@ -187,7 +187,7 @@ impl Seen<'_, '_> {
     }
 }
 
-/// The state at a time of a step; at both ends that of the step itself.
+/// The state at a time within a step; at both ends that of the step itself.
 fn state<'x>(ends: &Ends<'x>, dense: &DenseOutput, x: &'x mut [f64], t: f64) -> &'x [f64] {
     if t <= ends.t[0] {
         ends.x[0]
@@ -242,15 +242,15 @@ impl Sought for Seen<'_, '_> {
     }
 }
 
-/// A function whose values on a piece are that small beside its largest ones is rounding.
+/// Values on a piece below this fraction of the largest one so far are rounding errors.
 const ROUNDING: f64 = 1e-6;
 
-/// −1, 0 or 1; nothing for NaN.
+/// −1, 0 or 1; `None` for NaN.
 fn sign(value: f64) -> Option<i8> {
     value.partial_cmp(&0.0).map(|ordering| ordering as i8)
 }
 
-/// Iterations after which a bracket is as short as it will get.
+/// Iterations after which the bracket is as short as possible.
 const BRENT_ITERATIONS: usize = 100;
 
 /// A zero of `g` between the ends of `bracket`, where its signs differ, to the spacing of `f64`

@@ -1,8 +1,8 @@
-//! How an integration ended, and what it cost.
+//! Results and statistics of an integration.
 
 use super::events::EventHit;
 
-/// What an integration cost.
+/// Statistics of an integration.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Statistics {
     /// Accepted steps.
@@ -20,19 +20,19 @@ pub enum Ending {
     Finished,
     /// The terminal event of this index occurred.
     Event(usize),
-    /// The observer broke off.
+    /// The observer stopped the integration.
     Stopped,
 }
 
-/// How an integration ended.
+/// The result of an integration.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Outcome {
     /// Why it ended.
     pub ending: Ending,
     /// When it ended, in s.
     pub t: f64,
-    /// Events found, in the order of time.
+    /// Events located, in the order of time.
     pub hits: Vec<EventHit>,
-    /// Its cost.
+    /// Steps and evaluations.
     pub statistics: Statistics,
 }

@@ -1,36 +1,36 @@
-//! How long steps may be lest they pass over what time does.
+//! Step-size limits that prevent stepping over pulses of functions of time.
 //!
-//! Where nothing acts between two pulses the estimated error is zero, and steps would grow beyond a pulse. The span is
-//! divided until each function of time passes through no more than half of its values in one part, by bounds that hold
-//! for certain; a step is no longer than two of the parts that it touches.
+//! Between two pulses the estimated error may be zero, and steps would grow beyond a pulse. The span is bisected
+//! until, by interval bounds, each function varies by at most half of its range within a subinterval; a step is at most
+//! twice as long as each subinterval that it overlaps.
 
 use crate::interval::Interval;
 use crate::real::Enclosure;
 
-/// Parts of the span to begin with.
+/// Initial number of subintervals.
 const FIRST_PARTS: usize = 16;
-/// Most parts for one function. What varies throughout the span, the estimated error sees.
+/// Most subintervals for one function. The error estimate resolves functions that vary throughout the span.
 const MOST_PARTS: usize = 4096;
-/// Halvings of the first parts.
+/// Bisections of the initial subintervals.
 const HALVINGS: usize = 40;
-/// Part of its values that a function may pass through in one part.
+/// Fraction of its range by which a function may vary within a subinterval.
 const PASSED: f64 = 0.5;
-/// A variation that is none.
+/// A variation below this is zero.
 const NONE: f64 = 1e-300;
-/// Rounding, relative to a value.
+/// Relative rounding error of a value.
 const ROUNDING: f64 = 1e-12;
-/// Parts as short as the shortest that a step touches in one step.
+/// Length of a step in subintervals of the shortest length that it overlaps.
 const PARTS_PER_STEP: f64 = 2.0;
 
-/// The parts of the span by each function: their starts and lengths in s, in the order of time.
+/// The subintervals for each function: their starts and lengths in s, in the order of time.
 #[derive(Debug, Default)]
 pub(super) struct Pace {
     by_function: Vec<Vec<[f64; 2]>>,
 }
 
 impl Pace {
-    /// Divides a span; `bounds` tells those of a function by its number, and is asked for those of all functions that
-    /// need them on a part one after the other.
+    /// Divides a span; `bounds` returns those of a function by its index. For each subinterval it is called for all
+    /// functions that need it in a row.
     pub(super) fn new(
         span: [f64; 2],
         count: usize,
@@ -74,7 +74,7 @@ impl Pace {
                 }
             }
             waiting = halves;
-            // Whoever varies throughout the span has no more of its parts halved.
+            // Functions that vary throughout the span are not refined further.
             for (part, functions) in &mut waiting {
                 functions.retain(|&i| all[i].goes_on_after(*part));
             }
@@ -112,17 +112,17 @@ impl Pace {
     }
 }
 
-/// A part of the span, and the functions that wait for their bounds on it.
+/// A subinterval, and the functions that still need bounds on it.
 type Part = ([f64; 2], Vec<usize>);
 
-/// How one function divides the span.
+/// The subdivision of the span for one function.
 #[derive(Debug)]
 struct Division {
-    /// Starts and lengths of the parts that are short enough.
+    /// Starts and lengths of the subintervals that are short enough.
     done: Vec<[f64; 2]>,
-    /// The others of the next round.
+    /// Number of subintervals in the next round.
     waiting: usize,
-    /// The range of its values, as far as it is known.
+    /// The range of its values, as far as known.
     values: [f64; 2],
 }
 
@@ -145,7 +145,7 @@ impl Division {
         }
     }
 
-    /// Whether it passes through few of its values on a part with these bounds.
+    /// Whether these bounds cover only a small fraction of its range.
     fn sees(&self, of: &Enclosure) -> bool {
         let Interval { lo, hi } = of.range();
         let [lowest, highest] = self.values;
@@ -154,7 +154,7 @@ impl Division {
         passed.is_finite() && passed <= rounding.max(PASSED * (highest - lowest))
     }
 
-    /// Whether a part of the next round is looked at; if not, it is done as it is.
+    /// Whether a subinterval is refined in the next round; if not, it is final.
     fn goes_on_after(&mut self, [from, to]: [f64; 2]) -> bool {
         let goes_on = self.done.len() + self.waiting <= MOST_PARTS;
         if !goes_on {
@@ -164,7 +164,7 @@ impl Division {
         goes_on
     }
 
-    /// The parts in the order of time; nothing where they do not matter.
+    /// The subintervals in the order of time; `None` if they do not limit the step.
     fn sorted(mut self) -> Option<Vec<[f64; 2]>> {
         self.done.sort_by(|a, b| a[0].total_cmp(&b[0]));
         (self.done.len() > FIRST_PARTS).then_some(self.done)
@@ -184,12 +184,12 @@ mod tests {
     fn steps_are_short_at_a_pulse_and_long_elsewhere() {
         let pace = pace([0.0, 20.0], |t| {
             let since = t - Real::constant(13.0);
-            // Not known to be a square: its bounds let the exponential be infinite.
+            // Not recognised as a square: its bounds let the exponential be infinite.
             (since * since * Real::constant(-1e4)).exp()
         });
         assert!(pace.longest(0.0, 20.0) > 2.0);
         assert!(pace.longest(14.0, 20.0) > 2.0);
-        // Its values fall to a half within 0.0083 s.
+        // It falls to half its value within 0.0083 s.
         assert!(pace.longest(12.999, 1.0) < 0.03);
         let before = pace.longest(12.9, 20.0);
         assert!(12.9 + before < 13.03, "{before}");
@@ -208,7 +208,7 @@ mod tests {
         });
         assert_eq!(pace.by_function.len(), count);
         let parts: usize = pace.by_function.iter().map(Vec::len).sum();
-        // A part is asked for once, whoever needs it: a round begins anew with the first one.
+        // The bounds on a subinterval are requested once for all functions: a new round starts with the first one.
         assert!(asked.len() < parts / 5, "{} of {parts}", asked.len());
     }
 

@@ -4,14 +4,13 @@ use super::dop853_coefficients as dop853;
 use super::step_size::Control;
 use super::tableau::{Row, Tableau};
 
-/// What distinguishes one embedded pair from another. Sealed: implemented by [`Dopri5`] and
-/// [`Dop853`].
+/// The coefficients of an embedded pair. Sealed: implemented by [`Dopri5`] and [`Dop853`].
 #[allow(private_interfaces)]
 pub trait EmbeddedPair: sealed::Sealed {
     /// Nodes, rows and weights.
     #[doc(hidden)]
     const TABLEAU: Tableau;
-    /// Stages with the rates at the new state and those of the interpolant.
+    /// Stages including the rates at the new state and those of the interpolant.
     #[doc(hidden)]
     const ALL_STAGES: usize;
     /// Coefficients of the interpolant.
@@ -20,7 +19,7 @@ pub trait EmbeddedPair: sealed::Sealed {
     /// Whether the error estimate needs the rates at the new state.
     #[doc(hidden)]
     const ERROR_USES_NEW_RATES: bool;
-    /// Order in the choice of the first step.
+    /// Order used in the choice of the first step.
     #[doc(hidden)]
     const ORDER: f64;
     /// Constants of the step-size control.
@@ -32,8 +31,8 @@ pub trait EmbeddedPair: sealed::Sealed {
     /// Its coefficients over h, after those of the cubic Hermite polynomial.
     #[doc(hidden)]
     const INTERIOR: &[Row];
-    /// The estimated errors of steps over the tolerances, at most 1 for a step to be accepted; `mean_square`
-    /// is that of a combination of the stages, over the tolerances.
+    /// The weighted errors of steps, at most 1 for a step to be accepted; `mean_square` is the weighted mean square
+    /// of a combination of the stages.
     #[doc(hidden)]
     fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N];
 }
@@ -57,7 +56,7 @@ const DOPRI5_WEIGHTS: Row = &[
     (5, 11.0 / 84.0),
 ];
 
-/// Solution of order 5 less the embedded one of order 4.
+/// Solution of order 5 minus the embedded one of order 4.
 const DOPRI5_ERROR: Row = &[
     (0, 71.0 / 57600.0),
     (2, -71.0 / 16695.0),
@@ -126,12 +125,12 @@ impl EmbeddedPair for Dopri5 {
     }
 }
 
-/// Order 8 with embedded errors of order 5 and 3 and an interpolant of order 7 (Hairer, Nørsett
-/// and Wanner, section II.10). The method of choice for smooth motions at tolerances below 1e-6.
+/// Order 8 with embedded errors of order 5 and 3 and an interpolant of order 7 (Hairer, Nørsett and Wanner, section
+/// II.10). Recommended for smooth motions at tolerances below 1e-6.
 #[derive(Debug, Clone, Copy)]
 pub struct Dop853;
 
-/// An embedded pair as numbers, for programs in other languages. A row is a list of stages with their
+/// The coefficients of an embedded pair, for code generation in other languages. A row is a list of stages with their
 /// weights; stages count from 0.
 #[derive(Debug, Clone, Copy)]
 pub struct Coefficients {
@@ -141,12 +140,12 @@ pub struct Coefficients {
     pub stages: &'static [&'static [(usize, f64)]],
     /// Weights of the new state.
     pub weights: &'static [(usize, f64)],
-    /// The new state less the embedded ones, of order 5 and 3.
+    /// The new state minus the embedded ones, of order 5 and 3.
     pub errors: [&'static [(usize, f64)]; 2],
 }
 
 impl Dop853 {
-    /// Its coefficients without those of the interpolant.
+    /// The coefficients without those of the interpolant.
     pub const fn coefficients() -> Coefficients {
         Coefficients {
             nodes: dop853::TABLEAU.nodes,
@@ -176,8 +175,7 @@ impl EmbeddedPair for Dop853 {
     const INTERIOR_STAGES: &[(f64, Row)] = dop853::INTERIOR_STAGES;
     const INTERIOR: &[Row] = dop853::INTERIOR;
 
-    /// Equation (10.17): E₅² / √(E₅² + 0.01 E₃²), an estimate of order 8 that vanishes only with
-    /// both differences.
+    /// Equation (10.17): E₅² / √(E₅² + 0.01 E₃²), an estimate of order 8 that vanishes only if both differences do.
     fn errors<const N: usize>(mean_square: impl Fn(Row) -> [f64; N], h: &[f64; N]) -> [f64; N] {
         let (mut errors, square_3) = (mean_square(dop853::ERROR_5), mean_square(dop853::ERROR_3));
         for l in 0..N {

@@ -1,10 +1,10 @@
-//! Functions of time along a step as Chebyshev polynomials, on pieces that are halved until the polynomials are the
-//! functions: extrema, zeros and means between the ends of a step, however long it is.
+//! Piecewise Chebyshev interpolation of functions of time along a step, bisected until resolved: extrema, zeros and
+//! means within a step of any length.
 //!
 //! The nodes are the extrema of the polynomial of degree 8. A function is resolved where its last coefficients are
 //! small (L. N. Trefethen, *Approximation Theory and Approximation Practice*, chapters 3, 4 and 19).
 
-/// Nodes of a piece, both ends among them.
+/// Nodes of a piece, including both ends.
 const NODES: usize = 9;
 /// cos(k π / 8).
 const COSINES: [f64; NODES] = [
@@ -18,17 +18,17 @@ const COSINES: [f64; NODES] = [
     -0.923_879_532_511_286_7,
     -1.0,
 ];
-/// Size of the last two coefficients of a resolved function, relative to its own; the one before may have this many
-/// times as much, since what is resolved decays.
+/// Bound on the last two coefficients of a resolved function, relative to its magnitude, and the factor by which the
+/// one before may exceed it, since the coefficients decay.
 const TAIL: f64 = 1e-7;
 const DECAY: f64 = 100.0;
-/// Halvings, after which a piece is taken as it is: a jump then lies within some ten millionths of the step.
+/// Most bisections of a piece: a jump is then located to about 1e-7 of the step.
 const HALVINGS: u32 = 24;
-/// Pieces of an interval; chatter is not resolved any further.
+/// Most pieces of an interval; faster oscillations are not resolved.
 const MOST: u32 = 1024;
 /// Intervals of a step, at most.
 const INTERVALS: f64 = 100_000.0;
-/// Parts of the polynomial between two nodes.
+/// Sampling points of the polynomial per interval between nodes.
 const PARTS: usize = 4;
 
 /// A function on a piece of an interval.
@@ -91,14 +91,14 @@ impl Piece {
         self.values.iter().all(|value| value.is_finite())
     }
 
-    /// Whether the polynomial is the function to some 1e-7 of a size.
+    /// Whether the polynomial approximates the function to about 1e-7 of `size`.
     pub fn is_resolved(&self, size: f64) -> bool {
         let [.., before, first, last] = self.coefficients.map(f64::abs);
         first + last <= TAIL * size && before <= DECAY * TAIL * size
     }
 
-    /// Whether a function stays far from zero, seen by how much its values differ at the nodes; so does one that is not
-    /// finite, of which nothing else is known.
+    /// Whether a function stays away from zero, judged by the variation of its values at the nodes; true for a
+    /// function that is not finite.
     pub fn keeps_its_sign(&self) -> bool {
         let [least, most] = self.ends();
         !self.is_finite() || least.max(-most) > 2.0 * (most - least)
@@ -110,7 +110,7 @@ impl Piece {
         even.map(|(k, c)| c / (1.0 - (k * k) as f64)).sum()
     }
 
-    /// The same of the negative function.
+    /// The piece of the negated function.
     #[must_use]
     pub fn negative(&self) -> Self {
         Self {
@@ -120,13 +120,13 @@ impl Piece {
         }
     }
 
-    /// Beyond this and the value itself the polynomial does not go: middle and radius.
+    /// Bounds on the polynomial: midpoint and radius.
     fn range(&self) -> [f64; 2] {
         let radius = self.coefficients[1..].iter().map(|c| c.abs()).sum();
         [self.coefficients[0], radius]
     }
 
-    /// When the polynomial is largest, if it rises above a value between the nodes.
+    /// The time of the maximum of the polynomial, if it exceeds `above` between the nodes.
     pub fn top(&self, above: f64) -> Option<f64> {
         let [middle, radius] = self.range();
         if middle + radius <= above {
@@ -138,8 +138,8 @@ impl Piece {
         (value > above).then(|| self.time(place))
     }
 
-    /// Times between the nodes at which the polynomial has another sign than at both neighbours: where the function is
-    /// to be looked at for pairs of zeros.
+    /// Times between the nodes at which the polynomial has the opposite sign of both neighbours: candidates for pairs
+    /// of zeros.
     pub(super) fn doubts(&self) -> Vec<f64> {
         let [middle, radius] = self.range();
         let mut times = Vec::new();
@@ -177,7 +177,7 @@ impl Piece {
         times
     }
 
-    /// The polynomial at a place from −1 to 1 (C. W. Clenshaw).
+    /// The polynomial at a point of [−1, 1] (C. W. Clenshaw).
     fn at(&self, place: f64) -> f64 {
         let (mut next, mut after) = (0.0, 0.0);
         for c in self.coefficients[1..].iter().rev() {
@@ -191,7 +191,7 @@ impl Piece {
         (0.5 * (from + to) + 0.5 * (to - from) * place).clamp(from, to)
     }
 
-    /// The polynomial at the nodes and at parts between them, as places and values.
+    /// The polynomial at the nodes and at points between them, as points and values.
     fn fine(&self) -> [(f64, f64); PARTS * (NODES - 1) + 1] {
         std::array::from_fn(|i| {
             let (node, part) = (i / PARTS, i % PARTS);
@@ -205,7 +205,7 @@ impl Piece {
         })
     }
 
-    /// The top of the polynomial near three of its points, the middle of which is the highest.
+    /// The maximum of the polynomial near three of its points, the middle of which is the highest.
     fn turn(&self, near: [(f64, f64); 3]) -> (f64, f64) {
         self.turn_of(near, 1.0)
     }
@@ -239,15 +239,15 @@ fn times([from, to]: [f64; 2]) -> [f64; NODES] {
     times
 }
 
-/// Functions of time, and what is wanted of them.
+/// Functions of time, with the criterion for their resolution.
 pub trait Sought {
-    /// How many.
+    /// Number of functions.
     fn count(&self) -> usize;
     /// Writes their values at a time.
     fn evaluate(&mut self, t: f64, values: &mut [f64]);
-    /// Whether no more has to be known of a function on a piece.
+    /// Whether a function is sufficiently resolved on a piece.
     fn is_enough(&mut self, which: usize, piece: &Piece) -> bool;
-    /// Sees a piece, one after the other in the order of time: each function on it.
+    /// Receives the pieces of all functions, in the order of time.
     fn see(&mut self, pieces: &[Piece]);
 }
 
@@ -260,7 +260,7 @@ pub struct Walk {
 }
 
 impl Walk {
-    /// Shows functions on pieces of a time, none of which is longer than `longest` in s.
+    /// Visits the pieces of functions over an interval, none of which is longer than `longest` in s.
     pub fn walk(&mut self, [from, to]: [f64; 2], longest: f64, of: &mut impl Sought) {
         if to <= from || of.count() == 0 {
             return;
@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn means_and_tops_of_many_periods_are_those_of_the_formulas() {
-        // Sixteen periods, as a wheel that rolls at a constant speed has them in one step.
+        // Sixteen periods, such as those of a wheel rolling at constant speed within one step.
         let one = known([0.0, 10.0], |t| libm::sin(10.0 * t).powi(2));
         let mean = 0.5 - libm::sin(200.0) / 400.0;
         assert!(
@@ -372,7 +372,7 @@ mod tests {
             one.integral
         );
         assert!((one.best.1 - 1.0).abs() < 1e-10, "{:?}", one.best);
-        // 32 periods of the square, an eighth of one each piece.
+        // 32 periods of the square, an eighth of one per piece.
         assert!(one.evaluations < 5000, "{}", one.evaluations);
         // A jump and a kink.
         let one = known([0.0, 1.0], |t| if t < 0.3 { 1.0 } else { 0.0 });

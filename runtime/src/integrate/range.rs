@@ -1,4 +1,4 @@
-//! Ranges in which equations hold.
+//! Admissible ranges of states.
 
 use super::dense_output::{DenseOutput, Ends};
 use super::error::Cause;
@@ -6,8 +6,8 @@ use super::events::brent;
 
 /// The interval of a state outside which the equations do not hold.
 ///
-/// Within a step a state is taken to turn at most once: it may leave and come back where its rate
-/// points outwards at the start and inwards at the end.
+/// A state is assumed to have at most one extremum within a step: it may leave and return if its rate points outwards
+/// at the start and inwards at the end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Range {
     /// Index in the state.
@@ -17,7 +17,7 @@ pub struct Range {
 }
 
 impl Range {
-    /// The limit that a value lies beyond.
+    /// The limit that a value exceeds.
     pub(super) fn passed(&self, value: f64) -> Option<f64> {
         let [lower, upper] = self.limits;
         if value < lower {
@@ -29,8 +29,8 @@ impl Range {
         }
     }
 
-    /// Whether the state may leave the range in a step, judged by its ends alone: what bends
-    /// one way stays within its tangents.
+    /// Whether the state may leave the range in a step, judged by the ends of the step: a curve without an inflection
+    /// lies within its tangents.
     pub(super) fn may_be_left(&self, ends: &Ends<'_>) -> bool {
         let [x_old, x] = self.component_of(ends.x);
         let [rate_old, rate] = self.component_of(ends.rates);
@@ -40,7 +40,7 @@ impl Range {
             || (rate_old * rate < 0.0 && tangents.iter().all(|&x| self.passed(x).is_some()))
     }
 
-    /// When the state first leaves the range in a step.
+    /// The time at which the state first leaves the range in a step.
     pub(super) fn left_at(&self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
         if !self.may_be_left(ends) {
             return None;
@@ -49,7 +49,7 @@ impl Range {
         let [start, end] = ends.t;
         let [rate_old, rate] = self.component_of(ends.rates);
         let turn = (rate_old * rate < 0.0).then(|| brent((start, end), |t| motion(t).1));
-        // From one to the next of these times the state only rises or only falls.
+        // The state is monotonic between these times.
         let mut before = start;
         for t in turn.into_iter().chain([end]) {
             if let Some(limit) = self.passed(motion(t).0) {
@@ -60,7 +60,7 @@ impl Range {
         None
     }
 
-    /// Leaving it as a reason to end.
+    /// The cause of failure for leaving the range.
     pub(super) fn cause(&self) -> Cause {
         Cause::OutOfRange {
             component: self.component,

@@ -36,7 +36,7 @@ impl Rk4 {
 
     /// Integrates ẋ = f(t, x) over `span` with steps of `step` seconds.
     ///
-    /// Each stretch between switching times is divided into equal steps no longer than `step`.
+    /// Each interval between switching times is divided into equal steps no longer than `step`.
     /// The arguments are those of [`Solver::integrate`](super::Solver::integrate).
     pub fn integrate<F, O>(
         &mut self,
@@ -112,7 +112,7 @@ impl Rk4 {
                     stride = Stride::to(t, t + shorter);
                     continue;
                 }
-                // No error shows that a step across a switch is wrong: steps come near it until it is at hand.
+                // Without an error estimate, steps are shortened towards a switch until it is reached.
                 if !watcher.stops.has_crossings() {
                     break;
                 }
@@ -173,15 +173,15 @@ impl Rk4 {
     }
 }
 
-/// Tries to end a step before it is switched.
+/// Attempts to end a step before a switch.
 const MOST_TRIES: usize = 12;
-/// How near to a switch it ends, and how near it may begin to pass it, in parts of the step.
+/// Fraction of the distance to a switch at which a step ends, and the distance below which it may pass the switch.
 const NEARLY: f64 = 0.999;
 const AT_ONCE: f64 = 1e-9;
 
-/// The longest step that is not longer than `step` and divides `length`.
+/// The longest step that is at most `step` and divides `length`.
 fn equal_part(length: f64, step: f64) -> f64 {
-    // A step that fits all but rounding fits.
+    // Lengths that fit up to rounding are accepted.
     let count = (length / step * (1.0 - 1e-12)).ceil();
     length / count.max(1.0)
 }

@@ -1,18 +1,18 @@
-//! Where a function of time changes its sign within a step.
+//! Sign changes of a function of time within a step.
 
-/// Parts of a step between which changes are sought.
+/// Subintervals of a step in which sign changes are sought.
 const PARTS: usize = 8;
-/// Shortenings of an interval in which a function comes near zero: to a thousandth of a millionth.
+/// Golden-section iterations for a minimum of the absolute value: to a relative length of 1e-9.
 const SHORTENINGS: usize = 44;
-/// The shorter part of a golden section.
+/// The shorter fraction of a golden section.
 const GOLDEN: f64 = 0.381_966_011_250_105_1;
-/// How far from an end of the step its slope there is measured, in parts of an eighth.
+/// Distance from an end of the step at which its slope is measured, as a fraction of an eighth.
 const NEAR: f64 = 1e-3;
 
-/// Neighbouring times between which a function gives another answer for the first time.
+/// Adjacent times between which the predicate of a function changes for the first time.
 ///
-/// The function is sampled at eighths of the interval. Where it comes nearer to zero between three samples, or next to
-/// an end, the place where it is nearest is sought, so that a change and its opposite between samples are found.
+/// The function is sampled at eighths of the interval. Where its absolute value has a minimum between three samples,
+/// or next to an end, the minimum is located, so that a double sign change between samples is found.
 pub(super) fn first_change(
     mut g: impl FnMut(f64) -> f64,
     answer: impl Fn(f64) -> bool,
@@ -35,7 +35,7 @@ pub(super) fn first_change(
     let near = NEAR * (time(1) - from);
     for part in 0..=last {
         let dips = match part {
-            // A dip next to an end has its slope there.
+            // A minimum next to an end shows in the slope there.
             0 => last > 0 && size(1) >= size(0) && g(from + near).abs() < size(0),
             PARTS => size(last - 1) >= size(last) && g(to - near).abs() < size(last),
             _ if part == last => false,
@@ -50,7 +50,7 @@ pub(super) fn first_change(
     answer(samples[last]).then(|| neighbours(|t| answer(g(t)), [time(last - 1), time(last)]))
 }
 
-/// A time between two at which a function that comes near zero gives another answer.
+/// A time near a minimum of the absolute value at which the predicate has changed.
 fn changed_near_zero(
     mut g: impl FnMut(f64) -> f64,
     answer: impl Fn(f64) -> bool,
@@ -84,7 +84,7 @@ fn changed_near_zero(
     None
 }
 
-/// The last time with the old answer and the first one with the new: halving until no number lies between.
+/// The last time with the old value and the first with the new one, by bisection down to adjacent numbers.
 pub(super) fn neighbours(
     mut changed: impl FnMut(f64) -> bool,
     [mut same, mut other]: [f64; 2],

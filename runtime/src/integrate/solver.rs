@@ -13,8 +13,8 @@ use std::marker::PhantomData;
 
 /// An adaptive integrator with its work arrays.
 ///
-/// The arrays are sized at the first use and kept, so that repeated integrations of the same size
-/// allocate nothing but switching times, events found and errors.
+/// The arrays are allocated at the first use, so that repeated integrations of the same size allocate only switching
+/// times, located events and errors.
 ///
 /// An ensemble with a common step is one system: state i of member k at `x[members * i + k]`, with
 /// rates computed in [`Lanes`](crate::Lanes). Its error is the root mean square over all members.
@@ -45,9 +45,9 @@ impl<P: EmbeddedPair> Solver<P> {
 
     /// Integrates ẋ = f(t, x) over `span`, forward in time.
     ///
-    /// `f(t, x, rates)` writes ẋ. `x` holds the initial state and leaves with the last one, also
-    /// after an error. `watch` names switching times, ranges and events, `observer` sees the
-    /// accepted steps. To integrate backward, substitute t = −s.
+    /// `f(t, x, rates)` writes ẋ. `x` holds the initial state and is overwritten with the final one, also after an
+    /// error. `watch` lists switching times, ranges and events, `observer` receives the accepted steps. To integrate
+    /// backward, substitute t = −s.
     pub fn integrate<F, O>(
         &mut self,
         mut f: F,
@@ -83,7 +83,7 @@ impl<P: EmbeddedPair> Solver<P> {
         watcher.conclude(end, x, statistics)
     }
 
-    /// Steps from stop to stop. `x` becomes the state at the end.
+    /// Integrates from stop to stop. `x` becomes the final state.
     fn run<F, O>(
         &mut self,
         f: &mut F,
@@ -115,7 +115,7 @@ impl<P: EmbeddedPair> Solver<P> {
             is_guess |= next_h.is_none() && options.first_step.is_none();
             let h = next_h.unwrap_or_else(|| self.first_step(f, (t, longest), known, options));
             let stride = watcher.stops.stride(t, h);
-            // Up to a switching time the rates are those before it.
+            // The old rates apply up to a switching time.
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
             let error = self.attempt(&mut f, t, stride, options, watcher);
             if error <= 1.0 {
@@ -139,7 +139,7 @@ impl<P: EmbeddedPair> Solver<P> {
                 self.stages.advance(P::TABLEAU.new_rates());
                 let [power] = powers(P::CONTROL, &[error]);
                 let suggested = stride.h * step_size.accepted(error, power);
-                // A step cut short to land says nothing against the longer one.
+                // A step shortened to end at a stop is no reason to propose a shorter one.
                 let suggested = if stride.lands || switched.is_some() {
                     suggested.max(h)
                 } else {
@@ -162,8 +162,7 @@ impl<P: EmbeddedPair> Solver<P> {
         End::finished(t)
     }
 
-    /// All stages of a step; returns its error over the tolerances, NaN where the new state is
-    /// not finite.
+    /// All stages of a step; returns the weighted error, NaN if the new state is not finite.
     fn attempt<F, O>(
         &mut self,
         f: &mut F,
@@ -196,8 +195,7 @@ impl<P: EmbeddedPair> Solver<P> {
         error
     }
 
-    /// Interpolates if anyone asks for it and shows the step to the watcher, or tells the length of the step to be
-    /// tried instead.
+    /// Computes dense output if needed and passes the step to the watcher, or returns a shorter step to be tried.
     fn accept<F, O>(
         &mut self,
         f: &mut F,
@@ -237,7 +235,7 @@ impl<P: EmbeddedPair> Solver<P> {
         }
     }
 
-    /// A first step from the sizes of x, ẋ and ẍ, not beyond the next stop nor `longest`.
+    /// A first step from the norms of x, ẋ and ẍ, limited by the next stop and `longest`.
     fn first_step<F>(
         &mut self,
         f: &mut F,
@@ -267,7 +265,7 @@ impl<P: EmbeddedPair> Solver<P> {
         first_step(guess, rates_norm, second_norm, P::ORDER).min(longest)
     }
 
-    /// Why no step is accepted.
+    /// The cause of failure if no step is accepted.
     fn stuck(&self, h: f64, error: f64) -> Cause {
         let mut stages = 1..P::TABLEAU.new_rates();
         let not_finite = stages

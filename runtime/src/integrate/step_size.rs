@@ -1,6 +1,6 @@
-//! How long the next step may be.
+//! Step-size control.
 
-// What is not inlined is not compiled for the vectors of the processor.
+// Only inlined functions are compiled for the vector instructions of the processor.
 #![allow(clippy::inline_always)]
 
 use crate::elementary::powf;
@@ -14,9 +14,9 @@ pub(super) struct Control {
     pub(super) exponent: f64,
     /// β, the exponent of the previous error.
     pub(super) integral_gain: f64,
-    /// How much of β is taken off the exponent.
+    /// Fraction of β subtracted from the exponent.
     pub(super) integral_correction: f64,
-    /// Part of the step that the error would allow.
+    /// Safety factor.
     pub(super) safety: f64,
     /// Bounds on the ratio of successive steps.
     pub(super) smallest_factor: f64,
@@ -24,10 +24,10 @@ pub(super) struct Control {
     pub(super) largest_factor: f64,
 }
 
-/// Shortening of a step whose rates were not finite.
+/// Factor on a step whose rates were not finite.
 const FACTOR_NOT_FINITE: f64 = 0.25;
 
-/// The control with its memory of the previous step.
+/// The controller with the error of the previous step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct StepSize {
     control: Control,
@@ -44,7 +44,7 @@ impl StepSize {
         }
     }
 
-    /// Factor on the step after it was accepted with `error` ≤ 1, whose power [`powers`] gives.
+    /// Factor on the step after it was accepted with `error` ≤ 1, whose power is given by [`powers`].
     pub(super) fn accepted(&mut self, error: f64, power: f64) -> f64 {
         let c = &self.control;
         let correction = if c.integral_gain == 0.0 {
@@ -63,7 +63,7 @@ impl StepSize {
         factor.clamp(c.smallest_factor, largest)
     }
 
-    /// Factor on the step after it was rejected with `error` > 1 or an error that is no number.
+    /// Factor on the step after it was rejected with `error` > 1 or NaN.
     pub(super) fn rejected(&mut self, error: f64, power: f64) -> f64 {
         let c = &self.control;
         self.after_rejection = true;
@@ -74,13 +74,13 @@ impl StepSize {
     }
 }
 
-/// Errors to the power that the control needs.
+/// Errors raised to the exponent of the controller.
 pub(super) fn powers<const N: usize>(control: Control, errors: &[f64; N]) -> [f64; N] {
     let exponent = control.exponent - control.integral_gain * control.integral_correction;
     power_of_all(errors, exponent)
 }
 
-/// Powers of some numbers, the same bits for any number of them, on every machine.
+/// Powers of several numbers, bit for bit the same for any count and on every machine.
 fn power_of_all<const N: usize>(numbers: &[f64; N], exponent: f64) -> [f64; N] {
     let mut powers = [0.0; N];
     dispatch(
@@ -96,8 +96,8 @@ fn power_of_all<const N: usize>(numbers: &[f64; N], exponent: f64) -> [f64; N] {
     powers
 }
 
-/// The step after a rejected one, and the longest that it may be. Where the first step from a stop was too long, what
-/// was known of steps before it does not hold any more: the next one is guessed.
+/// The step after a rejected one, and an upper bound on it. If the rejected step started at a stop, the history
+/// before it no longer applies and the next step is estimated anew.
 pub(super) fn next_after_rejection(from_stop: bool, shorter: f64) -> (Option<f64>, f64) {
     if from_stop {
         (None, shorter)

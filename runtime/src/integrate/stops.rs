@@ -1,4 +1,4 @@
-//! Times at which a step has to end: the rates jump or lose smoothness there.
+//! Times at which steps must end: the rates are discontinuous or not smooth there.
 
 use super::crossings::CrossingSearch;
 use super::dense_output::{DenseOutput, Ends};
@@ -7,12 +7,12 @@ use super::switches::{SwitchSearch, Switches};
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
-/// Where a step has to end.
+/// A time at which a step must end.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stop {
-    /// When, in s.
+    /// Time in s.
     pub(super) t: f64,
-    /// The latest time at which rates on the way are evaluated: just before a switching time.
+    /// The latest time at which stages are evaluated: just before a switching time.
     pub(super) last: f64,
 }
 
@@ -23,21 +23,21 @@ impl Stop {
     }
 }
 
-/// A step to be tried.
+/// A trial step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Stride {
     /// Its length in s.
     pub(super) h: f64,
-    /// Where it ends, in s.
+    /// End time in s.
     pub(super) t_new: f64,
     /// See [`Stop::last`].
     pub(super) last: f64,
-    /// Whether it ends at a stop, after which the rates may be others.
+    /// Whether it ends at a stop, after which the rates may be different.
     pub(super) lands: bool,
 }
 
 impl Stride {
-    /// No step at all.
+    /// A step of length zero.
     pub(super) fn none(t: f64) -> Self {
         Self::to(t, t)
     }
@@ -53,29 +53,29 @@ impl Stride {
     }
 }
 
-/// So many switches by time within this part of the motion are one place that it does not leave.
+/// So many switches of functions of time within this fraction of the motion count as Zeno behaviour.
 const MANY_CHANGES: usize = 1000;
 const AT_ONE_PLACE: f64 = 1e-6;
 
-/// A step that is hardly one, in parts of the time.
+/// A negligible step, relative to the time.
 const SLIVER: f64 = 1e-9;
 
-/// The longest sliver that ends at a time.
+/// The longest negligible step that ends at a time.
 pub(super) fn sliver(t: f64) -> f64 {
     SLIVER * t.abs().max(1.0)
 }
 
 /// All times at which steps have to end.
 pub(super) struct Stops<'w, 'a> {
-    /// The known ones after the start, increasing.
+    /// The known ones after the start, in increasing order.
     times: Vec<f64>,
     end: f64,
     switches: Option<(&'w mut Switches<'a>, SwitchSearch)>,
     crossings: CrossingSearch,
-    /// Where the state switches the equations soon, in s.
+    /// An expected switch by a function of the state, in s.
     expected: f64,
     start: f64,
-    /// How many changes time alone has made, the last one, and that before many others, in s.
+    /// Number of switches by functions of time, the last one, and an earlier one for comparison, in s.
     changes: usize,
     last_change: f64,
     change_before: f64,
@@ -113,7 +113,7 @@ impl<'w, 'a> Stops<'w, 'a> {
         }
     }
 
-    /// Lets no step pass over what functions of time do.
+    /// Limits the step size so that no pulse of a function of time is stepped over.
     pub(super) fn with_pace(mut self, start: f64) -> Self {
         let Some((switches, _)) = &mut self.switches else {
             return self;
@@ -145,12 +145,12 @@ impl<'w, 'a> Stops<'w, 'a> {
         )
     }
 
-    /// The next step that begins a sliver before a time ends a sliver after it.
+    /// A step that begins just before this switch is to end just after it.
     pub(super) fn expect(&mut self, switch: f64) {
         self.expected = switch;
     }
 
-    /// A step from `t` of length `h`, or less where there is a stop before.
+    /// A step from `t` of length `h`, shortened to end at a stop.
     pub(super) fn stride(&mut self, t: f64, h: f64) -> Stride {
         let mut h = self.pace.longest(t, h);
         let near = sliver(self.expected);
@@ -158,7 +158,7 @@ impl<'w, 'a> Stops<'w, 'a> {
             h = h.min(self.expected - t + near);
         }
         let known = self.known_after(t);
-        // The step ends at the stop rather than a sliver before it.
+        // The step is extended to a stop that it would nearly reach.
         let known = (t + 1.01 * h >= known.t).then_some(known);
         let t_new = known.map_or(t + h, |stop| stop.t);
         match self.change_within(t, t_new).or(known) {
@@ -182,12 +182,12 @@ impl<'w, 'a> Stops<'w, 'a> {
         self.end
     }
 
-    /// Whether the state switches the equations.
+    /// Whether there are switching functions of the state.
     pub(super) fn has_crossings(&self) -> bool {
         self.crossings.has_crossings()
     }
 
-    /// The first time within a step at which the state switches the equations, with the state there.
+    /// The first zero of a switching function of the state within a step, with the state there.
     pub(super) fn crossing(
         &mut self,
         ends: &Ends<'_>,
@@ -197,7 +197,7 @@ impl<'w, 'a> Stops<'w, 'a> {
         self.crossings.first(switches, ends, dense)
     }
 
-    /// The longest step that passes over nothing that the state does along an interpolant.
+    /// The longest step that does not step over a pulse along an interpolant.
     pub(super) fn longest(&mut self, span: [f64; 2], dense: &DenseOutput) -> f64 {
         match &mut self.switches {
             Some((switches, _)) => self.crossings.longest(switches, span, dense),
@@ -205,12 +205,12 @@ impl<'w, 'a> Stops<'w, 'a> {
         }
     }
 
-    /// Whether the state may do something between the ends of a step.
+    /// Whether there are functions of the state with pulses.
     pub(super) fn has_pulses(&self) -> bool {
         self.crossings.has_pulses()
     }
 
-    /// The first change of the switches after `t` and not after `t_new`, to the last digit.
+    /// The first switch by a function of time after `t` and not after `t_new`, to the last digit.
     fn change_within(&mut self, t: f64, t_new: f64) -> Option<Stop> {
         let (switches, search) = self.switches.as_mut()?;
         let change = search.of_time(switches, [t, t_new])?;
@@ -226,7 +226,7 @@ impl<'w, 'a> Stops<'w, 'a> {
         Some(Stop::before(change))
     }
 
-    /// Whether switches by time follow each other ever faster, so that the motion does not get on.
+    /// Whether switches by functions of time accumulate, so that the motion does not advance.
     pub(super) fn is_endless(&self) -> bool {
         self.is_endless
     }

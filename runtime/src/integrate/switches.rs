@@ -1,25 +1,25 @@
-//! What switches a motion, and where time alone does, which bounds on functions of time find for certain.
+//! Switching functions of a motion; zeros of those of time alone are located by interval bounds.
 
 use super::sign_changes::neighbours;
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
-/// What switches the rates of a motion; see [`Switching`](crate::model::Switching).
+/// The switching functions of the rates; see [`Switching`](crate::model::Switching).
 pub struct Switches<'a> {
-    /// How many functions there are.
+    /// Number of functions of each kind.
     pub counts: Counts,
-    /// Writes the answers of what time alone decides, at a time in s.
+    /// Writes the signs and truth values that depend on time alone, at a time in s.
     pub answers: SwitchFunction<'a>,
-    /// Writes bounds on functions of time between two times in s: those whose signs are the answers, then the others.
-    /// Without it answers are compared at eighths of a step.
+    /// Writes bounds on functions of time between two times in s: the switching functions, then the functions with
+    /// pulses. Without it `answers` are compared at eighths of a step.
     pub within: Option<BoundFunction<'a>>,
-    /// Writes the functions of time and state whose signs decide, then those that rise and fall.
+    /// Writes the switching functions of time and state, then the functions with pulses.
     pub crossings: CrossingFunction<'a>,
-    /// Writes bounds on these. Without it their signs are compared at eighths of a step and where they come near zero.
+    /// Writes bounds on these. Without it their signs are compared at eighths of a step and at minima of |g|.
     pub along: Option<StretchFunction<'a>>,
 }
 
-/// A stretch of a motion within a step.
+/// A segment of a motion within a step.
 #[derive(Debug, Clone, Copy)]
 pub struct Stretch<'a> {
     /// Start of the step in s.
@@ -37,7 +37,7 @@ pub type BoundFunction<'a> = Box<dyn FnMut([f64; 2], &mut [Enclosure]) + 'a>;
 /// Values at a time and a state, boxed.
 pub type CrossingFunction<'a> = Box<dyn FnMut(f64, &[f64], &mut [f64]) + 'a>;
 
-/// Bounds along a stretch, boxed.
+/// Bounds along a segment, boxed.
 pub type StretchFunction<'a> = Box<dyn FnMut(Stretch<'_>, &mut [Enclosure]) + 'a>;
 
 impl std::fmt::Debug for Switches<'_> {
@@ -50,7 +50,7 @@ impl std::fmt::Debug for Switches<'_> {
 }
 
 impl<'a> Switches<'a> {
-    /// What time alone switches, without bounds.
+    /// Switching by functions of time alone, without bounds.
     pub fn of_time(count: usize, answers: impl FnMut(f64, &mut [f64]) + 'a) -> Self {
         Self {
             counts: Counts {
@@ -65,15 +65,15 @@ impl<'a> Switches<'a> {
     }
 }
 
-/// Parts of a step into which answers without bounds are divided.
+/// Subintervals of a step in which switches without bounds are sought.
 const PARTS: u8 = 8;
-/// Intervals that are looked at in one step; more only where bounds tell nothing.
+/// Most intervals examined in one step; beyond that, eighths of the remainder are compared.
 const MOST_INTERVALS: usize = 4096;
-/// The shortest of them, relative to the time: some spacings of numbers. Times below the second count as that.
+/// The shortest of them, relative to the time: a few spacings of floating-point numbers.
 const SHORTEST: f64 = 8.0 * f64::EPSILON;
 const NEAR_ZERO: f64 = 1e-6;
 
-/// The arrays in which switches are sought.
+/// Work arrays of the search.
 #[derive(Debug, Default)]
 pub(super) struct SwitchSearch {
     before: Vec<f64>,
@@ -90,10 +90,10 @@ impl SwitchSearch {
         }
     }
 
-    /// The first time after `t` and not after `t_new` at which an answer of time alone is another, to the last digit.
+    /// The first time after `t` and not after `t_new` at which a sign or truth value changes, to the last digit.
     ///
-    /// Where bounds keep a function off zero there is none, and where they keep its slope off zero there is at most
-    /// one. What remains is halved.
+    /// Where bounds exclude zero from a function there is none, where they exclude zero from its slope there is at
+    /// most one. Any other interval is bisected.
     pub(super) fn of_time(
         &mut self,
         switches: &mut Switches<'_>,
@@ -137,7 +137,7 @@ impl SwitchSearch {
     }
 }
 
-/// The first change that eighths of an interval show.
+/// The first change visible at eighths of an interval.
 fn by_parts(mut changed: impl FnMut(f64) -> bool, [from, to]: [f64; 2]) -> Option<f64> {
     let part = |i: u8| match i {
         PARTS => to,

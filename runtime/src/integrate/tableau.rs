@@ -1,17 +1,17 @@
-//! Explicit Runge–Kutta steps as data, and the arrays they work on.
+//! Explicit Runge–Kutta steps given by a tableau, and their work arrays.
 //!
-//! Sums are of fused multiply-adds, by the vectors of the processor; without these they are slow and the same.
+//! Sums use vectorised fused multiply-adds; without hardware support they are slower, with the same bits.
 
-// What is not inlined is not compiled for the vectors of the processor.
+// Only inlined functions are compiled for the vector instructions of the processor.
 #![allow(clippy::inline_always)]
 
 use super::dense_output::Ends;
 use crate::lanes::dispatch;
 
-/// Pairs of a stage and its weight; stages that are not listed have the weight zero.
+/// Pairs of a stage and its weight; stages that are not listed have weight zero.
 pub(super) type Row = &'static [(usize, f64)];
 
-/// A Butcher tableau without its embedded solutions. Stages count from 0.
+/// A Butcher tableau without the embedded solutions. Stages count from 0.
 pub(super) struct Tableau {
     /// Nodes c of stages 1, 2, …
     pub(super) nodes: &'static [f64],
@@ -22,7 +22,7 @@ pub(super) struct Tableau {
 }
 
 impl Tableau {
-    /// The index under which the rates at the new state are kept.
+    /// Index of the stage that holds the rates at the new state.
     pub(super) const fn new_rates(&self) -> usize {
         self.rows.len() + 1
     }
@@ -52,7 +52,7 @@ pub(super) struct Stages {
 }
 
 impl Stages {
-    /// Sizes the arrays for `n` states and `stages` stages and takes over the initial state.
+    /// Allocates the arrays for `n` states and `stages` stages and copies the initial state.
     pub(super) fn prepare(&mut self, x: &[f64], stages: usize) {
         self.n = x.len();
         self.stride = self.n.next_multiple_of(BLOCK);
@@ -73,7 +73,7 @@ impl Stages {
         &self.x[..self.n]
     }
 
-    /// State at the end of the step, to be corrected.
+    /// State at the end of the step, to be projected.
     pub(super) fn x_new_mut(&mut self) -> &mut [f64] {
         &mut self.x_new[..self.n]
     }
@@ -215,7 +215,7 @@ fn position_not_finite(values: &[f64]) -> Option<usize> {
     values.iter().position(|value| !value.is_finite())
 }
 
-/// `out` = x + h Σ w k, whole vectors.
+/// `out` = x + h Σ w k for whole vectors.
 fn combine(x: &[f64], h: f64, row: Row, rates: &[f64], stride: usize, out: &mut [f64]) {
     dispatch(
         #[inline(always)]

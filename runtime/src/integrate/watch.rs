@@ -1,4 +1,4 @@
-//! What happens after each accepted step: ranges, events, observers.
+//! Checks after each accepted step: ranges, events, observers.
 
 use super::dense_output::{DenseOutput, Ends, HERMITE};
 use super::error::{Cause, Failure, IntegrationError};
@@ -9,26 +9,26 @@ use super::stops::{Stops, sliver};
 use super::switches::Switches;
 use std::ops::ControlFlow;
 
-/// What an integration has to look out for, besides the tolerances.
+/// Switching times, ranges, projection and events of an integration.
 #[derive(Debug, Default)]
 pub struct Watch<'a> {
     /// Times at which the rates jump or lose smoothness, in any order. A step ends exactly at
     /// each; the rates up to there are evaluated before it, those after at or after it.
     pub switching_times: &'a [f64],
-    /// Functions of time and state at whose zeros the rates jump or bend: steps end there.
+    /// Functions of time and state at whose zeros the rates are discontinuous or not smooth.
     pub switches: Option<Switches<'a>>,
     /// Leaving one of these is an error.
     pub ranges: &'a [Range],
-    /// What brings the state at the end of a step back to where it belongs.
+    /// Projection of the state onto the constraints after each step.
     pub projection: Option<Projection<'a>>,
-    /// Functions whose zeros are sought.
+    /// Event functions, whose zeros are located.
     pub events: Vec<Event<'a>>,
 }
 
-/// Moves a state to a possible one at a time in s; false where it finds none.
+/// Projects a state onto the constraints at a time in s; false if that fails.
 pub type ProjectionFunction<'a> = dyn FnMut(f64, &mut [f64]) -> bool + 'a;
 
-/// A map of states onto the possible ones.
+/// A projection onto the admissible states.
 pub struct Projection<'a>(pub Box<ProjectionFunction<'a>>);
 
 impl std::fmt::Debug for Projection<'_> {
@@ -48,12 +48,12 @@ pub struct Step<'a> {
     pub x_old: &'a [f64],
     /// State at the end.
     pub x: &'a [f64],
-    /// The solution between, if [`Observer::wants_interior`] asked for it.
+    /// Dense output of the step, if [`Observer::wants_interior`] requested it.
     pub interior: Option<&'a DenseOutput>,
 }
 
 impl Watch<'_> {
-    /// Refuses ranges of states that do not exist.
+    /// Rejects ranges of states that do not exist.
     pub(super) fn check(&self, states: usize) -> Result<(), IntegrationError> {
         let mut components = self.ranges.iter().map(|range| range.component);
         match components.find(|&component| component >= states) {
@@ -66,15 +66,15 @@ impl Watch<'_> {
     }
 }
 
-/// Someone who sees every accepted step. Closures are observers that want the interior.
+/// Receives every accepted step. Closures are observers that request dense output.
 pub trait Observer {
-    /// Whether the solution between `t_old` and `t` is wanted; it may cost evaluations.
+    /// Whether dense output between `t_old` and `t` is needed; it may cost evaluations.
     fn wants_interior(&self, t_old: f64, t: f64) -> bool {
         let _ = (t_old, t);
         true
     }
 
-    /// Sees a step; breaking ends the integration there.
+    /// Receives a step; breaking ends the integration there.
     fn step(&mut self, step: &Step<'_>) -> ControlFlow<()>;
 }
 
@@ -84,7 +84,7 @@ impl<F: FnMut(&Step<'_>) -> ControlFlow<()>> Observer for F {
     }
 }
 
-/// The observer that looks at nothing.
+/// An observer that does nothing.
 #[derive(Debug, Clone, Copy)]
 pub struct NoObserver;
 
@@ -117,7 +117,7 @@ impl End {
     }
 }
 
-/// The watch and the observer during one integration.
+/// The state of all checks during one integration.
 pub(super) struct Watcher<'w, 'a, O> {
     pub(super) stops: Stops<'w, 'a>,
     ranges: &'a [Range],
@@ -126,18 +126,18 @@ pub(super) struct Watcher<'w, 'a, O> {
     observer: &'w mut O,
     crossings: Crossings,
     hits: Vec<EventHit>,
-    /// Where the state switched the equations in the last step, and the state and the rates there.
+    /// Time of the zero of a switching function that ended the last step; below, the state and the rates there.
     switched: Option<f64>,
     at_switch: [Vec<f64>; 2],
-    /// Steps in a row that are hardly steps, since such a switch.
+    /// Consecutive steps of negligible length since such a switch.
     slivers: Option<usize>,
-    /// The cubic between the ends of a step.
+    /// The cubic Hermite interpolant of a step.
     between: DenseOutput,
 }
 
-/// Steps nearer to the longest that is possible are not tried anew.
+/// A step is not shortened to a length above this fraction of it.
 const NOT_SHORTER: f64 = 0.9;
-/// So many of these in a row after a switch are one place that the motion does not leave.
+/// More consecutive negligible steps than this after a switch count as chattering.
 const MOST_SLIVERS: usize = 300;
 
 impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
@@ -157,19 +157,18 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         }
     }
 
-    /// Lets no step pass over what functions of time do.
+    /// Limits the step size so that no pulse of a function of time is stepped over.
     pub(super) fn paced(mut self, start: f64) -> Self {
         self.stops = self.stops.with_pace(start);
         self
     }
 
-    /// Where the state switched the equations in the step that was accepted last. It ended there, and the
-    /// integration begins anew.
+    /// Time of the switch at which the last accepted step ended; the integration restarts there.
     pub(super) fn switched(&self) -> Option<f64> {
         self.switched
     }
 
-    /// Takes the signs of the events at the start; tells if there is no start.
+    /// Initialises the signs of the event functions; an error if the initial state is inadmissible.
     pub(super) fn start(&mut self, t: f64, x: &[f64]) -> Result<(), Cause> {
         if let Some(component) = x.iter().position(|value| !value.is_finite()) {
             return Err(Cause::NonFinite { component });
@@ -182,12 +181,12 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         Ok(())
     }
 
-    /// Whether states are brought back to where they belong.
+    /// Whether states are projected onto the constraints.
     pub(super) fn projects(&self) -> bool {
         self.projection.is_some()
     }
 
-    /// Brings a state back to where it belongs; false where that fails.
+    /// Projects a state onto the constraints; false if that fails.
     pub(super) fn project(&mut self, t: f64, x: &mut [f64]) -> bool {
         match &mut self.projection {
             Some(projection) => (projection.0)(t, x),
@@ -195,7 +194,7 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         }
     }
 
-    /// Whether the next call of `accept` needs the interpolant.
+    /// Whether the next call of `accept` needs dense output.
     pub(super) fn wants_interior(&self, ends: &Ends<'_>) -> bool {
         !self.events.is_empty()
             || self.stops.has_crossings()
@@ -203,8 +202,8 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
             || self.observer.wants_interior(ends.t[0], ends.t[1])
     }
 
-    /// Shows a step up to its first end: an event, a limit, the switch that was found, or its own. `x` becomes the
-    /// state there. Returns the end of the integration if this is it.
+    /// Passes a step, up to an event, a limit, the located switch or its end, to the observer. `x` becomes the state
+    /// there. Returns the end of the integration if it ends in this step.
     pub(super) fn accept(
         &mut self,
         ends: &Ends<'_>,
@@ -234,7 +233,7 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         end.or(is_endless.then(|| End::failed(t, Cause::Chattering)))
     }
 
-    /// The length of the step to be tried instead of one that passes over what the state does.
+    /// A shorter step to be tried if this one may step over a pulse of a function of the state.
     pub(super) fn too_long(&mut self, ends: &Ends<'_>) -> Option<f64> {
         if !self.stops.has_pulses() {
             return None;
@@ -245,8 +244,8 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         (longest < NOT_SHORTER * (ends.t[1] - ends.t[0])).then_some(longest)
     }
 
-    /// Looks for a switch in a step. The length of the one to be tried instead, which ends a sliver before it: stages
-    /// beyond the switch spoil the interpolant, and the error does not tell where they are those of the interior alone.
+    /// A shorter step to be tried if a switch lies within this one; it ends just before the switch. Stages beyond the
+    /// switch corrupt the interpolant, and the error estimate does not detect it in those of the dense output alone.
     pub(super) fn shorter(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
         let switch = self.switch_within(ends, dense)?;
         let (before, length) = (switch - ends.t[0], ends.t[1] - ends.t[0]);
@@ -258,7 +257,7 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         })
     }
 
-    /// Where the state first switches the equations within a step; the time, the state and the rates are kept.
+    /// Locates the first switch within a step and stores the time, the state and the rates there.
     pub(super) fn switch_within(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<f64> {
         self.switched = None;
         let (t, x) = self.stops.crossing(ends, dense)?;
@@ -268,14 +267,14 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         rates.clear();
         rates.extend((0..x.len()).map(|i| dense.component_and_slope(t, i).1));
         if let Some(projection) = &mut self.projection {
-            // Where this fails, the next step does.
+            // If this fails, the next step reports it.
             (projection.0)(t, state);
         }
         self.switched = Some(t);
         self.switched
     }
 
-    /// Shows a step up to an event or a limit within it.
+    /// Passes a step up to an event or a limit within it to the observer.
     fn show(
         &mut self,
         ends: &Ends<'_>,
@@ -300,7 +299,7 @@ impl<'w, 'a, O: Observer> Watcher<'w, 'a, O> {
         end.or(flow.is_break().then_some(End { t, why }))
     }
 
-    /// The first terminal event or passed limit. Keeps the events before it.
+    /// The first terminal event or exceeded limit. Records the events before it.
     fn end_within(&mut self, ends: &Ends<'_>, dense: &DenseOutput) -> Option<End> {
         let left = self
             .ranges

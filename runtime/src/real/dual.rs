@@ -11,8 +11,8 @@ use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 /// Derivatives*, section 3.1). The inner scalar may itself be a dual: `Dual<Dual<f64, 1>, 1>`
 /// carries second derivatives.
 ///
-/// Where a function has a corner the derivative of the branch taken is returned; the derivative
-/// of [`Real::sign`] is zero and that of `abs` at zero is zero.
+/// At a kink the derivative of the branch taken is returned; the derivatives of [`Real::sign`] everywhere and of
+/// `abs` at zero are zero.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Dual<T, const N: usize> {
     /// The value.
@@ -205,8 +205,8 @@ impl<T: Real, const N: usize> Real for Dual<T, N> {
     fn sign(self) -> Self {
         Self::fixed(self.value.sign())
     }
-    /// A base that is not positive has no logarithm: its power is then differentiated with
-    /// respect to the base only, which is what `x^2` at negative `x` needs.
+    /// For a base that is not positive only the derivative with respect to the base is taken, as `x^2` needs at
+    /// negative `x`; the logarithm is undefined there.
     #[inline]
     fn powf(self, exponent: Self) -> Self {
         let (zero, one) = (T::constant(0.0), T::constant(1.0));

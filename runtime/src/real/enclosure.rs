@@ -1,14 +1,14 @@
-//! Functions of time over an interval of it.
+//! Interval enclosures of functions of time.
 
 use super::Real;
 use crate::interval::{Interval, Range};
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// Bounds on the values of a function over an interval of time, on its slope there, and on its value in the middle.
+/// Bounds on a function over an interval of time, on its slope there, and on its value at the midpoint.
 ///
-/// The bounds follow from the mean value theorem, `f(t) ∈ f(m) + f'([t]) ([t] − m)`, where they are tighter than those
-/// of the operations alone: they are off by the square of the length (Moore, Kearfott and Cloud, *Introduction to
-/// Interval Analysis*, chapter 6).
+/// The bounds follow from the mean value form, `f(t) ∈ f(m) + f'([t]) ([t] − m)`, where it is tighter than interval
+/// evaluation: its overestimation is quadratic in the length (Moore, Kearfott and Cloud, *Introduction to Interval
+/// Analysis*, chapter 6).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Enclosure {
     range: Range,
@@ -19,7 +19,7 @@ pub struct Enclosure {
 }
 
 impl Enclosure {
-    /// Anything.
+    /// The whole line.
     pub const UNKNOWN: Self = Self {
         range: Range::ANY,
         middle: Range::ANY,
@@ -27,7 +27,7 @@ impl Enclosure {
         half: 0.0,
     };
 
-    /// Time itself, from one to another in s.
+    /// Time itself, over an interval in s.
     pub fn time(from: f64, to: f64) -> Self {
         let middle = f64::midpoint(from, to);
         Self {
@@ -38,9 +38,9 @@ impl Enclosure {
         }
     }
 
-    /// A polynomial `c[0] + c[1] s + …` of a time within an interval whose half has a length in s, where s is the
-    /// departure from the middle in such halves. Bounds are as wide as the sum of the coefficients' sizes, and by their
-    /// rounding.
+    /// A polynomial `c[0] + c[1] s + …`, where s ∈ [−1, 1] is the distance from the midpoint of an interval of time
+    /// in units of its half length `half`, in s. The bounds are those of the sum of the absolute coefficients, and
+    /// rounded outwards.
     pub fn polynomial(coefficients: &[f64], half: f64) -> Self {
         let Some((&middle, others)) = coefficients.split_first() else {
             return Self::constant(0.0);
@@ -76,9 +76,9 @@ impl Enclosure {
         lo.abs().max(hi.abs())
     }
 
-    /// Whether a function may rise and fall between samples that are no farther apart than `spread`, over a time of a
-    /// length in s: at its largest slope it would come many times as far. It is as large as `size` elsewhere. False where
-    /// nothing is known of it.
+    /// Whether a function may have a pulse between samples that differ by at most `spread`, over an interval of a
+    /// length in s: its largest slope times the length exceeds their spread many times. `size` is its magnitude
+    /// elsewhere. False if there are no bounds.
     pub fn may_hide(&self, spread: f64, length: f64, size: f64) -> bool {
         let Interval { lo, hi } = self.middle.interval;
         let flat = FLAT * lo.abs().max(hi.abs()).max(size) + NOTHING;
@@ -91,7 +91,7 @@ impl Enclosure {
         self.range.interval
     }
 
-    /// Bounds on the value in the middle.
+    /// Bounds on the value at the midpoint.
     pub fn middle(&self) -> Interval {
         self.middle.interval
     }
@@ -102,7 +102,7 @@ impl Enclosure {
         self.range.nonzero || (lo == 0.0 && hi == 0.0)
     }
 
-    /// Whether the function only rises or only falls.
+    /// Whether the function is strictly monotonic.
     pub fn is_monotonic(&self) -> bool {
         let Interval { lo, hi } = self.slope.interval;
         lo > 0.0 || hi < 0.0
@@ -121,13 +121,13 @@ impl Enclosure {
         }
     }
 
-    /// f(g) for a function of values and the range of its slope at those of g.
+    /// f(g), given f on ranges and the range of its slope at the values of g.
     fn map(self, f: impl Fn(Range) -> Range, slope: Range) -> Self {
         let slope = slope.times(self.slope);
         Self::new(f(self.range), f(self.middle), slope, self.half)
     }
 
-    /// Values that may jump from one to another.
+    /// A function with possible discontinuities.
     fn jumping(range: Range, middle: Range, half: f64) -> Self {
         let Interval { lo, hi } = range.interval;
         Self {
@@ -157,16 +157,16 @@ impl Enclosure {
     }
 }
 
-/// How many times as far as its samples are apart a function comes at its largest slope that hides nothing between them.
+/// Ratio of the variation allowed by the largest slope to that of the samples above which a pulse may be hidden.
 const STEEP: f64 = 8.0;
-/// What a function may change by that is taken for a constant, relative to its size.
+/// Relative variation below which a function counts as constant.
 const FLAT: f64 = 1e-9;
-/// What is nothing in any unit.
+/// Absolute variation below which a function counts as constant, in any unit.
 const NOTHING: f64 = 1e-100;
-/// Rounding of a polynomial, relative to its terms.
+/// Relative rounding error of a polynomial.
 const ROUNDING: f64 = 16.0 * f64::EPSILON;
 
-/// A number without an error.
+/// A number as a degenerate interval.
 fn thin(value: f64) -> Range {
     Range::of(Interval {
         lo: value,

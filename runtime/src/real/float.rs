@@ -85,7 +85,7 @@ real_float!(
     exp => libm::expf, ln => libm::logf, sqrt => libm::sqrtf, abs => libm::fabsf,
 );
 
-/// Rounds to the nearest `f32`, the purpose of computing in it.
+/// Rounds to the nearest `f32`; the loss of precision is intended.
 #[allow(clippy::cast_possible_truncation)]
 #[inline]
 fn nearest_f32(value: f64) -> f32 {

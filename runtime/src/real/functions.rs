@@ -1,4 +1,4 @@
-//! Which elementary functions lanes compute with.
+//! Elementary functions of lanes.
 
 use super::Real;
 use crate::elementary;

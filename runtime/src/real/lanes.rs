@@ -6,11 +6,10 @@ use core::array::from_fn;
 use core::marker::PhantomData;
 use core::ops::{Add, AddAssign, Div, Mul, Neg, Sub};
 
-/// `N` independent numbers that pass through the same equations together.
+/// `N` independent numbers evaluated together.
 ///
-/// Every operation acts lane by lane. With [`Standard`] elementary functions lanes give bit for bit
-/// what `f64` gives; with [`Own`] ones they give the same bits on every machine, and `Lanes<1, Own>`
-/// is the scalar that computes with them.
+/// Every operation acts lane by lane. With [`Standard`] elementary functions the results agree bit for bit with
+/// `f64`; with [`Own`] ones they are reproducible on every machine, and `Lanes<1, Own>` is the corresponding scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Lanes<const N: usize, E = Standard>(pub [f64; N], PhantomData<E>);
 

@@ -1,4 +1,4 @@
-//! A simulation at its start, and what an integration of it means.
+//! A checked simulation with a consistent initial state.
 
 use super::describe::describe_state;
 use super::switches::switches;
@@ -13,10 +13,10 @@ use crate::integrate::{
 use crate::model::{At, Model};
 use crate::positions::{Moving, Positions};
 
-/// Beyond this condition number no digit of a velocity is left.
+/// Condition number above which a velocity has no significant digits.
 const LOST: f64 = 1e15;
 
-/// A simulation whose arguments fit and whose start is known.
+/// A simulation with valid arguments and a consistent initial state.
 pub struct Prepared<'a> {
     pub(super) model: &'a dyn Model,
     pub(super) inputs: &'a ModelInputs<'a>,
@@ -26,7 +26,7 @@ pub struct Prepared<'a> {
     switching_times: Vec<f64>,
     ranges: Vec<Range>,
     limits: Limits<'a>,
-    /// Limits beyond which it begins, and whether one of them ends it.
+    /// Limits exceeded at the start, and whether one of them ends the motion.
     breaches: Vec<Breach>,
     ends_at_once: bool,
 }
@@ -43,7 +43,7 @@ impl std::fmt::Debug for Prepared<'_> {
 }
 
 impl<'a> Prepared<'a> {
-    /// Checks a simulation and finds its start. `inputs` are those of its model and source.
+    /// Checks a simulation and computes its initial state. `inputs` are those of its model and source.
     pub fn new(
         simulation: &'a Simulation<'_>,
         inputs: &'a ModelInputs<'a>,
@@ -69,7 +69,7 @@ impl<'a> Prepared<'a> {
         })
     }
 
-    /// The state at the start, in SI.
+    /// The initial state, in SI.
     pub fn start(&self) -> &[f64] {
         &self.start
     }
@@ -84,7 +84,7 @@ impl<'a> Prepared<'a> {
         self.span
     }
 
-    /// What the integration has to look out for. The limits follow the simulation's own events.
+    /// Switching times, ranges, projection and events. The events of the limits follow the simulation's own events.
     pub(super) fn watch<'w>(&'w self, mut events: Vec<Event<'w>>) -> Watch<'w> {
         for event in self.limits.events() {
             events.push(event);
@@ -98,7 +98,7 @@ impl<'a> Prepared<'a> {
         }
     }
 
-    /// The motion that an integration found. `own` is the number of the simulation's own events.
+    /// The result of an integration. `own` is the number of the simulation's own events.
     pub(super) fn observed(
         &self,
         state: Vec<f64>,
@@ -140,21 +140,21 @@ impl<'a> Prepared<'a> {
     }
 }
 
-/// What a motion among others is shown to.
+/// Events and observer of one of several simulations.
 #[derive(Debug)]
 pub struct Viewer<'w, O> {
-    /// Events to be found.
+    /// Event functions.
     pub events: Vec<Event<'w>>,
-    /// Who sees the steps.
+    /// Receives the steps.
     pub observer: O,
 }
 
-/// Integrates many simulations of one model together, as [`BlockSolver`](crate::integrate::BlockSolver)
-/// does: `integrate` has their motions, in their order.
+/// Integrates many simulations of one model together, as [`BlockSolver`](crate::integrate::BlockSolver) does:
+/// `integrate` receives their motions, in order.
 ///
 /// # Panics
 ///
-/// If there are more or fewer viewers.
+/// If the numbers of viewers and simulations differ.
 pub fn observe_together<'w, O: Observer>(
     prepared: &'w [Prepared<'w>],
     viewers: Vec<Viewer<'w, O>>,
@@ -183,7 +183,7 @@ pub fn observe_together<'w, O: Observer>(
         .collect()
 }
 
-/// The initial state with its dependent coordinates found by Newton's method from their values as guesses.
+/// The initial state with dependent coordinates computed by Newton's method, starting from their given values.
 fn consistent_start(
     simulation: &Simulation<'_>,
     inputs: &ModelInputs<'_>,
@@ -203,7 +203,7 @@ fn consistent_start(
     Ok(x)
 }
 
-/// An error where rounding alone determines the generalised velocities.
+/// An error if the generalised velocities are determined only by rounding errors.
 fn determined_start(
     simulation: &Simulation<'_>,
     inputs: &ModelInputs<'_>,
@@ -220,7 +220,7 @@ fn determined_start(
     Err(SimulationError::Undetermined { condition, state })
 }
 
-/// The states with a finite limit, if they are watched.
+/// The states with a finite range, if ranges are checked.
 fn ranges(simulation: &Simulation<'_>) -> Vec<Range> {
     let limited = |limits: [f64; 2]| limits.iter().any(|limit| limit.is_finite());
     let states = simulation.model.info().states.iter().enumerate();
@@ -233,7 +233,7 @@ fn ranges(simulation: &Simulation<'_>) -> Vec<Range> {
         .collect()
 }
 
-/// The way back to the position constraints of a model.
+/// The projection onto the position constraints of a model.
 pub(super) fn projection<'a>(
     model: &'a dyn Model,
     p: &'a [f64],

@@ -1,15 +1,15 @@
-//! Observes an integration and keeps the samples of the motion.
+//! Records samples of a motion during integration.
 
 use crate::integrate::{Observer, Step};
 use std::ops::ControlFlow;
 
-/// At which times the motion is recorded.
+/// Recording times.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Sampling {
     /// At the start and after each step.
     Steps,
-    /// From the start on at multiples of an interval in s, between steps by dense output. Where
-    /// the motion ends early, by an event or a failure, its last state follows.
+    /// From the start on at multiples of an interval in s, between steps by dense output. If the motion ends early,
+    /// by an event or a failure, its final state is appended.
     Every(f64),
 }
 
@@ -23,7 +23,7 @@ pub struct Recorder<'a> {
     pub(super) times: Vec<f64>,
     /// States one after the other.
     pub(super) states: Vec<f64>,
-    /// A state between the ends of a step.
+    /// An interpolated state.
     x: Vec<f64>,
     /// Called with the time in s after each step.
     pub(super) progress: Option<Box<dyn FnMut(f64) + 'a>>,
@@ -57,7 +57,7 @@ impl Recorder<'_> {
         self.states.extend_from_slice(x);
     }
 
-    /// The next time of the grid; the interval's end where rounding alone keeps them apart.
+    /// The next time of the grid; the end of the interval if they differ only by rounding.
     fn next_on_grid(&self, interval: f64) -> f64 {
         let [start, end] = self.span;
         let t = start + f64::from(self.next) * interval;
@@ -68,7 +68,7 @@ impl Recorder<'_> {
         }
     }
 
-    /// Records where the motion ended, which need not lie on the grid.
+    /// Records the final state, whose time need not lie on the grid.
     pub(super) fn finish(&mut self, t: f64, x: &[f64]) {
         if self.times.last().is_some_and(|last| *last < t) {
             self.record(t, x);

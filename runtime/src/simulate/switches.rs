@@ -1,4 +1,4 @@
-//! What switches a model and its inputs, as an integrator asks for it.
+//! Switching functions of a model and its inputs, in the form required by an integrator.
 
 use crate::inputs::ModelInputs;
 use crate::integrate::{Stretch, Switches};
@@ -6,7 +6,7 @@ use crate::model::{Along, At, Model, Switching};
 use crate::real::Enclosure;
 use crate::switching::Counts;
 
-/// The switches of a model under its inputs, those of the model first.
+/// The switching functions of a model and of its inputs, those of the model first.
 pub(super) fn switches<'a>(
     model: &'a dyn Model,
     p: &'a [f64],
@@ -29,7 +29,7 @@ pub(super) fn switches<'a>(
         return None;
     }
     let info = model.info();
-    // Neither states nor inputs decide these, but every function has such arguments.
+    // Functions of time alone ignore these arguments.
     let (x, u) = (vec![0.0; info.state_len()], vec![0.0; info.input_len()]);
     let mut inputs_now = u.clone();
     let mut u_along = vec![Enclosure::UNKNOWN; u.len()];
@@ -86,7 +86,7 @@ pub(super) fn switches<'a>(
     })
 }
 
-/// Functions of all parts: those of one kind before those of the other.
+/// The functions of all parts, sorted by kind.
 struct Sorted<'f, T> {
     first: &'f mut [T],
     second: &'f mut [T],
@@ -98,7 +98,7 @@ impl<'f, T: Copy> Sorted<'f, T> {
         Self { first, second }
     }
 
-    /// Takes those of the next part, of which `count` are of the first kind.
+    /// Adds those of the next part, of which `count` are of the first kind.
     fn take(&mut self, all: &[T], count: usize) {
         let (first, second) = all.split_at(count);
         for (to, own) in [(&mut self.first, first), (&mut self.second, second)] {

@@ -1,4 +1,4 @@
-//! Where a motion leaves what its model describes: ranges, contacts, accuracy.
+//! Validity of a model along a motion: ranges, contacts, conditioning.
 
 use super::describe::describe_state;
 use crate::condition::Conditions;
@@ -9,35 +9,35 @@ use crate::model::{At, Model, ModelInfo};
 use std::cell::RefCell;
 use std::rc::Rc;
 
-/// What a simulation does where its model stops being valid.
+/// Response of a simulation to a violation of a limit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Response {
-    /// It does not look.
+    /// The limit is not checked.
     Ignore,
-    /// It records a [`Breach`] and goes on.
+    /// A [`Breach`] is recorded and the motion continues.
     Report,
-    /// It records a [`Breach`] and ends there.
+    /// A [`Breach`] is recorded and the motion ends.
     Stop,
 }
 
-/// What is watched.
+/// Responses to violations of each kind of limit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Validity {
-    /// States that leave their declared range. To stop there is an error.
+    /// States outside their declared range. Stopping there is an error.
     pub ranges: Response,
-    /// Contacts that would have to pull, or that slip.
+    /// Contacts with a tensile normal force, or that slip.
     pub contacts: Response,
-    /// Coefficient of friction of all contacts, in place of those of the spec. Contacts with
-    /// neither are not watched for slipping.
+    /// Coefficient of friction of all contacts; overrides those of the spec. Contacts without any are not checked for
+    /// slipping.
     pub friction: Option<f64>,
     /// Mass matrix, velocities and systems with a condition number above `worst_condition`.
     pub conditions: Response,
-    /// The largest condition number that passes.
+    /// The largest admissible condition number.
     pub worst_condition: f64,
 }
 
 impl Default for Validity {
-    /// Ranges end the motion, nothing else is watched.
+    /// Stops at ranges; nothing else is checked.
     fn default() -> Self {
         Self {
             ranges: Response::Stop,
@@ -57,39 +57,39 @@ pub enum Limit {
         /// Index of the state.
         state: usize,
     },
-    /// A contact can only push.
+    /// The normal force of a contact is compressive.
     Contact {
         /// Index into [`ModelInfo::contacts`].
         contact: usize,
     },
-    /// Friction carries only a part of the normal force.
+    /// The tangential force of a contact is bounded by friction.
     Friction {
         /// Index into [`ModelInfo::contacts`].
         contact: usize,
     },
-    /// What is solved keeps some digits.
+    /// A linear system is sufficiently well-conditioned.
     Condition {
         /// Index into [`Conditions::names`].
         of: usize,
     },
 }
 
-/// A limit that a motion passes.
+/// A violation of a limit.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Breach {
-    /// When, in s: the root of what is limited, or the start of the motion where it begins beyond.
+    /// Time in s: the root of the margin, or the start of the motion if violated there.
     pub t: f64,
     /// State at that time, in SI.
     pub state: Vec<f64>,
     /// Which limit.
     pub limit: Limit,
-    /// What is limited, at that time and in SI: the state, the normal force, the friction demand,
-    /// the condition number.
+    /// The limited quantity, at that time and in SI: the state, the normal force, the friction demand, the condition
+    /// number.
     pub value: f64,
 }
 
 impl Breach {
-    /// What happens, in the names and units of the spec.
+    /// A description in the names and units of the spec.
     pub fn describe(&self, info: &ModelInfo) -> String {
         let contact = |index: usize| info.contacts.get(index).map_or("?", |c| c.name.as_ref());
         match self.limit {
@@ -127,7 +127,7 @@ impl Breach {
     }
 }
 
-/// Everything that limits look at, kept for the last state that was asked for.
+/// Evaluates limited quantities, with a cache for the last state.
 struct Gauge<'a> {
     model: &'a dyn Model,
     inputs: &'a ModelInputs<'a>,
@@ -135,14 +135,14 @@ struct Gauge<'a> {
     validity: Validity,
     u: Vec<f64>,
     forces: ContactForces,
-    /// Time and state of what was seen last.
+    /// Time and state of the cached values.
     place: Option<(f64, Vec<f64>)>,
     seen_forces: Option<Vec<ContactForce>>,
     seen_conditions: Option<Conditions>,
 }
 
 impl Gauge<'_> {
-    /// What a limit limits, and how much is left: negative beyond the limit.
+    /// The limited quantity and its margin: negative if the limit is violated.
     fn read(&mut self, limit: Limit, t: f64, x: &[f64]) -> (f64, f64) {
         match limit {
             Limit::Range { state } => {
@@ -161,7 +161,7 @@ impl Gauge<'_> {
             }
             Limit::Condition { of } => {
                 let value = self.conditions_at(t, x).iter().nth(of).unwrap_or(f64::NAN);
-                // Bounded, so that a root is found beside a pole.
+                // Bounded, so that a root next to a pole is located.
                 let left = self.validity.worst_condition / value.max(1.0);
                 (value, left.ln().max(-1e3))
             }
@@ -183,7 +183,7 @@ impl Gauge<'_> {
             .get_or_insert_with(|| Conditions::of(model, At { t, x, u, p }))
     }
 
-    /// Forgets what was seen elsewhere.
+    /// Clears the cache if time or state differ.
     fn look(&mut self, t: f64, x: &[f64]) {
         let is_seen = |(time, state): &(f64, Vec<f64>)| time.to_bits() == t.to_bits() && state == x;
         if !self.place.as_ref().is_some_and(is_seen) {
@@ -197,7 +197,7 @@ impl Gauge<'_> {
 /// The limits of one simulation.
 pub(super) struct Limits<'a> {
     gauge: Rc<RefCell<Gauge<'a>>>,
-    /// With whether each ends the motion.
+    /// Each with whether it ends the motion.
     watched: Vec<(Limit, bool)>,
 }
 
@@ -221,7 +221,7 @@ impl<'a> Limits<'a> {
             seen_conditions: None,
         };
         let mut watched = Vec::new();
-        // To stop at a range is an error of the integration.
+        // Stopping at a range is an error of the integration.
         if validity.ranges == Response::Report {
             let states = info.states.iter().enumerate();
             let limited = states.filter(|(_, q)| q.range.iter().any(|limit| limit.is_finite()));
@@ -259,7 +259,7 @@ impl<'a> Limits<'a> {
         })
     }
 
-    /// The limits beyond which a motion begins, and whether one of them ends it.
+    /// The limits violated at the start, and whether one of them ends the motion.
     pub(super) fn at_start(&self, t: f64, x: &[f64]) -> (Vec<Breach>, bool) {
         let (mut breaches, mut ends) = (Vec::new(), false);
         for &(limit, stop) in &self.watched {
@@ -271,7 +271,7 @@ impl<'a> Limits<'a> {
         (breaches, ends)
     }
 
-    /// The breach that an event stands for, which is numbered as in [`Limits::events`].
+    /// The breach of an event, which is numbered as in [`Limits::events`].
     pub(super) fn found(&self, event: usize, hit: EventHit) -> Option<Breach> {
         let &(limit, _) = self.watched.get(event)?;
         Some(self.breach(limit, hit.t, hit.state))

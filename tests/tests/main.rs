@@ -41,7 +41,6 @@ mod recursion;
 mod redundancy;
 mod reference;
 mod shooting;
-mod size;
 mod snapshots;
 mod stability;
 mod steady;

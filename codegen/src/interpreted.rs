@@ -11,26 +11,27 @@ use appell_runtime::real::Enclosure;
 use appell_runtime::switching::Counts;
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, enclose, enclose_along, interpret_weighted, schedule};
+use crate::schedule::schedule;
+use crate::tape::{Tape, enclose, enclose_along, interpret_weighted};
 
-/// A model that interprets its schedules. Functions that the program lacks return NaN.
+/// A model that interprets its tapes. Functions that the program lacks return NaN.
 #[derive(Debug)]
 pub struct InterpretedModel {
     program: Program,
     /// By function of the program, created on first use.
-    schedules: Vec<OnceLock<Schedule>>,
+    tapes: Vec<OnceLock<Tape>>,
 }
 
 impl InterpretedModel {
     /// A model of a program.
     pub fn new(program: Program) -> Self {
-        let schedules = program.functions.iter().map(|_| OnceLock::new()).collect();
-        Self { program, schedules }
+        let tapes = program.functions.iter().map(|_| OnceLock::new()).collect();
+        Self { program, tapes }
     }
 
-    /// The schedule of a function, if the program has it.
-    fn schedule(&self, kind: FunctionKind) -> Option<&Schedule> {
-        let mut functions = self.program.functions.iter().zip(&self.schedules);
+    /// The tape of a function, if the program has it.
+    fn tape(&self, kind: FunctionKind) -> Option<&Tape> {
+        let mut functions = self.program.functions.iter().zip(&self.tapes);
         let (function, lazy) = functions.find(|(function, _)| function.kind == kind)?;
         Some(lazy.get_or_init(|| schedule(&self.program, function)))
     }
@@ -47,15 +48,15 @@ impl InterpretedModel {
         weights: &[f64],
         wanted: &mut [(&str, &mut [f64])],
     ) {
-        let Some(schedule) = self.schedule(kind) else {
+        let Some(tape) = self.tape(kind) else {
             for (_, to) in wanted.iter_mut() {
                 to.fill(f64::NAN);
             }
             return;
         };
-        let results = interpret_weighted(schedule, at, weights);
+        let results = interpret_weighted(tape, at, weights);
         for (name, to) in wanted {
-            match schedule.results.iter().position(|r| r.name == *name) {
+            match tape.results.iter().position(|r| r.name == *name) {
                 Some(i) => to.copy_from_slice(&results[i]),
                 None => to.fill(f64::NAN),
             }
@@ -234,8 +235,8 @@ impl Switching for InterpretedModel {
     }
 
     fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
-        if let Some(schedule) = self.schedule(FunctionKind::TimeFunctions) {
-            enclose(schedule, time, p, functions);
+        if let Some(tape) = self.tape(FunctionKind::TimeFunctions) {
+            enclose(tape, time, p, functions);
         }
     }
 
@@ -247,8 +248,8 @@ impl Switching for InterpretedModel {
     }
 
     fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
-        if let Some(schedule) = self.schedule(FunctionKind::Crossings) {
-            enclose_along(schedule, along, crossings);
+        if let Some(tape) = self.tape(FunctionKind::Crossings) {
+            enclose_along(tape, along, crossings);
         }
     }
 }

@@ -8,7 +8,8 @@ use std::thread;
 
 use appell_codegen::jit::{JitError, JitModel};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
-use appell_codegen::schedule::{interpret, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::interpret;
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_runtime::model::{At, Model, ModelInfo, Quantity};
 

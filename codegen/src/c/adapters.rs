@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use super::types::Types;
 use super::{Real, is_empty};
-use crate::infix::shape;
+use crate::text::shape;
 use crate::program::{Function, FunctionKind, Layout, Program, Space};
 
 /// A function of a model that reads and fills arrays of doubles, with the names of its results. Results without

@@ -10,8 +10,8 @@ use super::body::Group;
 use super::layout::{blank_tokens, code, docs, escaped};
 use super::syntax::{ident, known, number};
 use crate::program::{Function, FunctionKind, Layout, Own, Program, Space};
-use crate::schedule::Argument;
 use crate::schedule::names::{ArgumentNames, Names};
+use crate::tape::Argument;
 
 /// Names of types and fields.
 pub(super) struct Types<'a> {

@@ -13,13 +13,13 @@ use super::host::Use;
 use super::on_demand::OnDemand;
 use super::{JitError, Sizes};
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{Schedule, Tree, enclose, enclose_along};
+use crate::tape::{Tape, enclose, enclose_along};
 use crate::symbolic::Rational;
 
 /// A model compiled in this process.
 ///
 /// The rates are compiled immediately, every other function at its first use: most users need few of them, and
-/// finding a short schedule for all derivatives takes longer than compiling it. Concurrent calls of the same function
+/// finding a short tape for all derivatives takes longer than compiling it. Concurrent calls of the same function
 /// wait for its compilation. Functions that are too long to be compiled are interpreted with the same results;
 /// [`Self::interpreted`] lists these.
 ///
@@ -45,31 +45,32 @@ impl Whole {
         self.zeros.iter().any(|&index| p[index] != 0.0)
     }
 
-    /// The schedule of a function of the specialised model.
-    fn schedule(&self, kind: FunctionKind) -> Schedule {
+    /// The tape of a function of the specialised model.
+    fn tape(&self, kind: FunctionKind) -> Tape {
         let Self { model, zeros } = self;
         let is_zero = |index: usize| zeros.binary_search(&index).is_ok();
-        let mut schedule = model.part(kind).schedule(&model.program).clone();
+        let mut tape = model.part(kind).tape(&model.program).clone();
         let parameters = model.sizes.parameters.max(1);
         let by_parameters = matches!(
             kind,
             FunctionKind::ParameterJacobian | FunctionKind::Adjoint | FunctionKind::OutputAdjoint
         );
-        let slopes = schedule.results.iter_mut();
+        let zero = tape.constant(Rational::ZERO);
+        let slopes = tape.results.iter_mut();
         for result in slopes.filter(|result| by_parameters && result.name == "p") {
             for (place, entry) in result.entries.iter_mut().enumerate() {
                 if is_zero(place % parameters) {
-                    *entry = Tree::Constant(Rational::from(0));
+                    *entry = zero;
                 }
             }
         }
-        schedule.without(is_zero)
+        tape.without(is_zero)
     }
 }
 
 /// The results required by the trait, with their lengths.
 ///
-/// Other results of a function are omitted from the machine code. The remaining values do not change: the schedule is
+/// Other results of a function are omitted from the machine code. The remaining values do not change: the tape is
 /// that of the whole function.
 fn results(kind: FunctionKind, program: &Program) -> Vec<(&'static str, usize)> {
     let info = &program.info;
@@ -204,7 +205,7 @@ impl JitModel {
     fn part(&self, kind: FunctionKind) -> &OnDemand {
         let part = &self.parts[kind as usize];
         if let Some(whole) = &self.whole {
-            part.follow(|| whole.schedule(kind));
+            part.follow(|| whole.tape(kind));
         }
         part
     }
@@ -295,7 +296,7 @@ impl Model for JitModel {
 
     fn outputs_within(&self, along: &Along<'_>, outputs: &mut [Enclosure]) {
         let part = self.at(along.p).part(FunctionKind::Outputs);
-        enclose_along(part.schedule(&self.program), along, outputs);
+        enclose_along(part.tape(&self.program), along, outputs);
     }
 
     fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
@@ -392,7 +393,7 @@ impl Switching for JitModel {
 
     fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
         let part = self.at(p).part(FunctionKind::TimeFunctions);
-        enclose(part.schedule(&self.program), time, p, functions);
+        enclose(part.tape(&self.program), time, p, functions);
     }
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
@@ -403,7 +404,7 @@ impl Switching for JitModel {
 
     fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
         let part = self.at(along.p).part(FunctionKind::Crossings);
-        enclose_along(part.schedule(&self.program), along, crossings);
+        enclose_along(part.tape(&self.program), along, crossings);
     }
 }
 

@@ -4,12 +4,12 @@ use std::sync::OnceLock;
 
 use appell_runtime::model::At;
 
-use super::check::lengths;
 use super::host::Use;
 use super::native::check_lengths;
 use super::{Elementary, JitError, NativeFunction, Sizes};
 use crate::program::{Function, FunctionKind, Program};
-use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
+use crate::schedule::schedule;
+use crate::tape::{ResultArray, Tape, interpret_weighted};
 
 /// A requested result of a function: its name and its length.
 pub(super) type Wanted = (&'static str, usize);
@@ -19,7 +19,7 @@ pub(super) struct OnDemand {
     kind: FunctionKind,
     wanted: Vec<Wanted>,
     of: Use,
-    schedule: OnceLock<Schedule>,
+    tape: OnceLock<Tape>,
     ready: OnceLock<Ready>,
 }
 
@@ -30,7 +30,7 @@ pub(super) enum Ready {
     /// Interpreted, because compilation failed.
     Interpreted {
         /// The function, restricted to the requested results.
-        schedule: Schedule,
+        tape: Tape,
         /// Lengths of the arguments.
         sizes: Sizes,
         /// Lengths of the results.
@@ -70,14 +70,14 @@ impl OnDemand {
             kind,
             wanted,
             of,
-            schedule: OnceLock::new(),
+            tape: OnceLock::new(),
             ready: OnceLock::new(),
         })
     }
 
     /// Compiles the function now, or returns why this is impossible.
     pub(super) fn compile(&self, program: &Program, sizes: Sizes) -> Result<(), JitError> {
-        let native = NativeFunction::compile(self.schedule(program), sizes)?;
+        let native = NativeFunction::compile(self.tape(program), sizes)?;
         self.ready.get_or_init(|| Ready::Native(native));
         Ok(())
     }
@@ -116,34 +116,29 @@ impl OnDemand {
 
     #[cold]
     fn make(&self, program: &Program, sizes: Sizes) -> Ready {
-        Ready::of(self.schedule(program).clone(), sizes, self.of)
+        Ready::of(self.tape(program).clone(), sizes, self.of)
     }
 
-    /// Uses another schedule, made on first use.
+    /// Uses another tape, made on first use.
     #[inline]
-    pub(super) fn follow(&self, make: impl FnOnce() -> Schedule) {
-        self.schedule.get_or_init(make);
+    pub(super) fn follow(&self, make: impl FnOnce() -> Tape) {
+        self.tape.get_or_init(make);
     }
 
-    pub(super) fn schedule(&self, program: &Program) -> &Schedule {
-        self.schedule.get_or_init(|| self.find_schedule(program))
+    pub(super) fn tape(&self, program: &Program) -> &Tape {
+        self.tape.get_or_init(|| self.find_tape(program))
     }
 
-    /// The steps of the whole function, so that results do not depend on the selection, with only the requested
-    /// results. The compiler eliminates dead steps.
-    fn find_schedule(&self, program: &Program) -> Schedule {
+    /// The operations of the whole function, so that results do not depend on the selection, with only the requested
+    /// results. The compiler eliminates dead operations.
+    fn find_tape(&self, program: &Program) -> Tape {
         let whole =
             find(program, self.kind).filter(|_| self.wanted.iter().any(|&(_, len)| len > 0));
-        let mut schedule = match whole {
+        let mut tape = match whole {
             Some(function) => schedule(program, function),
-            None => Schedule {
-                arguments: Vec::new(),
-                steps: Vec::new(),
-                results: Vec::new(),
-                names: Vec::new(),
-            },
+            None => Tape::default(),
         };
-        let mut all = std::mem::take(&mut schedule.results);
+        let mut all = std::mem::take(&mut tape.results);
         let wanted = self.wanted.iter().map(|&(name, _)| {
             match all.iter().position(|result| result.name == name) {
                 Some(index) => all.swap_remove(index),
@@ -153,19 +148,19 @@ impl OnDemand {
                 },
             }
         });
-        schedule.results = wanted.collect();
-        schedule
+        tape.results = wanted.collect();
+        tape
     }
 }
 
 impl Ready {
-    /// Compiles a schedule if that is possible.
-    fn of(schedule: Schedule, sizes: Sizes, of: Use) -> Self {
-        match NativeFunction::compile_for(&schedule, sizes, (Elementary::Standard, of)) {
+    /// Compiles a tape if that is possible.
+    fn of(tape: Tape, sizes: Sizes, of: Use) -> Self {
+        match NativeFunction::compile_for(&tape, sizes, (Elementary::Standard, of)) {
             Ok(native) => Self::Native(native),
             Err(reason) => Self::Interpreted {
-                results: lengths(&schedule),
-                schedule,
+                results: tape.lengths(),
+                tape,
                 sizes,
                 reason,
             },
@@ -178,13 +173,13 @@ impl Ready {
         match self {
             Self::Native(native) => native.call_weighted(at, weights, out),
             Self::Interpreted {
-                schedule,
+                tape,
                 sizes,
                 results,
                 ..
             } => {
                 check_lengths(at, *sizes, &out, results);
-                let computed = interpret_weighted(schedule, at, weights);
+                let computed = interpret_weighted(tape, at, weights);
                 for (out, computed) in out.into_iter().zip(computed) {
                     out.copy_from_slice(&computed);
                 }

@@ -1,7 +1,8 @@
-//! Turns the working graph into steps: decides which nodes are bound to names, their order and
-//! their names.
+//! Writes the working graph as a tape: decides which nodes are bound to names, their order and their names.
 
 mod factors;
+
+use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::dag::{Dag, Id, Item, Name, Op};
 use super::monomial::Monomial;
@@ -9,9 +10,9 @@ use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
 use super::signs::{choose_signs, keeps_its_name};
-use super::steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use crate::program::{Function, Own, Program};
 use crate::symbolic::{Function as Elementary, Rational};
+use crate::tape::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
 
 /// Maximum columns of an emitted line.
 const COLUMNS: usize = 88;
@@ -26,13 +27,13 @@ const INLINE: usize = 72;
 /// Columns guaranteed to a tree, however long its name is.
 const NARROWEST: usize = 30;
 
-/// The steps of a function. `hints` marks the nodes that equal a hint of the program up to sign.
+/// The tape of a function. `hints` marks the nodes that equal a hint of the program up to sign.
 pub(super) fn bind(
     program: &Program,
     function: &Function,
     dag: &Dag,
     hints: Vec<Option<(usize, bool)>>,
-) -> Schedule {
+) -> Tape {
     let mut binding = Binding::new(program, function, dag, hints);
     let mut seen = vec![false; dag.len()];
     for (title, roots) in binding.outline.paragraphs(function) {
@@ -68,16 +69,15 @@ struct Binding<'a> {
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
     names: Names,
-    values: Vec<String>,
-    /// The monomial of each value, where its name denotes one.
-    products: Vec<Option<Monomial>>,
+    tape: Tape,
+    /// The monomials of values whose names denote one.
+    products: FxHashMap<Value, Monomial>,
     /// Values named by hints.
-    hinted: Vec<bool>,
-    steps: Vec<Step>,
+    hinted: FxHashSet<Value>,
     title: Option<String>,
     systems_done: Vec<bool>,
-    /// System of each factorisation.
-    factorisations: Vec<u32>,
+    /// Systems with their factorisations.
+    factorisations: Vec<(u32, Value)>,
 }
 
 impl<'a> Binding<'a> {
@@ -116,10 +116,9 @@ impl<'a> Binding<'a> {
             parts: vec![0; dag.len()],
             built: vec![None; dag.len()],
             names,
-            values: Vec::new(),
-            products: Vec::new(),
-            hinted: Vec::new(),
-            steps: Vec::new(),
+            tape: Tape::default(),
+            products: FxHashMap::default(),
+            hinted: FxHashSet::default(),
             title: None,
             systems_done: vec![false; dag.systems.len()],
             factorisations: Vec::new(),
@@ -127,66 +126,50 @@ impl<'a> Binding<'a> {
         }
     }
 
-    fn finish(self, function: &Function) -> Schedule {
-        let mut results = self.dag.results.iter();
-        let results: Vec<ResultArray> = function
-            .results
-            .iter()
-            .map(|array| ResultArray {
+    fn finish(mut self, function: &Function) -> Tape {
+        let dag = self.dag;
+        let mut results = dag.results.iter();
+        for array in &function.results {
+            let own = results.by_ref().take(array.entries.len());
+            let entries = own.map(|&item| self.signed(item).value).collect();
+            self.tape.results.push(ResultArray {
                 name: array.name.clone(),
-                entries: results
-                    .by_ref()
-                    .take(array.entries.len())
-                    .map(|&item| self.signed(item).tree)
-                    .collect(),
-            })
-            .collect();
-        let mut used: Vec<Argument> = self
-            .outline
-            .order
-            .iter()
-            .filter_map(|&id| match self.dag.op(id) {
-                Op::Argument(argument) => Some(*argument),
-                _ => None,
-            })
-            .collect();
-        used.sort_unstable();
-        Schedule {
-            arguments: used,
-            steps: self.steps,
-            results,
-            names: self.values,
+                entries,
+            });
         }
+        self.tape.in_order_of_text()
     }
 
     /// The piece of an operand whose flip is a sign, and whether it is to be negated.
-    fn part(&self, item: Item) -> (Piece, bool) {
+    fn part(&mut self, item: Item) -> (Piece, bool) {
         match &self.built[item.id.index()] {
-            Some(built) => (built.piece.clone(), built.negative != item.flip),
+            Some(built) => (built.piece, built.negative != item.flip),
             // Operands are built before their users.
-            None => (Piece::name(Tree::Constant(Rational::ZERO), "zero"), false),
+            None => (self.constant(&Rational::ZERO), false),
         }
     }
 
-    fn constant(&self, value: &Rational) -> Piece {
-        Piece::name(
-            Tree::Constant(value.clone()),
-            &self.arguments.constant(value),
-        )
+    fn constant(&mut self, value: &Rational) -> Piece {
+        let name = self.arguments.constant(value);
+        Piece::name(self.tape.constant(value.clone()), &name)
     }
 
     /// Sort key of a term among the terms of its sign.
-    fn place_in_sum(&self, tree: &Tree) -> (u8, u32) {
-        Monomial::of(tree, &self.products).map_or((2, 0), |monomial| monomial.place_in_sum())
+    fn place_in_sum(&self, value: Value) -> (u8, u32) {
+        let monomial = Monomial::of(value, &self.tape, &self.products);
+        monomial.map_or((2, 0), |monomial| monomial.place_in_sum())
     }
 
     /// The piece of an operand, with its sign.
-    fn signed(&self, item: Item) -> Piece {
+    fn signed(&mut self, item: Item) -> Piece {
         let (piece, negative) = self.part(item);
-        match (negative, &piece.tree) {
+        match (negative, self.tape.unnamed(piece.value)) {
             (false, _) => piece,
-            (true, Tree::Constant(value)) => self.constant(&-value),
-            (true, _) => piece.negated(),
+            (true, Some(Operation::Constant(value))) => {
+                let opposite = -value;
+                self.constant(&opposite)
+            }
+            (true, _) => piece.negated(&mut self.tape),
         }
     }
 
@@ -196,10 +179,10 @@ impl<'a> Binding<'a> {
         }
         let (piece, negative) = match self.dag.op(id) {
             Op::Number(value) => (self.constant(value), false),
-            Op::Argument(argument) => (
-                Piece::name(Tree::Argument(*argument), self.arguments.get(*argument)),
-                false,
-            ),
+            Op::Argument(argument) => {
+                let value = self.tape.argument(*argument);
+                (Piece::name(value, self.arguments.get(*argument)), false)
+            }
             Op::Sum(terms) => self.sum(id, terms),
             Op::Product(factors) => self.product(id, factors),
             Op::Function(_, angle) if self.outline.partner[id.index()].is_some() => {
@@ -207,7 +190,7 @@ impl<'a> Binding<'a> {
             }
             Op::Function(function, argument) => {
                 let [argument] = self.operands(id, [*argument]);
-                (argument.function(*function), false)
+                (argument.function(&mut self.tape, *function), false)
             }
             Op::Kept(inner) => {
                 self.built[id.index()] = self.built[inner.index()].clone();
@@ -215,15 +198,15 @@ impl<'a> Binding<'a> {
             }
             Op::Atan2(items) => {
                 let [y, x] = self.operands(id, *items);
-                (y.atan2(x), false)
+                (y.atan2(&mut self.tape, x), false)
             }
             Op::Power(items) => {
                 let [base, exponent] = self.operands(id, *items);
-                (base.power(exponent), false)
+                (base.power(&mut self.tape, exponent), false)
             }
             Op::Choice(relation, items) => {
                 let operands = self.operands(id, *items);
-                (Piece::choice(*relation, operands), false)
+                (Piece::choice(&mut self.tape, *relation, operands), false)
             }
             Op::Solution { system, .. } => return self.solve(*system),
         };
@@ -269,14 +252,14 @@ impl<'a> Binding<'a> {
         // `a - 2 b` instead of `a + -2 b`, if there is a positive term to start with.
         let positive = parts
             .iter()
-            .any(|(piece, minus)| !minus && !piece.starts_negative());
+            .any(|(piece, minus)| !minus && !piece.starts_negative(&self.tape));
         for (piece, minus) in parts.iter_mut().filter(|_| positive) {
-            if piece.starts_negative() {
-                *piece = piece.clone().opposite();
+            if piece.starts_negative(&self.tape) {
+                *piece = piece.opposite(&mut self.tape);
                 *minus = !*minus;
             }
         }
-        parts.sort_by_key(|(piece, minus)| (*minus, self.place_in_sum(&piece.tree)));
+        parts.sort_by_key(|(piece, minus)| (*minus, self.place_in_sum(piece.value)));
         let room = self.room_of_sum(id);
         let mut sum: Option<Piece> = None;
         for (part, minus) in parts {
@@ -284,12 +267,12 @@ impl<'a> Binding<'a> {
                 None => part,
                 Some(sum) => {
                     let operation = if minus {
-                        Operation::Subtract
+                        Arithmetic::Subtract
                     } else {
-                        Operation::Add
+                        Arithmetic::Add
                     };
                     let (sum, part) = self.fitting(id, room, operation, sum, part);
-                    sum.binary(operation, part)
+                    sum.binary(&mut self.tape, operation, part)
                 }
             });
         }
@@ -311,16 +294,15 @@ impl<'a> Binding<'a> {
                 above.push(piece);
             }
         }
-        above.sort_by_key(|piece| reading_order(&piece.tree));
-        below.sort_by_key(|piece| reading_order(&piece.tree));
+        above.sort_by_key(|piece| self.reading_order(piece.value));
+        below.sort_by_key(|piece| self.reading_order(piece.value));
         let mut negative = natural;
-        if let Some(Piece {
-            tree: Tree::Constant(value),
-            ..
-        }) = above.first()
+        if let Some(first) = above.first()
+            && let Some(Operation::Constant(value)) = self.tape.unnamed(first.value)
             && natural != self.minus[id.index()]
         {
-            above[0] = self.constant(&-value);
+            let opposite = -value;
+            above[0] = self.constant(&opposite);
             negative = !natural;
         }
         let numerator = self.chain(id, above);
@@ -330,8 +312,8 @@ impl<'a> Binding<'a> {
                 let numerator = numerator.unwrap_or_else(|| self.constant(&Rational::ONE));
                 let room = self.room(id);
                 let (numerator, denominator) =
-                    self.fitting(id, room, Operation::Divide, numerator, denominator);
-                numerator.binary(Operation::Divide, denominator)
+                    self.fitting(id, room, Arithmetic::Divide, numerator, denominator);
+                numerator.binary(&mut self.tape, Arithmetic::Divide, denominator)
             }
             (None, None) => self.constant(&Rational::ONE),
         };
@@ -347,8 +329,8 @@ impl<'a> Binding<'a> {
                 None => factor,
                 Some(product) => {
                     let (product, factor) =
-                        self.fitting(id, room, Operation::Multiply, product, factor);
-                    product.binary(Operation::Multiply, factor)
+                        self.fitting(id, room, Arithmetic::Multiply, product, factor);
+                    product.binary(&mut self.tape, Arithmetic::Multiply, factor)
                 }
             });
         }
@@ -361,7 +343,7 @@ impl<'a> Binding<'a> {
         &mut self,
         id: Id,
         room: usize,
-        operation: Operation,
+        operation: Arithmetic,
         left: Piece,
         right: Piece,
     ) -> (Piece, Piece) {
@@ -428,26 +410,20 @@ impl<'a> Binding<'a> {
             _ => (partner, id),
         };
         let angle = self.signed(angle);
-        let text = describe(&angle.tree, &self.values, &self.products, &self.arguments);
-        let mut value = |of: Id, prefix: &str| {
+        let text = describe(angle.value, &self.tape, &self.products, &self.arguments);
+        let whole = self.push(Operation::SinCos(angle.value));
+        for (index, of, prefix) in [(0, sin, "sin"), (1, cos, "cos")] {
             let wanted = match (&text, self.given_name(of)) {
                 (Some(text), _) => format!("{prefix}_{text}"),
                 (None, Some(name)) => name,
                 (None, None) => self.fallback(of, prefix),
             };
-            let (value, piece) = self.new_value(&wanted);
+            let piece = self.named_part(whole, index, &wanted);
             self.built[of.index()] = Some(Built {
                 piece,
                 negative: false,
             });
-            value
-        };
-        let (sin, cos) = (value(sin, "sin"), value(cos, "cos"));
-        self.push(Step::SinCos {
-            sin,
-            cos,
-            angle: angle.tree,
-        });
+        }
     }
 
     fn solve(&mut self, system: u32) {
@@ -457,43 +433,30 @@ impl<'a> Binding<'a> {
         let dag = self.dag;
         let matrix = &dag.systems[system as usize].matrix;
         let right = &dag.systems[system as usize].right;
-        let same = |other: &u32| dag.systems[*other as usize].matrix == *matrix;
-        let known = self.factorisations.iter().position(same);
-        let number = known.unwrap_or(self.factorisations.len());
-        let factorisation = u32::try_from(number).unwrap_or(u32::MAX);
-        if known.is_none() {
-            self.factorisations.push(system);
-            let matrix = matrix.iter().map(|&item| self.signed(item).tree).collect();
-            self.push(Step::Factor {
-                factorisation,
-                size: right.len(),
-                matrix,
-            });
+        let same = |(other, _): &&(u32, Value)| dag.systems[*other as usize].matrix == *matrix;
+        let factors = match self.factorisations.iter().find(same) {
+            Some(&(_, factors)) => factors,
+            None => {
+                let matrix = matrix.iter().map(|&item| self.signed(item).value).collect();
+                let factors = self.push(Operation::Factor(matrix));
+                self.factorisations.push((system, factors));
+                factors
+            }
+        };
+        let right = right.iter().map(|&item| self.signed(item).value).collect();
+        let whole = self.push(Operation::Solve { factors, right });
+        for (row, unknown) in (0..).zip(self.unknowns(system)) {
+            let wanted = unknown
+                .and_then(|id| self.given_name(id))
+                .unwrap_or_else(|| format!("solution_{}_{}", system + 1, row + 1));
+            let piece = self.named_part(whole, row, &wanted);
+            if let Some(id) = unknown {
+                self.built[id.index()] = Some(Built {
+                    piece,
+                    negative: false,
+                });
+            }
         }
-        let right = right.iter().map(|&item| self.signed(item).tree).collect();
-        let unknowns = self.unknowns(system);
-        let values = unknowns
-            .into_iter()
-            .enumerate()
-            .map(|(row, unknown)| {
-                let wanted = unknown
-                    .and_then(|id| self.given_name(id))
-                    .unwrap_or_else(|| format!("solution_{}_{}", system + 1, row + 1));
-                let (value, piece) = self.new_value(&wanted);
-                if let Some(id) = unknown {
-                    self.built[id.index()] = Some(Built {
-                        piece,
-                        negative: false,
-                    });
-                }
-                value
-            })
-            .collect();
-        self.push(Step::Solve {
-            factorisation,
-            values,
-            right,
-        });
     }
 
     /// The nodes of the unknowns of a system, row by row.
@@ -541,14 +504,15 @@ impl<'a> Binding<'a> {
             .given_name(id)
             .filter(|_| !self.tells_itself(id, &piece));
         let (piece, negative) = match given {
-            Some(name) if sign == Some(negative) => (self.define(&name, piece.tree), negative),
+            Some(name) if sign == Some(negative) => (self.define(&name, piece), negative),
             Some(name) if self.takes_its_sign(id) => {
-                (self.define(&name, piece.opposite().tree), !negative)
+                let opposite = piece.opposite(&mut self.tape);
+                (self.define(&name, opposite), !negative)
             }
             // A value of the opposite sign is named after its own operation.
             _ => {
                 let hint = self.hint(id, negative);
-                (self.define_by_making(id, piece.tree, hint), negative)
+                (self.define_by_making(id, piece, hint), negative)
             }
         };
         Built { piece, negative }
@@ -560,12 +524,12 @@ impl<'a> Binding<'a> {
         self.outline.is_entry(id)
             && self.derived_name(id).is_none_or(|name| name.automatic)
             && self.outline.feeds_others(id)
-            && Monomial::of(&piece.tree, &self.products).is_some_and(|product| {
+            && Monomial::of(piece.value, &self.tape, &self.products).is_some_and(|product| {
                 // A hint may add a name but not replace one.
-                let hinted = product.values().any(|value| self.hinted[value.0 as usize]);
+                let hinted = product.values().any(|value| self.hinted.contains(&value));
                 !hinted
                     && product.length() <= FEW
-                    && product.name(&self.values, &self.arguments).is_some()
+                    && product.name(&self.tape, &self.arguments).is_some()
             })
     }
 
@@ -601,68 +565,77 @@ impl<'a> Binding<'a> {
         format!("{consumer}_{word}_{count}")
     }
 
-    /// Binds a subtree that is too wide for a line.
+    /// Binds an operand that is too wide for a line.
     fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
-        self.define_by_making(id, piece.tree, None)
+        self.define_by_making(id, piece, None)
     }
 
     /// Binds a value to a name made from its operation.
-    fn define_by_making(&mut self, id: Id, tree: Tree, hint: Option<String>) -> Piece {
-        let described = describe(&tree, &self.values, &self.products, &self.arguments);
+    fn define_by_making(&mut self, id: Id, piece: Piece, hint: Option<String>) -> Piece {
+        let described = describe(piece.value, &self.tape, &self.products, &self.arguments);
         let product = described
             .is_some()
-            .then(|| Monomial::of(&tree, &self.products));
+            .then(|| Monomial::of(piece.value, &self.tape, &self.products));
         let hinted = described.is_none() && hint.is_some();
         let name = described
             .or(hint)
             .unwrap_or_else(|| self.fallback(id, "part"));
-        let piece = self.define(&name, tree);
-        if let Some(last) = self.hinted.last_mut() {
-            *last = hinted;
+        let piece = self.define(&name, piece);
+        if hinted {
+            self.hinted.insert(piece.value);
         }
-        if let Some(last) = self.products.last_mut() {
-            *last = product.flatten();
+        if let Some(product) = product.flatten() {
+            self.products.insert(piece.value, product);
         }
         piece
     }
 
-    fn define(&mut self, name: &str, tree: Tree) -> Piece {
-        let (value, piece) = self.new_value(name);
-        self.push(Step::Let { value, tree });
-        piece
+    /// Binds a value to a name. Names are in the order of their definitions, so an operation that others follow is
+    /// repeated here; the earlier one is dead.
+    fn define(&mut self, name: &str, piece: Piece) -> Piece {
+        let operation = self.tape.operation(piece.value).clone();
+        let value = self.push(operation);
+        self.named_value(value, name)
     }
 
-    fn new_value(&mut self, wanted: &str) -> (Value, Piece) {
+    /// A part of an operation under a name.
+    fn named_part(&mut self, whole: Value, index: u32, wanted: &str) -> Piece {
+        let part = self.tape.push(Operation::Part(whole, index));
+        self.named_value(part, wanted)
+    }
+
+    fn named_value(&mut self, value: Value, wanted: &str) -> Piece {
         let name = self.names.fresh(wanted);
-        let value = Value(u32::try_from(self.values.len()).unwrap_or(u32::MAX));
-        let piece = Piece::name(Tree::Value(value), &name);
-        self.values.push(name);
-        self.products.push(None);
-        self.hinted.push(false);
-        (value, piece)
+        let piece = Piece::name(value, &name);
+        self.tape.names[value.index()] = Some(name);
+        piece
     }
 
-    fn push(&mut self, step: Step) {
+    /// Adds the operation of a statement, under the heading that is due.
+    fn push(&mut self, operation: Operation) -> Value {
+        let value = self.tape.push(operation);
         if let Some(title) = self.title.take() {
-            self.steps.push(Step::Paragraph { title });
+            self.tape.headings.push((value, title));
         }
-        self.steps.push(step);
+        value
     }
-}
 
-/// Sort key: numbers, then parameters, values and variables, each in their order, then sums in
-/// parentheses.
-fn reading_order(tree: &Tree) -> (u8, u32) {
-    match tree {
-        Tree::Constant(_) => (0, 0),
-        Tree::Argument(Argument::Parameter(i)) => (1, *i),
-        Tree::Value(Value(i)) => (2, *i),
-        Tree::Argument(Argument::Time) => (3, 0),
-        Tree::Argument(Argument::State(i)) => (4, *i),
-        Tree::Argument(Argument::Input(i)) => (5, *i),
-        Tree::Argument(
-            Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i),
-        ) => (6, *i),
-        _ => (7, 0),
+    /// Sort key: numbers, then parameters, values and variables, each in their order, then sums in
+    /// parentheses.
+    fn reading_order(&self, value: Value) -> (u8, u32) {
+        match self.tape.unnamed(value) {
+            None => (2, value.0),
+            Some(Operation::Constant(_)) => (0, 0),
+            Some(Operation::Argument(argument)) => match *argument {
+                Argument::Parameter(i) => (1, i),
+                Argument::Time => (3, 0),
+                Argument::State(i) => (4, i),
+                Argument::Input(i) => (5, i),
+                Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i) => {
+                    (6, i)
+                }
+            },
+            Some(_) => (7, 0),
+        }
     }
 }

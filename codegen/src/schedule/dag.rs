@@ -8,7 +8,7 @@ use std::hash::BuildHasher;
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-use super::steps::Argument;
+use crate::tape::Argument;
 use crate::symbolic::{Function, Rational, Relation};
 
 /// A node of the working graph.

@@ -3,7 +3,7 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::dag::{Dag, Item, Name, Op, System};
-use super::steps::Argument;
+use crate::tape::Argument;
 use crate::program::{Function, Program};
 use crate::symbolic::{Expr, Graph, Node, Rational, SymbolId};
 

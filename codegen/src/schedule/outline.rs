@@ -4,7 +4,7 @@ use rustc_hash::FxHashMap;
 
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
-use super::steps::Argument;
+use crate::tape::Argument;
 use crate::program::{Function, Program};
 use crate::symbolic::Function as Elementary;
 

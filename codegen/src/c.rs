@@ -441,7 +441,11 @@ fn statement(out: &mut String, text: &Text<'_, Real>, statement: &Statement<'_, 
             let [lu, moved] = factors(*number);
             let entries: Vec<String> = rows.iter().map(|row| Infix::list(row)).collect();
             let (size, count) = (rows.len(), rows.len() * rows.len());
-            let _ = writeln!(out, "    {real} {lu}[{count}] = {{{}}};", entries.join(", "));
+            let _ = writeln!(
+                out,
+                "    {real} {lu}[{count}] = {{{}}};",
+                entries.join(", ")
+            );
             let _ = writeln!(out, "    unsigned char {moved}[{count}];");
             writeln!(out, "    lu_factor({size}, {lu}, {moved});")
         }

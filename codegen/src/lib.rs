@@ -12,6 +12,7 @@ pub mod interpreted;
 pub mod jit;
 pub mod linearisation;
 pub mod mechanics;
+pub mod model;
 pub mod program;
 pub mod python;
 pub mod schedule;

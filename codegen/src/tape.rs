@@ -240,10 +240,13 @@ impl Tape {
 
     /// The arguments that are used, in the order of the program.
     pub fn arguments(&self) -> Vec<Argument> {
-        let used = self.operations.iter().filter_map(|operation| match operation {
-            Operation::Argument(argument) => Some(*argument),
-            _ => None,
-        });
+        let used = self
+            .operations
+            .iter()
+            .filter_map(|operation| match operation {
+                Operation::Argument(argument) => Some(*argument),
+                _ => None,
+            });
         let mut used: Vec<Argument> = used.collect();
         used.sort_unstable();
         used.dedup();
@@ -252,6 +255,9 @@ impl Tape {
 
     /// Lengths of the results.
     pub fn lengths(&self) -> Vec<usize> {
-        self.results.iter().map(|result| result.entries.len()).collect()
+        self.results
+            .iter()
+            .map(|result| result.entries.len())
+            .collect()
     }
 }

@@ -206,10 +206,14 @@ impl<'a, D: Dialect> Text<'a, D> {
 
     /// The absolute values of the numbers in a function.
     pub(crate) fn constants(&self) -> BTreeSet<Rational> {
-        let numbers = self.tape.operations.iter().filter_map(|operation| match operation {
-            Operation::Constant(value) => Some(value.abs()),
-            _ => None,
-        });
+        let numbers = self
+            .tape
+            .operations
+            .iter()
+            .filter_map(|operation| match operation {
+                Operation::Constant(value) => Some(value.abs()),
+                _ => None,
+            });
         numbers.collect()
     }
 

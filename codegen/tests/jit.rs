@@ -225,11 +225,7 @@ fn systems_that_need_an_exchange_are_solved() {
 #[test]
 fn singular_systems_give_no_finite_number() {
     let tape = constant_system(&[1, 1, 1, 1], &[1, 2]);
-    assert!(
-        compiled(&tape, &Point::SOME)
-            .iter()
-            .all(|x| !x.is_finite())
-    );
+    assert!(compiled(&tape, &Point::SOME).iter().all(|x| !x.is_finite()));
     agrees(&tape, &Point::SOME);
 }
 

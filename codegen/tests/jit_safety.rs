@@ -6,8 +6,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
 
 use appell_codegen::jit::{JitError, MOST_OPERATIONS, NativeFunction, Sizes};
-use appell_codegen::tape::{Arithmetic, Operation, ResultArray, Tape, Value};
 use appell_codegen::symbolic::Rational;
+use appell_codegen::tape::{Arithmetic, Operation, ResultArray, Tape, Value};
 use appell_runtime::model::At;
 
 use crate::jit_support::{
@@ -160,7 +160,10 @@ fn parts_that_do_not_follow_their_operation_are_refused() {
     ];
     for operations in tapes {
         let error = refused(operations.clone());
-        assert!(matches!(error, JitError::UndefinedValue { .. }), "{operations:?}");
+        assert!(
+            matches!(error, JitError::UndefinedValue { .. }),
+            "{operations:?}"
+        );
     }
 }
 

@@ -287,8 +287,7 @@ fn an_empty_function_does_nothing() {
         parameters: 0,
     };
     for target in targets() {
-        let function =
-            VectorFunction::compile_for(&tape(vec![], vec![]), none, target).unwrap();
+        let function = VectorFunction::compile_for(&tape(vec![], vec![]), none, target).unwrap();
         let at = AtLanes {
             t: &[0.0; LANES],
             x: &[],

@@ -100,7 +100,8 @@ impl Writer {
 
     /// Numbers of a law are finite.
     fn number(&mut self, value: f64) -> Value {
-        self.0.constant(Rational::from_f64(value).unwrap_or(Rational::ZERO))
+        self.0
+            .constant(Rational::from_f64(value).unwrap_or(Rational::ZERO))
     }
 
     /// u₀ − K (y − y₀), with all three interpolated over the condition.

@@ -1,8 +1,8 @@
 //! Switching functions of inputs that are expressions.
 
 use appell_codegen::mechanics::switches::{Switches, switches};
-use appell_codegen::tape::enclose;
 use appell_codegen::symbolic::Expr;
+use appell_codegen::tape::enclose;
 use appell_runtime::model::{Along, At, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
 use appell_runtime::signal::SignalError;

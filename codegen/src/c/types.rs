@@ -6,10 +6,10 @@ use appell_runtime::model::Quantity;
 use appell_spec::foreign::sentence;
 
 use super::{Real, is_empty};
-use crate::text::{Notation, shape};
 use crate::program::{Array, Function, Layout, Own, Program, Space};
 use crate::schedule::names::{ArgumentNames, identifier};
 use crate::tape::{Argument, Tape};
+use crate::text::{Notation, shape};
 
 /// Names of types, fields and arguments.
 pub(super) struct Types<'a> {

@@ -129,7 +129,9 @@ impl Checker<'_> {
     /// All parts of an operation follow it.
     fn part(&self, place: Value, whole: Value, index: u32) -> Result<(), JitError> {
         let undefined = JitError::UndefinedValue { value: place.0 };
-        let expected = index.checked_add(1).and_then(|offset| whole.0.checked_add(offset));
+        let expected = index
+            .checked_add(1)
+            .and_then(|offset| whole.0.checked_add(offset));
         if expected != Some(place.0) || index as usize >= self.tape.operation(whole).parts() {
             return Err(undefined);
         }
@@ -157,7 +159,10 @@ impl Checker<'_> {
             let operation = self.tape.operation(value);
             operation.parts() == 0 && !matches!(operation, Operation::Factor(_))
         };
-        match operands.iter().find(|&&value| value >= place || !is_number(value)) {
+        match operands
+            .iter()
+            .find(|&&value| value >= place || !is_number(value))
+        {
             Some(value) => Err(JitError::UndefinedValue { value: value.0 }),
             None => Ok(()),
         }

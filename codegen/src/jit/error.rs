@@ -76,26 +76,6 @@ pub enum JitError {
         /// Which one.
         kind: FunctionKind,
     },
-    /// The function lacks a result.
-    #[error("function {kind:?} has no result `{result}`")]
-    MissingResult {
-        /// Which function.
-        kind: FunctionKind,
-        /// Name of the result.
-        result: &'static str,
-    },
-    /// A result has a size that contradicts the model's.
-    #[error("result `{result}` of {kind:?} has {found} entries where {expected} belong")]
-    ResultLength {
-        /// Which function.
-        kind: FunctionKind,
-        /// Name of the result.
-        result: &'static str,
-        /// Entries that fit the model.
-        expected: usize,
-        /// Entries found.
-        found: usize,
-    },
     /// The compiler failed, or the system gave no memory for code.
     #[error("compilation failed")]
     Compilation(#[from] Box<ModuleError>),

@@ -45,7 +45,9 @@ impl Monomial {
                 coefficient: value.clone(),
                 powers: Vec::new(),
             }),
-            Operation::Argument(Argument::Parameter(i)) => Some(Self::factor(Factor::Parameter(*i))),
+            Operation::Argument(Argument::Parameter(i)) => {
+                Some(Self::factor(Factor::Parameter(*i)))
+            }
             Operation::Argument(argument) => Some(Self::factor(Factor::Argument(*argument))),
             Operation::Negate(a) => {
                 let a = of(a)?;

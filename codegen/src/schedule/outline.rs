@@ -4,9 +4,9 @@ use rustc_hash::FxHashMap;
 
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
-use crate::tape::Argument;
 use crate::program::{Function, Program};
 use crate::symbolic::Function as Elementary;
+use crate::tape::Argument;
 
 /// Decisions about every node.
 pub(super) struct Outline<'a> {

@@ -213,11 +213,8 @@ pub(super) fn describe(
 
 /// `sin_a_minus_b` and the like for a value expanded by an addition theorem.
 fn angle_sum(value: Value, tape: &Tape) -> Option<String> {
-    let Some(Operation::Binary(
-        operation @ (Arithmetic::Add | Arithmetic::Subtract),
-        left,
-        right,
-    )) = tape.unnamed(value)
+    let Some(Operation::Binary(operation @ (Arithmetic::Add | Arithmetic::Subtract), left, right)) =
+        tape.unnamed(value)
     else {
         return None;
     };

@@ -77,7 +77,11 @@ impl Composed {
             values.push(value);
         }
         let first = tape.results.first().map(|result| &result.entries);
-        first.into_iter().flatten().map(|entry| values[entry.index()]).collect()
+        first
+            .into_iter()
+            .flatten()
+            .map(|entry| values[entry.index()])
+            .collect()
     }
 
     /// What a law has in place of an argument.

@@ -117,7 +117,10 @@ fn results<T: Real>(
         values.push(value);
     }
     let entries = |entries: &[Value]| entries.iter().map(|value| values[value.index()]).collect();
-    tape.results.iter().map(|array| entries(&array.entries)).collect()
+    tape.results
+        .iter()
+        .map(|array| entries(&array.entries))
+        .collect()
 }
 
 fn apply<T: Real>(function: Function, x: T) -> T {

@@ -85,7 +85,10 @@ impl<'a> Moved<'a> {
 
     /// Adds an operation whose operands are there.
     fn push(&mut self, value: Value) {
-        let operation = self.from.operation(value).with(|operand| self.place(operand));
+        let operation = self
+            .from
+            .operation(value)
+            .with(|operand| self.place(operand));
         let place = self.to.push(operation);
         self.to.names[place.index()] = self.from.names[value.index()].clone();
         self.places[value.index()] = Some(place);
@@ -113,7 +116,11 @@ impl<'a> Moved<'a> {
         self.to.results = (self.from.results.iter())
             .map(|result| ResultArray {
                 name: result.name.clone(),
-                entries: result.entries.iter().map(|&entry| self.place(entry)).collect(),
+                entries: result
+                    .entries
+                    .iter()
+                    .map(|&entry| self.place(entry))
+                    .collect(),
             })
             .collect();
         self.to.headings = (self.from.headings.iter())

@@ -25,7 +25,11 @@ impl Tape {
         let Folded { mut tape, values } = folded;
         let results = self.results.iter().map(|result| ResultArray {
             name: result.name.clone(),
-            entries: result.entries.iter().map(|entry| values[entry.index()]).collect(),
+            entries: result
+                .entries
+                .iter()
+                .map(|entry| values[entry.index()])
+                .collect(),
         });
         tape.results = results.collect();
         tape.live()

@@ -121,6 +121,10 @@ impl<N: Notation> Dialect for N {
     }
 
     fn choice(&self, relation: Relation, operands: [Infix; 4]) -> Infix {
-        Infix::atom(Notation::choice(self, relation, operands.map(|one| one.text)))
+        Infix::atom(Notation::choice(
+            self,
+            relation,
+            operands.map(|one| one.text),
+        ))
     }
 }

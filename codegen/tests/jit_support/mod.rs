@@ -151,11 +151,7 @@ pub(crate) fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
 }
 
 /// The result of a tape at eight points. The buffer starts with numbers that must not survive.
-pub(crate) fn in_lanes(
-    tape: &Tape,
-    points: &[Point; LANES],
-    target: Target,
-) -> Vec<[f64; LANES]> {
+pub(crate) fn in_lanes(tape: &Tape, points: &[Point; LANES], target: Target) -> Vec<[f64; LANES]> {
     let function = VectorFunction::compile_for(tape, SIZES, target).unwrap();
     assert_eq!(
         function.is_vector(),

@@ -22,8 +22,8 @@ use super::instruction::{Instruction, Memory, Operand, Register};
 use super::line::{Array, Binary, Routine};
 use super::registers::Allocated;
 use super::routines;
-use crate::tape::Arithmetic;
 use crate::symbolic::Relation;
+use crate::tape::Arithmetic;
 
 /// Bytes of eight numbers: the stride of arguments and results.
 const BLOCK: i32 = 64;

@@ -39,11 +39,7 @@ impl VectorFunction {
 
     /// [`Self::compile`] with the given instructions and elementary functions. If the processor lacks the
     /// instructions, or the code would be too long, points are evaluated individually.
-    pub fn compile_for(
-        tape: &Tape,
-        sizes: Sizes,
-        target: Target,
-    ) -> Result<Self, JitError> {
+    pub fn compile_for(tape: &Tape, sizes: Sizes, target: Target) -> Result<Self, JitError> {
         if let Some(vector) = Self::all_at_once(tape, sizes, target)? {
             return Ok(vector);
         }
@@ -74,11 +70,7 @@ impl VectorFunction {
     }
 
     /// [`Self::compile_for`], but `None` if points would be evaluated individually.
-    fn all_at_once(
-        tape: &Tape,
-        sizes: Sizes,
-        target: Target,
-    ) -> Result<Option<Self>, JitError> {
+    fn all_at_once(tape: &Tape, sizes: Sizes, target: Target) -> Result<Option<Self>, JitError> {
         let checked = check(tape, sizes)?;
         let machine = Machine::compile(&checked, target)?;
         Ok(machine.map(|machine| Self::new(How::Vector(machine), &checked, sizes)))

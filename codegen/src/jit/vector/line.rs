@@ -1,7 +1,7 @@
 //! A function as straight-line code of vector operations.
 
-use crate::tape::Arithmetic;
 use crate::symbolic::{Function, Relation};
+use crate::tape::Arithmetic;
 
 /// A value, numbered in the order of the tape: operands come first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]

@@ -1,6 +1,6 @@
 //! Equations in C99: one header and one source, without allocation, with the names and units of the spec.
 //!
-//! Operations and their order are those of the schedule, hence of the emitted Rust: compiled without
+//! Operations and their order are those of the tape, hence of the emitted Rust: compiled without
 //! contraction, the results are bit-identical.
 
 mod adapters;
@@ -431,7 +431,7 @@ fn statement(out: &mut String, text: &Text<'_, Real>, statement: &Statement<'_, 
         Action::Define(name, value) => {
             writeln!(out, "    const {real} {} = {};", named(name), value.text)
         }
-        Action::SinCos([sin, cos], [angle, _]) => {
+        Action::SinCos([sin, cos], angle) => {
             let call = |f| Notation::function(&text.dialect, f, &angle.text);
             let (sine, cosine) = (call(symbolic::Function::Sin), call(symbolic::Function::Cos));
             let _ = writeln!(out, "    const {real} {} = {sine};", named(sin));

@@ -15,18 +15,14 @@ pub type InterpretedModel = ProgramModel<Interpreter>;
 #[derive(Debug)]
 pub struct Interpreter {
     /// By [`FunctionKind`], made at the first use.
-    tapes: [OnceLock<Tape>; FunctionKind::ALL.len()],
+    tapes: [OnceLock<Tape>; FunctionKind::COUNT],
 }
 
 impl ProgramModel<Interpreter> {
     /// A model of a program.
     pub fn new(program: Program) -> Self {
-        Self {
-            program: Arc::new(program),
-            engine: Interpreter {
-                tapes: [const { OnceLock::new() }; FunctionKind::ALL.len()],
-            },
-        }
+        let tapes = [const { OnceLock::new() }; FunctionKind::COUNT];
+        Self::of(Arc::new(program), Interpreter { tapes })
     }
 }
 

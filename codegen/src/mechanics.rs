@@ -295,18 +295,24 @@ fn without_reactions(
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let motions = (velocities.rates.as_slice(), &dependent);
-    let equations = (&mut gibbs, forces.as_mut_slice());
-    let given = with_given_rates(&mut algebra, mechanism, &symbols, motions, equations)?;
+    let given = with_given_rates(
+        &mut algebra,
+        mechanism,
+        &symbols,
+        &velocities.rates,
+        &dependent,
+        &mut gibbs,
+        &mut forces,
+    )?;
     recursion = recursion.filter(|_| given.is_empty());
-    let equations = (&mut gibbs, forces.as_slice());
-    let tree = recursion.as_mut();
     let motion = solved(
         &mut algebra,
         mechanism,
-        tree,
-        equations,
-        (&bodies, &dependent),
+        recursion.as_mut(),
+        &mut gibbs,
+        &forces,
+        &bodies,
+        &dependent,
     )?;
     algebra.check_size()?;
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
@@ -390,8 +396,10 @@ fn solved(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     tree: Option<&mut Recursion>,
-    (gibbs, forces): (&mut GibbsForm, &[Expr]),
-    (bodies, dependent): (&[BodyMotion], &DependentSpeeds),
+    gibbs: &mut GibbsForm,
+    forces: &[Expr],
+    bodies: &[BodyMotion],
+    dependent: &DependentSpeeds,
 ) -> Outcome<Motion> {
     if let Some(tree) = tree {
         return tree.solve(algebra, mechanism, gibbs);
@@ -406,8 +414,10 @@ fn with_given_rates(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
-    (rates, dependent): (&[Expr], &DependentSpeeds),
-    (gibbs, forces): (&mut GibbsForm, &mut [Expr]),
+    rates: &[Expr],
+    dependent: &DependentSpeeds,
+    gibbs: &mut GibbsForm,
+    forces: &mut [Expr],
 ) -> Outcome<Given> {
     let mut given = Given::of(algebra, mechanism, symbols, rates)?;
     if !dependent.values.is_empty() {

@@ -11,16 +11,16 @@ use appell_runtime::switching::Counts;
 
 use crate::program::{FunctionKind, Program};
 use crate::schedule::schedule;
-use crate::tape::{ResultArray, Tape, enclose, enclose_along};
+use crate::tape::{ResultArray, Tape, enclose_along};
 
 /// What evaluates the functions of a program.
 pub trait Engine: Send + Sync {
-    /// Writes the results of a function at a point, those of [`FunctionKind::model_results`] in that order. `own` is
-    /// the argument that only some functions have.
+    /// Writes the results of a function that the program has at a point, those of [`FunctionKind::model_results`] in
+    /// that order. `own` is the argument that only some functions have.
     ///
     /// # Panics
     ///
-    /// If a slice has another length than the program's vector.
+    /// If `out` has slices of other lengths than the results.
     fn call<const N: usize>(
         &self,
         program: &Program,
@@ -34,11 +34,13 @@ pub trait Engine: Send + Sync {
     fn tape(&self, program: &Program, kind: FunctionKind, p: &[f64]) -> &Tape;
 }
 
-/// A model made in this process. Functions that its program lacks return NaN, except derivatives, for which
-/// differences replace formulas.
+/// A model made in this process. Functions that its program lacks return NaN, or what the trait of models has in
+/// their place, such as differences for most derivatives.
 pub struct ProgramModel<E> {
     pub(crate) program: Arc<Program>,
     pub(crate) engine: E,
+    /// By [`FunctionKind`]: whether the program has it.
+    has: [bool; FunctionKind::COUNT],
 }
 
 /// The tape of a function with the results that the trait of models has; without operations if the program lacks
@@ -57,12 +59,36 @@ pub(crate) fn tape_of(program: &Program, kind: FunctionKind) -> Tape {
         })
     });
     tape.results = wanted.collect();
-    tape
+    tape.live()
 }
 
 impl<E: Engine> ProgramModel<E> {
+    pub(crate) fn of(program: Arc<Program>, engine: E) -> Self {
+        let mut has = [false; FunctionKind::COUNT];
+        for function in &program.functions {
+            has[function.kind as usize] = true;
+        }
+        Self {
+            program,
+            engine,
+            has,
+        }
+    }
+
     fn has(&self, kind: FunctionKind) -> bool {
-        self.program.function(kind).is_some()
+        self.has[kind as usize]
+    }
+
+    /// Bounds on the results of a function along a segment, one after the other; unknown where the program lacks it.
+    fn bound(&self, kind: FunctionKind, along: &Along<'_>, bounds: &mut [Enclosure]) {
+        bounds.fill(Enclosure::UNKNOWN);
+        if self.has(kind) {
+            enclose_along(
+                self.engine.tape(&self.program, kind, along.p),
+                along,
+                bounds,
+            );
+        }
     }
 
     fn evaluate<const N: usize>(&self, kind: FunctionKind, at: At<'_>, out: [&mut [f64]; N]) {
@@ -86,7 +112,6 @@ impl<E: Engine> ProgramModel<E> {
     }
 }
 
-/// Every method panics if a slice does not have the length required by the trait.
 impl<E: Engine> Model for ProgramModel<E> {
     fn info(&self) -> &ModelInfo {
         &self.program.info
@@ -157,12 +182,7 @@ impl<E: Engine> Model for ProgramModel<E> {
     }
 
     fn outputs_within(&self, along: &Along<'_>, outputs: &mut [Enclosure]) {
-        let kind = FunctionKind::Outputs;
-        enclose_along(
-            self.engine.tape(&self.program, kind, along.p),
-            along,
-            outputs,
-        );
+        self.bound(FunctionKind::Outputs, along, outputs);
     }
 
     fn inverse_dynamics(&self, at: At<'_>, accelerations: &[f64], demand: &mut [f64]) {
@@ -245,8 +265,14 @@ impl<E: Engine> Switching for ProgramModel<E> {
     }
 
     fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
-        let kind = FunctionKind::TimeFunctions;
-        enclose(self.engine.tape(&self.program, kind, p), time, p, functions);
+        let along = Along {
+            start: f64::NAN,
+            t: time,
+            x: &[],
+            u: &[],
+            p,
+        };
+        self.bound(FunctionKind::TimeFunctions, &along, functions);
     }
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {
@@ -256,12 +282,7 @@ impl<E: Engine> Switching for ProgramModel<E> {
     }
 
     fn crossings_within(&self, along: &Along<'_>, crossings: &mut [Enclosure]) {
-        let kind = FunctionKind::Crossings;
-        enclose_along(
-            self.engine.tape(&self.program, kind, along.p),
-            along,
-            crossings,
-        );
+        self.bound(FunctionKind::Crossings, along, crossings);
     }
 }
 

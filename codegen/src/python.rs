@@ -204,7 +204,7 @@ fn statement(out: &mut String, text: &Text<'_, Python>, statement: &Statement<'_
     }
     let _ = match &statement.action {
         Action::Define(name, value) => writeln!(out, "    {} = {}", named(name), value.text),
-        Action::SinCos([sin, cos], [angle, _]) => {
+        Action::SinCos([sin, cos], angle) => {
             let (sin, cos, angle) = (named(sin), named(cos), &angle.text);
             writeln!(out, "    {sin}, {cos} = _f.sin({angle}), _f.cos({angle})")
         }

@@ -26,7 +26,7 @@ mod monomial;
 pub(crate) mod names;
 mod outline;
 pub(crate) mod pi;
-mod piece;
+pub(crate) mod piece;
 mod preference;
 mod rebuild;
 mod scale;

@@ -1,8 +1,8 @@
 //! The program of one function: straight-line code, in which operation `i` computes value `i` from earlier values.
 //!
 //! The scheduler writes it. The interpreter, the compilers, the emitted languages and the transformations read it;
-//! each is one loop with one match over the operations. All execute the same operations in the same order, so their
-//! results differ only by the last bits of the elementary functions.
+//! each is one loop with one match over the operations. All execute the same operations in the same order: with the
+//! same elementary functions, results have equal bits.
 //!
 //! | file | contents |
 //! |---|---|
@@ -31,6 +31,12 @@ impl Value {
     /// Its index among the operations.
     pub fn index(self) -> usize {
         self.0 as usize
+    }
+
+    /// A part of the operation with this value.
+    #[must_use]
+    pub fn part(self, index: u32) -> Self {
+        Self(self.0.saturating_add(1).saturating_add(index))
     }
 }
 
@@ -82,12 +88,12 @@ pub enum Operation {
     /// Sine and cosine of an angle. The next two operations are its parts.
     SinCos(Value),
     /// The pivoted factorisation of a square matrix, row by row.
-    Factor(Vec<Value>),
+    Factorise(Vec<Value>),
     /// The solution of a factorised system with this right-hand side. The next operations are its parts, one for
     /// each unknown.
     Solve {
         /// The factorisation.
-        factors: Value,
+        factorisation: Value,
         /// Right-hand side.
         right: Vec<Value>,
     },
@@ -101,7 +107,15 @@ impl Operation {
         matches!(self, Self::Argument(_) | Self::Constant(_))
     }
 
-    /// Numbers that it computes as parts; none for an operation that is one number itself, or a factorisation.
+    /// Whether it computes one number, which others may use as an operand.
+    pub fn is_number(&self) -> bool {
+        !matches!(
+            self,
+            Self::SinCos(_) | Self::Factorise(_) | Self::Solve { .. }
+        )
+    }
+
+    /// How many numbers it computes as parts.
     pub fn parts(&self) -> usize {
         match self {
             Self::SinCos(_) => 2,
@@ -121,9 +135,12 @@ impl Operation {
                 branches: [c, d],
                 ..
             } => vec![*a, *b, *c, *d],
-            Self::Factor(matrix) => matrix.clone(),
-            Self::Solve { factors, right } => {
-                let mut operands = vec![*factors];
+            Self::Factorise(matrix) => matrix.clone(),
+            Self::Solve {
+                factorisation,
+                right,
+            } => {
+                let mut operands = vec![*factorisation];
                 operands.extend(right);
                 operands
             }
@@ -132,7 +149,7 @@ impl Operation {
 
     /// The same operation on other operands.
     #[must_use]
-    pub fn with(&self, mut of: impl FnMut(Value) -> Value) -> Self {
+    pub fn map_operands(&self, mut of: impl FnMut(Value) -> Value) -> Self {
         match self {
             Self::Argument(_) | Self::Constant(_) => self.clone(),
             Self::Negate(a) => Self::Negate(of(*a)),
@@ -150,9 +167,12 @@ impl Operation {
                 branches: branches.map(&mut of),
             },
             Self::SinCos(angle) => Self::SinCos(of(*angle)),
-            Self::Factor(matrix) => Self::Factor(matrix.iter().map(|&a| of(a)).collect()),
-            Self::Solve { factors, right } => Self::Solve {
-                factors: of(*factors),
+            Self::Factorise(matrix) => Self::Factorise(matrix.iter().map(|&a| of(a)).collect()),
+            Self::Solve {
+                factorisation,
+                right,
+            } => Self::Solve {
+                factorisation: of(*factorisation),
                 right: right.iter().map(|&a| of(a)).collect(),
             },
             Self::Part(whole, index) => Self::Part(of(*whole), *index),
@@ -182,6 +202,17 @@ pub struct ResultArray {
     pub entries: Vec<Value>,
 }
 
+impl ResultArray {
+    /// The same array of other values.
+    #[must_use]
+    pub fn map(&self, of: impl Fn(Value) -> Value) -> Self {
+        Self {
+            name: self.name.clone(),
+            entries: self.entries.iter().map(|&entry| of(entry)).collect(),
+        }
+    }
+}
+
 /// The program of one function.
 #[derive(Debug, Clone, Default)]
 pub struct Tape {
@@ -189,7 +220,7 @@ pub struct Tape {
     pub operations: Vec<Operation>,
     /// Results, in the order of the function.
     pub results: Vec<ResultArray>,
-    /// By value: a unique identifier. Values without one are written where they are used.
+    /// By value: a unique identifier. Text writes values without one where they are used.
     pub names: Vec<Option<String>>,
     /// Headings of the emitted text, each before the statement of a value.
     pub headings: Vec<(Value, String)>,
@@ -214,8 +245,18 @@ impl Tape {
         }
     }
 
-    /// Adds an operation. The parts of one that computes several numbers are to be added next.
+    /// Adds an operation with its parts.
     pub fn push(&mut self, operation: Operation) -> Value {
+        let parts = operation.parts();
+        let value = self.push_alone(operation);
+        for part in (0..).take(parts) {
+            self.push_alone(Operation::Part(value, part));
+        }
+        value
+    }
+
+    /// Adds an operation whose parts are to be added next.
+    pub fn push_alone(&mut self, operation: Operation) -> Value {
         // A longer function would not fit into memory.
         let value = Value(u32::try_from(self.operations.len()).unwrap_or(u32::MAX));
         self.operations.push(operation);

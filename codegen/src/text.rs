@@ -1,7 +1,7 @@
 //! Tapes as text: statements and expressions, written alike for all languages.
 //!
-//! A value with a name is a statement; other values are written where they are used, so that operations and their
-//! order are those of the tape. A [`Dialect`] has what differs between languages.
+//! A value with a name is a statement; other values are written where they are used, unless they are used more than
+//! once or nest too deeply. A [`Dialect`] has what differs between languages.
 
 mod dump;
 mod infix;
@@ -56,8 +56,8 @@ pub(crate) struct Statement<'a, E> {
 pub(crate) enum Action<'a, E> {
     /// Defines a value.
     Define(Cow<'a, str>, E),
-    /// Defines the sine and the cosine of an angle. A dialect may write the angle twice.
-    SinCos([Cow<'a, str>; 2], [E; 2]),
+    /// Defines the sine and the cosine of an angle.
+    SinCos([Cow<'a, str>; 2], E),
     /// Factorises a matrix, given row by row, with this number.
     Factor(usize, Vec<Vec<E>>),
     /// Solves the system of the factorisation with this number: its unknowns, each with a mark whether it is used,
@@ -70,9 +70,14 @@ pub(crate) struct Text<'a, D> {
     pub(crate) dialect: D,
     pub(crate) tape: &'a Tape,
     pub(crate) names: &'a ArgumentNames,
+    /// By value: its name, if it has a statement.
+    identifiers: Vec<Option<Cow<'a, str>>>,
     /// By value: how many operations and results use it.
     uses: Vec<u32>,
 }
+
+/// The deepest nesting of an expression. The scheduler names values long before.
+const DEEPEST: u32 = 64;
 
 impl<'a, D: Dialect> Text<'a, D> {
     pub(crate) fn new(dialect: D, tape: &'a Tape, names: &'a ArgumentNames) -> Self {
@@ -82,25 +87,43 @@ impl<'a, D: Dialect> Text<'a, D> {
         for value in operands.chain(entries.copied()) {
             uses[value.index()] += 1;
         }
-        Self {
+        let mut text = Self {
             dialect,
             tape,
             names,
+            identifiers: Vec::with_capacity(uses.len()),
             uses,
+        };
+        text.identify();
+        text
+    }
+
+    /// Names the values that have statements.
+    fn identify(&mut self) {
+        let mut depths: Vec<u32> = Vec::with_capacity(self.uses.len());
+        for (index, operation) in self.tape.operations.iter().enumerate() {
+            let inner = operation.operands().into_iter();
+            let inner = inner.filter(|operand| self.identifiers[operand.index()].is_none());
+            let depth = inner.map(|operand| depths[operand.index()] + 1).max();
+            let depth = depth.unwrap_or(0);
+            let needs_name = self.uses[index] > 1 && !operation.is_leaf()
+                || matches!(operation, Operation::Part(..))
+                || depth > DEEPEST;
+            let identifier = match &self.tape.names[index] {
+                Some(name) => Some(name.as_str().into()),
+                None if needs_name && operation.is_number() => {
+                    Some(self.free(&format!("v_{index}")).into())
+                }
+                None => None,
+            };
+            self.identifiers.push(identifier);
+            depths.push(depth);
         }
     }
 
     /// The name of a value that has a statement.
     fn identifier(&self, value: Value) -> Option<Cow<'a, str>> {
-        let operation = self.tape.operation(value);
-        let is_shared = self.uses[value.index()] > 1 && !operation.is_leaf();
-        match self.tape.name(value) {
-            Some(name) => Some(name.into()),
-            None if is_shared || matches!(operation, Operation::Part(..)) => {
-                Some(self.free(&format!("v_{}", value.0)).into())
-            }
-            None => None,
-        }
+        self.identifiers[value.index()].clone()
     }
 
     /// A value: its name, or the expression that computes it.
@@ -116,8 +139,7 @@ impl<'a, D: Dialect> Text<'a, D> {
         values.iter().map(|&value| self.value(value)).collect()
     }
 
-    /// The expression that computes a value.
-    // Expressions are at most one printed line deep.
+    /// The expression that computes a value; it nests as deep as [`DEEPEST`].
     fn expression(&self, value: Value) -> D::Expression {
         let dialect = &self.dialect;
         match self.tape.operation(value) {
@@ -150,7 +172,7 @@ impl<'a, D: Dialect> Text<'a, D> {
             }
             // These are statements: their parts have names.
             Operation::SinCos(_)
-            | Operation::Factor(_)
+            | Operation::Factorise(_)
             | Operation::Solve { .. }
             | Operation::Part(..) => dialect.name(&self.identifier(value).unwrap_or_default()),
         }
@@ -180,23 +202,26 @@ impl<'a, D: Dialect> Text<'a, D> {
         value: Value,
         factorised: &mut Vec<Value>,
     ) -> Option<Action<'a, D::Expression>> {
-        let part = |index: u32| Value(value.0 + 1 + index);
         let name = |value| self.identifier(value).unwrap_or_default();
         Some(match self.tape.operation(value) {
             Operation::SinCos(angle) => Action::SinCos(
-                [0, 1].map(|index| name(part(index))),
-                [0, 1].map(|_| self.value(*angle)),
+                [0, 1].map(|index| name(value.part(index))),
+                self.value(*angle),
             ),
-            Operation::Factor(matrix) => {
+            Operation::Factorise(matrix) => {
                 factorised.push(value);
                 let rows = matrix.chunks(matrix.len().isqrt().max(1));
                 let rows = rows.map(|row| self.values(row)).collect();
                 Action::Factor(factorised.len() - 1, rows)
             }
-            Operation::Solve { factors, right } => {
-                let number = factorised.iter().position(|other| other == factors);
-                let unknowns = (0..).map(part).take(right.len());
+            Operation::Solve {
+                factorisation,
+                right,
+            } => {
+                let number = factorised.iter().position(|other| other == factorisation);
+                let unknowns = (0..).map(|row| value.part(row)).take(right.len());
                 let unknowns = unknowns.map(|part| (name(part), self.uses[part.index()] > 0));
+                // A factorisation comes before its solutions.
                 Action::Solve(number.unwrap_or(0), unknowns.collect(), self.values(right))
             }
             Operation::Part(..) => return None,

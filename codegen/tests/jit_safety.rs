@@ -118,7 +118,7 @@ fn refusal(steps: Vec<Step>, entries: Vec<Tree>) -> JitError {
 fn refused(operations: Vec<Operation>) -> JitError {
     let mut tape = Tape::default();
     for operation in operations {
-        tape.push(operation);
+        tape.push_alone(operation);
     }
     let last = Value(u32::try_from(tape.operations.len() - 1).unwrap());
     tape.results.push(ResultArray {
@@ -147,8 +147,9 @@ fn parts_that_do_not_follow_their_operation_are_refused() {
     let pair = Operation::SinCos(Value(0));
     let part = |index| Operation::Part(Value(1), index);
     let tapes = [
-        // No number.
+        // Without parts.
         vec![angle.clone(), pair.clone()],
+        vec![angle.clone(), pair.clone(), part(0), angle.clone()],
         // The cosine without the sine before it.
         vec![angle.clone(), pair.clone(), part(1)],
         vec![angle.clone(), pair.clone(), pair.clone(), part(1)],
@@ -161,7 +162,7 @@ fn parts_that_do_not_follow_their_operation_are_refused() {
     for operations in tapes {
         let error = refused(operations.clone());
         assert!(
-            matches!(error, JitError::UndefinedValue { .. }),
+            matches!(error, JitError::MisplacedPart { .. }),
             "{operations:?}"
         );
     }
@@ -192,8 +193,8 @@ fn systems_without_sense_are_refused() {
         right: vec![number(1, 1); entries],
     };
     let early = refusal(vec![solve(1), factor(1)], vec![]);
-    assert!(matches!(early, JitError::UndefinedFactorisation { .. }));
-    for steps in [vec![factor(3)], vec![factor(4), solve(1)]] {
+    assert!(matches!(early, JitError::NotAFactorisation { .. }));
+    for steps in [vec![factor(0)], vec![factor(3)], vec![factor(4), solve(1)]] {
         assert!(matches!(
             refusal(steps, vec![]),
             JitError::SystemShape { .. }

@@ -467,10 +467,7 @@ const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
     ("tape", &["symbolic"]),
     ("schedule", &["program", "symbolic", "tape"]),
     ("text", &["program", "schedule", "symbolic", "tape"]),
-    (
-        "emit",
-        &["program", "schedule", "symbolic", "tape", "text"],
-    ),
+    ("emit", &["program", "schedule", "symbolic", "tape", "text"]),
     ("model", &["program", "schedule", "tape"]),
     ("jit", &["model", "program", "symbolic", "tape"]),
     ("interpreted", &["model", "program", "tape"]),

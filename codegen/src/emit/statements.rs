@@ -103,7 +103,7 @@ impl<'a> Statements<'a> {
             }
             match statement.action {
                 Action::Define(name, value) => self.push(s::binding(&name), value),
-                Action::SinCos([sin, cos], [angle, _]) => {
+                Action::SinCos([sin, cos], angle) => {
                     let pattern = s::tuple_pattern(&[&sin, &cos]);
                     self.push(pattern, s::method(angle, "sin_cos", Vec::new()));
                 }

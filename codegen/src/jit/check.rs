@@ -19,6 +19,8 @@ const MOST_ARGUMENTS: usize = 1 << 24;
 #[derive(Debug)]
 pub(super) struct Checked<'a> {
     pub(super) tape: &'a Tape,
+    /// Operations, without arguments, numbers and parts.
+    pub(super) operations: usize,
     /// Rows of the largest system.
     pub(super) rows: usize,
     /// The number of weights used, counted from the first.
@@ -65,6 +67,7 @@ pub(super) fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> 
     }
     Ok(Checked {
         tape,
+        operations: checker.operations,
         rows: checker.rows,
         weights: checker.weights,
     })
@@ -91,17 +94,32 @@ impl Checker<'_> {
                 self.count(1)?;
                 self.numbers(&operation.operands(), place)
             }
-            Operation::Choice { .. } | Operation::SinCos(_) => {
+            Operation::Choice { .. } => {
                 self.count(2)?;
                 self.numbers(&operation.operands(), place)
             }
-            Operation::Factor(matrix) => self.factor(place, matrix),
-            Operation::Solve { factors, right } => self.solve(place, *factors, right),
-            Operation::Part(whole, index) => self.part(place, *whole, *index),
+            Operation::SinCos(_) => {
+                self.count(2)?;
+                self.numbers(&operation.operands(), place)?;
+                self.parts(place, 2)
+            }
+            Operation::Factorise(matrix) => self.factorise(place, matrix),
+            Operation::Solve {
+                factorisation,
+                right,
+            } => self.solve(place, *factorisation, right),
+            Operation::Part(whole, index) => {
+                let is_part = *whole < place
+                    && whole.part(*index) == place
+                    && (*index as usize) < self.tape.operation(*whole).parts();
+                is_part
+                    .then_some(())
+                    .ok_or(JitError::MisplacedPart { value: place.0 })
+            }
         }
     }
 
-    fn factor(&mut self, place: Value, matrix: &[Value]) -> Result<(), JitError> {
+    fn factorise(&mut self, place: Value, matrix: &[Value]) -> Result<(), JitError> {
         let rows = matrix.len().isqrt();
         if rows > MOST_ROWS {
             return Err(JitError::TooManyRows {
@@ -109,36 +127,40 @@ impl Checker<'_> {
                 most: MOST_ROWS,
             });
         }
-        shape(place, rows * rows, matrix.len())?;
+        shape(place, (rows * rows).max(1), matrix.len())?;
         // Includes the factors: each factorisation has its own on the stack.
         self.count(3 * matrix.len())?;
         self.rows = self.rows.max(rows);
         self.numbers(matrix, place)
     }
 
-    fn solve(&mut self, place: Value, factors: Value, right: &[Value]) -> Result<(), JitError> {
-        let earlier = (factors < place).then(|| self.tape.operation(factors));
-        let Some(Operation::Factor(matrix)) = earlier else {
-            return Err(JitError::UndefinedFactorisation { value: factors.0 });
+    fn solve(
+        &mut self,
+        place: Value,
+        factorisation: Value,
+        right: &[Value],
+    ) -> Result<(), JitError> {
+        let earlier = (factorisation < place).then(|| self.tape.operation(factorisation));
+        let Some(Operation::Factorise(matrix)) = earlier else {
+            return Err(JitError::NotAFactorisation {
+                value: factorisation.0,
+            });
         };
         shape(place, matrix.len().isqrt(), right.len())?;
         self.count(right.len())?;
-        self.numbers(right, place)
+        self.numbers(right, place)?;
+        self.parts(place, right.len())
     }
 
     /// All parts of an operation follow it.
-    fn part(&self, place: Value, whole: Value, index: u32) -> Result<(), JitError> {
-        let undefined = JitError::UndefinedValue { value: place.0 };
-        let expected = index
-            .checked_add(1)
-            .and_then(|offset| whole.0.checked_add(offset));
-        if expected != Some(place.0) || index as usize >= self.tape.operation(whole).parts() {
-            return Err(undefined);
-        }
-        let before = self.tape.operation(Value(place.0 - 1));
-        match index.checked_sub(1) {
-            Some(last) if *before != Operation::Part(whole, last) => Err(undefined),
-            _ => Ok(()),
+    fn parts(&self, whole: Value, count: usize) -> Result<(), JitError> {
+        let next = self.tape.operations.iter().skip(whole.index() + 1);
+        let found = next.zip(0..).take(count);
+        let found = found.filter(|&(part, index)| *part == Operation::Part(whole, index));
+        if found.count() == count {
+            Ok(())
+        } else {
+            Err(JitError::MisplacedPart { value: whole.0 })
         }
     }
 
@@ -155,10 +177,7 @@ impl Checker<'_> {
 
     /// Operands are numbers computed before `place`.
     fn numbers(&self, operands: &[Value], place: Value) -> Result<(), JitError> {
-        let is_number = |value: Value| {
-            let operation = self.tape.operation(value);
-            operation.parts() == 0 && !matches!(operation, Operation::Factor(_))
-        };
+        let is_number = |value: Value| self.tape.operation(value).is_number();
         match operands
             .iter()
             .find(|&&value| value >= place || !is_number(value))

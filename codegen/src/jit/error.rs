@@ -44,9 +44,17 @@ pub enum JitError {
         /// Number of the value.
         value: u32,
     },
-    /// A system is solved before its matrix is factorised.
+    /// A system is solved without the factorisation of its matrix.
     #[error("value {value} is no factorisation of a matrix")]
-    UndefinedFactorisation {
+    NotAFactorisation {
+        /// Number of the value.
+        value: u32,
+    },
+    /// The parts of an operation do not follow it directly.
+    #[error(
+        "value {value}: parts follow the operation that computes them, all of them and in their order"
+    )]
+    MisplacedPart {
         /// Number of the value.
         value: u32,
     },
@@ -70,7 +78,7 @@ pub enum JitError {
         /// How many there are.
         len: usize,
     },
-    /// The program lacks a function that its sizes require.
+    /// The program lacks the rates.
     #[error("the program has no function {kind:?}")]
     MissingFunction {
         /// Which one.

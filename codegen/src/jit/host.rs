@@ -17,11 +17,11 @@ pub(super) enum Use {
 }
 
 impl Use {
-    /// Number of operations beyond which a function is long.
+    /// Number of operations, as [`Checked`](super::check::Checked) counts them, beyond which a function is long.
     const fn long(self) -> usize {
         match self {
-            Self::Lasting => 15_000,
-            Self::Brief => 1500,
+            Self::Lasting => 12_000,
+            Self::Brief => 1200,
         }
     }
 }

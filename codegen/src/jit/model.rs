@@ -27,7 +27,7 @@ pub type JitModel = ProgramModel<Jit>;
 pub struct Jit {
     sizes: Sizes,
     /// By [`FunctionKind`], in the order of its variants.
-    parts: [OnDemand; FunctionKind::ALL.len()],
+    parts: [OnDemand; FunctionKind::COUNT],
     /// The general model, if this one is specialised.
     whole: Option<Whole>,
 }
@@ -75,14 +75,12 @@ impl ProgramModel<Jit> {
         if program.function(kind).is_none() {
             return Err(JitError::MissingFunction { kind });
         }
-        let model = Self {
-            program: Arc::new(program.clone()),
-            engine: Jit {
-                sizes: Sizes::from(&program.info),
-                parts: FunctionKind::ALL.map(|_| OnDemand::new(Use::Lasting)),
-                whole: None,
-            },
+        let engine = Jit {
+            sizes: Sizes::from(&program.info),
+            parts: [const { OnDemand::new(Use::Lasting) }; FunctionKind::COUNT],
+            whole: None,
         };
+        let model = Self::of(Arc::new(program.clone()), engine);
         // An unsupported processor is detected here and not during a simulation.
         let engine = &model.engine;
         engine.parts[kind as usize].compile(engine.own(program, kind), engine.sizes)?;
@@ -95,17 +93,15 @@ impl ProgramModel<Jit> {
     pub fn without(self: &Arc<Self>, zeros: &[usize]) -> Self {
         let mut zeros = zeros.to_vec();
         zeros.sort_unstable();
-        Self {
-            program: self.program.clone(),
-            engine: Jit {
-                sizes: self.engine.sizes,
-                parts: FunctionKind::ALL.map(|_| OnDemand::new(Use::Brief)),
-                whole: Some(Whole {
-                    model: self.clone(),
-                    zeros,
-                }),
-            },
-        }
+        let engine = Jit {
+            sizes: self.engine.sizes,
+            parts: [const { OnDemand::new(Use::Brief) }; FunctionKind::COUNT],
+            whole: Some(Whole {
+                model: self.clone(),
+                zeros,
+            }),
+        };
+        Self::of(self.program.clone(), engine)
     }
 
     /// Compiles all functions now instead of at their first use.

@@ -51,7 +51,7 @@ impl NativeFunction {
         (elementary, of): (Elementary, Use),
     ) -> Result<Self, JitError> {
         let checked = check(tape, sizes)?;
-        let target = host::target(tape.operations.len(), of)?;
+        let target = host::target(checked.operations, of)?;
         let builder = JITBuilder::with_isa(target, default_libcall_names());
         let mut module = JITModule::new(builder);
         let config = module.target_config();

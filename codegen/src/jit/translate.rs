@@ -194,8 +194,11 @@ impl<'a> Translation<'a> {
                 self.choose(condition, compared, branches)
             }
             Operation::SinCos(angle) => return self.sin_cos(*angle),
-            Operation::Factor(matrix) => return self.factor(value, matrix),
-            Operation::Solve { factors, right } => return self.solve(*factors, right),
+            Operation::Factorise(matrix) => return self.factor(value, matrix),
+            Operation::Solve {
+                factorisation,
+                right,
+            } => return self.solve(*factorisation, right),
             Operation::Part(_, index) => {
                 let (pointer, parts) = (self.config.pointer_type(), self.parts);
                 let place = offset(*index as usize);
@@ -321,7 +324,7 @@ impl<'a> Translation<'a> {
         match function {
             Function::Sqrt => self.builder.ins().sqrt(a),
             Function::Abs => self.builder.ins().fabs(a),
-            // Zero and NaN are preserved, as in the runtime.
+            // The sign, as all others are routines. Zero and NaN are preserved, as in the runtime.
             _ => {
                 let [zero, one, minus_one] =
                     [0.0, 1.0, -1.0].map(|number| self.builder.ins().f64const(number));

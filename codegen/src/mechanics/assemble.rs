@@ -219,7 +219,7 @@ impl Derivation {
             .collect();
         let unknowns = &self.symbols.accelerations;
         self.motion
-            .equations(graph, (&self.gibbs.mass_matrix, &right), unknowns)
+            .equations(graph, &self.gibbs.mass_matrix, &right, unknowns)
     }
 
     pub(super) fn mass_matrix(&self, mechanism: &Mechanism, speeds: &[Quantity]) -> Array {

@@ -496,7 +496,7 @@ fn solve(
     } in solved.into_iter().rev()
     {
         if let Some(whole) = whole.filter(|_| may_keep)
-            && system.keep(algebra, (column, &rates), &whole)
+            && system.keep(algebra, column, &rates, &whole)
         {
             rates[column] = symbols.rates[column];
             system.unknowns.push(rates[column]);

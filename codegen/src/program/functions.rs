@@ -1,6 +1,6 @@
 //! The functions that a model can have, as one table.
 
-/// What a function is for. Each purpose includes those before it.
+/// What a function is for. The functions for a purpose are those of its rows and of all later purposes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Purpose {
     /// A program of its own.
@@ -153,6 +153,9 @@ impl Own {
 }
 
 impl FunctionKind {
+    /// The number of kinds.
+    pub(crate) const COUNT: usize = ROWS.len();
+
     /// All functions that the program of a model can have, in the order of emitted code.
     pub const ALL: [Self; 24] = those(Purpose::Estimation);
 

@@ -22,9 +22,9 @@ const FRAME: usize = 12;
 const USUAL: usize = 24;
 /// Columns available on the continuation lines of a long sum.
 const MORE_LINES: usize = 140;
-/// Wider trees are not inlined into other trees.
+/// Wider expressions are not written inside others.
 const INLINE: usize = 72;
-/// Columns guaranteed to a tree, however long its name is.
+/// Columns guaranteed to an expression, however long its name is.
 const NARROWEST: usize = 30;
 
 /// The tape of a function. `hints` marks the nodes that equal a hint of the program up to sign.
@@ -368,7 +368,7 @@ impl<'a> Binding<'a> {
         (left, right)
     }
 
-    /// Columns available to the tree of a node.
+    /// Columns available to the expression of a node.
     fn room(&self, id: Id) -> usize {
         let made_up = || {
             let consumer = self.outline.feeds[id.index()].and_then(|feed| self.given_name(feed));
@@ -418,7 +418,7 @@ impl<'a> Binding<'a> {
                 (None, Some(name)) => name,
                 (None, None) => self.fallback(of, prefix),
             };
-            let piece = self.named_part(whole, index, &wanted);
+            let piece = self.named_value(whole.part(index), &wanted);
             self.built[of.index()] = Some(Built {
                 piece,
                 negative: false,
@@ -434,22 +434,25 @@ impl<'a> Binding<'a> {
         let matrix = &dag.systems[system as usize].matrix;
         let right = &dag.systems[system as usize].right;
         let same = |(other, _): &&(u32, Value)| dag.systems[*other as usize].matrix == *matrix;
-        let factors = match self.factorisations.iter().find(same) {
-            Some(&(_, factors)) => factors,
+        let factorisation = match self.factorisations.iter().find(same) {
+            Some(&(_, known)) => known,
             None => {
                 let matrix = matrix.iter().map(|&item| self.signed(item).value).collect();
-                let factors = self.push(Operation::Factor(matrix));
-                self.factorisations.push((system, factors));
-                factors
+                let made = self.push(Operation::Factorise(matrix));
+                self.factorisations.push((system, made));
+                made
             }
         };
         let right = right.iter().map(|&item| self.signed(item).value).collect();
-        let whole = self.push(Operation::Solve { factors, right });
+        let whole = self.push(Operation::Solve {
+            factorisation,
+            right,
+        });
         for (row, unknown) in (0..).zip(self.unknowns(system)) {
             let wanted = unknown
                 .and_then(|id| self.given_name(id))
                 .unwrap_or_else(|| format!("solution_{}_{}", system + 1, row + 1));
-            let piece = self.named_part(whole, row, &wanted);
+            let piece = self.named_value(whole.part(row), &wanted);
             if let Some(id) = unknown {
                 self.built[id.index()] = Some(Built {
                     piece,
@@ -594,14 +597,9 @@ impl<'a> Binding<'a> {
     /// repeated here; the earlier one is dead.
     fn define(&mut self, name: &str, piece: Piece) -> Piece {
         let operation = self.tape.operation(piece.value).clone();
+        debug_assert!(!matches!(operation, Operation::Part(..)), "{name}");
         let value = self.push(operation);
         self.named_value(value, name)
-    }
-
-    /// A part of an operation under a name.
-    fn named_part(&mut self, whole: Value, index: u32, wanted: &str) -> Piece {
-        let part = self.tape.push(Operation::Part(whole, index));
-        self.named_value(part, wanted)
     }
 
     fn named_value(&mut self, value: Value, wanted: &str) -> Piece {

@@ -14,7 +14,7 @@ pub(super) struct Outline<'a> {
     /// The nodes, operands before users.
     pub(super) order: Vec<Id>,
     uses: Vec<u32>,
-    /// Nodes that must not be inlined into other trees.
+    /// Nodes that must not be written inside other expressions.
     pub(super) bound: Vec<bool>,
     /// Sine and cosine of the same angle: the partner.
     pub(super) partner: Vec<Option<Id>>,

@@ -9,7 +9,7 @@ use crate::tape::{Arithmetic, Operation, Tape, Value};
 
 /// Precedence of the outermost operation of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(crate) enum Level {
     Sum,
     Product,
     Sign,
@@ -173,7 +173,7 @@ impl Piece {
 }
 
 /// Precedences that an operation requires of its left and right operand.
-fn levels(operation: Arithmetic) -> (Level, Level) {
+pub(crate) fn levels(operation: Arithmetic) -> (Level, Level) {
     match operation {
         Arithmetic::Add | Arithmetic::Subtract => (Level::Sum, Level::Product),
         Arithmetic::Multiply | Arithmetic::Divide => (Level::Product, Level::Sign),

@@ -3,6 +3,7 @@
 use rustc_hash::FxHashMap;
 
 use super::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
+use crate::symbolic::Function;
 
 /// Replacements of the law's arguments.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -27,6 +28,15 @@ pub enum Seen {
 /// states and parameters; the inputs of the closed loop are those of the law and those of `seen`.
 pub fn closed_loop(law: &Tape, rates: &Tape, seen: &[Seen]) -> Tape {
     let mut composed = Composed::default();
+    // A sine or a cosine in the law has the call of the rates.
+    for operation in &rates.operations {
+        if let Operation::SinCos(angle) = operation
+            && let Operation::Argument(state @ Argument::State(_)) = rates.operation(*angle)
+        {
+            let state = composed.push(Operation::Argument(*state));
+            composed.push(Operation::SinCos(state));
+        }
+    }
     let inputs = composed.add(law, |composed, argument| composed.seen(argument, seen));
     let rates = composed.add(rates, |composed, argument| match argument {
         Argument::Input(input) => inputs[input as usize],
@@ -52,13 +62,19 @@ impl Composed {
         if let Some(&known) = self.known.get(&operation) {
             return known;
         }
-        let parts = operation.parts();
         let value = self.tape.push(operation.clone());
-        for part in (0..).take(parts) {
-            self.tape.push(Operation::Part(value, part));
-        }
         self.known.insert(operation, value);
         value
+    }
+
+    /// A function of one argument, which may be a part of a sine and cosine.
+    fn function(&mut self, function: Function, a: Value) -> Value {
+        let pair = self.known.get(&Operation::SinCos(a));
+        match (function, pair) {
+            (Function::Sin, Some(pair)) => pair.part(0),
+            (Function::Cos, Some(pair)) => pair.part(1),
+            _ => self.push(Operation::Function(function, a)),
+        }
     }
 
     /// Adds the operations of a tape, with its arguments substituted; its first result.
@@ -71,8 +87,9 @@ impl Composed {
         for operation in &tape.operations {
             let value = match *operation {
                 Operation::Argument(argument) => substitute(self, argument),
-                Operation::Part(whole, part) => Value(values[whole.index()].0 + 1 + part),
-                _ => self.push(operation.with(|operand| values[operand.index()])),
+                Operation::Part(whole, part) => values[whole.index()].part(part),
+                Operation::Function(function, a) => self.function(function, values[a.index()]),
+                _ => self.push(operation.map_operands(|operand| values[operand.index()])),
             };
             values.push(value);
         }

@@ -34,7 +34,7 @@ impl OperationCount {
             let counted = match operation {
                 Operation::Argument(_)
                 | Operation::Constant(_)
-                | Operation::Factor(_)
+                | Operation::Factorise(_)
                 | Operation::Part(..) => continue,
                 Operation::Negate(_) => &mut count.negate,
                 Operation::Binary(Arithmetic::Add | Arithmetic::Subtract, ..) => &mut count.add,

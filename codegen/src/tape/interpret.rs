@@ -102,12 +102,15 @@ fn results<T: Real>(
             Operation::SinCos(angle) => {
                 let (sine, cosine) = Real::sin_cos(at(*angle));
                 parts = vec![sine, cosine];
-                sine
+                T::constant(f64::NAN)
             }
             // The matrix is factorised again for every right-hand side, which gives bit-identical results.
-            Operation::Factor(_) => T::constant(f64::NAN),
-            Operation::Solve { factors, right } => {
-                let mut matrix = all(&tape.operation(*factors).operands());
+            Operation::Factorise(_) => T::constant(f64::NAN),
+            Operation::Solve {
+                factorisation,
+                right,
+            } => {
+                let mut matrix = all(&tape.operation(*factorisation).operands());
                 parts = all(right);
                 solve(&mut matrix, &mut parts);
                 T::constant(f64::NAN)

@@ -1,13 +1,13 @@
 //! Dead-code elimination, and the order of the emitted text.
 
-use super::{Operation, ResultArray, Tape, Value};
+use super::{Tape, Value};
 
 impl Tape {
     /// The live operations, in their order.
     #[must_use]
     pub fn live(&self) -> Self {
-        let live = self.is_live();
-        let mut moved = Moved::new(self);
+        let live = self.liveness();
+        let mut moved = Reordered::new(self);
         for value in (0..).map(Value).take(self.operations.len()) {
             if live[value.index()] {
                 moved.push(value);
@@ -20,12 +20,10 @@ impl Tape {
     /// is used. Its expressions must be small.
     #[must_use]
     pub(crate) fn in_order_of_text(&self) -> Self {
-        let live = self.is_live();
-        let mut moved = Moved::new(self);
+        let live = self.liveness();
+        let mut moved = Reordered::new(self);
         for value in (0..).map(Value).take(self.operations.len()) {
-            let is_statement = matches!(self.operation(value), Operation::Factor(_))
-                || self.operation(value).parts() > 0
-                || self.name(value).is_some();
+            let is_statement = !self.operation(value).is_number() || self.name(value).is_some();
             if live[value.index()] && is_statement {
                 moved.push_with_operands(value);
             }
@@ -39,7 +37,7 @@ impl Tape {
     }
 
     /// By value: whether a result depends on it. All parts of a live operation are live.
-    fn is_live(&self) -> Vec<bool> {
+    fn liveness(&self) -> Vec<bool> {
         let mut live = vec![false; self.operations.len()];
         for &entry in self.results.iter().flat_map(|result| &result.entries) {
             live[entry.index()] = true;
@@ -62,14 +60,14 @@ impl Tape {
 }
 
 /// A tape with the operations of another in a new order.
-struct Moved<'a> {
+struct Reordered<'a> {
     from: &'a Tape,
     to: Tape,
     /// The new values.
     places: Vec<Option<Value>>,
 }
 
-impl<'a> Moved<'a> {
+impl<'a> Reordered<'a> {
     fn new(from: &'a Tape) -> Self {
         Self {
             from,
@@ -88,8 +86,8 @@ impl<'a> Moved<'a> {
         let operation = self
             .from
             .operation(value)
-            .with(|operand| self.place(operand));
-        let place = self.to.push(operation);
+            .map_operands(|operand| self.place(operand));
+        let place = self.to.push_alone(operation);
         self.to.names[place.index()] = self.from.names[value.index()].clone();
         self.places[value.index()] = Some(place);
     }
@@ -107,21 +105,15 @@ impl<'a> Moved<'a> {
             return;
         }
         self.push(value);
-        for part in (value.0 + 1..).map(Value).take(operation.parts()) {
-            self.push(part);
+        for part in (0..).take(operation.parts()) {
+            self.push(value.part(part));
         }
     }
 
     fn finish(mut self) -> Tape {
-        self.to.results = (self.from.results.iter())
-            .map(|result| ResultArray {
-                name: result.name.clone(),
-                entries: result
-                    .entries
-                    .iter()
-                    .map(|&entry| self.place(entry))
-                    .collect(),
-            })
+        let results = self.from.results.iter();
+        self.to.results = results
+            .map(|result| result.map(|entry| self.place(entry)))
             .collect();
         self.to.headings = (self.from.headings.iter())
             .filter_map(|(value, title)| Some((self.places[value.index()]?, title.clone())))

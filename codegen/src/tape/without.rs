@@ -1,9 +1,9 @@
 //! Partial evaluation of a tape for parameters that are zero.
 //!
-//! Adding zero and multiplying by one are exact, so the results are those of the full tape except for the sign of zero
-//! and for products of zero with a non-finite value.
+//! Adding zero and multiplying by one are exact, so the results are those of the full tape except for the sign of
+//! zero, products of zero with a non-finite value, zero over zero, and singular systems whose right-hand side is zero.
 
-use super::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
+use super::{Argument, Arithmetic, Operation, Tape, Value};
 use crate::symbolic::{Function, Rational};
 
 impl Tape {
@@ -23,14 +23,8 @@ impl Tape {
             folded.values.push(value);
         }
         let Folded { mut tape, values } = folded;
-        let results = self.results.iter().map(|result| ResultArray {
-            name: result.name.clone(),
-            entries: result
-                .entries
-                .iter()
-                .map(|entry| values[entry.index()])
-                .collect(),
-        });
+        let results = self.results.iter();
+        let results = results.map(|result| result.map(|entry| values[entry.index()]));
         tape.results = results.collect();
         tape.live()
     }
@@ -46,7 +40,7 @@ struct Folded {
 impl Folded {
     /// The value of an operation of the full tape.
     fn value(&mut self, operation: &Operation, is_zero: impl Fn(usize) -> bool) -> Value {
-        let operation = operation.with(|operand| self.values[operand.index()]);
+        let operation = operation.map_operands(|operand| self.values[operand.index()]);
         match operation {
             Operation::Argument(Argument::Parameter(index)) if is_zero(index as usize) => {
                 self.number(0)
@@ -59,7 +53,7 @@ impl Folded {
                 ..
             } if then == otherwise || self.are_equal_leaves(then, otherwise) => then,
             Operation::Part(whole, index) => self.part(whole, index),
-            other => self.tape.push(other),
+            other => self.tape.push_alone(other),
         }
     }
 

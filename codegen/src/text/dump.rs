@@ -61,7 +61,7 @@ fn dump(tape: &Tape, arguments: &ArgumentNames) -> String {
         }
         let line = match statement.action {
             Action::Define(name, value) => format!("{name} = {}", value.text),
-            Action::SinCos([sin, cos], [angle, _]) => {
+            Action::SinCos([sin, cos], angle) => {
                 format!("{sin}, {cos} = sin_cos({})", angle.text)
             }
             Action::Factor(number, rows) => {

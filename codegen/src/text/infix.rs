@@ -2,6 +2,7 @@
 
 use super::Dialect;
 use crate::schedule::names::method;
+use crate::schedule::piece::{Level, levels};
 use crate::symbolic::{Function, Rational, Relation};
 use crate::tape::Arithmetic;
 
@@ -39,15 +40,6 @@ pub(crate) fn math_name(function: Function) -> &'static str {
         Function::Abs => "fabs",
         other => method(other),
     }
-}
-
-/// Precedence of an operation.
-#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(crate) enum Level {
-    Sum,
-    Product,
-    Sign,
-    Atom,
 }
 
 /// A text with the precedence of its outermost operation.
@@ -97,10 +89,7 @@ impl<N: Notation> Dialect for N {
     }
 
     fn binary(&self, operation: Arithmetic, a: Infix, b: Infix) -> Infix {
-        let (level, right) = match operation {
-            Arithmetic::Add | Arithmetic::Subtract => (Level::Sum, Level::Product),
-            Arithmetic::Multiply | Arithmetic::Divide => (Level::Product, Level::Sign),
-        };
+        let (level, right) = levels(operation);
         let operator = self.operator(operation);
         Infix {
             text: format!("{}{operator}{}", a.at(level), b.at(right)),

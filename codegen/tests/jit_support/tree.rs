@@ -77,7 +77,7 @@ pub(crate) fn add_result(tape: &mut Tape, entries: Vec<Tree>) {
 struct Writer {
     tape: Tape,
     values: HashMap<u32, Value>,
-    factors: HashMap<u32, Value>,
+    factorisations: HashMap<u32, Value>,
 }
 
 impl Writer {
@@ -96,8 +96,8 @@ impl Writer {
                 matrix,
             } => {
                 let matrix = self.all(matrix);
-                let factors = self.tape.push(Operation::Factor(matrix));
-                self.factors.insert(factorisation, factors);
+                let made = self.tape.push(Operation::Factorise(matrix));
+                self.factorisations.insert(factorisation, made);
             }
             Step::Solve {
                 factorisation,
@@ -105,9 +105,13 @@ impl Writer {
                 right,
             } => {
                 let right = self.all(right);
-                let factors = self.factors.get(&factorisation).copied();
-                let factors = factors.unwrap_or(Value(u32::MAX));
-                self.with_parts(Operation::Solve { factors, right }, values);
+                let known = self.factorisations.get(&factorisation).copied();
+                let factorisation = known.unwrap_or(Value(u32::MAX));
+                let solve = Operation::Solve {
+                    factorisation,
+                    right,
+                };
+                self.with_parts(solve, values);
             }
         }
     }
@@ -115,8 +119,7 @@ impl Writer {
     fn with_parts(&mut self, operation: Operation, values: impl IntoIterator<Item = u32>) {
         let whole = self.tape.push(operation);
         for (index, value) in (0..).zip(values) {
-            let part = self.tape.push(Operation::Part(whole, index));
-            self.values.insert(value, part);
+            self.values.insert(value, whole.part(index));
         }
     }
 

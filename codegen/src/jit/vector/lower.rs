@@ -111,7 +111,7 @@ impl Lowering<'_> {
                 self.parts = self.call(Routine::SinCos, vec![angle], 2);
                 return;
             }
-            Operation::Factor(matrix) => {
+            Operation::Factorise(matrix) => {
                 let (rows, matrix) = (matrix.len().isqrt(), self.all(matrix));
                 let system = if rows <= MOST_ROWS_IN_LINE {
                     System::Factors(self.factor(matrix, rows))
@@ -121,9 +121,12 @@ impl Lowering<'_> {
                 self.systems.insert(value, system);
                 return;
             }
-            Operation::Solve { factors, right } => {
+            Operation::Solve {
+                factorisation,
+                right,
+            } => {
                 let right = self.all(right);
-                self.parts = self.solve(*factors, right);
+                self.parts = self.solve(*factorisation, right);
                 return;
             }
             Operation::Part(_, index) => self.parts[*index as usize],

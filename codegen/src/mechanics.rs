@@ -295,15 +295,10 @@ fn without_reactions(
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let given = with_given_rates(
-        &mut algebra,
-        mechanism,
-        &symbols,
-        &velocities.rates,
-        &dependent,
-        &mut gibbs,
-        &mut forces,
-    )?;
+    let rates = &velocities.rates;
+    let mut given = given_rates(&mut algebra, mechanism, &symbols, rates, &dependent)?;
+    given.put_into(&mut algebra.graph, &mut gibbs);
+    given.put_into_forces(&mut forces);
     recursion = recursion.filter(|_| given.is_empty());
     let motion = solved(
         &mut algebra,
@@ -409,22 +404,18 @@ fn solved(
     motion::solve(algebra, mechanism, gibbs, forces, &parts, dependent.way())
 }
 
-/// Substitutes the prescribed rates in M, b and Π.
-fn with_given_rates(
+/// The prescribed rates of the pseudo-velocities.
+fn given_rates(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
     rates: &[Expr],
     dependent: &DependentSpeeds,
-    gibbs: &mut GibbsForm,
-    forces: &mut [Expr],
 ) -> Outcome<Given> {
-    let mut given = Given::of(algebra, mechanism, symbols, rates)?;
+    let given = Given::of(algebra, mechanism, symbols, rates)?;
     if !dependent.values.is_empty() {
         given.refuse_beside("velocities that a system with pivoting tells")?;
     }
-    given.put_into(&mut algebra.graph, gibbs);
-    given.put_into_forces(forces);
     Ok(given)
 }
 

@@ -34,7 +34,8 @@ impl ClosedLoop {
         law: &Tape,
         rates: &Tape,
         sizes: Sizes,
-        (outside, seen): (Outside, &[Onto]),
+        outside: Outside,
+        seen: &[Onto],
     ) -> Result<Self, JitError> {
         let views = seen.iter().zip(outside.inputs..);
         let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();

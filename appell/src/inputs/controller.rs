@@ -354,7 +354,7 @@ impl Wiring {
             inputs: self.function.inputs(),
             is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
         };
-        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), (outside, seen))
+        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), outside, seen)
             .map_err(Error::computation)
     }
 

@@ -8,8 +8,7 @@ use appell_estimate::{
 use appell_runtime::model::Model;
 
 use super::DiagnoseError;
-use super::evidence::Evidence;
-use super::evidence::Fitted;
+use super::evidence::{Evidence, Fitted};
 use super::feedback::{InputInnovations, for_kicks};
 use super::hardware::Hardware;
 use super::imperfection::{Imperfection, perfect};
@@ -127,7 +126,7 @@ impl<'a> Bench<'a> {
         }
         let (problem, sizes, layout) = {
             let estimation = Estimation::new(&setup, &recordings)?;
-            let mut problem = Problem::of(&set, &estimation, (&Options::tolerant(), &[]))?;
+            let mut problem = Problem::of(&set, &estimation, &Options::tolerant(), &[])?;
             level(&estimation, &mut problem)?;
             let sizes = sizes(&estimation, &problem)?;
             (problem, sizes, estimation.layout())
@@ -436,7 +435,7 @@ impl<'a> Bench<'a> {
             return Ok(fitted);
         }
         // Far from an optimum Newton's method may progress where Fisher scoring does not.
-        let further = self.fit_by((Fit::of, self.effort()), &[], estimation, &levels);
+        let further = self.fit_by(Fit::of, self.effort(), &[], estimation, &levels);
         Ok(further.unwrap_or(fitted))
     }
 
@@ -467,7 +466,7 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by((Fit::quick, self.effort()), members, estimation, start)
+        self.fit_by(Fit::quick, self.effort(), members, estimation, start)
     }
 
     /// Fits some values.
@@ -477,7 +476,7 @@ impl<'a> Bench<'a> {
         start: &[f64],
         free: &[Free],
     ) -> Result<Fit, DiagnoseError> {
-        self.weighed(estimation, start, free, (Fit::quick, self.effort()))
+        self.weighed(estimation, start, free, Fit::quick, self.effort())
     }
 
     /// Fits the noise levels alone.
@@ -496,7 +495,7 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by((Fit::quick, SHARES), members, estimation, start)
+        self.fit_by(Fit::quick, SHARES, members, estimation, start)
     }
 
     fn effort(&self) -> Effort {
@@ -509,14 +508,15 @@ impl<'a> Bench<'a> {
 
     fn fit_by(
         &self,
-        search: (Search, Effort),
+        search: Search,
+        effort: Effort,
         members: &[usize],
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        let fit = self.weighed(estimation, start, &free, search)?;
-        let by_inputs = for_kicks(&self.input_innovations, self.weight, (estimation, &fit))?;
+        let fit = self.weighed(estimation, start, &free, search, effort)?;
+        let by_inputs = for_kicks(&self.input_innovations, self.weight, estimation, &fit)?;
         let evidence = Evidence::of(self, members, &fit, by_inputs);
         Ok(Fitted {
             members: members.to_vec(),
@@ -535,7 +535,8 @@ impl Bench<'_> {
         estimation: &Estimation<'_>,
         start: &[f64],
         free: &[Free],
-        (search, effort): (Search, Effort),
+        search: Search,
+        effort: Effort,
     ) -> Result<Fit, DiagnoseError> {
         let firm = free.iter().map(|one| Free {
             prior: (one.prior).map(|[value, deviation]| [value, deviation * self.weight.sqrt()]),

@@ -42,13 +42,14 @@ impl NativeFunction {
         sizes: Sizes,
         elementary: Elementary,
     ) -> Result<Self, JitError> {
-        Self::compile_for(tape, sizes, (elementary, Use::Lasting))
+        Self::compile_for(tape, sizes, elementary, Use::Lasting)
     }
 
     pub(super) fn compile_for(
         tape: &Tape,
         sizes: Sizes,
-        (elementary, of): (Elementary, Use),
+        elementary: Elementary,
+        of: Use,
     ) -> Result<Self, JitError> {
         let checked = check(tape, sizes)?;
         let target = host::target(checked.operations, of)?;

@@ -73,7 +73,7 @@ impl Ready {
     /// Compiles a tape if that is possible.
     #[cold]
     fn of(tape: &Tape, sizes: Sizes, of: Use) -> Self {
-        match NativeFunction::compile_for(tape, sizes, (Elementary::Standard, of)) {
+        match NativeFunction::compile_for(tape, sizes, Elementary::Standard, of) {
             Ok(native) => Self::Native(native),
             Err(reason) => Self::Interpreted {
                 results: tape.lengths(),

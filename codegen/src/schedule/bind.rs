@@ -434,15 +434,13 @@ impl<'a> Binding<'a> {
         let matrix = &dag.systems[system as usize].matrix;
         let right = &dag.systems[system as usize].right;
         let same = |(other, _): &&(u32, Value)| dag.systems[*other as usize].matrix == *matrix;
-        let factorisation = match self.factorisations.iter().find(same) {
-            Some(&(_, known)) => known,
-            None => {
-                let matrix = matrix.iter().map(|&item| self.signed(item).value).collect();
-                let made = self.push(Operation::Factorise(matrix));
-                self.factorisations.push((system, made));
-                made
-            }
-        };
+        let known = self.factorisations.iter().find(same).map(|known| known.1);
+        let factorisation = known.unwrap_or_else(|| {
+            let matrix = matrix.iter().map(|&item| self.signed(item).value).collect();
+            let made = self.push(Operation::Factorise(matrix));
+            self.factorisations.push((system, made));
+            made
+        });
         let right = right.iter().map(|&item| self.signed(item).value).collect();
         let whole = self.push(Operation::Solve {
             factorisation,

@@ -88,7 +88,7 @@ impl<'a> Reordered<'a> {
             .operation(value)
             .map_operands(|operand| self.place(operand));
         let place = self.to.push_alone(operation);
-        self.to.names[place.index()] = self.from.names[value.index()].clone();
+        self.to.names[place.index()].clone_from(&self.from.names[value.index()]);
         self.places[value.index()] = Some(place);
     }
 

@@ -163,7 +163,7 @@ pub(super) fn lengthened<'a>(
         }
         before = longer;
         stage("fitting simulations over longer windows");
-        let windows = whole.windows(longer, (count, rows))?;
+        let windows = whole.windows(longer, count, rows)?;
         let over = Bench::over(&windows, &judged.bench, levels)?;
         let Ok((_, again)) = over.fitted_again(&judged.bench, best) else {
             break;
@@ -320,7 +320,7 @@ impl Seen<'_, '_> {
 /// The runs, cut into windows of half a typical period: long enough that forces affect the motion, short
 /// enough that errors do not dominate it.
 pub(super) fn windows(set: &DataSet) -> Result<DataSet, DiagnoseError> {
-    Ok(set.windows(length(set), (WINDOWS, ROWS))?)
+    Ok(set.windows(length(set), WINDOWS, ROWS)?)
 }
 
 /// Half of a typical period in s: that of a harmonic motion with the ratio of deviation to rate of a channel, the

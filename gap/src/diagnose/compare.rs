@@ -280,10 +280,15 @@ impl Comparison {
     }
 }
 
+/// Whether the sensitivities at the end of a search have no meaning.
+pub(super) fn diverges(fit: &Fit) -> bool {
+    fit.gain > MOST_PROMISED
+}
+
 /// The reason why a search ended early.
 fn ended(fit: &Fit) -> String {
     let steps = fit.steps;
-    if fit.gain > MOST_PROMISED {
+    if diverges(fit) {
         return format!(
             "its search ended after {steps} steps at diverging sensitivities, as with stiff friction: it may explain \
              more than reported"

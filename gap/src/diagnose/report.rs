@@ -77,7 +77,7 @@ pub struct Value {
     pub name: String,
     /// Most likely value.
     pub value: f64,
-    /// Standard deviation; NaN if it is undefined, as at a limit.
+    /// Standard deviation; NaN if it is undefined, as at a limit or where sensitivities diverge.
     pub std: f64,
     /// Unit.
     pub unit: String,

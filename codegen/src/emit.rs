@@ -9,6 +9,7 @@ mod body;
 mod equations;
 mod error;
 mod function;
+mod info;
 mod layout;
 mod markdown;
 mod model;
@@ -122,7 +123,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     if options.model_impl {
         let implementation = model::implementation(&types, &runtime)?;
         file.items.extend(parse(implementation)?.items);
-        file.items.extend(parse(model::info(&program.info))?.items);
+        file.items.extend(parse(info::info(&program.info))?.items);
     }
     let conversions = types.conversions(&functions, options.model_impl, &runtime);
     file.items.extend(parse(quote!(#(#conversions)*))?.items);

@@ -45,6 +45,7 @@
 
 mod adjoint;
 pub mod algebra;
+mod arguments;
 pub mod assemble;
 pub mod auxiliary;
 pub mod constraints;
@@ -56,6 +57,7 @@ pub mod creep;
 pub mod dependent;
 pub mod divisors;
 pub mod elimination;
+mod equation_count;
 pub(crate) mod explicit;
 pub mod expressions;
 pub mod factorized;

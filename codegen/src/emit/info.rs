@@ -4,7 +4,7 @@ use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity, Reactio
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
-use super::layout::{blank_tokens, docs, escaped};
+use super::layout::{blank_tokens, docs};
 use super::syntax::{known, number};
 
 /// `INFO` and its statics.

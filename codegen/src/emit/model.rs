@@ -1,13 +1,12 @@
-//! Emits `INFO` and the implementation of `Model`, which need the standard library.
+//! Emits the implementation of `Model`, which needs the standard library.
 
-use appell_runtime::model::{Contact, Interpolation, ModelInfo, Quantity, Reaction};
 use proc_macro2::{Literal, TokenStream};
 use quote::quote;
 
 use super::error::Error;
 use super::layout::{blank_tokens, docs, escaped};
 use super::switching;
-use super::syntax::{ident, known, number, path};
+use super::syntax::{ident, known, path};
 use super::types::Types;
 use crate::program::{FunctionKind, Layout, Program, Space};
 

@@ -3,12 +3,11 @@
 mod labels;
 
 use appell_runtime::model::{ModelInfo, Quantity};
-use appell_spec::mechanism::{BodyId, ConstraintId, FrameId, Mechanism};
+use appell_spec::mechanism::{ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
 use super::algebra::MOST_OF_PROGRAM;
 use super::arguments::{function_arguments, input_symbols};
-use super::constraints::Constraints;
 use super::finding::Outcome;
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
@@ -23,13 +22,12 @@ use super::motion::Motion;
 use super::positions::Positions;
 use super::reactions;
 use super::recursion::Recursion;
-use super::symbols::{Symbols, ids};
 use super::systems::systems;
 use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
-pub(super) use labels::by_speed;
-use labels::{Source, embedded, shown_file};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
+pub(super) use labels::by_speed;
+use labels::{Source, embedded, shown_file};
 
 /// The program of a derivation, with the functions `kinds`; those of outputs or switches are omitted if there
 /// are none.

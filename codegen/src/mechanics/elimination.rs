@@ -6,6 +6,7 @@ use appell_spec::mechanism::{CoordinateId, Mechanism, SpeedId};
 use super::algebra::Algebra;
 use super::constraints::Constraints;
 use super::cramer::{self, Block};
+use super::equation_count::check_count;
 use super::expressions::Lowering;
 use super::finding::{Finding, Item, Outcome, division_by_zero};
 use super::kinematics::{Effort, Kinematics};
@@ -14,7 +15,6 @@ use super::open_system::Equation;
 pub use super::open_system::OpenSystem;
 use super::quaternion::{is_norm, quaternions, rates as rates_of};
 use super::rank::{LinearRow, Standing, standings};
-use super::row::Row;
 use super::symbols::{Symbols, ids};
 use crate::symbolic::{Expr, Graph, Intervals, Node, Substitution, SymbolId, vector};
 

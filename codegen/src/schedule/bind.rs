@@ -5,12 +5,12 @@ mod naming;
 
 use rustc_hash::{FxHashMap, FxHashSet};
 
-use super::dag::{Dag, Id, Item, Name, Op};
+use super::dag::{Dag, Id, Item, Op};
 use super::monomial::Monomial;
 use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
-use super::signs::{choose_signs, keeps_its_name};
+use super::signs::choose_signs;
 use crate::program::{Function, Own, Program};
 use crate::symbolic::{Function as Elementary, Rational};
 use crate::tape::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};

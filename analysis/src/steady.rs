@@ -15,7 +15,7 @@ use crate::point::Point;
 use crate::term::Term;
 use appell_runtime::model::{Model, ModelInfo, Quantity};
 use appell_spectra::singular::Singular;
-use cyclic::{Structure, StructureError};
+use cyclic::Structure;
 use equations::SteadyEquations;
 pub use error::SteadyError;
 use newton::{Missed, Zero};

@@ -4,8 +4,9 @@ use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::mechanics::symbols::{Symbols, ids};
 use appell_codegen::program::{Arguments, Array, Function, FunctionKind, Layout, Program};
-use appell_codegen::schedule::{Schedule, enclose_along, interpret, pi, schedule};
+use appell_codegen::schedule::{pi, schedule};
 use appell_codegen::symbolic::{Derivatives, Expr, Graph};
+use appell_codegen::tape::{Tape, enclose_along, interpret};
 use appell_runtime::Signal;
 use appell_runtime::model::{Along, At, ModelInfo};
 use appell_runtime::real::{Enclosure, Real};
@@ -84,7 +85,7 @@ const FEW_INPUTS: usize = 16;
 
 /// Expressions as one function of time, state and parameters.
 pub(crate) struct StateFunction {
-    schedule: Schedule,
+    tape: Tape,
     native: Option<NativeFunction>,
     count: usize,
     declared: usize,
@@ -153,11 +154,11 @@ impl StateFunction {
             hints: Vec::new(),
             functions: vec![function],
         };
-        let schedule = schedule(&program, &program.functions[0]);
+        let tape = schedule(&program, &program.functions[0]);
         // The interpreter gives the same results.
-        let native = NativeFunction::compile(&schedule, sizes).ok();
+        let native = NativeFunction::compile(&tape, sizes).ok();
         Ok(Self {
-            schedule,
+            tape,
             native,
             count,
             declared: model.declared_inputs,
@@ -167,8 +168,8 @@ impl StateFunction {
     }
 
     /// Its operations. Their inputs are the declared ones, then those of [`Self::fill_signals`].
-    pub(crate) fn schedule(&self) -> &Schedule {
-        &self.schedule
+    pub(crate) fn tape(&self) -> &Tape {
+        &self.tape
     }
 
     /// How many declared inputs there are.
@@ -208,7 +209,7 @@ impl StateFunction {
         u.extend(self.tabulated().map(|(signal, order)| {
             enclosed(differentiated(signal.polynomial(along.start), order), since)
         }));
-        enclose_along(&self.schedule, &Along { u: &u, ..*along }, values);
+        enclose_along(&self.tape, &Along { u: &u, ..*along }, values);
     }
 
     /// Evaluates at time `t`, state `x` and parameters `p` into the first entries of `values`.
@@ -229,7 +230,7 @@ impl StateFunction {
         let u = &*u;
         match &self.native {
             Some(native) => native.call(At { t, x, u, p }, [values]),
-            None => values.copy_from_slice(&interpret(&self.schedule, t, x, u, p)[0]),
+            None => values.copy_from_slice(&interpret(&self.tape, t, x, u, p)[0]),
         }
     }
 }

@@ -6,7 +6,8 @@ use std::sync::OnceLock;
 use appell_codegen::Derived;
 use appell_codegen::compile::report;
 use appell_codegen::program::FunctionKind;
-use appell_codegen::schedule::{Schedule as Operations, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::Tape;
 use appell_gap::{diagnose as gap, identify};
 use appell_recordings::DataSet;
 use appell_runtime::integrate::{Direction, Event};
@@ -38,7 +39,7 @@ pub struct Model {
     /// Whether the equations have the adjoints of estimation.
     adjoints: bool,
     /// The operations of the rates, compiled on first use.
-    rates: OnceLock<Operations>,
+    rates: OnceLock<Tape>,
 }
 
 impl Model {
@@ -127,14 +128,14 @@ impl Model {
     }
 
     /// The operations of the rates, which closed loops are made from.
-    pub(crate) fn rates(&self) -> Result<&Operations, Error> {
+    pub(crate) fn rates(&self) -> Result<&Tape, Error> {
         if let Some(rates) = self.rates.get() {
             return Ok(rates);
         }
         let Source { file, text, .. } = &self.source;
         let program = appell_codegen::compile(file, text, &[FunctionKind::Rates])?;
-        let schedule = schedule(&program, &program.functions[0]);
-        Ok(self.rates.get_or_init(|| schedule))
+        let tape = schedule(&program, &program.functions[0]);
+        Ok(self.rates.get_or_init(|| tape))
     }
 
     /// The equations of motion: rates, Jacobians, Appell's equations, energies, outputs.

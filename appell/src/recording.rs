@@ -37,8 +37,8 @@ pub fn read_frames(
     let spec = model.map(Source::find).transpose()?;
     let spec = spec.as_ref().map(spec_of);
     with_doubts(match (description, spec) {
-        (Some(described), spec) => {
-            appell_recordings::read_frames(described, frames, &library(), spec)?
+        (Some((file, text)), spec) => {
+            appell_recordings::read_frames(file, text, frames, &library(), spec)?
         }
         (None, Some(spec)) => appell_recordings::read_bare_frames(spec, frames)?,
         (None, None) => return Err(Error::request(Field::Recordings, UNNAMED)),

@@ -1,6 +1,6 @@
 //! Equations in C99: one header and one source, without allocation, with the names and units of the spec.
 //!
-//! Operations and their order are those of the schedule, hence of the emitted Rust: compiled without
+//! Operations and their order are those of the tape, hence of the emitted Rust: compiled without
 //! contraction, the results are bit-identical.
 
 mod adapters;
@@ -10,11 +10,12 @@ use std::fmt::Write as _;
 
 use appell_spec::foreign::sentence;
 
-use crate::infix::{Dialect, Infix, math_name, shape};
 use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
 use crate::schedule::pi::parts_of_pi;
-use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
+use crate::schedule::schedule;
 use crate::symbolic::{self, Rational, Relation};
+use crate::tape::{Argument, Tape, Value};
+use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape};
 
 pub(crate) use adapters::{adapted, adapters};
 use types::Types;
@@ -141,7 +142,7 @@ const KEYWORDS: &[&str] = &[
     "signgam",
 ];
 
-impl Dialect for Real {
+impl Notation for Real {
     fn name(&self, name: &str) -> String {
         if KEYWORDS.contains(&name) {
             format!("{name}_")
@@ -221,12 +222,9 @@ pub fn emit(program: &Program, options: &Options) -> Emitted {
                 .all(|array| is_empty(program, array))
         })
         .collect();
-    let schedules: Vec<Schedule> = functions
+    let bodies: String = functions
         .iter()
-        .map(|function| schedule(program, function))
-        .collect();
-    let bodies: String = (functions.iter().zip(&schedules))
-        .map(|(function, schedule)| definition(&types, function, schedule))
+        .map(|function| definition(&types, function, &schedule(program, function)))
         .collect();
     let mut source = format!(
         "/* {} */\n\n#include \"{}.h\"\n\n#include <math.h>\n",
@@ -361,19 +359,15 @@ static void lu_solve(int n, const REAL *a, const unsigned char *exchanged, REAL 
 
 ";
 
-fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> String {
-    let infix = Infix {
-        dialect: &types.real,
-        schedule,
-        names: &types.names,
-    };
+fn definition(types: &Types<'_>, function: &Function, tape: &Tape) -> String {
+    let written = Text::new(types.real, tape, &types.names);
     let real = types.real.name();
     let mut text = format!("{} {{\n", types.signature(function));
     let groups = types.groups();
     let own = function.kind.takes().map(|own| types.own(own));
     let own = own.unwrap_or_default();
     let accelerations = types.fields(Space::Accelerations);
-    for &argument in &schedule.arguments {
+    for argument in tape.arguments() {
         let name = types.local(argument);
         let _ = match argument {
             Argument::Time => continue,
@@ -399,7 +393,7 @@ fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> St
             }
         };
     }
-    for value in infix.constants() {
+    for value in written.constants() {
         let name = types.real_name(&types.names.constant(&value));
         let _ = writeln!(
             text,
@@ -407,91 +401,70 @@ fn definition(types: &Types<'_>, function: &Function, schedule: &Schedule) -> St
             types.real.number(&value)
         );
     }
-    for step in &schedule.steps {
-        statement(&mut text, &infix, real, step);
+    for one in written.statements() {
+        statement(&mut text, &written, &one);
     }
-    for unused in types.unused(schedule) {
+    for unused in types.unused(tape) {
         let _ = writeln!(text, "    (void){unused};");
     }
     text.push('\n');
-    for (array, result) in function.results.iter().zip(&schedule.results) {
+    for (array, result) in function.results.iter().zip(&tape.results) {
         if !is_empty(types.program, array) {
-            results(&mut text, types, &infix, function, array, &result.entries);
+            results(&mut text, types, &written, function, array, &result.entries);
         }
     }
     text + "}\n\n"
 }
 
-fn statement(text: &mut String, infix: &Infix<'_, Real>, real: &str, step: &Step) {
-    let _ = match step {
-        Step::Let { value, tree } => {
-            writeln!(
-                text,
-                "    const {real} {} = {};",
-                infix.value(*value),
-                infix.tree(tree)
-            )
+fn statement(out: &mut String, text: &Text<'_, Real>, statement: &Statement<'_, Infix>) {
+    let real = text.dialect.name();
+    let named = |name: &str| Notation::name(&text.dialect, name);
+    let factors = |number| ["lu", "moved"].map(|word| text.free(&format!("{word}_{number}")));
+    match statement.heading {
+        Some("") => out.push('\n'),
+        Some(title) => {
+            let _ = writeln!(out, "\n    /* {} */", sentence(title));
         }
-        Step::SinCos { sin, cos, angle } => {
-            let angle = infix.tree(angle);
-            let call = |f| infix.dialect.function(f, &angle);
+        None => {}
+    }
+    let _ = match &statement.action {
+        Action::Define(name, value) => {
+            writeln!(out, "    const {real} {} = {};", named(name), value.text)
+        }
+        Action::SinCos([sin, cos], angle) => {
+            let call = |f| Notation::function(&text.dialect, f, &angle.text);
             let (sine, cosine) = (call(symbolic::Function::Sin), call(symbolic::Function::Cos));
-            let _ = writeln!(text, "    const {real} {} = {sine};", infix.value(*sin));
-            writeln!(text, "    const {real} {} = {cosine};", infix.value(*cos))
+            let _ = writeln!(out, "    const {real} {} = {sine};", named(sin));
+            writeln!(out, "    const {real} {} = {cosine};", named(cos))
         }
-        Step::Factor {
-            factorisation: f,
-            size,
-            matrix,
-        } => {
-            let (lu, moved) = (
-                infix.free(&format!("lu_{f}")),
-                infix.free(&format!("moved_{f}")),
-            );
-            let entries = infix.list(matrix);
-            let count = size * size;
-            let _ = writeln!(text, "    {real} {lu}[{count}] = {{{entries}}};");
-            let _ = writeln!(text, "    unsigned char {moved}[{count}];");
-            writeln!(text, "    lu_factor({size}, {lu}, {moved});")
-        }
-        Step::Solve {
-            factorisation: f,
-            values,
-            right,
-        } => {
-            let (lu, moved) = (
-                infix.free(&format!("lu_{f}")),
-                infix.free(&format!("moved_{f}")),
-            );
-            let size = values.len();
-            // The list is named after the first unknown, since each is defined once.
-            let first = values
-                .first()
-                .map(|value| infix.value(*value))
-                .unwrap_or_default();
-            let list = infix.free(&format!("solved_{first}"));
+        Action::Factor(number, rows) => {
+            let [lu, moved] = factors(*number);
+            let entries: Vec<String> = rows.iter().map(|row| Infix::list(row)).collect();
+            let (size, count) = (rows.len(), rows.len() * rows.len());
             let _ = writeln!(
-                text,
-                "    {real} {list}[{size}] = {{{}}};",
-                infix.list(right)
+                out,
+                "    {real} {lu}[{count}] = {{{}}};",
+                entries.join(", ")
             );
-            let _ = writeln!(text, "    lu_solve({size}, {lu}, {moved}, {list});");
-            let used = infix.used();
-            for (index, value) in values
-                .iter()
-                .enumerate()
-                .filter(|(_, value)| used.contains(value))
-            {
-                let _ = writeln!(
-                    text,
-                    "    const {real} {} = {list}[{index}];",
-                    infix.value(*value)
-                );
+            let _ = writeln!(out, "    unsigned char {moved}[{count}];");
+            writeln!(out, "    lu_factor({size}, {lu}, {moved});")
+        }
+        Action::Solve(number, unknowns, right) => {
+            let [lu, moved] = factors(*number);
+            let size = unknowns.len();
+            // The list is named after the first unknown, since each is defined once.
+            let first = unknowns.first().map(|(name, _)| named(name));
+            let list = text.free(&format!("solved_{}", first.unwrap_or_default()));
+            let right = Infix::list(right);
+            let _ = writeln!(out, "    {real} {list}[{size}] = {{{right}}};");
+            let _ = writeln!(out, "    lu_solve({size}, {lu}, {moved}, {list});");
+            for (index, (name, used)) in unknowns.iter().enumerate() {
+                if *used {
+                    let _ = writeln!(out, "    const {real} {} = {list}[{index}];", named(name));
+                }
             }
             Ok(())
         }
-        Step::Paragraph { title } if title.is_empty() => writeln!(text),
-        Step::Paragraph { title } => writeln!(text, "\n    /* {} */", sentence(title)),
     };
 }
 
@@ -499,10 +472,10 @@ fn statement(text: &mut String, infix: &Infix<'_, Real>, real: &str, step: &Step
 fn results(
     text: &mut String,
     types: &Types<'_>,
-    infix: &Infix<'_, Real>,
+    written: &Text<'_, Real>,
     function: &Function,
     array: &Array,
-    entries: &[Tree],
+    entries: &[Value],
 ) {
     let to = types.result(function, array);
     let columns = shape(types.program, array.layout)
@@ -518,6 +491,6 @@ fn results(
                 format!("{to}[{}][{}]", index / columns, index % columns)
             }
         };
-        let _ = writeln!(text, "    {place} = {};", infix.tree(entry));
+        let _ = writeln!(text, "    {place} = {};", written.value(*entry).text);
     }
 }

@@ -1,7 +1,7 @@
 //! Emits readable Rust from a program. All knowledge of Rust syntax in this crate is here.
 //!
 //! The files: [`types`] emits the structs, [`function`] signatures and rustdoc, [`statements`] converts the
-//! steps of a schedule to statements, [`body`] adds arguments and results, [`model`] implements the run-time
+//! operations of a tape to statements, [`body`] adds arguments and results, [`model`] implements the run-time
 //! trait, [`equations`] displays the equations of a function, [`picture`] draws small matrices, [`layout`] inserts
 //! comments and blank lines, [`markdown`] writes the page about the model, and [`syntax`] has short constructors.
 
@@ -9,6 +9,7 @@ mod body;
 mod equations;
 mod error;
 mod function;
+mod info;
 mod layout;
 mod markdown;
 mod model;
@@ -21,7 +22,8 @@ mod types;
 use quote::quote;
 
 use crate::program::{FunctionKind, Program};
-use crate::schedule::{OperationCount, Tuning, schedule_tuned};
+use crate::schedule::{Tuning, schedule_tuned};
+use crate::tape::OperationCount;
 use types::Types;
 
 pub use error::Error;
@@ -96,12 +98,12 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     let mut items = Vec::new();
     let mut solves = false;
     for &function in &functions {
-        let schedule = schedule_tuned(program, function, options.tuning);
-        let cost = OperationCount::of(&schedule);
+        let tape = schedule_tuned(program, function, options.tuning);
+        let cost = OperationCount::of(&tape);
         solves |= cost.solves > 0;
         results.extend(types.results_struct(function));
         items.push(syn::Item::Fn(function::function(
-            &types, function, &schedule, &cost,
+            &types, function, &tape, &cost,
         )?));
         costs.push((function.kind, cost));
     }
@@ -121,7 +123,7 @@ pub fn emit(program: &Program, options: &Options) -> Result<Emitted, Error> {
     if options.model_impl {
         let implementation = model::implementation(&types, &runtime)?;
         file.items.extend(parse(implementation)?.items);
-        file.items.extend(parse(model::info(&program.info))?.items);
+        file.items.extend(parse(info::info(&program.info))?.items);
     }
     let conversions = types.conversions(&functions, options.model_impl, &runtime);
     file.items.extend(parse(quote!(#(#conversions)*))?.items);

@@ -1,13 +1,13 @@
-//! Compiles schedules to machine code in this process.
+//! Compiles tapes to machine code in this process.
 //!
-//! [`NativeFunction`] is one compiled [`Schedule`](crate::schedule::Schedule), [`JitModel`] a whole
+//! [`NativeFunction`] is one compiled [`Tape`](crate::tape::Tape), [`JitModel`] a whole
 //! [`Program`](crate::program::Program) behind the trait of all models. The code executes the operations of the
-//! schedule without fusing or reordering arithmetic, and calls the elementary functions of the Rust standard
+//! tape without fusing or reordering arithmetic, and calls the elementary functions of the Rust standard
 //! library. Its results are bit-identical to those of the emitted Rust and of the interpreter.
 //!
-//! [`VectorFunction`] evaluates a schedule at eight points at once, with bit-identical results.
+//! [`VectorFunction`] evaluates a tape at eight points at once, with bit-identical results.
 //!
-//! The stages: `check` verifies that a schedule can be compiled, `translate` lowers it, `native` calls the
+//! The stages: `check` verifies that a tape can be compiled, `translate` lowers it, `native` calls the
 //! machine code, `memory` owns it. `elementary` and `dense` are run-time routines of the code. `vector` has
 //! stages of its own.
 
@@ -27,7 +27,7 @@ mod on_demand;
 mod translate;
 mod vector;
 
-pub use check::{MOST_DEPTH, MOST_OPERATIONS, MOST_ROWS, Sizes};
+pub use check::{MOST_OPERATIONS, MOST_ROWS, Sizes};
 pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;

@@ -7,17 +7,18 @@ pub mod compile;
 pub mod emit;
 pub mod fmu;
 pub mod formulations;
-mod infix;
 pub mod interpreted;
 #[cfg(feature = "jit")]
 pub mod jit;
 pub mod linearisation;
 pub mod mechanics;
-pub mod operations;
+pub mod model;
 pub mod program;
 pub mod python;
 pub mod schedule;
 pub mod symbolic;
+pub mod tape;
+mod text;
 
 pub use build::build;
 pub use compile::{Derived, audited, compile, derived};

@@ -45,6 +45,7 @@
 
 mod adjoint;
 pub mod algebra;
+mod arguments;
 pub mod assemble;
 pub mod auxiliary;
 pub mod constraints;
@@ -56,6 +57,7 @@ pub mod creep;
 pub mod dependent;
 pub mod divisors;
 pub mod elimination;
+mod equation_count;
 pub(crate) mod explicit;
 pub mod expressions;
 pub mod factorized;
@@ -295,18 +297,19 @@ fn without_reactions(
     let mut gibbs = dependent.reduced(&mut algebra, mechanism, &unbound_gibbs)?;
     let forces = dependent::apply(&mut actual, &mut algebra, &unbound.forces)?;
     let mut forces = dependent.along_allowed(&mut algebra.graph, &forces);
-    let motions = (velocities.rates.as_slice(), &dependent);
-    let equations = (&mut gibbs, forces.as_mut_slice());
-    let given = with_given_rates(&mut algebra, mechanism, &symbols, motions, equations)?;
+    let rates = &velocities.rates;
+    let mut given = given_rates(&mut algebra, mechanism, &symbols, rates, &dependent)?;
+    given.put_into(&mut algebra.graph, &mut gibbs);
+    given.put_into_forces(&mut forces);
     recursion = recursion.filter(|_| given.is_empty());
-    let equations = (&mut gibbs, forces.as_slice());
-    let tree = recursion.as_mut();
     let motion = solved(
         &mut algebra,
         mechanism,
-        tree,
-        equations,
-        (&bodies, &dependent),
+        recursion.as_mut(),
+        &mut gibbs,
+        &forces,
+        &bodies,
+        &dependent,
     )?;
     algebra.check_size()?;
     let rolling_rates = named_rates(&mut algebra.graph, mechanism, &velocities.rates);
@@ -390,8 +393,10 @@ fn solved(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     tree: Option<&mut Recursion>,
-    (gibbs, forces): (&mut GibbsForm, &[Expr]),
-    (bodies, dependent): (&[BodyMotion], &DependentSpeeds),
+    gibbs: &mut GibbsForm,
+    forces: &[Expr],
+    bodies: &[BodyMotion],
+    dependent: &DependentSpeeds,
 ) -> Outcome<Motion> {
     if let Some(tree) = tree {
         return tree.solve(algebra, mechanism, gibbs);
@@ -401,20 +406,18 @@ fn solved(
     motion::solve(algebra, mechanism, gibbs, forces, &parts, dependent.way())
 }
 
-/// Substitutes the prescribed rates in M, b and Π.
-fn with_given_rates(
+/// The prescribed rates of the pseudo-velocities.
+fn given_rates(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     symbols: &Symbols,
-    (rates, dependent): (&[Expr], &DependentSpeeds),
-    (gibbs, forces): (&mut GibbsForm, &mut [Expr]),
+    rates: &[Expr],
+    dependent: &DependentSpeeds,
 ) -> Outcome<Given> {
-    let mut given = Given::of(algebra, mechanism, symbols, rates)?;
+    let given = Given::of(algebra, mechanism, symbols, rates)?;
     if !dependent.values.is_empty() {
         given.refuse_beside("velocities that a system with pivoting tells")?;
     }
-    given.put_into(&mut algebra.graph, gibbs);
-    given.put_into_forces(forces);
     Ok(given)
 }
 

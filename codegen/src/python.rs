@@ -6,12 +6,13 @@ use std::fmt::Write as _;
 use appell_runtime::model::Quantity;
 use appell_spec::foreign::sentence;
 
-use crate::infix::{Dialect, Infix, math_name, shape};
 use crate::program::{Function, FunctionKind, Own, Program};
 use crate::schedule::names::ArgumentNames;
 use crate::schedule::pi::parts_of_pi;
-use crate::schedule::{Argument, Schedule, Step, Tree, schedule};
+use crate::schedule::schedule;
 use crate::symbolic::{self, Rational, Relation};
+use crate::tape::{Argument, Tape, Value};
+use crate::text::{Action, Infix, Notation, Statement, Text, math_name, shape};
 
 /// Adapts the names of namespaces; see the class `_Namespace`.
 const PRELUDE: &str = include_str!("python/prelude.py");
@@ -24,9 +25,10 @@ const KEYWORDS: &[&str] = &[
     "with", "yield", "xp",
 ];
 
+#[derive(Clone, Copy)]
 struct Python;
 
-impl Dialect for Python {
+impl Notation for Python {
     fn name(&self, name: &str) -> String {
         if KEYWORDS.contains(&name) {
             format!("{name}_")
@@ -93,9 +95,9 @@ pub fn module(program: &Program, kinds: &[FunctionKind]) -> String {
         .iter()
         .filter(|function| kinds.contains(&function.kind));
     for function in wanted {
-        let schedule = schedule(program, function);
+        let tape = schedule(program, function);
         text.push_str("\n\n");
-        definition(&mut text, program, function, &schedule, &arguments);
+        definition(&mut text, program, function, &tape, &arguments);
     }
     text
 }
@@ -119,20 +121,16 @@ fn definition(
     text: &mut String,
     program: &Program,
     function: &Function,
-    schedule: &Schedule,
+    tape: &Tape,
     arguments: &ArgumentNames,
 ) {
-    let infix = Infix {
-        dialect: &Python,
-        schedule,
-        names: arguments,
-    };
+    let written = Text::new(Python, tape, arguments);
     let own = function.kind.takes().map_or("", Own::name);
     let [t, x, u, p, own] = ["t", "x", "u", "p", own].map(|name| {
         if name == "t" {
-            Python.name(&arguments.time)
+            Notation::name(&Python, &arguments.time)
         } else {
-            infix.free(name)
+            written.free(name)
         }
     });
     let last = match function.kind.takes() {
@@ -162,8 +160,8 @@ fn definition(
         );
     }
     text.push_str("    \"\"\"\n    _f = _namespace(xp)\n");
-    for &argument in &schedule.arguments {
-        let name = Python.name(arguments.get(argument));
+    for argument in tape.arguments() {
+        let name = Notation::name(&Python, arguments.get(argument));
         let (of, index) = match argument {
             Argument::Time => continue,
             Argument::State(i) => (&x, i),
@@ -175,15 +173,15 @@ fn definition(
         };
         let _ = writeln!(text, "    {name} = {of}[{index}]");
     }
-    for value in infix.constants() {
-        let name = Python.name(&arguments.constant(&value));
+    for value in written.constants() {
+        let name = Notation::name(&Python, &arguments.constant(&value));
         let _ = writeln!(text, "    {name} = {}", constant(&value));
     }
-    for step in &schedule.steps {
-        statement(text, &infix, step);
+    for one in written.statements() {
+        statement(text, &written, &one);
     }
-    let results: Vec<String> = (function.results.iter().zip(&schedule.results))
-        .map(|(array, result)| nested(&infix, &shape(program, array.layout), &result.entries))
+    let results: Vec<String> = (function.results.iter().zip(&tape.results))
+        .map(|(array, result)| nested(&written, &shape(program, array.layout), &result.entries))
         .collect();
     let _ = match results.as_slice() {
         [one] => writeln!(text, "    return {one}"),
@@ -195,55 +193,49 @@ fn definition(
     };
 }
 
-fn statement(text: &mut String, infix: &Infix<'_, Python>, step: &Step) {
-    let _ = match step {
-        Step::Let { value, tree } => {
-            writeln!(text, "    {} = {}", infix.value(*value), infix.tree(tree))
+fn statement(out: &mut String, text: &Text<'_, Python>, statement: &Statement<'_, Infix>) {
+    let named = |name: &str| Notation::name(&text.dialect, name);
+    match statement.heading {
+        Some("") => out.push('\n'),
+        Some(title) => {
+            let _ = writeln!(out, "\n    # {}", sentence(title));
         }
-        Step::SinCos { sin, cos, angle } => {
-            let (sin, cos, angle) = (infix.value(*sin), infix.value(*cos), infix.tree(angle));
-            writeln!(text, "    {sin}, {cos} = _f.sin({angle}), _f.cos({angle})")
+        None => {}
+    }
+    let _ = match &statement.action {
+        Action::Define(name, value) => writeln!(out, "    {} = {}", named(name), value.text),
+        Action::SinCos([sin, cos], angle) => {
+            let (sin, cos, angle) = (named(sin), named(cos), &angle.text);
+            writeln!(out, "    {sin}, {cos} = _f.sin({angle}), _f.cos({angle})")
         }
-        Step::Factor {
-            factorisation,
-            size,
-            matrix,
-        } => {
-            let rows: Vec<String> = matrix
-                .chunks(*size)
-                .map(|row| format!("[{}]", infix.list(row)))
-                .collect();
-            writeln!(text, "    _matrix_{factorisation} = [{}]", rows.join(", "))
+        Action::Factor(number, rows) => {
+            let rows = rows.iter().map(|row| format!("[{}]", Infix::list(row)));
+            let rows: Vec<String> = rows.collect();
+            writeln!(out, "    _matrix_{number} = [{}]", rows.join(", "))
         }
-        Step::Solve {
-            factorisation,
-            values,
-            right,
-        } => {
-            let values: Vec<String> = values.iter().map(|value| infix.value(*value)).collect();
-            let right = infix.list(right);
+        Action::Solve(number, unknowns, right) => {
+            let unknowns: Vec<String> = unknowns.iter().map(|(name, _)| named(name)).collect();
+            let right = Infix::list(right);
             writeln!(
-                text,
-                "    {}, = _f.solve(_matrix_{factorisation}, [{right}])",
-                values.join(", ")
+                out,
+                "    {}, = _f.solve(_matrix_{number}, [{right}])",
+                unknowns.join(", ")
             )
         }
-        Step::Paragraph { title } if title.is_empty() => writeln!(text),
-        Step::Paragraph { title } => writeln!(text, "\n    # {}", sentence(title)),
     };
 }
 
 /// Nested lists of an array's shape.
-fn nested(infix: &Infix<'_, Python>, shape: &[usize], entries: &[Tree]) -> String {
+fn nested(text: &Text<'_, Python>, shape: &[usize], entries: &[Value]) -> String {
+    let list = |entries: &[Value]| format!("[{}]", Infix::list(&text.values(entries)));
     match shape {
         [] => entries
             .first()
-            .map_or_else(|| "0.0".to_owned(), |entry| infix.tree(entry)),
-        [_] => format!("[{}]", infix.list(entries)),
+            .map_or_else(|| "0.0".to_owned(), |entry| text.value(*entry).text),
+        [_] => list(entries),
         [rows, columns, ..] => {
-            let row =
-                |row: usize| format!("[{}]", infix.list(&entries[row * columns..][..*columns]));
-            let rows: Vec<String> = (0..*rows).map(row).collect();
+            let rows = (0..*rows).map(|row| list(&entries[row * columns..][..*columns]));
+            let rows: Vec<String> = rows.collect();
             format!("[{}]", rows.join(", "))
         }
     }

@@ -1,8 +1,4 @@
-//! From expressions to a sequence of named operations; it knows no target language.
-//!
-//! The emitted Rust, the in-process compiler and the interpreter all execute a [`Schedule`] with
-//! the same operations in the same order, so their results differ only by the last bits of the
-//! elementary functions.
+//! From expressions to a [`Tape`] of few operations with readable names; it knows no target language.
 //!
 //! | file | pass |
 //! |---|---|
@@ -16,18 +12,14 @@
 //! | `rebuild.rs` | dead-code elimination and merging, after every pass |
 //! | `names.rs`, `monomial.rs` | identifiers of arguments, constants, values and products |
 //! | `bind.rs`, `outline.rs`, `piece.rs` | named values, their order, paragraphs and width |
-//! | `steps.rs` | the result, a [`Schedule`] |
-//! | `cost.rs`, `dump.rs`, `interpret.rs`, `without.rs`, `pi.rs` | counts; text; interpreter; zero parameters; π |
+//! | `pi.rs` | numbers that are multiples of π |
 
 mod bind;
 mod cancel;
-mod cost;
 mod dag;
 mod divide;
-mod dump;
 mod factor;
 mod gather;
-mod interpret;
 mod lower;
 mod meet;
 mod monomial;
@@ -41,24 +33,20 @@ mod scale;
 mod search;
 mod share;
 mod signs;
-mod steps;
 mod tuning;
-mod without;
 
-pub use cost::OperationCount;
-pub use interpret::{enclose, enclose_along, interpret, interpret_weighted};
 pub use pi::pi;
-pub use steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 pub use tuning::Tuning;
 
 use crate::program::{self, Program};
+use crate::tape::Tape;
 
 /// The operations of one function of a program, their number minimised heuristically.
 ///
 /// # Panics
 /// If an expression contains a symbol that is not an argument of the program, which would be a bug of the
 /// derivation.
-pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
+pub fn schedule(program: &Program, function: &program::Function) -> Tape {
     schedule_tuned(program, function, Tuning::default())
 }
 
@@ -67,7 +55,7 @@ pub fn schedule(program: &Program, function: &program::Function) -> Schedule {
 /// # Panics
 ///
 /// As [`schedule`].
-pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Schedule {
+pub fn schedule_tuned(program: &Program, function: &program::Function, tuning: Tuning) -> Tape {
     let derived = lower::lower(program, function);
     let cheapest = search::cheapest(&derived, tuning);
     let hints = meet::known_values(&cheapest, &lower::hints(program));

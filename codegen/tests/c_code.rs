@@ -7,7 +7,8 @@ use std::process::Command;
 use appell_codegen::c::{Emitted, Options, Real, emit};
 use appell_codegen::compile;
 use appell_codegen::program::{FunctionKind, Layout, Program};
-use appell_codegen::schedule::{interpret, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::interpret;
 
 const STRICT: &[&str] = &[
     "-std=c99",

@@ -7,7 +7,8 @@
 use appell_codegen::emit::{Error, Options, emit, emit_functions};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::program::{FunctionKind, Program};
-use appell_codegen::schedule::{interpret, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::interpret;
 use appell_runtime::Dual;
 use appell_runtime::model::{At, Gradient, Model};
 

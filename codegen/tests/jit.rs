@@ -1,14 +1,14 @@
-//! Compiled schedules are bit-identical to the interpreter.
+//! Compiled tapes are bit-identical to the interpreter.
 #![allow(clippy::float_cmp, reason = "agreement is bit for bit")]
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
 use appell_codegen::jit::NativeFunction;
-use appell_codegen::schedule::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use appell_codegen::symbolic::{Function, Relation};
+use appell_codegen::tape::{Argument, Arithmetic, Tape};
 
 use crate::jit_support::{
-    Point, SIZES, agrees, binary, compiled, function, interpreted, number, same, schedule, set,
-    state, system, value,
+    Point, SIZES, Step, Tree, add_result, agrees, binary, compiled, function, interpreted, number,
+    same, set, state, system, tape, value,
 };
 
 const FUNCTIONS: [Function; 13] = [
@@ -59,10 +59,10 @@ fn all_trees() -> Vec<Tree> {
     let negative = Tree::Negate(Box::new(x.clone()));
     let mut trees = vec![x.clone(), negative.clone(), number(0, 1), number(-22, 7)];
     let operations = [
-        Operation::Add,
-        Operation::Subtract,
-        Operation::Multiply,
-        Operation::Divide,
+        Arithmetic::Add,
+        Arithmetic::Subtract,
+        Arithmetic::Multiply,
+        Arithmetic::Divide,
     ];
     for operation in operations {
         trees.push(binary(operation, x.clone(), y.clone()));
@@ -83,14 +83,14 @@ fn all_trees() -> Vec<Tree> {
 
 #[test]
 fn every_tree_agrees_with_the_interpreter_at_special_numbers() {
-    let schedule = schedule(vec![], all_trees());
-    let function = NativeFunction::compile(&schedule, SIZES).unwrap();
+    let tape = tape(vec![], all_trees());
+    let function = NativeFunction::compile(&tape, SIZES).unwrap();
     for a in SPECIAL {
         for b in SPECIAL {
             let point = with_states(a, b);
-            let mut found = vec![1.0e300; schedule.results[0].entries.len()];
+            let mut found = vec![1.0e300; tape.results[0].entries.len()];
             function.call(point.at(), [&mut found]);
-            let expected = interpreted(&schedule, &point);
+            let expected = interpreted(&tape, &point);
             assert!(
                 same(&found, &expected),
                 "{found:?}\n{expected:?}\nat {point:?}"
@@ -110,24 +110,24 @@ fn all_arguments_are_read_from_their_places() {
         Argument::Parameter(0),
         Argument::Parameter(1),
     ];
-    let schedule = schedule(vec![], arguments.map(Tree::Argument).to_vec());
+    let tape = tape(vec![], arguments.map(Tree::Argument).to_vec());
     let Point { t, x, u, p } = Point::SOME;
     let expected = [t, x[0], x[2], u[0], u[1], p[0], p[1]];
-    assert_eq!(compiled(&schedule, &Point::SOME), expected);
+    assert_eq!(compiled(&tape, &Point::SOME), expected);
 }
 
 #[test]
 fn products_and_sums_are_not_fused() {
     // A product that is rounded once more by its sum would leave the rounding error of the first.
-    let square = || binary(Operation::Multiply, state(0), state(0));
-    let difference = binary(Operation::Subtract, square(), value(0));
-    let schedule = schedule(vec![set(0, square())], vec![difference]);
-    assert_eq!(compiled(&schedule, &with_states(0.1, 0.0)), [0.0]);
+    let square = || binary(Arithmetic::Multiply, state(0), state(0));
+    let difference = binary(Arithmetic::Subtract, square(), value(0));
+    let tape = tape(vec![set(0, square())], vec![difference]);
+    assert_eq!(compiled(&tape, &with_states(0.1, 0.0)), [0.0]);
 }
 
 #[test]
 fn sums_are_evaluated_from_left_to_right() {
-    let sum = |a, b| binary(Operation::Add, a, b);
+    let sum = |a, b| binary(Arithmetic::Add, a, b);
     let (x, y, z) = (state(0), state(1), state(2));
     let left = sum(sum(x.clone(), y.clone()), z.clone());
     let right = sum(x, sum(y, z));
@@ -136,16 +136,16 @@ fn sums_are_evaluated_from_left_to_right() {
         ..Point::SOME
     };
     assert_eq!(
-        compiled(&schedule(vec![], vec![left, right]), &point),
+        compiled(&tape(vec![], vec![left, right]), &point),
         [1.0, 0.0]
     );
 }
 
 #[test]
 fn zero_has_the_sign_zero() {
-    let schedule = schedule(vec![], vec![function(Function::Sign, state(0))]);
+    let tape = tape(vec![], vec![function(Function::Sign, state(0))]);
     for (x, sign) in [(0.0, 0.0), (-0.0, -0.0), (3.0, 1.0), (-1.0e-310, -1.0)] {
-        assert!(same(&compiled(&schedule, &with_states(x, 0.0)), &[sign]));
+        assert!(same(&compiled(&tape, &with_states(x, 0.0)), &[sign]));
     }
 }
 
@@ -156,7 +156,7 @@ fn nan_takes_the_other_branch() {
         compared: Box::new([state(0), number(0, 1)]),
         branches: Box::new([number(1, 1), number(2, 1)]),
     };
-    let schedule = schedule(
+    let tape = tape(
         vec![],
         vec![choice(Relation::Less), choice(Relation::LessOrEqual)],
     );
@@ -167,7 +167,7 @@ fn nan_takes_the_other_branch() {
         (f64::NAN, [2.0, 2.0]),
     ];
     for (x, expected) in cases {
-        assert_eq!(compiled(&schedule, &with_states(x, 0.0)), expected);
+        assert_eq!(compiled(&tape, &with_states(x, 0.0)), expected);
     }
 }
 
@@ -176,31 +176,28 @@ fn sines_and_cosines_go_to_their_values() {
     let angles = [
         state(0),
         state(1),
-        binary(Operation::Multiply, value(0), value(3)),
+        binary(Arithmetic::Multiply, value(0), value(3)),
     ];
-    let mut steps = vec![Step::Paragraph {
-        title: "Angles".to_owned(),
-    }];
+    let mut steps = Vec::new();
     for (index, angle) in (0..).zip(angles) {
-        let (sin, cos) = (Value(2 * index), Value(2 * index + 1));
+        let (sin, cos) = (2 * index, 2 * index + 1);
         steps.push(Step::SinCos { sin, cos, angle });
     }
-    let schedule = schedule(steps, (0..6).map(value).collect());
+    let tape = tape(steps, (0..6).map(value).collect());
     let (sin, cos) = Point::SOME.x[0].sin_cos();
-    assert_eq!(compiled(&schedule, &Point::SOME)[..2], [sin, cos]);
-    agrees(&schedule, &Point::SOME);
+    assert_eq!(compiled(&tape, &Point::SOME)[..2], [sin, cos]);
+    agrees(&tape, &Point::SOME);
 }
 
 /// A system of constants; the unknowns are the values from 0.
-fn constant_system(matrix: &[i64], right: &[i64]) -> Schedule {
+fn constant_system(matrix: &[i64], right: &[i64]) -> Tape {
     let numbers = |numbers: &[i64]| numbers.iter().map(|&n| number(n, 1)).collect();
-    let values: Vec<_> = (0..).map(Value).take(right.len()).collect();
-    let entries = values.iter().map(|&value| Tree::Value(value)).collect();
+    let values: Vec<u32> = (0..).take(right.len()).collect();
+    let entries = values.iter().map(|&index| value(index)).collect();
     let matrix = numbers(matrix);
     let steps = vec![
         Step::Factor {
             factorisation: 0,
-            size: right.len(),
             matrix,
         },
         Step::Solve {
@@ -209,7 +206,7 @@ fn constant_system(matrix: &[i64], right: &[i64]) -> Schedule {
             right: numbers(right),
         },
     ];
-    schedule(steps, entries)
+    tape(steps, entries)
 }
 
 #[test]
@@ -221,31 +218,26 @@ fn systems_of_every_size_agree_with_the_interpreter() {
 
 #[test]
 fn systems_that_need_an_exchange_are_solved() {
-    let schedule = constant_system(&[0, 2, 4, 1], &[6, 11]);
-    assert_eq!(compiled(&schedule, &Point::SOME), [2.0, 3.0]);
+    let tape = constant_system(&[0, 2, 4, 1], &[6, 11]);
+    assert_eq!(compiled(&tape, &Point::SOME), [2.0, 3.0]);
 }
 
 #[test]
 fn singular_systems_give_no_finite_number() {
-    let schedule = constant_system(&[1, 1, 1, 1], &[1, 2]);
-    assert!(
-        compiled(&schedule, &Point::SOME)
-            .iter()
-            .all(|x| !x.is_finite())
-    );
-    agrees(&schedule, &Point::SOME);
+    let tape = constant_system(&[1, 1, 1, 1], &[1, 2]);
+    assert!(compiled(&tape, &Point::SOME).iter().all(|x| !x.is_finite()));
+    agrees(&tape, &Point::SOME);
 }
 
 #[test]
 fn several_systems_live_side_by_side() {
     let factor = |factorisation, scale| Step::Factor {
         factorisation,
-        size: 1,
         matrix: vec![number(scale, 1)],
     };
     let solve = |factorisation, unknown| Step::Solve {
         factorisation,
-        values: vec![Value(unknown)],
+        values: vec![unknown],
         right: vec![number(12, 1)],
     };
     let steps = vec![
@@ -255,20 +247,17 @@ fn several_systems_live_side_by_side() {
         solve(1, 1),
         solve(0, 2),
     ];
-    let schedule = schedule(steps, (0..3).map(value).collect());
-    assert_eq!(compiled(&schedule, &Point::SOME), [6.0, 4.0, 6.0]);
+    let tape = tape(steps, (0..3).map(value).collect());
+    assert_eq!(compiled(&tape, &Point::SOME), [6.0, 4.0, 6.0]);
 }
 
 #[test]
 fn each_result_goes_to_its_own_slice() {
-    let mut schedule = schedule(vec![], vec![state(0), number(0, 1)]);
+    let mut tape = tape(vec![], vec![state(0), number(0, 1)]);
     for entries in [vec![], vec![state(1)]] {
-        schedule.results.push(ResultArray {
-            name: "more".to_owned(),
-            entries,
-        });
+        add_result(&mut tape, entries);
     }
-    let function = NativeFunction::compile(&schedule, SIZES).unwrap();
+    let function = NativeFunction::compile(&tape, SIZES).unwrap();
     let (mut a, mut b, mut c) = ([9.0; 2], [9.0; 0], [9.0; 1]);
     function.call(Point::SOME.at(), [&mut a, &mut b, &mut c]);
     assert_eq!((a, c), ([Point::SOME.x[0], 0.0], [Point::SOME.x[1]]));

@@ -1,11 +1,11 @@
-//! Random schedules: machine code and interpreter agree bit for bit.
+//! Random tapes: machine code and interpreter agree bit for bit.
 #![allow(clippy::unwrap_used, reason = "a test that cannot go on fails")]
 
-use appell_codegen::schedule::{Argument, Operation, Schedule, Step, Tree, Value};
 use appell_codegen::symbolic::{Function, Rational, Relation};
+use appell_codegen::tape::{Argument, Arithmetic, Tape};
 use proptest::prelude::*;
 
-use crate::jit_support::{Point, agrees, schedule, value};
+use crate::jit_support::{Point, Step, Tree, agrees, tape, value};
 
 /// A step whose trees name values by any number; [`assemble`] makes them earlier values.
 #[derive(Debug, Clone)]
@@ -45,12 +45,12 @@ fn function() -> impl Strategy<Value = Function> {
     ])
 }
 
-fn operation() -> impl Strategy<Value = Operation> {
+fn operation() -> impl Strategy<Value = Arithmetic> {
     prop::sample::select(vec![
-        Operation::Add,
-        Operation::Subtract,
-        Operation::Multiply,
-        Operation::Divide,
+        Arithmetic::Add,
+        Arithmetic::Subtract,
+        Arithmetic::Multiply,
+        Arithmetic::Divide,
     ])
 }
 
@@ -81,7 +81,7 @@ fn plan() -> impl Strategy<Value = Plan> {
 }
 
 /// Gives values their numbers and returns all of them.
-fn assemble(plans: Vec<Plan>) -> Schedule {
+fn assemble(plans: Vec<Plan>) -> Tape {
     let mut steps = Vec::new();
     let mut defined = 0_u32;
     let mut factorisations = 0..;
@@ -89,7 +89,7 @@ fn assemble(plans: Vec<Plan>) -> Schedule {
         let known = defined;
         let mut define = || {
             defined += 1;
-            Value(defined - 1)
+            defined - 1
         };
         match plan {
             Plan::Let(tree) => steps.push(Step::Let {
@@ -107,7 +107,6 @@ fn assemble(plans: Vec<Plan>) -> Schedule {
                 let matrix = trees.by_ref().take(size * size).collect();
                 steps.push(Step::Factor {
                     factorisation,
-                    size,
                     matrix,
                 });
                 for _ in 0..2 {
@@ -122,7 +121,7 @@ fn assemble(plans: Vec<Plan>) -> Schedule {
             }
         }
     }
-    schedule(steps, (0..defined).map(value).collect())
+    tape(steps, (0..defined).map(value).collect())
 }
 
 /// The tree with its values reduced to the first `known`; time replaces them if there are none.
@@ -130,7 +129,7 @@ fn bound(tree: Tree, known: u32) -> Tree {
     let into = |tree: Box<Tree>| Box::new(bound(*tree, known));
     match tree {
         Tree::Value(_) if known == 0 => Tree::Argument(Argument::Time),
-        Tree::Value(Value(index)) => value(index % known),
+        Tree::Value(index) => value(index % known),
         leaf @ (Tree::Argument(_) | Tree::Constant(_)) => leaf,
         Tree::Negate(a) => Tree::Negate(into(a)),
         Tree::Binary(operation, a, b) => Tree::Binary(operation, into(a), into(b)),

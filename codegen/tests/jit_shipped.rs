@@ -7,7 +7,8 @@ use appell_codegen::jit::{
     Elementary, Instructions, NativeFunction, Sizes, Target, VectorFunction,
 };
 use appell_codegen::program::{FunctionKind, Program};
-use appell_codegen::schedule::{ResultArray, Schedule, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::{ResultArray, Tape};
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, ModelInfo, Quantity};
 use appell_test_kit::{Random, shipped};
@@ -135,7 +136,7 @@ fn targets() -> impl Iterator<Item = Target> {
 }
 
 /// A function whose results are one list.
-fn joined(program: &Program, kind: FunctionKind) -> Option<Schedule> {
+fn joined(program: &Program, kind: FunctionKind) -> Option<Tape> {
     let function = program.functions.iter().find(|f| f.kind == kind)?;
     let mut schedule = schedule(program, function);
     let results = std::mem::take(&mut schedule.results).into_iter();
@@ -201,7 +202,7 @@ fn own_functions_change_a_mechanism_by_rounding() {
         for function in &program.functions {
             let whole = schedule(&program, function);
             for result in &whole.results {
-                let schedule = Schedule {
+                let schedule = Tape {
                     results: vec![result.clone()],
                     ..whole.clone()
                 };

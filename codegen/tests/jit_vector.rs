@@ -6,17 +6,15 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
 
 use appell_codegen::jit::{Elementary, Instructions, Sizes, Target, VectorFunction};
-use appell_codegen::schedule::{
-    Argument, Operation, ResultArray, Schedule, Tree, interpret_weighted,
-};
 use appell_codegen::symbolic::{Function, Relation};
+use appell_codegen::tape::{Argument, Arithmetic, Tape, interpret_weighted};
 use appell_runtime::elementary;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
 use crate::jit_support::{
-    Point, SIZES, agrees, agrees_in_lanes, around, binary, evaluated, function, in_lanes,
-    interpreted, lane, number, same, schedule, set, state, system, targets, value,
+    Point, SIZES, Tree, add_result, agrees, agrees_in_lanes, around, binary, evaluated, function,
+    in_lanes, interpreted, lane, number, same, set, state, system, tape, targets, value,
 };
 
 /// A point with these first states.
@@ -45,7 +43,7 @@ fn nan_takes_the_other_branch_in_its_lane_alone() {
     };
     let relations = [Relation::Less, Relation::LessOrEqual];
     let trees = relations.map(|r| [choice(r, false), choice(r, true)]);
-    let schedule = schedule(vec![], trees.concat());
+    let tape = tape(vec![], trees.concat());
     let numbers = [
         -1.0,
         f64::NAN,
@@ -56,7 +54,7 @@ fn nan_takes_the_other_branch_in_its_lane_alone() {
         f64::INFINITY,
         -f64::NAN,
     ];
-    agrees_in_lanes(&schedule, &first_states(numbers));
+    agrees_in_lanes(&tape, &first_states(numbers));
 }
 
 #[test]
@@ -74,17 +72,17 @@ fn signs_and_magnitudes_keep_zeros_and_infinities() {
         f64::NAN,
         -2.0,
     ];
-    agrees_in_lanes(&schedule(vec![], trees), &first_states(numbers));
+    agrees_in_lanes(&tape(vec![], trees), &first_states(numbers));
 }
 
 #[test]
 fn negatives_take_the_bits_of_scalar_code_along() {
     let negative = |index| Tree::Negate(Box::new(state(index)));
     let operations = [
-        Operation::Add,
-        Operation::Subtract,
-        Operation::Multiply,
-        Operation::Divide,
+        Arithmetic::Add,
+        Arithmetic::Subtract,
+        Arithmetic::Multiply,
+        Arithmetic::Divide,
     ];
     let mut trees = Vec::new();
     for operation in operations {
@@ -93,27 +91,27 @@ fn negatives_take_the_bits_of_scalar_code_along() {
         trees.push(binary(operation, negative(0), negative(1)));
         trees.push(Tree::Negate(Box::new(trees[trees.len() - 1].clone())));
     }
-    let schedule = schedule(vec![], trees);
+    let tape = tape(vec![], trees);
     let numbers = [0.0, -0.0, 1.0, -1.0, 0.1, f64::INFINITY, -1e-310, 3.0];
     for b in numbers {
-        agrees_in_lanes(&schedule, &numbers.map(|a| with_states(a, b)));
+        agrees_in_lanes(&tape, &numbers.map(|a| with_states(a, b)));
     }
 }
 
 /// Sums of products of all pairs of values: most have to be spilled.
-fn pairs(count: u32, call_between: bool) -> Schedule {
+fn pairs(count: u32, call_between: bool) -> Tape {
     let mut steps: Vec<_> = (0..count)
         .map(|k| {
-            let weight = binary(Operation::Multiply, state(k % 3), number(k.into(), 7));
-            set(k, binary(Operation::Add, weight, state((k + 1) % 3)))
+            let weight = binary(Arithmetic::Multiply, state(k % 3), number(k.into(), 7));
+            set(k, binary(Arithmetic::Add, weight, state((k + 1) % 3)))
         })
         .collect();
     let mut last = count;
     steps.push(set(last, state(0)));
     for i in 0..count {
         for j in 0..count {
-            let product = binary(Operation::Multiply, value(i), value((i * 5 + j) % count));
-            steps.push(set(last + 1, binary(Operation::Add, value(last), product)));
+            let product = binary(Arithmetic::Multiply, value(i), value((i * 5 + j) % count));
+            steps.push(set(last + 1, binary(Arithmetic::Add, value(last), product)));
             last += 1;
         }
         if call_between {
@@ -121,7 +119,7 @@ fn pairs(count: u32, call_between: bool) -> Schedule {
             last += 1;
         }
     }
-    schedule(steps, (0..=last).step_by(17).map(value).collect())
+    tape(steps, (0..=last).step_by(17).map(value).collect())
 }
 
 #[test]
@@ -143,15 +141,15 @@ fn frames_of_many_pages_are_made() {
     // All are live until the last: 2000 blocks are 31 pages.
     let steps = (0..2000).map(|k| {
         let last = if k == 0 { state(0) } else { value(k - 1) };
-        set(k, binary(Operation::Add, last, number(k.into(), 3)))
+        set(k, binary(Arithmetic::Add, last, number(k.into(), 3)))
     });
     let mut steps: Vec<_> = steps.collect();
     for k in 0..2000 {
-        let product = binary(Operation::Multiply, value(1999 - k), value(2000 + k - 1));
+        let product = binary(Arithmetic::Multiply, value(1999 - k), value(2000 + k - 1));
         steps.push(set(2000 + k, product));
     }
-    let schedule = schedule(steps, vec![value(3999), value(2500)]);
-    let run = move || agrees(&schedule, &Point::SOME);
+    let tape = tape(steps, vec![value(3999), value(2500)]);
+    let run = move || agrees(&tape, &Point::SOME);
     thread::Builder::new()
         .stack_size(1 << 20)
         .spawn(run)
@@ -174,20 +172,17 @@ fn the_largest_system_is_solved() {
 
 #[test]
 fn each_result_goes_to_its_own_slice() {
-    let mut schedule = schedule(vec![], vec![state(0), number(0, 1)]);
+    let mut tape = tape(vec![], vec![state(0), number(0, 1)]);
     for entries in [
         vec![],
         vec![state(1), state(0)],
         vec![Tree::Argument(Argument::Time)],
         vec![function(Function::Cos, state(2)), state(2)],
     ] {
-        schedule.results.push(ResultArray {
-            name: "more".to_owned(),
-            entries,
-        });
+        add_result(&mut tape, entries);
     }
     for target in targets() {
-        let function = VectorFunction::compile_for(&schedule, SIZES, target).unwrap();
+        let function = VectorFunction::compile_for(&tape, SIZES, target).unwrap();
         let [t, x0, x1, x2] =
             [1.0, 2.0, 3.0, 4.0].map(|first: f64| std::array::from_fn(|l| first + l as f64 / 8.0));
         let at = AtLanes {
@@ -213,9 +208,9 @@ fn each_result_goes_to_its_own_slice() {
 #[test]
 fn weights_are_blocks_as_well() {
     let weight = |index| Tree::Argument(Argument::Weight(index));
-    let product = binary(Operation::Multiply, weight(0), state(0));
-    let sum = binary(Operation::Add, product, weight(2));
-    let schedule = schedule(vec![], vec![sum]);
+    let product = binary(Arithmetic::Multiply, weight(0), state(0));
+    let sum = binary(Arithmetic::Add, product, weight(2));
+    let tape = tape(vec![], vec![sum]);
     let (x, u, p) = ([0.3, -1.2, 2.5], [0.0; 2], [0.0; 2]);
     let spread = |numbers: &[f64]| -> Vec<[f64; LANES]> {
         let block = |&number: &f64| std::array::from_fn(|l| number * (1.0 + l as f64));
@@ -223,7 +218,7 @@ fn weights_are_blocks_as_well() {
     };
     let weights = spread(&[1.7, 0.0, -0.3]);
     for target in targets() {
-        let function = VectorFunction::compile_for(&schedule, SIZES, target).unwrap();
+        let function = VectorFunction::compile_for(&tape, SIZES, target).unwrap();
         let (states, inputs) = (spread(&x), spread(&u));
         let at = AtLanes {
             t: &[0.0; LANES],
@@ -241,7 +236,7 @@ fn weights_are_blocks_as_well() {
                 u: &u,
                 p: &p,
             };
-            let expected = interpret_weighted(&schedule, at, &lane(&weights, l));
+            let expected = interpret_weighted(&tape, at, &lane(&weights, l));
             assert!(same(&[found[0][l]], &expected[0]), "{target:?}");
         }
         let short = AssertUnwindSafe(|| {
@@ -254,9 +249,9 @@ fn weights_are_blocks_as_well() {
 
 #[test]
 fn slices_of_wrong_length_are_refused() {
-    let schedule = schedule(vec![], vec![state(2), number(0, 1)]);
+    let tape = tape(vec![], vec![state(2), number(0, 1)]);
     for target in targets() {
-        let function = VectorFunction::compile_for(&schedule, SIZES, target).unwrap();
+        let function = VectorFunction::compile_for(&tape, SIZES, target).unwrap();
         let blocks = [[1.0; LANES]; 3];
         let at = AtLanes {
             t: &[0.0; LANES],
@@ -292,8 +287,7 @@ fn an_empty_function_does_nothing() {
         parameters: 0,
     };
     for target in targets() {
-        let function =
-            VectorFunction::compile_for(&schedule(vec![], vec![]), none, target).unwrap();
+        let function = VectorFunction::compile_for(&tape(vec![], vec![]), none, target).unwrap();
         let at = AtLanes {
             t: &[0.0; LANES],
             x: &[],
@@ -306,14 +300,14 @@ fn an_empty_function_does_nothing() {
 
 #[test]
 fn threads_share_one_function() {
-    let schedule = system(3);
+    let tape = system(3);
     let points = around(&Point::SOME);
-    let expected = in_lanes(&schedule, &points, Target::default());
+    let expected = in_lanes(&tape, &points, Target::default());
     thread::scope(|scope| {
         for _ in 0..4 {
             scope.spawn(|| {
                 for _ in 0..20 {
-                    let found = in_lanes(&schedule, &points, Target::default());
+                    let found = in_lanes(&tape, &points, Target::default());
                     assert_eq!(found, expected);
                 }
             });
@@ -335,13 +329,13 @@ fn what_a_processor_lacks_is_done_place_by_place() {
 #[test]
 fn what_cannot_be_compiled_is_interpreted_in_every_lane() {
     // More unknowns than machine code takes.
-    let (schedule, points) = (system(65), around(&Point::SOME));
+    let (tape, points) = (system(65), around(&Point::SOME));
     let target = Target::default();
-    let function = VectorFunction::compile_or_interpret(&schedule, SIZES, target).unwrap();
+    let function = VectorFunction::compile_or_interpret(&tape, SIZES, target).unwrap();
     assert!(!function.is_vector());
     let found = evaluated(&function, &points, 2 * 65);
     for (l, point) in points.iter().enumerate() {
-        assert!(same(&lane(&found, l), &interpreted(&schedule, point)));
+        assert!(same(&lane(&found, l), &interpreted(&tape, point)));
     }
 }
 
@@ -368,14 +362,14 @@ fn own_functions_are_those_of_the_runtime() {
         (Tree::Atan2(y, x), elementary::atan2),
         (Tree::Power(base, exponent), elementary::powf),
     ];
-    let schedule = schedule(vec![], known.iter().map(|(tree, _)| tree.clone()).collect());
+    let tape = tape(vec![], known.iter().map(|(tree, _)| tree.clone()).collect());
     // Angles that need extended reduction together with ordinary ones.
     let numbers = [0.3, -1e22, 710.0, f64::NAN, -0.0, 0.99, f64::INFINITY, 1e9];
     let second = [2.5, -0.7, 0.0, 1.0, -2.0, f64::NAN, 3.0, -1e-300];
     let points = std::array::from_fn(|l| with_states(numbers[l], second[l]));
-    agrees_in_lanes(&schedule, &points);
+    agrees_in_lanes(&tape, &points);
     for target in targets().filter(|target| target.elementary == Elementary::Own) {
-        let found = in_lanes(&schedule, &points, target);
+        let found = in_lanes(&tape, &points, target);
         for l in 0..LANES {
             let expected: Vec<f64> = known
                 .iter()

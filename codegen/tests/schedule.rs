@@ -11,14 +11,13 @@
 use std::collections::BTreeSet;
 
 use appell_codegen::program::{Function, FunctionKind, Layout, Program};
-use appell_codegen::schedule::{
-    OperationCount, Schedule, Step, Tuning, interpret, schedule, schedule_tuned,
-};
+use appell_codegen::schedule::{Tuning, schedule, schedule_tuned};
 use appell_codegen::symbolic::{Expr, Graph, Rational, Relation, evaluate};
+use appell_codegen::tape::{Operation, OperationCount, Tape, interpret};
 
 use crate::emit_support::{Numbers, Sketch, mixture, polynomial, quantity, unicycle};
 
-fn of(program: &Program, kind: FunctionKind) -> Schedule {
+fn of(program: &Program, kind: FunctionKind) -> Tape {
     let function = program
         .functions
         .iter()
@@ -223,7 +222,7 @@ fn operation_counts_do_not_rise() {
 }
 
 /// The schedule of one array of expressions in two states, two parameters.
-fn small(build: impl FnOnce(&mut Sketch, [Expr; 4]) -> Vec<Expr>) -> (Program, Schedule) {
+fn small(build: impl FnOnce(&mut Sketch, [Expr; 4]) -> Vec<Expr>) -> (Program, Tape) {
     let names = |names: [&str; 2]| {
         names
             .map(|name| quantity(name, "A number.", "", 0.0))
@@ -319,9 +318,9 @@ fn a_lone_sine_brings_no_cosine() {
     let (_, schedule) = small(|sketch, [x, ..]| vec![sketch.graph().sin(x)]);
     assert!(
         !schedule
-            .steps
+            .operations
             .iter()
-            .any(|step| matches!(step, Step::SinCos { .. }))
+            .any(|operation| matches!(operation, Operation::SinCos(_)))
     );
     let (_, schedule) = small(|sketch, [x, ..]| {
         let g = sketch.graph();
@@ -329,9 +328,9 @@ fn a_lone_sine_brings_no_cosine() {
     });
     assert!(
         schedule
-            .steps
+            .operations
             .iter()
-            .any(|step| matches!(step, Step::SinCos { .. }))
+            .any(|operation| matches!(operation, Operation::SinCos(_)))
     );
 }
 
@@ -367,8 +366,8 @@ fn names_are_unique_identifiers() {
     for program in [unicycle(), mixture()] {
         for function in &program.functions {
             let schedule = schedule(&program, function);
-            let names: BTreeSet<&String> = schedule.names.iter().collect();
-            assert_eq!(names.len(), schedule.names.len());
+            let names: BTreeSet<&String> = schedule.names.iter().flatten().collect();
+            assert_eq!(names.len(), schedule.names.iter().flatten().count());
             for name in names {
                 let first = name.chars().next().unwrap();
                 assert!(first.is_ascii_alphabetic() || first == '_', "{name}");

@@ -211,7 +211,7 @@ impl<'a> Estimation<'a> {
             tape.clear();
             tape
         });
-        Pass::over(self.system(), values, (run, recording), &actions, tape)
+        Pass::over(self.system(), values, run, recording, &actions, tape)
     }
 
     /// The tapes; a poisoned lock is ignored, as no code panics while holding it.
@@ -227,7 +227,7 @@ impl<'a> Estimation<'a> {
         actions: &[Action],
     ) -> Pass<'b> {
         let recording = &self.recordings[run];
-        Pass::new(self.system(), values, (run, recording), actions, None)
+        Pass::new(self.system(), values, run, recording, actions, None)
     }
 
     /// Steps, changes of inputs and samples of a run.

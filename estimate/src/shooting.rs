@@ -191,7 +191,7 @@ impl<'o, 'e> Shooting<'o, 'e> {
             let mut part = self.within_reach(&change);
             let mut next = None;
             for _ in 0..CUTS {
-                let tried = self.moved(&trial, (&change, &states), part);
+                let tried = self.moved(&trial, &change, &states, part);
                 if let Ok(pieces) = self.pieces(&tried) {
                     let fall = objective - self.objective(&tried, &pieces, gap);
                     if fall >= SUFFICIENT_DECREASE * part * gain {
@@ -253,7 +253,8 @@ impl<'o, 'e> Shooting<'o, 'e> {
     fn moved(
         &self,
         trial: &Trial,
-        (change, states): (&DVector<f64>, &[Vec<DVector<f64>>]),
+        change: &DVector<f64>,
+        states: &[Vec<DVector<f64>>],
         part: f64,
     ) -> Trial {
         let mut moved = trial.clone();
@@ -283,8 +284,9 @@ impl<'o, 'e> Shooting<'o, 'e> {
             })
             .collect();
         let runs = self.nodes.iter().zip(&trial.states).enumerate();
-        runs.map(|(run, nodes)| {
-            SegmentIntegrator::new(self.estimation, &trial.values, run, &unknowns).along(nodes)
+        runs.map(|(run, (nodes, states))| {
+            SegmentIntegrator::new(self.estimation, &trial.values, run, &unknowns)
+                .along(nodes, states)
         })
         .collect()
     }

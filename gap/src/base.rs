@@ -14,7 +14,8 @@ mod regression;
 
 use appell_codegen::jit::{NativeFunction, Sizes};
 use appell_codegen::mechanics::{Linear, Regressor};
-use appell_codegen::schedule::{Schedule, interpret_weighted, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::{Tape, interpret_weighted};
 use appell_estimate::BaseParameters;
 use appell_recordings::DataSet;
 use appell_runtime::model::{At, Model};
@@ -160,7 +161,7 @@ struct LinearEquations {
 
 /// The regressor, compiled where that is possible.
 struct Equations {
-    schedule: Schedule,
+    tape: Tape,
     native: Option<NativeFunction>,
     speeds: usize,
     count: usize,
@@ -169,10 +170,10 @@ struct Equations {
 impl Equations {
     fn new(regressor: &Regressor) -> Self {
         let program = &regressor.program;
-        let schedule = schedule(program, &program.functions[0]);
+        let tape = schedule(program, &program.functions[0]);
         Self {
-            native: NativeFunction::compile(&schedule, Sizes::from(&program.info)).ok(),
-            schedule,
+            native: NativeFunction::compile(&tape, Sizes::from(&program.info)).ok(),
+            tape,
             speeds: program.info.speeds,
             count: regressor.parameters.len(),
         }
@@ -189,7 +190,7 @@ impl Equations {
         if let Some(native) = &self.native {
             native.call_weighted(at, accelerations, results);
         } else {
-            let computed = interpret_weighted(&self.schedule, at, accelerations);
+            let computed = interpret_weighted(&self.tape, at, accelerations);
             for (to, from) in results.into_iter().zip(&computed) {
                 to.copy_from_slice(from);
             }

@@ -61,6 +61,7 @@ mod localise;
 mod nuisance;
 mod options;
 mod outside;
+mod pictures;
 mod prediction;
 mod prior;
 mod report;
@@ -68,6 +69,7 @@ mod scales;
 mod screen;
 mod search;
 mod sets;
+mod start_levels;
 mod starts;
 mod traces;
 mod twins;
@@ -115,12 +117,13 @@ pub fn diagnose(
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    diagnosed((set, None), effects, options, &mut stage)
+    diagnosed(set, None, effects, options, &mut stage)
 }
 
 /// The same; prediction errors on earlier recordings, which are not fitted, are reported in addition.
 fn diagnosed(
-    (set, before): (&DataSet, Option<&DataSet>),
+    set: &DataSet,
+    before: Option<&DataSet>,
     effects: &[Effect],
     options: &Options,
     mut stage: &mut dyn FnMut(&'static str),
@@ -137,7 +140,7 @@ fn diagnosed(
     if by_forces::applies(set, options) {
         let forces = all.iter().filter(|one| by_forces::acts(one)).cloned();
         let model = EffectModel::of_forces(&set.spec, forces.collect())?;
-        match by_forces::diagnose((set, before), &model, options, &mut stage) {
+        match by_forces::diagnose(set, before, &model, options, &mut stage) {
             // Runs may be too short for splines.
             Err(DiagnoseError::Forces(_)) => {}
             told => return told,
@@ -145,21 +148,37 @@ fn diagnosed(
     }
     let mut model = EffectModel::new(&set.spec, all)?;
     model.is_of_changes = before.is_some();
-    by_filter((set, before), (&whole, &fitted), &model, options, stage)
+    let training = Training {
+        whole: &whole,
+        segments: &fitted,
+    };
+    by_filter(set, before, training, &model, options, stage)
+}
+
+/// The training runs.
+#[derive(Clone, Copy)]
+struct Training<'d> {
+    /// The whole runs.
+    whole: &'d DataSet,
+    /// Segments of them that are fitted, with a limited number of rows.
+    segments: &'d DataSet,
 }
 
 /// The diagnosis by the innovations of a filter and by simulations.
 fn by_filter(
-    (set, before): (&DataSet, Option<&DataSet>),
-    (whole, fitted): (&DataSet, &DataSet),
+    set: &DataSet,
+    before: Option<&DataSet>,
+    training: Training<'_>,
     model: &EffectModel,
     options: &Options,
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
-    let first = judged((whole, fitted), model, &mut stage)?;
-    let training = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
+    let whole = training.whole;
+    let first = judged(training, model, &mut stage)?;
+    let training_runs = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
     let (judged, rest) = without_events(first, whole, model, &mut stage)?;
-    let (fitted, rest) = (rest.as_ref()).map_or((fitted, whole), |(fitted, rest)| (fitted, rest));
+    let (fitted, rest) =
+        (rest.as_ref()).map_or((training.segments, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
         bench,
         screen,
@@ -173,7 +192,7 @@ fn by_filter(
         Err(reason) => (Vec::new(), Some(Err(reason))),
     };
     let fitted_laws = law::fitted(&laws, &bench, &test);
-    let measured = law::measured(fitted_laws, &mut comparison, (&bench, rest)).or(unwritten);
+    let measured = law::measured(fitted_laws, &mut comparison, &bench, rest).or(unwritten);
     stage("fitting the alternatives");
     let alternatives = Alternative::all(&options.alternatives, fitted)?;
     let (rivals, mut lost) = Rival::all(&alternatives, &bench)?;
@@ -200,8 +219,8 @@ fn by_filter(
         Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
         None => None,
     };
-    for (set, runs) in [(whole, &training), (&test, &held_out)] {
-        let outside = outside::windows((&bench, comparison.best()), set, &runs.recordings);
+    for (set, runs) in [(whole, &training_runs), (&test, &held_out)] {
+        let outside = outside::windows(&bench, comparison.best(), set, &runs.recordings);
         report.place.windows.extend(outside?);
     }
     let best = Leader {
@@ -229,15 +248,14 @@ fn by_filter(
         },
         _ => best,
     };
-    let judged = (&bench, &comparison, &leader);
-    let how_far = held_out.how_far(judged, before.as_ref(), options)?;
+    let how_far = held_out.how_far(&bench, &comparison, &leader, before.as_ref(), options)?;
     report.verdict = report
         .verdict
         .after(&report.which, how_far.as_ref(), bench.is_over_windows());
     let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
         stage("drawing");
-        Some(pictures(&held_out, judged, &place)?)
+        Some(pictures(&held_out, &bench, &comparison, &leader, &place)?)
     } else {
         None
     };
@@ -271,7 +289,11 @@ fn without_events<'m>(
     };
     let fitted = rest.stretches(most_rows(&rest));
     stage("fitting without the windows that no hypothesis predicts");
-    Ok(match judged((&rest, &fitted), model, stage) {
+    let training = Training {
+        whole: &rest,
+        segments: &fitted,
+    };
+    Ok(match judged(training, model, stage) {
         Ok(again) => (again.without_events(), Some((fitted, rest))),
         Err(_) => (first, None),
     })
@@ -286,7 +308,9 @@ fn most_rows(set: &DataSet) -> usize {
 /// Data of the plots.
 fn pictures(
     held_out: &HeldOut,
-    (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    leader: &Leader<'_>,
     place: &Where,
 ) -> Result<Pictures, DiagnoseError> {
     Ok(Pictures {
@@ -302,12 +326,16 @@ fn pictures(
 /// The hypotheses ranked on the training runs; again with imperfections of channels as nuisance parameters, if there
 /// are some without effect on predictions.
 fn judged<'m>(
-    (whole, fitted): (&DataSet, &DataSet),
+    training: Training<'_>,
     model: &'m EffectModel,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
-    let whole = whole.bound_to(&model.mechanism);
-    let mut judged = judged_beside((&[], None), (&whole, fitted), model, stage)?;
+    let whole = training.whole.bound_to(&model.mechanism);
+    let training = Training {
+        whole: &whole,
+        segments: training.segments,
+    };
+    let mut judged = judged_beside(training, &[], None, model, stage)?;
     loop {
         let more = immaterial(&judged).unwrap_or_default();
         if more.is_empty() {
@@ -315,8 +343,7 @@ fn judged<'m>(
         }
         stage("fitting imperfections of channels in every hypothesis");
         let imperfections = [judged.bench.imperfections.clone(), more].concat();
-        let beside = (imperfections.as_slice(), Some(&judged));
-        match judged_beside(beside, (&whole, fitted), model, stage) {
+        match judged_beside(training, &imperfections, Some(&judged), model, stage) {
             Ok(again) => judged = again,
             Err(_) => return Ok(judged),
         }
@@ -325,12 +352,14 @@ fn judged<'m>(
 
 /// The same with given imperfections of channels; `before` is the result without them.
 fn judged_beside<'m>(
-    (imperfections, before): (&[Imperfection], Option<&Judged<'m>>),
-    (whole, fitted): (&DataSet, &DataSet),
+    training: Training<'_>,
+    imperfections: &[Imperfection],
+    before: Option<&Judged<'m>>,
     model: &'m EffectModel,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
-    let mut bench = Bench::new(fitted, model, imperfections)?;
+    let whole = training.whole;
+    let mut bench = Bench::new(training.segments, model, imperfections)?;
     bench.whole.clone_from(&whole.runs);
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
@@ -339,11 +368,11 @@ fn judged_beside<'m>(
     stage("fitting the remaining effects");
     let windows = horizon::windows(whole)?;
     let levels = bench.levels(&nominal)?;
-    let over = Bench::over(&windows, (&bench, &levels))?;
+    let over = Bench::over(&windows, &bench, &levels)?;
     let known = before.and_then(|before| known(&bench, before).ok());
-    let hypotheses = (nominal, known.into_iter().collect());
-    let judged = horizon::judged((bench, hypotheses, screen), over, stage)?;
-    let judged = horizon::lengthened(judged, (&levels, whole), stage)?;
+    let known = known.into_iter().collect();
+    let judged = horizon::judged(bench, screen, nominal, known, over, stage)?;
+    let judged = horizon::lengthened(judged, &levels, whole, stage)?;
     // An event is no process noise.
     if outside::rest(&judged, whole)?.is_some() {
         return Ok(judged);

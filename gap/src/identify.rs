@@ -77,7 +77,7 @@ pub fn identify(
     }
     let problem = {
         let estimation = Estimation::new(&setup, &recordings)?;
-        Problem::of(set, &estimation, (options, &additions))?
+        Problem::of(set, &estimation, options, &additions)?
     };
     setup.has_corners = steps::are_too_long(&setup, &recordings, &problem.start)?;
     let mut fits = |setup: &Setup<'_>| -> Result<(Fit, Fit), IdentifyError> {

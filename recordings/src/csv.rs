@@ -194,7 +194,7 @@ impl<R: BufRead> CsvFile<R> {
         }
         let file = &*self.rows.lines.file;
         findings.extend(clock.findings(file)?);
-        checked(file, (&places.time, times), channels, columns, findings)
+        checked(file, &places.time, times, channels, columns, findings)
     }
 
     /// Columns of the time and of the channels; `None` if one is missing.

@@ -113,7 +113,8 @@ pub fn read(
 /// A data set whose runs are in memory, from the text of a `recording.toml`, whose `[runs]` name them. `file` is the
 /// path of that text, or a name for messages.
 pub fn read_frames(
-    (file, text): (&Path, &str),
+    file: &Path,
+    text: &str,
     frames: &[Frame],
     library: Library<'_>,
     instead: Option<Spec>,

@@ -56,11 +56,7 @@ impl DataSet {
 
     /// Windows of `length` seconds, about `most` of them, spread evenly over all runs, each with no more than
     /// about `rows` rows.
-    pub fn windows(
-        &self,
-        length: f64,
-        (most, rows): (usize, usize),
-    ) -> Result<Self, EstimateError> {
+    pub fn windows(&self, length: f64, most: usize, rows: usize) -> Result<Self, EstimateError> {
         // Subsampled rows use the mean of an input, not its value at their beginning.
         let held = self.clone().held_at_means()?;
         let set = &held;

@@ -145,7 +145,7 @@ impl Columns {
         };
         let columns = places.iter().zip(channels).map(column).collect();
         let times = rows.iter().map(|&row| times[row]).collect();
-        checked(file, (&time, times), channels, columns, self.findings)
+        checked(file, &time, times, channels, columns, self.findings)
     }
 
     /// Turns the times into s. The unit that the format states is not stated otherwise; time stamps count from the
@@ -202,7 +202,8 @@ fn no_clock(times: &[f64]) -> Option<String> {
 /// Checks that a table has enough rows and that no column is empty.
 pub(crate) fn checked(
     file: &str,
-    (clock, times): (&TimeColumn, Vec<f64>),
+    clock: &TimeColumn,
+    times: Vec<f64>,
     channels: &[Channel],
     columns: Vec<Vec<f64>>,
     mut findings: Vec<Finding>,

@@ -63,7 +63,7 @@ impl<'f> Whole<'f> {
         };
         whole.add(file.to_owned(), text);
         let (_, includes) = whole.parsed(0)?;
-        whole.append((0, 0..text.len()), includes, 0)?;
+        whole.append(0, &(0..text.len()), includes, 0)?;
         Ok(whole)
     }
 
@@ -95,7 +95,8 @@ impl<'f> Whole<'f> {
     /// Appends a part of a file with its includes.
     fn append(
         &mut self,
-        (file, part): (usize, Span),
+        file: usize,
+        part: &Span,
         includes: Vec<Include>,
         depth: usize,
     ) -> Result<(), Box<Report>> {
@@ -110,7 +111,7 @@ impl<'f> Whole<'f> {
             let next = self.found(file, &include, depth);
             let next = next.map_err(|finding| self.report(file, vec![finding]))?;
             let (part, includes) = self.parsed(next)?;
-            self.append((next, part), includes, depth + 1)?;
+            self.append(next, &part, includes, depth + 1)?;
         }
         self.push(file, from..part.end);
         Ok(())

@@ -335,7 +335,8 @@ impl<'a> Places<'a> {
         let turned = along.map_or(Rotation::IDENTITY, |body| self.axes(body, poses));
         for offset in connection.points() {
             let ends = connection.ends_at(offset);
-            let between = minus(place(ends[0], poses), place(ends[1], poses));
+            let [first, second] = ends.map(|(link, at)| place(link, at, poses));
+            let between = minus(first, second);
             for axis in 0..3 {
                 let direction = turned.0.map(|row| row[axis]);
                 let mut row = vec![0.0; self.freedoms.len()];
@@ -359,8 +360,9 @@ impl<'a> Places<'a> {
         shared: Option<usize>,
         poses: &[Pose],
     ) {
-        let end_at = place(end, poses);
-        let behind = std::iter::successors(end.0, |&link| self.robot.links[link].parent);
+        let (link, at) = end;
+        let end_at = place(link, at, poses);
+        let behind = std::iter::successors(link, |&link| self.robot.links[link].parent);
         let behind: Vec<usize> = behind.take_while(|link| Some(*link) != shared).collect();
         for (freedom, slope) in self.freedoms.iter().zip(row.iter_mut()) {
             if behind.contains(&freedom.link) {
@@ -503,7 +505,7 @@ impl<'a> Places<'a> {
 
     /// A point of a link, in the frame of its body.
     fn on_body(&self, link: Option<usize>, at: Vector) -> (Option<usize>, Vector) {
-        let at = place((link, at), &self.drawn);
+        let at = place(link, at, &self.drawn);
         let Some(body) = link.and_then(|link| self.tree.body_of[link]) else {
             return (None, at);
         };
@@ -533,7 +535,7 @@ impl Connection {
 }
 
 /// Position of a point of a link.
-fn place((link, at): (Option<usize>, Vector), poses: &[Pose]) -> Vector {
+fn place(link: Option<usize>, at: Vector, poses: &[Pose]) -> Vector {
     link.map_or(at, |link| poses[link].of(at))
 }
 

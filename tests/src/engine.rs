@@ -3,8 +3,9 @@
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::Program;
-use appell_codegen::schedule::{interpret_weighted, schedule};
+use appell_codegen::schedule::schedule;
 use appell_codegen::symbolic::evaluate;
+use appell_codegen::tape::interpret_weighted;
 use appell_models::Shipped;
 use appell_runtime::model::{At, Model};
 use appell_spec::Mechanism;

@@ -83,7 +83,8 @@ fn adjoints_are_gradients_of_weighted_jacobians() {
 
 #[test]
 fn an_adjoint_costs_a_few_times_what_it_differentiates() {
-    use appell_codegen::schedule::{OperationCount, schedule};
+    use appell_codegen::schedule::schedule;
+    use appell_codegen::tape::OperationCount;
     let program = shipped::complete_program("double_pendulum");
     let operations = |kind| {
         let function = program.function(kind).unwrap();

@@ -6,7 +6,8 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 use appell_codegen::program::{Function, FunctionKind, Program};
-use appell_codegen::schedule::{OperationCount, Tuning, schedule, schedule_tuned};
+use appell_codegen::schedule::{Tuning, schedule, schedule_tuned};
+use appell_codegen::tape::OperationCount;
 use appell_tests::shipped;
 
 /// One of the counts.

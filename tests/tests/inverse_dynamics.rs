@@ -1,7 +1,8 @@
 //! Inverse dynamics of all mechanisms, in every execution: against the rates and against differences.
 
 use appell_codegen::mechanics::regressor;
-use appell_codegen::schedule::{interpret_weighted, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::interpret_weighted;
 use appell_runtime::differences;
 use appell_runtime::model::Model;
 use appell_test_kit::Random;

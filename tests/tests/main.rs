@@ -41,6 +41,7 @@ mod recursion;
 mod redundancy;
 mod reference;
 mod shooting;
+mod size;
 mod snapshots;
 mod stability;
 mod steady;

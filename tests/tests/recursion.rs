@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_codegen::program::FunctionKind as F;
-use appell_codegen::schedule::{OperationCount, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::OperationCount;
 use appell_runtime::model::Model as _;
 use appell_spec::Mechanism;
 use appell_test_kit::Random;

@@ -464,11 +464,13 @@ const LAYERS_OF_CODEGEN: &[(&str, &[&str])] = &[
     ("linearisation", &["mechanics", "symbolic"]),
     ("audit", &["mechanics", "symbolic"]),
     ("formulations", &["mechanics", "symbolic"]),
-    ("schedule", &["program", "symbolic"]),
-    ("emit", &["program", "schedule", "symbolic"]),
-    ("operations", &["schedule", "symbolic"]),
-    ("jit", &["program", "schedule", "symbolic"]),
-    ("interpreted", &["program", "schedule"]),
+    ("tape", &["symbolic"]),
+    ("schedule", &["program", "symbolic", "tape"]),
+    ("text", &["program", "schedule", "symbolic", "tape"]),
+    ("emit", &["program", "schedule", "symbolic", "tape", "text"]),
+    ("model", &["program", "schedule", "tape"]),
+    ("jit", &["model", "program", "symbolic", "tape"]),
+    ("interpreted", &["model", "program", "tape"]),
 ];
 
 /// What the three formulations share with the derivation: the graph, the reading of expressions,

@@ -213,8 +213,8 @@ impl Ensemble {
         let kept: Vec<Quantity> = task.which.iter().map(|&k| variant.kept[k]).collect();
         let gauges = starts.iter().zip(inputs.iter().zip(&sources));
         let gauges: Vec<_> = gauges
-            .map(|(start, drives)| {
-                RefCell::new(Gauge::new(model, drives, &start.parameters, &kept))
+            .map(|(start, (inputs, source))| {
+                RefCell::new(Gauge::new(model, inputs, source, &start.parameters, &kept))
             })
             .collect();
         let (mut awaited, mut simulations) = (Vec::new(), Vec::new());
@@ -245,11 +245,11 @@ impl Ensemble {
             .zip(&which)
             .filter_map(|(prepared, &place)| {
                 let gauge = &gauges[place];
-                let from = (prepared.span()[0], prepared.start());
+                let (t, x) = (prepared.span()[0], prepared.start());
                 let row = values[place].take()?;
                 Some(Viewer {
                     events: awaited[place].events(task, gauge),
-                    observer: Keeper::new(gauge, &task.keep, &task.layout, row, from, go_on),
+                    observer: Keeper::new(gauge, &task.keep, &task.layout, row, t, x, go_on),
                 })
             });
         let viewers = viewers.collect();
@@ -444,9 +444,9 @@ impl Awaited {
                 terminal: task.keep[index].kept == Kept::When { stop: true },
                 longest: task.layout.interval,
                 hides: Some(Box::new(move |piece, start, interior| {
-                    let (within, size) = ((start, interior), piece.size());
-                    let keeps = Enclosure::keeps_its_sign;
-                    gauge.borrow_mut().hides(index, piece, within, keeps, size)
+                    let (keeps, size) = (Enclosure::keeps_its_sign, piece.size());
+                    let mut gauge = gauge.borrow_mut();
+                    gauge.hides(index, piece, start, interior, keeps, size)
                 })),
                 ..Event::new(Direction::Rising, g)
             }

@@ -42,7 +42,8 @@ struct Bounds {
 impl<'a> Gauge<'a> {
     pub(super) fn new(
         model: &'a dyn Model,
-        (inputs, source): (&'a ModelInputs<'a>, &'a Noisy<'a>),
+        inputs: &'a ModelInputs<'a>,
+        source: &'a Noisy<'a>,
         p: &[f64],
         kept: &'a [Quantity],
     ) -> Self {
@@ -75,7 +76,8 @@ impl<'a> Gauge<'a> {
         &mut self,
         keep: usize,
         piece: &Piece,
-        (start, interior): (f64, &DenseOutput),
+        start: f64,
+        interior: &DenseOutput,
         is_known: impl FnOnce(&Enclosure) -> bool,
         size: f64,
     ) -> bool {
@@ -188,7 +190,8 @@ impl<'a> Keeper<'a> {
         keep: &[Keep],
         layout: &'a Layout,
         row: &'a mut [f64],
-        (t, x): (f64, &[f64]),
+        t: f64,
+        x: &[f64],
         go_on: &'a (dyn Fn() -> bool + Sync),
     ) -> Self {
         let mut followed = Vec::new();
@@ -334,8 +337,8 @@ impl Sought for Following<'_, '_> {
             Kept::Min => -of.range().lo <= best,
             _ => false,
         };
-        let within = (self.step.t_old, self.interior);
-        is_enough && !(self.gauge).hides(followed.keep, piece, within, is_known, size)
+        let (keep, start, interior) = (followed.keep, self.step.t_old, self.interior);
+        is_enough && !(self.gauge).hides(keep, piece, start, interior, is_known, size)
     }
 
     fn see(&mut self, pieces: &[Piece]) {

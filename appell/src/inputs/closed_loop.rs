@@ -1,8 +1,7 @@
 //! Equations of motion with their inputs substituted, for eight motions at once.
 
 use appell_codegen::jit::{Elementary, JitError, Sizes, Target, VectorFunction};
-use appell_codegen::operations::{Seen, closed_loop};
-use appell_codegen::schedule::Schedule;
+use appell_codegen::tape::{Seen, Tape, closed_loop};
 
 /// Target of a disturbance in the measurements of laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,10 +31,11 @@ pub(crate) struct ClosedLoop {
 
 impl ClosedLoop {
     pub(super) fn new(
-        law: &Schedule,
-        rates: &Schedule,
+        law: &Tape,
+        rates: &Tape,
         sizes: Sizes,
-        (outside, seen): (Outside, &[Onto]),
+        outside: Outside,
+        seen: &[Onto],
     ) -> Result<Self, JitError> {
         let views = seen.iter().zip(outside.inputs..);
         let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();

@@ -8,8 +8,8 @@ use std::sync::Arc;
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
 use appell_codegen::jit::Sizes;
-use appell_codegen::schedule::Schedule;
 use appell_codegen::symbolic::Expr as Lowered;
+use appell_codegen::tape::Tape;
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
 use appell_runtime::model::{Along, At, Model, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
@@ -337,15 +337,15 @@ impl Wiring {
     }
 
     /// Expressions and continuous-time laws as operations.
-    fn law(&self, info: &ModelInfo) -> Schedule {
-        law::schedule(&self.function, &self.slots, &self.scheduled, info)
+    fn law(&self, info: &ModelInfo) -> Tape {
+        law::tape(&self.function, &self.slots, &self.scheduled, info)
     }
 
     /// The equations of motion with expressions and laws substituted; `rates` are the model's. `seen` are the measurements
     /// of laws, as inputs after those of [`Controller::fill_outside`].
     pub(crate) fn closed_loop(
         &self,
-        rates: &Schedule,
+        rates: &Tape,
         info: &ModelInfo,
         seen: &[Onto],
     ) -> Result<ClosedLoop, Error> {
@@ -354,7 +354,7 @@ impl Wiring {
             inputs: self.function.inputs(),
             is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
         };
-        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), (outside, seen))
+        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), outside, seen)
             .map_err(Error::computation)
     }
 

@@ -1,8 +1,8 @@
 //! Expressions and feedback laws as operations in front of the equations of motion.
 
 use appell_analysis::control::schedule::GainSchedule;
-use appell_codegen::schedule::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
 use appell_codegen::symbolic::{Rational, Relation};
+use appell_codegen::tape::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
 use appell_runtime::model::ModelInfo;
 
 use super::feedback::SchedulingVariable;
@@ -39,40 +39,43 @@ pub(super) struct ScheduledLaw {
 }
 
 /// The inputs of a model, in its order: external inputs plus expressions minus feedback.
-pub(super) fn schedule(
+pub(super) fn tape(
     function: &StateFunction,
     slots: &[Slot],
     scheduled: &[ScheduledLaw],
     info: &ModelInfo,
-) -> Schedule {
-    let mut schedule = function.schedule().clone();
-    let values = schedule.results.swap_remove(0).entries;
-    let mut writer = Writer(schedule);
+) -> Tape {
+    let mut tape = function.tape().clone();
+    let mut values = tape.results.swap_remove(0).entries;
+    let mut writer = Writer(tape);
     // Slots beyond the function's values are zero.
-    let value = |place: usize| values.get(place).cloned().unwrap_or_else(|| number(0.0));
-    let mut inputs: Vec<Tree> = (0..).map(input).take(info.input_len()).collect();
-    for (place, slot) in slots.iter().enumerate() {
+    let zero = writer.number(0.0);
+    values.resize(slots.len().max(values.len()), zero);
+    let external = (0..).map(Argument::Input).take(info.input_len());
+    let mut inputs: Vec<Value> = external.map(|input| writer.0.argument(input)).collect();
+    for (slot, &value) in slots.iter().zip(&values) {
         if let Slot::Input(to) = slot {
-            inputs[*to] = writer.binary(Operation::Add, inputs[*to].clone(), value(place));
+            inputs[*to] = writer.binary(Arithmetic::Add, inputs[*to], value);
         }
     }
-    for (place, slot) in slots.iter().enumerate() {
+    for (slot, &value) in slots.iter().zip(&values) {
         if let Slot::Desired(term) = slot
             && term.law.is_none()
         {
-            let off = writer.binary(Operation::Subtract, state(term.state), value(place));
-            let asked = writer.binary(Operation::Multiply, number(term.gain), off);
-            inputs[term.input] =
-                writer.binary(Operation::Subtract, inputs[term.input].clone(), asked);
+            let (state, gain) = (writer.state(term.state), writer.number(term.gain));
+            let off = writer.binary(Arithmetic::Subtract, state, value);
+            let asked = writer.binary(Arithmetic::Multiply, gain, off);
+            inputs[term.input] = writer.binary(Arithmetic::Subtract, inputs[term.input], asked);
         }
     }
     for (law, scheduled) in scheduled.iter().enumerate() {
-        let mut y: Vec<Tree> = scheduled.states.iter().map(|&x| state(x)).collect();
-        for (place, slot) in slots.iter().enumerate() {
+        let states = scheduled.states.iter();
+        let mut y: Vec<Value> = states.map(|&state| writer.state(state)).collect();
+        for (slot, &value) in slots.iter().zip(&values) {
             if let Slot::Beside(of, column) = *slot
                 && of == law
             {
-                y[column] = writer.binary(Operation::Subtract, y[column].clone(), value(place));
+                y[column] = writer.binary(Arithmetic::Subtract, y[column], value);
             }
         }
         writer.add_scheduled(scheduled, &y, &mut inputs);
@@ -84,29 +87,29 @@ pub(super) fn schedule(
     writer.0
 }
 
-struct Writer(Schedule);
+struct Writer(Tape);
 
 impl Writer {
-    /// A new value.
-    fn define(&mut self, tree: Tree) -> Tree {
-        let place = self.0.names.len();
-        // Laws have few values.
-        let value = Value(u32::try_from(place).unwrap_or(u32::MAX));
-        self.0.names.push(format!("law_{place}"));
-        self.0.steps.push(Step::Let { value, tree });
-        Tree::Value(value)
+    fn binary(&mut self, operation: Arithmetic, a: Value, b: Value) -> Value {
+        self.0.binary(operation, a, b)
     }
 
-    fn binary(&mut self, operation: Operation, a: Tree, b: Tree) -> Tree {
-        self.define(Tree::Binary(operation, Box::new(a), Box::new(b)))
+    fn state(&mut self, place: usize) -> Value {
+        self.0.argument(Argument::State(index(place)))
+    }
+
+    /// Numbers of a law are finite.
+    fn number(&mut self, value: f64) -> Value {
+        self.0
+            .constant(Rational::from_f64(value).unwrap_or(Rational::ZERO))
     }
 
     /// u₀ − K (y − y₀), with all three interpolated over the condition.
-    fn add_scheduled(&mut self, law: &ScheduledLaw, y: &[Tree], inputs: &mut [Tree]) {
+    fn add_scheduled(&mut self, law: &ScheduledLaw, y: &[Value], inputs: &mut [Value]) {
         let over = match law.over {
-            SchedulingVariable::State(place) => state(place),
+            SchedulingVariable::State(place) => self.state(place),
             SchedulingVariable::Parameter(place) => {
-                Tree::Argument(Argument::Parameter(index(place)))
+                self.0.argument(Argument::Parameter(index(place)))
             }
         };
         let nodes: Vec<_> = law.schedule.laws().collect();
@@ -115,67 +118,59 @@ impl Writer {
             all.map(|(node, (value, _))| (*value, of(node))).collect()
         };
         let mut off = Vec::new();
-        for (column, y) in y.iter().enumerate() {
-            let steady = self.interpolated(&over, &along(&|node| nodes[node].1.states[column]));
-            off.push(self.binary(Operation::Subtract, y.clone(), steady));
+        for (column, &y) in y.iter().enumerate() {
+            let steady = self.interpolated(over, &along(&|node| nodes[node].1.states[column]));
+            off.push(self.binary(Arithmetic::Subtract, y, steady));
         }
         for (row, &to) in law.inputs.iter().enumerate() {
-            let offset = self.interpolated(&over, &along(&|node| nodes[node].1.inputs[row]));
+            let offset = self.interpolated(over, &along(&|node| nodes[node].1.inputs[row]));
             let mut asked = offset;
-            for (column, off) in off.iter().enumerate() {
+            for (column, &off) in off.iter().enumerate() {
                 let gain =
-                    self.interpolated(&over, &along(&|node| nodes[node].1.gain[(row, column)]));
-                let term = self.binary(Operation::Multiply, gain, off.clone());
-                asked = self.binary(Operation::Subtract, asked, term);
+                    self.interpolated(over, &along(&|node| nodes[node].1.gain[(row, column)]));
+                let term = self.binary(Arithmetic::Multiply, gain, off);
+                asked = self.binary(Arithmetic::Subtract, asked, term);
             }
-            inputs[to] = self.binary(Operation::Add, inputs[to].clone(), asked);
+            inputs[to] = self.binary(Arithmetic::Add, inputs[to], asked);
         }
     }
 
     /// The polygon through points, constant before the first and after the last.
-    fn interpolated(&mut self, over: &Tree, points: &[(f64, f64)]) -> Tree {
+    fn interpolated(&mut self, over: Value, points: &[(f64, f64)]) -> Value {
         let Some(&(_, last)) = points.last() else {
-            return number(0.0);
+            return self.number(0.0);
         };
-        let mut tree = number(last);
+        let mut polygon = self.number(last);
         if points
             .iter()
             .all(|(_, value)| value.to_bits() == last.to_bits())
         {
-            return tree;
+            return polygon;
         }
         for pair in points.windows(2).rev() {
             let [(from, low), (to, high)] = [pair[0], pair[1]];
-            let since = self.binary(Operation::Subtract, over.clone(), number(from));
-            let part = self.binary(Operation::Divide, since, number(to - from));
-            let more = self.binary(Operation::Multiply, number(high - low), part);
-            let inside = self.binary(Operation::Add, number(low), more);
-            tree = self.before(over, to, inside, tree);
+            let [start, length, rise, first] =
+                [from, to - from, high - low, low].map(|number| self.number(number));
+            let since = self.binary(Arithmetic::Subtract, over, start);
+            let part = self.binary(Arithmetic::Divide, since, length);
+            let more = self.binary(Arithmetic::Multiply, rise, part);
+            let inside = self.binary(Arithmetic::Add, first, more);
+            polygon = self.before(over, to, [inside, polygon]);
         }
-        self.before(over, points[0].0, number(points[0].1), tree)
+        let (start, first) = points[0];
+        let first = self.number(first);
+        self.before(over, start, [first, polygon])
     }
 
     /// One value before a limit of the condition, another from there on.
-    fn before(&mut self, over: &Tree, limit: f64, then: Tree, otherwise: Tree) -> Tree {
-        self.define(Tree::Choice {
+    fn before(&mut self, over: Value, limit: f64, branches: [Value; 2]) -> Value {
+        let limit = self.number(limit);
+        self.0.push(Operation::Choice {
             relation: Relation::Less,
-            compared: Box::new([over.clone(), number(limit)]),
-            branches: Box::new([then, otherwise]),
+            compared: [over, limit],
+            branches,
         })
     }
-}
-
-fn state(place: usize) -> Tree {
-    Tree::Argument(Argument::State(index(place)))
-}
-
-fn input(place: u32) -> Tree {
-    Tree::Argument(Argument::Input(place))
-}
-
-/// Numbers of a law are finite.
-fn number(value: f64) -> Tree {
-    Tree::Constant(Rational::from_f64(value).unwrap_or(Rational::ZERO))
 }
 
 fn index(place: usize) -> u32 {

@@ -1,8 +1,8 @@
 //! Switching functions of inputs that are expressions.
 
 use appell_codegen::mechanics::switches::{Switches, switches};
-use appell_codegen::schedule::enclose;
 use appell_codegen::symbolic::Expr;
+use appell_codegen::tape::enclose;
 use appell_runtime::model::{Along, At, ModelInfo, Switching};
 use appell_runtime::real::Enclosure;
 use appell_runtime::signal::SignalError;
@@ -64,7 +64,7 @@ impl Switching for InputSwitches {
     }
 
     fn within(&self, time: Enclosure, p: &[f64], functions: &mut [Enclosure]) {
-        enclose(self.of_time.schedule(), time, p, functions);
+        enclose(self.of_time.tape(), time, p, functions);
     }
 
     fn crossings(&self, at: At<'_>, crossings: &mut [f64]) {

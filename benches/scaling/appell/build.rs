@@ -8,7 +8,8 @@ use std::path::{Path, PathBuf};
 use appell_codegen::compile;
 use appell_codegen::emit::{Options, emit, emit_functions};
 use appell_codegen::program::{FunctionKind as Kind, Program};
-use appell_codegen::schedule::{OperationCount, schedule};
+use appell_codegen::schedule::schedule;
+use appell_codegen::tape::OperationCount;
 
 const COUNTED: [Kind; 5] = [
     Kind::MassMatrixAndBias,

@@ -4,8 +4,8 @@ use std::fmt::Write as _;
 
 use super::types::Types;
 use super::{Real, is_empty};
-use crate::infix::shape;
 use crate::program::{Function, FunctionKind, Layout, Program, Space};
+use crate::text::shape;
 
 /// A function of a model that reads and fills arrays of doubles, with the names of its results. Results without
 /// entries, and functions that the program lacks, are skipped.

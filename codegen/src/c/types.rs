@@ -6,10 +6,10 @@ use appell_runtime::model::Quantity;
 use appell_spec::foreign::sentence;
 
 use super::{Real, is_empty};
-use crate::infix::{Dialect, shape};
 use crate::program::{Array, Function, Layout, Own, Program, Space};
 use crate::schedule::names::{ArgumentNames, identifier};
-use crate::schedule::{Argument, Schedule};
+use crate::tape::{Argument, Tape};
+use crate::text::{Notation, shape};
 
 /// Names of types, fields and arguments.
 pub(super) struct Types<'a> {
@@ -47,7 +47,7 @@ impl<'a> Types<'a> {
     }
 
     pub(super) fn real_name(&self, name: &str) -> String {
-        Dialect::name(&self.real, name)
+        Notation::name(&self.real, name)
     }
 
     /// The local of an argument, with the name of its field.
@@ -219,9 +219,10 @@ impl<'a> Types<'a> {
     }
 
     /// Arguments that a function does not use.
-    pub(super) fn unused(&self, schedule: &Schedule) -> Vec<String> {
+    pub(super) fn unused(&self, tape: &Tape) -> Vec<String> {
         let groups = self.groups();
-        let uses = |is: fn(&Argument) -> bool| schedule.arguments.iter().any(is);
+        let used = tape.arguments();
+        let uses = |is: fn(&Argument) -> bool| used.iter().any(is);
         let all = [
             (
                 groups.time,

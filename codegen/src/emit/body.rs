@@ -1,4 +1,4 @@
-//! The body of a function: its schedule, statement by statement.
+//! The body of a function: its tape, statement by statement.
 
 use syn::{Attribute, Expr, Stmt};
 
@@ -7,40 +7,39 @@ use super::statements::Statements;
 use super::syntax as s;
 use super::types::{Types, result_struct};
 use crate::program::{Array, Function, Layout, Space};
-use crate::schedule::{Argument, Schedule, Tree};
 use crate::symbolic::Rational;
+use crate::tape::{Argument, Operation, Tape, Value};
 
 /// Maximum columns of lines that destructure arguments.
 const COLUMNS: usize = 80;
 
 /// The statements of a function; the last one is its result.
-pub(super) fn body(types: &Types<'_>, function: &Function, schedule: &Schedule) -> Vec<Stmt> {
+pub(super) fn body(types: &Types<'_>, function: &Function, tape: &Tape) -> Vec<Stmt> {
     let mut body = Body {
         types,
-        schedule,
-        statements: Statements::new(&types.names, schedule),
+        tape,
+        statements: Statements::new(&types.names, tape),
     };
     body.arguments();
     body.own(function);
     body.statements.constants();
-    body.statements.steps();
+    body.statements.operations();
     body.results(function);
     body.statements.all
 }
 
 struct Body<'a> {
     types: &'a Types<'a>,
-    schedule: &'a Schedule,
+    tape: &'a Tape,
     statements: Statements<'a>,
 }
 
 impl Body<'_> {
     /// `let &Parameters { m, g, .. } = p;`, on as many lines as the names need.
     fn arguments(&mut self) {
+        let arguments = self.tape.arguments();
         for group in self.types.groups() {
-            let used: Vec<&str> = self
-                .schedule
-                .arguments
+            let used: Vec<&str> = arguments
                 .iter()
                 .filter(|&&argument| group.holds(argument))
                 .map(|&argument| self.types.names.get(argument))
@@ -59,7 +58,7 @@ impl Body<'_> {
             return;
         };
         let accelerations = self.types.fields(Space::Accelerations);
-        for &argument in &self.schedule.arguments {
+        for argument in self.tape.arguments() {
             let value = match argument {
                 Argument::Weight(index) | Argument::OutputWeight(index) => {
                     s::entry(s::name(&own), &[index as usize])
@@ -79,7 +78,7 @@ impl Body<'_> {
         let mut fields = Vec::new();
         let structure = result_struct(function);
         let names = Types::result_fields(function);
-        let results = function.results.iter().zip(&self.schedule.results);
+        let results = function.results.iter().zip(&self.tape.results);
         for ((array, result), name) in results.zip(&names) {
             let value = self.result(array, &result.entries);
             fields.push((name.as_str(), value));
@@ -102,18 +101,18 @@ impl Body<'_> {
         self.statements.all.push(Stmt::Expr(value, None));
     }
 
-    fn result(&self, array: &Array, entries: &[Tree]) -> Expr {
+    fn result(&self, array: &Array, entries: &[Value]) -> Expr {
         match array.layout {
             Layout::Scalar => match entries {
-                [entry, ..] => self.statements.tree(entry),
+                [entry, ..] => self.statements.value(*entry),
                 [] => s::associated("constant", vec![s::number(0.0)]),
             },
-            Layout::Vector(space) => self.vector(space, self.statements.trees(entries)),
-            Layout::List(_) => s::array(self.statements.trees(entries)),
+            Layout::Vector(space) => self.vector(space, self.statements.values(entries)),
+            Layout::List(_) => s::array(self.statements.values(entries)),
             Layout::Rows(space, columns) => {
                 let rows = entries
                     .chunks(columns)
-                    .map(|row| s::array(self.statements.trees(row)));
+                    .map(|row| s::array(self.statements.values(row)));
                 self.vector(space, rows.collect())
             }
             Layout::Matrix(rows, columns) => {
@@ -121,7 +120,7 @@ impl Body<'_> {
                 let lines = (0..rows).map(|row| &entries[row * columns..][..columns]);
                 s::array(
                     lines
-                        .map(|line| s::array(self.statements.trees(line)))
+                        .map(|line| s::array(self.statements.values(line)))
                         .collect(),
                 )
             }
@@ -141,10 +140,11 @@ impl Body<'_> {
     }
 
     /// `Name { field: value, ..Name::splat(zero) }` with the nonzero entries.
-    fn row(&self, space: Space, entries: &[Tree]) -> Expr {
-        let is_zero = |tree: &&Tree| **tree == Tree::Constant(Rational::ZERO);
+    fn row(&self, space: Space, entries: &[Value]) -> Expr {
+        let zero = Operation::Constant(Rational::ZERO);
+        let is_zero = |entry: &&Value| *self.tape.operation(**entry) == zero;
         if entries.iter().filter(is_zero).count() <= 1 {
-            return self.vector(space, self.statements.trees(entries));
+            return self.vector(space, self.statements.values(entries));
         }
         let name = Types::type_name(space);
         let zero = s::name(&self.types.names.constant(&Rational::ZERO));
@@ -155,7 +155,7 @@ impl Body<'_> {
             .iter()
             .zip(entries)
             .filter(|(_, entry)| !is_zero(entry))
-            .map(|(field, entry)| (field.as_str(), self.statements.tree(entry)))
+            .map(|(field, entry)| (field.as_str(), self.statements.value(*entry)))
             .collect();
         if fields.is_empty() {
             zeros

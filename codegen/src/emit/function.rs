@@ -10,7 +10,7 @@ use super::layout::{blank_tokens, code, docs};
 use super::syntax::{ident, known};
 use super::types::{Types, result_struct};
 use crate::program::{Function, Space, Term};
-use crate::schedule::{Argument, OperationCount, Schedule};
+use crate::tape::{Argument, OperationCount, Tape};
 
 /// Meanings of the rows and columns of a plain array that has no struct.
 fn rows_and_columns(function: &Function) -> Vec<String> {
@@ -33,9 +33,9 @@ fn rows_and_columns(function: &Function) -> Vec<String> {
 }
 
 /// Meanings of the names in the body of a function or in its displayed equations.
-fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<String> {
+fn glossary(function: &Function, tape: &Tape, told: &[String]) -> Vec<String> {
     let occurs = |term: &&Term| {
-        let mut names = schedule.names.iter().chain(told);
+        let mut names = tape.names.iter().flatten().chain(told);
         names.any(|name| term.explains(name))
     };
     let mut lines: Vec<String> = function
@@ -54,7 +54,7 @@ fn glossary(function: &Function, schedule: &Schedule, told: &[String]) -> Vec<St
 pub(super) fn function(
     types: &Types<'_>,
     function: &Function,
-    schedule: &Schedule,
+    tape: &Tape,
     cost: &OperationCount,
 ) -> Result<ItemFn, Error> {
     for array in &function.results {
@@ -77,15 +77,16 @@ pub(super) fn function(
     for remark in &function.remarks {
         lines.extend([sentence(remark), String::new()]);
     }
-    lines.extend(glossary(function, schedule, &told));
+    lines.extend(glossary(function, tape, &told));
     lines.push(format!("From {}.", code(&types.program.file)));
     lines.push(format!("Operations: {cost}."));
     let about = docs(&lines);
     let blank = blank_tokens();
+    let used = tape.arguments();
     let uses = |like: Argument| {
         let same =
             |&other: &Argument| std::mem::discriminant(&other) == std::mem::discriminant(&like);
-        schedule.arguments.iter().any(same)
+        used.iter().any(same)
     };
     let argument = |name: &str, used: bool| {
         if used {
@@ -135,6 +136,6 @@ pub(super) fn function(
         ) -> #result {}
     };
     let mut item: ItemFn = syn::parse2(tokens).map_err(|error| Error::Syntax(error.to_string()))?;
-    item.block.stmts = body(types, function, schedule);
+    item.block.stmts = body(types, function, tape);
     Ok(item)
 }

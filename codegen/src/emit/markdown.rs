@@ -8,7 +8,7 @@ use appell_spec::foreign::is_seen;
 use super::layout::{code, escaped};
 use super::types::Types;
 use crate::program::FunctionKind;
-use crate::schedule::OperationCount;
+use crate::tape::OperationCount;
 
 /// Description of a model: title, source, tables of all quantities, costs.
 pub(super) fn page(types: &Types<'_>, costs: &[(FunctionKind, OperationCount)]) -> String {

@@ -1,31 +1,76 @@
-//! Converts the steps of a schedule to statements, with names for its arguments.
-
-use std::collections::BTreeSet;
+//! Converts a tape to statements, with names for its arguments.
 
 use syn::{Attribute, BinOp, Expr, Stmt, token};
 
 use super::layout;
 use super::syntax as s;
-use crate::schedule::names::ArgumentNames;
+use crate::schedule::names::{ArgumentNames, method};
 use crate::schedule::pi::parts_of_pi;
-use crate::schedule::piece::method;
-use crate::schedule::{Operation, Schedule, Step, Tree, Value};
-use crate::symbolic::{Rational, Relation};
+use crate::symbolic::{Function, Rational, Relation};
+use crate::tape::{Arithmetic, Tape, Value};
+use crate::text::{Action, Dialect, Text};
+
+/// Expressions of emitted Rust.
+struct Rust;
+
+impl Dialect for Rust {
+    type Expression = Expr;
+
+    fn name(&self, name: &str) -> Expr {
+        s::name(name)
+    }
+
+    fn number(&self, _: &Rational, name: &str) -> Expr {
+        s::name(name)
+    }
+
+    fn negated(&self, a: Expr) -> Expr {
+        s::negated(a)
+    }
+
+    fn binary(&self, operation: Arithmetic, a: Expr, b: Expr) -> Expr {
+        let operator = match operation {
+            Arithmetic::Add => BinOp::Add(token::Plus::default()),
+            Arithmetic::Subtract => BinOp::Sub(token::Minus::default()),
+            Arithmetic::Multiply => BinOp::Mul(token::Star::default()),
+            Arithmetic::Divide => BinOp::Div(token::Slash::default()),
+        };
+        s::binary(a, operator, b)
+    }
+
+    fn function(&self, function: Function, a: Expr) -> Expr {
+        s::method(a, method(function), Vec::new())
+    }
+
+    fn atan2(&self, y: Expr, x: Expr) -> Expr {
+        s::method(y, "atan2", vec![x])
+    }
+
+    fn power(&self, base: Expr, exponent: Expr) -> Expr {
+        s::method(base, "powf", vec![exponent])
+    }
+
+    fn choice(&self, relation: Relation, operands: [Expr; 4]) -> Expr {
+        let function = match relation {
+            Relation::Less => "if_less",
+            Relation::LessOrEqual => "if_less_or_equal",
+        };
+        s::associated(function, operands.into())
+    }
+}
 
 /// The statements of a function under construction.
 pub(super) struct Statements<'a> {
-    names: &'a ArgumentNames,
-    schedule: &'a Schedule,
+    text: Text<'a, Rust>,
     pub(super) all: Vec<Stmt>,
     /// Comments and blank lines before the next statement.
     pub(super) attributes: Vec<Attribute>,
 }
 
 impl<'a> Statements<'a> {
-    pub(super) fn new(names: &'a ArgumentNames, schedule: &'a Schedule) -> Self {
+    pub(super) fn new(names: &'a ArgumentNames, tape: &'a Tape) -> Self {
         Self {
-            names,
-            schedule,
+            text: Text::new(Rust, tape, names),
             all: Vec::new(),
             attributes: Vec::new(),
         }
@@ -38,17 +83,8 @@ impl<'a> Statements<'a> {
 
     /// `let half = T::constant(0.5);`
     pub(super) fn constants(&mut self) {
-        let mut constants = BTreeSet::new();
-        let entries = self
-            .schedule
-            .results
-            .iter()
-            .flat_map(|array| &array.entries);
-        for tree in trees(&self.schedule.steps).chain(entries) {
-            collect_constants(tree, &mut constants);
-        }
-        for value in constants {
-            let name = self.names.constant(&value);
+        for value in self.text.constants() {
+            let name = self.text.names.constant(&value);
             self.push(
                 s::binding(&name),
                 s::associated("constant", vec![constant(&value)]),
@@ -56,164 +92,48 @@ impl<'a> Statements<'a> {
         }
     }
 
-    fn value(&self, value: Value) -> &str {
-        &self.schedule.names[value.0 as usize]
-    }
-
-    /// All steps.
-    pub(super) fn steps(&mut self) {
-        for step in &self.schedule.steps {
-            self.step(step);
-        }
-    }
-
-    fn step(&mut self, step: &Step) {
-        match step {
-            Step::Let { value, tree } => self.push(s::binding(self.value(*value)), self.tree(tree)),
-            Step::SinCos { sin, cos, angle } => {
-                let pattern = s::tuple_pattern(&[self.value(*sin), self.value(*cos)]);
-                self.push(pattern, s::method(self.tree(angle), "sin_cos", Vec::new()));
-            }
-            Step::Factor {
-                factorisation,
-                size,
-                matrix,
-            } => {
-                let rows = matrix
-                    .chunks(*size)
-                    .map(|row| s::array(self.trees(row)))
-                    .collect();
-                let factors = s::call("lu_factor", vec![s::array(rows)]);
-                self.push(s::binding(&self.factors(*factorisation)), factors);
-            }
-            Step::Solve {
-                factorisation,
-                values,
-                right,
-            } => {
-                let used = self.used();
-                let names: Vec<Option<&str>> = values
-                    .iter()
-                    .map(|value| used.contains(value).then(|| self.value(*value)))
-                    .collect();
-                let factors = s::borrowed(s::name(&self.factors(*factorisation)));
-                let right = s::array(self.trees(right));
-                let solved = s::call("lu_solve", vec![factors, right]);
-                self.push(s::array_pattern(&names), solved);
-            }
-            Step::Paragraph { title } => {
+    /// All operations.
+    pub(super) fn operations(&mut self) {
+        for statement in self.text.statements() {
+            if let Some(title) = statement.heading {
                 self.attributes.push(layout::blank());
                 if !title.is_empty() {
                     self.attributes.push(layout::comment(title));
+                }
+            }
+            match statement.action {
+                Action::Define(name, value) => self.push(s::binding(&name), value),
+                Action::SinCos([sin, cos], angle) => {
+                    let pattern = s::tuple_pattern(&[&sin, &cos]);
+                    self.push(pattern, s::method(angle, "sin_cos", Vec::new()));
+                }
+                Action::Factor(number, rows) => {
+                    let rows = rows.into_iter().map(s::array).collect();
+                    let factors = s::call("lu_factor", vec![s::array(rows)]);
+                    self.push(s::binding(&self.factors(number)), factors);
+                }
+                Action::Solve(number, unknowns, right) => {
+                    let names = unknowns.iter().map(|(name, used)| used.then_some(&**name));
+                    let names: Vec<Option<&str>> = names.collect();
+                    let factors = s::borrowed(s::name(&self.factors(number)));
+                    let solved = s::call("lu_solve", vec![factors, s::array(right)]);
+                    self.push(s::array_pattern(&names), solved);
                 }
             }
         }
     }
 
     /// Name of a factorisation, distinct from values.
-    fn factors(&self, factorisation: u32) -> String {
-        let mut name = format!("lu_{}", factorisation + 1);
-        let taken = |name: &String| {
-            self.schedule.names.contains(name) || self.names.iter().any(|other| other == name)
-        };
-        while taken(&name) {
-            name.push('_');
-        }
-        name
+    fn factors(&self, number: usize) -> String {
+        self.text.free(&format!("lu_{}", number + 1))
     }
 
-    /// Values that are used.
-    fn used(&self) -> BTreeSet<Value> {
-        let entries = self
-            .schedule
-            .results
-            .iter()
-            .flat_map(|array| &array.entries);
-        let mut used = BTreeSet::new();
-        let mut rest: Vec<&Tree> = trees(&self.schedule.steps).chain(entries).collect();
-        while let Some(tree) = rest.pop() {
-            if let Tree::Value(value) = tree {
-                used.insert(*value);
-            }
-            rest.extend(parts(tree));
-        }
-        used
+    pub(super) fn values(&self, values: &[Value]) -> Vec<Expr> {
+        self.text.values(values)
     }
 
-    pub(super) fn trees(&self, trees: &[Tree]) -> Vec<Expr> {
-        trees.iter().map(|tree| self.tree(tree)).collect()
-    }
-
-    // Trees are at most one printed line deep.
-    pub(super) fn tree(&self, tree: &Tree) -> Expr {
-        match tree {
-            Tree::Value(value) => s::name(self.value(*value)),
-            Tree::Argument(argument) => s::name(self.names.get(*argument)),
-            Tree::Constant(value) if value.is_negative() => {
-                s::negated(s::name(&self.names.constant(&value.abs())))
-            }
-            Tree::Constant(value) => s::name(&self.names.constant(value)),
-            Tree::Negate(a) => s::negated(self.tree(a)),
-            Tree::Binary(operation, a, b) => {
-                let operator = match operation {
-                    Operation::Add => BinOp::Add(token::Plus::default()),
-                    Operation::Subtract => BinOp::Sub(token::Minus::default()),
-                    Operation::Multiply => BinOp::Mul(token::Star::default()),
-                    Operation::Divide => BinOp::Div(token::Slash::default()),
-                };
-                s::binary(self.tree(a), operator, self.tree(b))
-            }
-            Tree::Function(function, a) => s::method(self.tree(a), method(*function), Vec::new()),
-            Tree::Atan2(y, x) => s::method(self.tree(y), "atan2", vec![self.tree(x)]),
-            Tree::Power(base, exponent) => {
-                s::method(self.tree(base), "powf", vec![self.tree(exponent)])
-            }
-            Tree::Choice {
-                relation,
-                compared,
-                branches,
-            } => {
-                let function = match relation {
-                    Relation::Less => "if_less",
-                    Relation::LessOrEqual => "if_less_or_equal",
-                };
-                let all = compared.iter().chain(branches.iter());
-                s::associated(function, all.map(|tree| self.tree(tree)).collect())
-            }
-        }
-    }
-}
-
-/// The trees of all steps.
-fn trees(steps: &[Step]) -> impl Iterator<Item = &Tree> {
-    steps.iter().flat_map(|step| match step {
-        Step::Let { tree, .. } => std::slice::from_ref(tree),
-        Step::SinCos { angle, .. } => std::slice::from_ref(angle),
-        Step::Factor { matrix, .. } => matrix,
-        Step::Solve { right, .. } => right,
-        Step::Paragraph { .. } => &[],
-    })
-}
-
-/// The direct subtrees of a tree.
-fn parts(tree: &Tree) -> Vec<&Tree> {
-    match tree {
-        Tree::Value(_) | Tree::Argument(_) | Tree::Constant(_) => Vec::new(),
-        Tree::Negate(a) | Tree::Function(_, a) => vec![a],
-        Tree::Binary(_, a, b) | Tree::Atan2(a, b) | Tree::Power(a, b) => vec![a, b],
-        Tree::Choice {
-            compared, branches, ..
-        } => compared.iter().chain(branches.iter()).collect(),
-    }
-}
-
-fn collect_constants(tree: &Tree, constants: &mut BTreeSet<Rational>) {
-    let mut rest = vec![tree];
-    while let Some(tree) = rest.pop() {
-        if let Tree::Constant(value) = tree {
-            constants.insert(value.abs());
-        }
-        rest.extend(parts(tree));
+    pub(super) fn value(&self, value: Value) -> Expr {
+        self.text.value(value)
     }
 }
 

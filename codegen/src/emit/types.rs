@@ -10,8 +10,8 @@ use super::body::Group;
 use super::layout::{blank_tokens, code, docs, escaped};
 use super::syntax::{ident, known, number};
 use crate::program::{Function, FunctionKind, Layout, Own, Program, Space};
-use crate::schedule::Argument;
 use crate::schedule::names::{ArgumentNames, Names};
+use crate::tape::Argument;
 
 /// Names of types and fields.
 pub(super) struct Types<'a> {
@@ -279,13 +279,15 @@ impl<'a> Types<'a> {
                     &quote!(Default for Parameters<f64>),
                     &quote!(fn default),
                     "The values of the spec.",
-                    (&self.names.parameters, &info.parameters),
+                    &self.names.parameters,
+                    &info.parameters,
                 )),
                 Space::State => items.push(spec_values(
                     &quote!(State<f64>),
                     &quote!(#[must_use] pub fn initial),
                     "The initial state of the spec; the default is zero.",
-                    (&self.names.states, &info.states),
+                    &self.names.states,
+                    &info.states,
                 )),
                 Space::Rates => items.push(self.parts_of_rates()),
                 _ => {}
@@ -406,7 +408,8 @@ fn spec_values(
     implementation: &TokenStream,
     signature: &TokenStream,
     about: &str,
-    (labels, quantities): (&[String], &[Quantity]),
+    labels: &[String],
+    quantities: &[Quantity],
 ) -> TokenStream {
     if labels.is_empty() {
         return TokenStream::new();

@@ -78,7 +78,7 @@ pub(super) fn kane(
     }
     let graph = &mut algebra.graph;
     for &(speed, rate) in given {
-        give(graph, (&mut mass_matrix, &mut bias), speed, rate);
+        give(graph, &mut mass_matrix, &mut bias, speed, rate);
         forces[speed] = rate;
     }
     let right = forces.iter().zip(&bias).map(|(&f, &b)| graph.sub(f, b));
@@ -109,7 +109,8 @@ pub(super) fn kane(
 /// Prescribes the rate of a speed and moves its terms in the other equations to the bias.
 fn give(
     graph: &mut Graph,
-    (mass_matrix, bias): (&mut [Vec<Expr>], &mut [Expr]),
+    mass_matrix: &mut [Vec<Expr>],
+    bias: &mut [Expr],
     speed: usize,
     rate: Expr,
 ) {

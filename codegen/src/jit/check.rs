@@ -1,29 +1,28 @@
 //! Checks the assumptions of the translation before it starts.
 
 use appell_runtime::model::ModelInfo;
-use rustc_hash::FxHashMap;
 
 use super::JitError;
-use crate::schedule::{Argument, ResultArray, Schedule, Step, Tree, Value};
+use crate::tape::{Argument, Operation, Tape, Value};
 
 /// The longest function that is compiled. Beyond it compilation takes more than a second, and the frame may
 /// need most of a thread's stack.
 pub const MOST_OPERATIONS: usize = 100_000;
-/// The deepest nesting of an expression.
-pub const MOST_DEPTH: usize = 500;
 /// The largest linear system; its factors live on the stack.
 pub const MOST_ROWS: usize = 64;
 
 /// Arguments beyond it cannot be addressed by a load with a constant offset.
 const MOST_ARGUMENTS: usize = 1 << 24;
 
-/// A schedule that can be translated: values and factorisations are defined before they are used, systems have
-/// consistent sizes, and the limits hold.
+/// A tape that can be translated: operands come before their users, parts directly after the operation that
+/// computes them, systems have consistent sizes, and the limits hold.
 #[derive(Debug)]
 pub(super) struct Checked<'a> {
-    pub(super) schedule: &'a Schedule,
-    /// Rows of the factorisations, by their number.
-    pub(super) rows: FxHashMap<u32, usize>,
+    pub(super) tape: &'a Tape,
+    /// Operations, without arguments, numbers and parts.
+    pub(super) operations: usize,
+    /// Rows of the largest system.
+    pub(super) rows: usize,
     /// The number of weights used, counted from the first.
     pub(super) weights: usize,
 }
@@ -49,109 +48,119 @@ impl From<&ModelInfo> for Sizes {
     }
 }
 
-/// Checks a schedule of a model with arguments of these sizes.
-pub(super) fn check(schedule: &Schedule, sizes: Sizes) -> Result<Checked<'_>, JitError> {
+/// Checks a tape of a model with arguments of these sizes.
+pub(super) fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
     let mut checker = Checker {
+        tape,
         sizes,
-        defined: vec![false; schedule.names.len()],
         operations: 0,
-        rows: FxHashMap::default(),
+        rows: 0,
         weights: 0,
     };
-    for step in &schedule.steps {
-        checker.step(step)?;
+    for (place, operation) in (0..).map(Value).zip(&tape.operations) {
+        checker.operation(place, operation)?;
     }
-    for ResultArray { entries, .. } in &schedule.results {
-        checker.trees(entries)?;
+    let end = Value(u32::try_from(tape.operations.len()).unwrap_or(u32::MAX));
+    for result in &tape.results {
+        checker.count(result.entries.len())?;
+        checker.numbers(&result.entries, end)?;
     }
     Ok(Checked {
-        schedule,
+        tape,
+        operations: checker.operations,
         rows: checker.rows,
         weights: checker.weights,
     })
 }
 
-/// Lengths of the results of a schedule.
-pub(super) fn lengths(schedule: &Schedule) -> Vec<usize> {
-    schedule
-        .results
-        .iter()
-        .map(|result| result.entries.len())
-        .collect()
-}
-
-struct Checker {
+struct Checker<'a> {
+    tape: &'a Tape,
     sizes: Sizes,
-    defined: Vec<bool>,
     operations: usize,
-    rows: FxHashMap<u32, usize>,
+    rows: usize,
     weights: usize,
 }
 
-impl Checker {
-    fn step(&mut self, step: &Step) -> Result<(), JitError> {
-        match step {
-            Step::Let { value, tree } => {
-                self.tree(tree, 0)?;
-                self.define(*value)
+impl Checker<'_> {
+    fn operation(&mut self, place: Value, operation: &Operation) -> Result<(), JitError> {
+        match operation {
+            Operation::Argument(argument) => self.argument(*argument),
+            Operation::Constant(_) => Ok(()),
+            Operation::Negate(_)
+            | Operation::Binary(..)
+            | Operation::Function(..)
+            | Operation::Atan2(..)
+            | Operation::Power(..) => {
+                self.count(1)?;
+                self.numbers(&operation.operands(), place)
             }
-            Step::SinCos { sin, cos, angle } => {
+            Operation::Choice { .. } => {
                 self.count(2)?;
-                self.tree(angle, 0)?;
-                self.define(*sin)?;
-                self.define(*cos)
+                self.numbers(&operation.operands(), place)
             }
-            Step::Factor {
+            Operation::SinCos(_) => {
+                self.count(2)?;
+                self.numbers(&operation.operands(), place)?;
+                self.parts(place, 2)
+            }
+            Operation::Factorise(matrix) => self.factorise(place, matrix),
+            Operation::Solve {
                 factorisation,
-                size,
-                matrix,
-            } => self.factor(*factorisation, *size, matrix),
-            Step::Solve {
-                factorisation,
-                values,
                 right,
-            } => self.solve(*factorisation, values, right),
-            Step::Paragraph { .. } => Ok(()),
+            } => self.solve(place, *factorisation, right),
+            Operation::Part(whole, index) => {
+                let is_part = *whole < place
+                    && whole.part(*index) == place
+                    && (*index as usize) < self.tape.operation(*whole).parts();
+                is_part
+                    .then_some(())
+                    .ok_or(JitError::MisplacedPart { value: place.0 })
+            }
         }
     }
 
-    fn factor(&mut self, factorisation: u32, rows: usize, matrix: &[Tree]) -> Result<(), JitError> {
+    fn factorise(&mut self, place: Value, matrix: &[Value]) -> Result<(), JitError> {
+        let rows = matrix.len().isqrt();
         if rows > MOST_ROWS {
             return Err(JitError::TooManyRows {
                 rows,
                 most: MOST_ROWS,
             });
         }
-        shape(factorisation, rows * rows, matrix.len())?;
+        shape(place, (rows * rows).max(1), matrix.len())?;
         // Includes the factors: each factorisation has its own on the stack.
-        self.count(2 * rows * rows)?;
-        self.trees(matrix)?;
-        self.rows.insert(factorisation, rows);
-        Ok(())
+        self.count(3 * matrix.len())?;
+        self.rows = self.rows.max(rows);
+        self.numbers(matrix, place)
     }
 
     fn solve(
         &mut self,
-        factorisation: u32,
-        values: &[Value],
-        right: &[Tree],
+        place: Value,
+        factorisation: Value,
+        right: &[Value],
     ) -> Result<(), JitError> {
-        let Some(&rows) = self.rows.get(&factorisation) else {
-            return Err(JitError::UndefinedFactorisation { factorisation });
+        let earlier = (factorisation < place).then(|| self.tape.operation(factorisation));
+        let Some(Operation::Factorise(matrix)) = earlier else {
+            return Err(JitError::NotAFactorisation {
+                value: factorisation.0,
+            });
         };
-        shape(factorisation, rows, right.len())?;
-        shape(factorisation, rows, values.len())?;
-        self.trees(right)?;
-        values.iter().try_for_each(|&value| self.define(value))
+        shape(place, matrix.len().isqrt(), right.len())?;
+        self.count(right.len())?;
+        self.numbers(right, place)?;
+        self.parts(place, right.len())
     }
 
-    fn define(&mut self, Value(value): Value) -> Result<(), JitError> {
-        match self.defined.get_mut(value as usize) {
-            Some(defined) => {
-                *defined = true;
-                Ok(())
-            }
-            None => Err(JitError::UndefinedValue { value }),
+    /// All parts of an operation follow it.
+    fn parts(&self, whole: Value, count: usize) -> Result<(), JitError> {
+        let next = self.tape.operations.iter().skip(whole.index() + 1);
+        let found = next.zip(0..).take(count);
+        let found = found.filter(|&(part, index)| *part == Operation::Part(whole, index));
+        if found.count() == count {
+            Ok(())
+        } else {
+            Err(JitError::MisplacedPart { value: whole.0 })
         }
     }
 
@@ -166,42 +175,15 @@ impl Checker {
         Ok(())
     }
 
-    /// Trees that are stored in memory.
-    fn trees(&mut self, trees: &[Tree]) -> Result<(), JitError> {
-        self.count(trees.len())?;
-        trees.iter().try_for_each(|tree| self.tree(tree, 0))
-    }
-
-    fn tree(&mut self, tree: &Tree, depth: usize) -> Result<(), JitError> {
-        if depth > MOST_DEPTH {
-            return Err(JitError::TooDeep { most: MOST_DEPTH });
-        }
-        let below = depth + 1;
-        match tree {
-            Tree::Constant(_) => Ok(()),
-            Tree::Value(Value(value)) => match self.defined.get(*value as usize) {
-                Some(true) => Ok(()),
-                _ => Err(JitError::UndefinedValue { value: *value }),
-            },
-            Tree::Argument(argument) => self.argument(*argument),
-            Tree::Negate(a) | Tree::Function(_, a) => {
-                self.count(1)?;
-                self.tree(a, below)
-            }
-            Tree::Binary(_, a, b) | Tree::Atan2(a, b) | Tree::Power(a, b) => {
-                self.count(1)?;
-                self.tree(a, below)?;
-                self.tree(b, below)
-            }
-            Tree::Choice {
-                compared, branches, ..
-            } => {
-                self.count(2)?;
-                compared
-                    .iter()
-                    .chain(branches.iter())
-                    .try_for_each(|tree| self.tree(tree, below))
-            }
+    /// Operands are numbers computed before `place`.
+    fn numbers(&self, operands: &[Value], place: Value) -> Result<(), JitError> {
+        let is_number = |value: Value| self.tape.operation(value).is_number();
+        match operands
+            .iter()
+            .find(|&&value| value >= place || !is_number(value))
+        {
+            Some(value) => Err(JitError::UndefinedValue { value: value.0 }),
+            None => Ok(()),
         }
     }
 
@@ -228,12 +210,12 @@ impl Checker {
     }
 }
 
-fn shape(factorisation: u32, expected: usize, found: usize) -> Result<(), JitError> {
+fn shape(place: Value, expected: usize, found: usize) -> Result<(), JitError> {
     if expected == found {
         Ok(())
     } else {
         Err(JitError::SystemShape {
-            factorisation,
+            value: place.0,
             expected,
             found,
         })

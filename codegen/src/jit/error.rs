@@ -7,7 +7,7 @@ use thiserror::Error;
 
 use crate::program::FunctionKind;
 
-/// A schedule or program that could not be compiled.
+/// A tape or program that could not be compiled.
 #[derive(Debug, Error)]
 pub enum JitError {
     /// No code can be generated for this processor.
@@ -30,12 +30,6 @@ pub enum JitError {
         /// The limit.
         most: usize,
     },
-    /// An expression is nested too deeply.
-    #[error("an expression is nested more than {most} levels deep")]
-    TooDeep {
-        /// The limit.
-        most: usize,
-    },
     /// A linear system is too large for the stack.
     #[error("a linear system has {rows} unknowns; at most {most} are compiled")]
     TooManyRows {
@@ -44,23 +38,31 @@ pub enum JitError {
         /// The limit.
         most: usize,
     },
-    /// A value is used before any step defines it, or has no name.
+    /// A value is used that no earlier operation computes as a number.
     #[error("value {value} is not defined where it is used")]
     UndefinedValue {
         /// Number of the value.
         value: u32,
     },
-    /// A system is solved before its matrix is factorised.
-    #[error("factorisation {factorisation} is not defined where it is used")]
-    UndefinedFactorisation {
-        /// Number of the factorisation.
-        factorisation: u32,
+    /// A system is solved without the factorisation of its matrix.
+    #[error("value {value} is no factorisation of a matrix")]
+    NotAFactorisation {
+        /// Number of the value.
+        value: u32,
+    },
+    /// The parts of an operation do not follow it directly.
+    #[error(
+        "value {value}: parts follow the operation that computes them, all of them and in their order"
+    )]
+    MisplacedPart {
+        /// Number of the value.
+        value: u32,
     },
     /// A system whose numbers of entries, unknowns and right-hand sides do not fit.
-    #[error("factorisation {factorisation}: {found} entries where {expected} belong")]
+    #[error("system {value}: {found} entries where {expected} belong")]
     SystemShape {
-        /// Number of the factorisation.
-        factorisation: u32,
+        /// Number of the factorisation or solution.
+        value: u32,
         /// Entries that fit its size.
         expected: usize,
         /// Entries found.
@@ -76,31 +78,11 @@ pub enum JitError {
         /// How many there are.
         len: usize,
     },
-    /// The program lacks a function that its sizes require.
+    /// The program lacks the rates.
     #[error("the program has no function {kind:?}")]
     MissingFunction {
         /// Which one.
         kind: FunctionKind,
-    },
-    /// The function lacks a result.
-    #[error("function {kind:?} has no result `{result}`")]
-    MissingResult {
-        /// Which function.
-        kind: FunctionKind,
-        /// Name of the result.
-        result: &'static str,
-    },
-    /// A result has a size that contradicts the model's.
-    #[error("result `{result}` of {kind:?} has {found} entries where {expected} belong")]
-    ResultLength {
-        /// Which function.
-        kind: FunctionKind,
-        /// Name of the result.
-        result: &'static str,
-        /// Entries that fit the model.
-        expected: usize,
-        /// Entries found.
-        found: usize,
     },
     /// The compiler failed, or the system gave no memory for code.
     #[error("compilation failed")]

@@ -17,19 +17,19 @@ pub(super) enum Use {
 }
 
 impl Use {
-    /// Number of steps beyond which a function is long.
+    /// Number of operations, as [`Checked`](super::check::Checked) counts them, beyond which a function is long.
     const fn long(self) -> usize {
         match self {
-            Self::Lasting => 6000,
-            Self::Brief => 600,
+            Self::Lasting => 12_000,
+            Self::Brief => 1200,
         }
     }
 }
 
-/// The instruction set of this processor, for a function of a given number of steps; determined once.
-pub(super) fn target(steps: usize, of: Use) -> Result<OwnedTargetIsa, JitError> {
+/// The instruction set of this processor, for a function of a given number of operations; determined once.
+pub(super) fn target(operations: usize, of: Use) -> Result<OwnedTargetIsa, JitError> {
     static TARGETS: [OnceLock<OwnedTargetIsa>; 2] = [OnceLock::new(), OnceLock::new()];
-    let is_long = steps > of.long();
+    let is_long = operations > of.long();
     let known = &TARGETS[usize::from(is_long)];
     if let Some(target) = known.get() {
         return Ok(target.clone());

@@ -5,18 +5,18 @@ use cranelift_jit::{JITBuilder, JITModule};
 use cranelift_module::{Module, ModuleError, default_libcall_names};
 
 use super::JitError;
-use super::check::{Sizes, check, lengths};
+use super::check::{Sizes, check};
 use super::elementary::Elementary;
 use super::host::{self, Use};
 use super::memory::Code;
 use super::translate::{signature, translate};
-use crate::schedule::Schedule;
+use crate::tape::Tape;
 
 /// `t`, states, inputs, parameters, weights, addresses of the results.
 type Entry =
     unsafe extern "C" fn(f64, *const f64, *const f64, *const f64, *const f64, *const *mut f64);
 
-/// One schedule in machine code. The code lives as long as this value; several threads may call it
+/// One tape in machine code. The code lives as long as this value; several threads may call it
 /// at the same time.
 #[derive(Debug)]
 pub struct NativeFunction {
@@ -30,28 +30,29 @@ pub struct NativeFunction {
 }
 
 impl NativeFunction {
-    /// Compiles a schedule of a model with arguments of these sizes. It calls the elementary functions
+    /// Compiles a tape of a model with arguments of these sizes. It calls the elementary functions
     /// of the standard library.
-    pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
-        Self::compile_with(schedule, sizes, Elementary::Standard)
+    pub fn compile(tape: &Tape, sizes: Sizes) -> Result<Self, JitError> {
+        Self::compile_with(tape, sizes, Elementary::Standard)
     }
 
     /// [`Self::compile`] with the given elementary functions.
     pub fn compile_with(
-        schedule: &Schedule,
+        tape: &Tape,
         sizes: Sizes,
         elementary: Elementary,
     ) -> Result<Self, JitError> {
-        Self::compile_for(schedule, sizes, (elementary, Use::Lasting))
+        Self::compile_for(tape, sizes, elementary, Use::Lasting)
     }
 
     pub(super) fn compile_for(
-        schedule: &Schedule,
+        tape: &Tape,
         sizes: Sizes,
-        (elementary, of): (Elementary, Use),
+        elementary: Elementary,
+        of: Use,
     ) -> Result<Self, JitError> {
-        let checked = check(schedule, sizes)?;
-        let target = host::target(schedule.steps.len(), of)?;
+        let checked = check(tape, sizes)?;
+        let target = host::target(checked.operations, of)?;
         let builder = JITBuilder::with_isa(target, default_libcall_names());
         let mut module = JITModule::new(builder);
         let config = module.target_config();
@@ -67,16 +68,16 @@ impl NativeFunction {
             entry: unsafe { std::mem::transmute::<*const u8, Entry>(entry) },
             sizes,
             weights: checked.weights,
-            results: lengths(schedule),
+            results: tape.lengths(),
             _code: code,
         })
     }
 
-    /// Evaluates the function: one slice for each result of the schedule, in its order.
+    /// Evaluates the function: one slice for each result of the tape, in its order.
     ///
     /// # Panics
     ///
-    /// If the length of a slice differs from the schedule's results or from the sizes it was compiled for; no
+    /// If the length of a slice differs from the tape's results or from the sizes it was compiled for; no
     /// code is executed then.
     #[inline]
     pub fn call<const N: usize>(&self, at: At<'_>, results: [&mut [f64]; N]) {
@@ -87,7 +88,7 @@ impl NativeFunction {
     ///
     /// # Panics
     ///
-    /// As [`Self::call`], and if there are fewer weights than the schedule uses.
+    /// As [`Self::call`], and if there are fewer weights than the tape uses.
     #[inline]
     pub fn call_weighted<const N: usize>(
         &self,
@@ -98,7 +99,7 @@ impl NativeFunction {
         check_lengths(at, self.sizes, &results, &self.results);
         check_weights(weights, self.weights);
         let results = results.map(<[f64]>::as_mut_ptr);
-        // SAFETY: the schedule's check bounds every read by `sizes` and by the weights that it
+        // SAFETY: the tape's check bounds every read by `sizes` and by the weights that it
         // counted, and the translation writes
         // each result from its start to its length; both were compared above. The references promise that the
         // memory is valid and that results overlap neither each other nor the arguments. The code

@@ -1,25 +1,19 @@
 //! Lazy compilation of one function of a model, with the interpreter as fallback.
 
+use std::fmt;
 use std::sync::OnceLock;
 
 use appell_runtime::model::At;
 
-use super::check::lengths;
 use super::host::Use;
 use super::native::check_lengths;
 use super::{Elementary, JitError, NativeFunction, Sizes};
-use crate::program::{Function, FunctionKind, Program};
-use crate::schedule::{ResultArray, Schedule, interpret_weighted, schedule};
+use crate::tape::{Tape, interpret_weighted};
 
-/// A requested result of a function: its name and its length.
-pub(super) type Wanted = (&'static str, usize);
-
-/// Some results of a function of a program, compiled on first use.
+/// A function, compiled at its first use.
 pub(super) struct OnDemand {
-    kind: FunctionKind,
-    wanted: Vec<Wanted>,
     of: Use,
-    schedule: OnceLock<Schedule>,
+    tape: OnceLock<Tape>,
     ready: OnceLock<Ready>,
 }
 
@@ -29,8 +23,7 @@ pub(super) enum Ready {
     Native(NativeFunction),
     /// Interpreted, because compilation failed.
     Interpreted {
-        /// The function, restricted to the requested results.
-        schedule: Schedule,
+        tape: Tape,
         /// Lengths of the arguments.
         sizes: Sizes,
         /// Lengths of the results.
@@ -41,69 +34,30 @@ pub(super) enum Ready {
 }
 
 impl OnDemand {
-    /// The requested results of a function. A program may omit results without entries.
-    pub(super) fn new(
-        program: &Program,
-        kind: FunctionKind,
-        wanted: Vec<Wanted>,
-        of: Use,
-    ) -> Result<Self, JitError> {
-        let function = find(program, kind);
-        for &(result, expected) in wanted.iter().filter(|(_, len)| *len > 0) {
-            let function = function.ok_or(JitError::MissingFunction { kind })?;
-            let array = function
-                .results
-                .iter()
-                .find(|array| array.name == result)
-                .ok_or(JitError::MissingResult { kind, result })?;
-            let found = array.entries.len();
-            if found != expected {
-                return Err(JitError::ResultLength {
-                    kind,
-                    result,
-                    expected,
-                    found,
-                });
-            }
-        }
-        Ok(Self {
-            kind,
-            wanted,
+    pub(super) const fn new(of: Use) -> Self {
+        Self {
             of,
-            schedule: OnceLock::new(),
+            tape: OnceLock::new(),
             ready: OnceLock::new(),
-        })
+        }
+    }
+
+    /// The function's tape, made at its first use.
+    pub(super) fn tape(&self, make: impl FnOnce() -> Tape) -> &Tape {
+        self.tape.get_or_init(make)
     }
 
     /// Compiles the function now, or returns why this is impossible.
-    pub(super) fn compile(&self, program: &Program, sizes: Sizes) -> Result<(), JitError> {
-        let native = NativeFunction::compile(self.schedule(program), sizes)?;
+    pub(super) fn compile(&self, tape: &Tape, sizes: Sizes) -> Result<(), JitError> {
+        let native = NativeFunction::compile(tape, sizes)?;
         self.ready.get_or_init(|| Ready::Native(native));
         Ok(())
     }
 
-    /// Compiles the function now, or prepares its interpretation.
-    pub(super) fn prepare(&self, program: &Program, sizes: Sizes) {
-        self.ready(program, sizes);
-    }
-
-    /// Evaluates the function; see [`NativeFunction::call_weighted`].
+    /// The function, compiled if that is possible.
     #[inline]
-    pub(super) fn call<const N: usize>(
-        &self,
-        program: &Program,
-        sizes: Sizes,
-        at: At<'_>,
-        weights: &[f64],
-        out: [&mut [f64]; N],
-    ) {
-        self.ready(program, sizes).call(at, weights, out);
-    }
-
-    /// The function, prepared on first use.
-    #[inline]
-    fn ready(&self, program: &Program, sizes: Sizes) -> &Ready {
-        self.ready.get_or_init(|| self.make(program, sizes))
+    pub(super) fn ready<'t>(&self, tape: impl FnOnce() -> &'t Tape, sizes: Sizes) -> &Ready {
+        self.ready.get_or_init(|| Ready::of(tape(), sizes, self.of))
     }
 
     /// Why the function is interpreted, if it is.
@@ -113,59 +67,17 @@ impl OnDemand {
             Ready::Interpreted { reason, .. } => Some(reason),
         }
     }
-
-    #[cold]
-    fn make(&self, program: &Program, sizes: Sizes) -> Ready {
-        Ready::of(self.schedule(program).clone(), sizes, self.of)
-    }
-
-    /// Uses another schedule, made on first use.
-    #[inline]
-    pub(super) fn follow(&self, make: impl FnOnce() -> Schedule) {
-        self.schedule.get_or_init(make);
-    }
-
-    pub(super) fn schedule(&self, program: &Program) -> &Schedule {
-        self.schedule.get_or_init(|| self.find_schedule(program))
-    }
-
-    /// The steps of the whole function, so that results do not depend on the selection, with only the requested
-    /// results. The compiler eliminates dead steps.
-    fn find_schedule(&self, program: &Program) -> Schedule {
-        let whole =
-            find(program, self.kind).filter(|_| self.wanted.iter().any(|&(_, len)| len > 0));
-        let mut schedule = match whole {
-            Some(function) => schedule(program, function),
-            None => Schedule {
-                arguments: Vec::new(),
-                steps: Vec::new(),
-                results: Vec::new(),
-                names: Vec::new(),
-            },
-        };
-        let mut all = std::mem::take(&mut schedule.results);
-        let wanted = self.wanted.iter().map(|&(name, _)| {
-            match all.iter().position(|result| result.name == name) {
-                Some(index) => all.swap_remove(index),
-                None => ResultArray {
-                    name: name.to_owned(),
-                    entries: Vec::new(),
-                },
-            }
-        });
-        schedule.results = wanted.collect();
-        schedule
-    }
 }
 
 impl Ready {
-    /// Compiles a schedule if that is possible.
-    fn of(schedule: Schedule, sizes: Sizes, of: Use) -> Self {
-        match NativeFunction::compile_for(&schedule, sizes, (Elementary::Standard, of)) {
+    /// Compiles a tape if that is possible.
+    #[cold]
+    fn of(tape: &Tape, sizes: Sizes, of: Use) -> Self {
+        match NativeFunction::compile_for(tape, sizes, Elementary::Standard, of) {
             Ok(native) => Self::Native(native),
             Err(reason) => Self::Interpreted {
-                results: lengths(&schedule),
-                schedule,
+                results: tape.lengths(),
+                tape: tape.clone(),
                 sizes,
                 reason,
             },
@@ -178,13 +90,13 @@ impl Ready {
         match self {
             Self::Native(native) => native.call_weighted(at, weights, out),
             Self::Interpreted {
-                schedule,
+                tape,
                 sizes,
                 results,
                 ..
             } => {
                 check_lengths(at, *sizes, &out, results);
-                let computed = interpret_weighted(schedule, at, weights);
+                let computed = interpret_weighted(tape, at, weights);
                 for (out, computed) in out.into_iter().zip(computed) {
                     out.copy_from_slice(&computed);
                 }
@@ -193,9 +105,8 @@ impl Ready {
     }
 }
 
-fn find(program: &Program, kind: FunctionKind) -> Option<&Function> {
-    program
-        .functions
-        .iter()
-        .find(|function| function.kind == kind)
+impl fmt::Debug for OnDemand {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_struct("OnDemand").finish_non_exhaustive()
+    }
 }

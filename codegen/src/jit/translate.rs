@@ -1,6 +1,6 @@
-//! Translates a checked schedule to the compiler's intermediate representation.
+//! Translates a checked tape to the compiler's intermediate representation.
 //!
-//! A schedule has no branches, so the function is a single basic block. The compiler eliminates dead code and
+//! A tape has no branches, so the function is a single basic block. The compiler eliminates dead code and
 //! schedules instructions; it neither fuses nor reorders floating-point arithmetic.
 
 use cranelift_codegen::ir::condcodes::FloatCC;
@@ -16,8 +16,8 @@ use rustc_hash::FxHashMap;
 use super::check::Checked;
 use super::dense::Routines;
 use super::elementary::Elementary;
-use crate::schedule::{Argument, Operation, ResultArray, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
+use crate::tape::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
 
 /// Signature of compiled functions: `t`, then the addresses of states, inputs, parameters, weights
 /// and of a list with the address of each result.
@@ -36,10 +36,10 @@ pub(super) fn translate(
 ) {
     let mut context = FunctionBuilderContext::new();
     let mut translation = Translation::new(checked, elementary, config, function, &mut context);
-    for step in &checked.schedule.steps {
-        translation.step(step);
+    for value in (0..).map(Value).take(checked.tape.operations.len()) {
+        translation.operation(value);
     }
-    translation.remaining_results();
+    translation.leaves_of_results();
     translation.builder.ins().return_(&[]);
     translation.builder.finalize(config);
 }
@@ -49,7 +49,8 @@ struct Translation<'a> {
     config: TargetFrontendConfig,
     elementary: Elementary,
     received: Received,
-    /// Results of the steps.
+    tape: &'a Tape,
+    /// Values computed so far. Arguments and numbers are not among them; see [`Self::value`].
     values: Vec<ir::Value>,
     /// Signatures declared so far.
     signatures: FxHashMap<Shape, SigRef>,
@@ -59,7 +60,9 @@ struct Translation<'a> {
     matrix: StackSlot,
     /// Right-hand side, overwritten by the solution.
     right: StackSlot,
-    factorisations: FxHashMap<u32, Factorisation>,
+    factorisations: FxHashMap<Value, Factorisation>,
+    /// Where the parts of the latest operation with parts are.
+    parts: StackSlot,
     results: Results<'a>,
 }
 
@@ -123,9 +126,9 @@ impl<'a> Translation<'a> {
             weights: builder.block_params(block)[4],
             results: builder.block_params(block)[5],
         };
-        // A checked schedule defines values before their use; until then they are zero.
+        // A checked tape defines values before their use; until then they are zero.
         let zero = builder.ins().f64const(0.0);
-        let rows = checked.rows.values().copied().max().unwrap_or(0);
+        let rows = checked.rows;
         let [pair, matrix, right] =
             [2, rows * rows, rows].map(|numbers| slot(&mut builder, numbers * size_of::<f64>()));
         Self {
@@ -133,61 +136,106 @@ impl<'a> Translation<'a> {
             config,
             elementary,
             received,
-            values: vec![zero; checked.schedule.names.len()],
+            tape: checked.tape,
+            values: vec![zero; checked.tape.operations.len()],
             signatures: FxHashMap::default(),
             pair,
             matrix,
             right,
             factorisations: FxHashMap::default(),
-            results: Results::new(&checked.schedule.results),
+            parts: pair,
+            results: Results::new(&checked.tape.results),
         }
     }
 
-    fn step(&mut self, step: &Step) {
-        match step {
-            Step::Let { value, tree } => {
-                let computed = self.tree(tree);
-                self.define(*value, computed);
+    fn operation(&mut self, value: Value) {
+        let computed = match self.tape.operation(value) {
+            // Loaded at each use: reloading is cheaper than a spilled register.
+            Operation::Argument(_) | Operation::Constant(_) => return,
+            Operation::Negate(a) => {
+                let a = self.value(*a);
+                self.builder.ins().fneg(a)
             }
-            Step::SinCos { sin, cos, angle } => {
-                let angle = self.tree(angle);
-                self.sin_cos(*sin, *cos, angle);
+            Operation::Binary(operation, a, b) => {
+                let (a, b) = (self.value(*a), self.value(*b));
+                let instruction = self.builder.ins();
+                match operation {
+                    Arithmetic::Add => instruction.fadd(a, b),
+                    Arithmetic::Subtract => instruction.fsub(a, b),
+                    Arithmetic::Multiply => instruction.fmul(a, b),
+                    Arithmetic::Divide => instruction.fdiv(a, b),
+                }
             }
-            Step::Factor {
+            Operation::Function(function, a) => {
+                let a = self.value(*a);
+                self.function(*function, a)
+            }
+            Operation::Atan2(y, x) => {
+                let arguments = [self.value(*y), self.value(*x)];
+                let routine = self.elementary.atan2() as *const ();
+                self.call(Shape::Binary, routine, &arguments)[0]
+            }
+            Operation::Power(base, exponent) => {
+                let arguments = [self.value(*base), self.value(*exponent)];
+                let routine = self.elementary.powf() as *const ();
+                self.call(Shape::Binary, routine, &arguments)[0]
+            }
+            Operation::Choice {
+                relation,
+                compared,
+                branches,
+            } => {
+                let compared = compared.map(|value| self.value(value));
+                let branches = branches.map(|value| self.value(value));
+                let condition = match relation {
+                    Relation::Less => FloatCC::LessThan,
+                    Relation::LessOrEqual => FloatCC::LessThanOrEqual,
+                };
+                self.choose(condition, compared, branches)
+            }
+            Operation::SinCos(angle) => return self.sin_cos(*angle),
+            Operation::Factorise(matrix) => return self.factor(value, matrix),
+            Operation::Solve {
                 factorisation,
-                size,
-                matrix,
-            } => self.factor(*factorisation, *size, matrix),
-            Step::Solve {
-                factorisation,
-                values,
                 right,
-            } => self.solve(*factorisation, values, right),
-            Step::Paragraph { .. } => {}
+            } => return self.solve(*factorisation, right),
+            Operation::Part(_, index) => {
+                let (pointer, parts) = (self.config.pointer_type(), self.parts);
+                let place = offset(*index as usize);
+                self.builder.ins().stack_load(pointer, F64, parts, place)
+            }
+        };
+        self.define(value, computed);
+    }
+
+    /// A value that an operation uses.
+    fn value(&mut self, value: Value) -> ir::Value {
+        match self.tape.operation(value) {
+            Operation::Argument(argument) => self.argument(*argument),
+            Operation::Constant(number) => self.builder.ins().f64const(number.to_f64()),
+            _ => self.values[value.index()],
         }
     }
 
     fn define(&mut self, value: Value, computed: ir::Value) {
-        self.values[value.0 as usize] = computed;
+        self.values[value.index()] = computed;
         for (array, entry) in self.results.places.remove(&value).unwrap_or_default() {
             self.store_result(array, entry, computed);
         }
     }
 
-    fn sin_cos(&mut self, sin: Value, cos: Value, angle: ir::Value) {
+    fn sin_cos(&mut self, angle: Value) {
         // By memory: as fast as two result registers, and the same on every platform.
+        let angle = self.value(angle);
         let pointer = self.config.pointer_type();
-        let pair = self.pair;
-        let to = self.builder.ins().stack_addr(pointer, pair, 0);
+        let to = self.builder.ins().stack_addr(pointer, self.pair, 0);
         let routine = self.elementary.sin_cos() as *const ();
         self.call(Shape::Pair, routine, &[angle, to]);
-        for (index, value) in [sin, cos].into_iter().enumerate() {
-            self.load(value, pair, index);
-        }
+        self.parts = self.pair;
     }
 
-    fn factor(&mut self, factorisation: u32, rows: usize, matrix: &[Tree]) {
-        let from = self.matrix;
+    fn factor(&mut self, factorisation: Value, matrix: &[Value]) {
+        let (from, rows) = (self.matrix, matrix.len().isqrt());
         let routines = Routines::new(rows);
         let slot = slot(&mut self.builder, routines.bytes);
         self.store_all(from, matrix);
@@ -201,34 +249,22 @@ impl<'a> Translation<'a> {
         self.factorisations.insert(factorisation, factored);
     }
 
-    fn solve(&mut self, factorisation: u32, values: &[Value], right: &[Tree]) {
-        let to = self.right;
+    fn solve(&mut self, factorisation: Value, right: &[Value]) {
         let Factorisation {
             routines,
             rows,
             slot,
         } = self.factorisations[&factorisation];
-        self.store_all(to, right);
-        let arguments = self.system_arguments(slot, to, rows);
+        self.store_all(self.right, right);
+        let arguments = self.system_arguments(slot, self.right, rows);
         self.call(Shape::System, routines.solve as *const (), &arguments);
-        for (row, value) in values.iter().enumerate() {
-            self.load(*value, to, row);
-        }
+        self.parts = self.right;
     }
 
-    /// Loads a value that a routine has written to a slot.
-    fn load(&mut self, value: Value, slot: StackSlot, index: usize) {
+    fn store_all(&mut self, slot: StackSlot, values: &[Value]) {
+        // Leaves are loaded before the first store: they may stay in registers.
         let pointer = self.config.pointer_type();
-        let instruction = self.builder.ins();
-        let loaded = instruction.stack_load(pointer, F64, slot, offset(index));
-        self.define(value, loaded);
-    }
-
-    fn store_all(&mut self, slot: StackSlot, trees: &[Tree]) {
-        // All entries are computed before the first is stored: their computation may call functions, and the
-        // results may stay in registers until the stores.
-        let pointer = self.config.pointer_type();
-        let entries: Vec<_> = trees.iter().map(|tree| self.tree(tree)).collect();
+        let entries: Vec<_> = values.iter().map(|&value| self.value(value)).collect();
         for (index, entry) in entries.into_iter().enumerate() {
             self.builder
                 .ins()
@@ -244,13 +280,13 @@ impl<'a> Translation<'a> {
         [from, to, rows]
     }
 
-    /// Stores the entries that no step defines: constants, arguments, negated values.
-    fn remaining_results(&mut self) {
+    /// Stores the entries that no operation computes: arguments and numbers.
+    fn leaves_of_results(&mut self) {
         let arrays = self.results.arrays;
         for (array, result) in arrays.iter().enumerate() {
-            for (entry, tree) in result.entries.iter().enumerate() {
-                if !matches!(tree, Tree::Value(_)) {
-                    let computed = self.tree(tree);
+            for (entry, &value) in result.entries.iter().enumerate() {
+                if self.tape.operation(value).is_leaf() {
+                    let computed = self.value(value);
                     self.store_result(array, entry, computed);
                 }
             }
@@ -268,55 +304,6 @@ impl<'a> Translation<'a> {
         self.builder
             .ins()
             .store(flags, computed, address, offset(entry));
-    }
-
-    fn tree(&mut self, tree: &Tree) -> ir::Value {
-        match tree {
-            Tree::Value(value) => self.values[value.0 as usize],
-            Tree::Argument(argument) => self.argument(*argument),
-            Tree::Constant(number) => self.builder.ins().f64const(number.to_f64()),
-            Tree::Negate(a) => {
-                let a = self.tree(a);
-                self.builder.ins().fneg(a)
-            }
-            Tree::Binary(operation, a, b) => {
-                let (a, b) = (self.tree(a), self.tree(b));
-                let instruction = self.builder.ins();
-                match operation {
-                    Operation::Add => instruction.fadd(a, b),
-                    Operation::Subtract => instruction.fsub(a, b),
-                    Operation::Multiply => instruction.fmul(a, b),
-                    Operation::Divide => instruction.fdiv(a, b),
-                }
-            }
-            Tree::Function(function, a) => {
-                let a = self.tree(a);
-                self.function(*function, a)
-            }
-            Tree::Atan2(y, x) => {
-                let arguments = [self.tree(y), self.tree(x)];
-                let routine = self.elementary.atan2() as *const ();
-                self.call(Shape::Binary, routine, &arguments)[0]
-            }
-            Tree::Power(base, exponent) => {
-                let arguments = [self.tree(base), self.tree(exponent)];
-                let routine = self.elementary.powf() as *const ();
-                self.call(Shape::Binary, routine, &arguments)[0]
-            }
-            Tree::Choice {
-                relation,
-                compared,
-                branches,
-            } => {
-                let compared = compared.each_ref().map(|tree| self.tree(tree));
-                let branches = branches.each_ref().map(|tree| self.tree(tree));
-                let condition = match relation {
-                    Relation::Less => FloatCC::LessThan,
-                    Relation::LessOrEqual => FloatCC::LessThanOrEqual,
-                };
-                self.choose(condition, compared, branches)
-            }
-        }
     }
 
     /// `branches[0]` where the relation of `compared` holds, `branches[1]` otherwise and for NaN.
@@ -337,7 +324,7 @@ impl<'a> Translation<'a> {
         match function {
             Function::Sqrt => self.builder.ins().sqrt(a),
             Function::Abs => self.builder.ins().fabs(a),
-            // Zero and NaN are preserved, as in the runtime.
+            // The sign, as all others are routines. Zero and NaN are preserved, as in the runtime.
             _ => {
                 let [zero, one, minus_one] =
                     [0.0, 1.0, -1.0].map(|number| self.builder.ins().f64const(number));
@@ -357,7 +344,6 @@ impl<'a> Translation<'a> {
             | Argument::OutputWeight(index)
             | Argument::Acceleration(index) => (self.received.weights, index),
         };
-        // Loaded at each use: reloading is cheaper than a spilled register.
         let (flags, place) = (MemFlagsData::trusted(), offset(index as usize));
         self.builder.ins().load(F64, flags, array, place)
     }
@@ -390,10 +376,8 @@ impl<'a> Results<'a> {
     fn new(arrays: &'a [ResultArray]) -> Self {
         let mut places: FxHashMap<Value, Vec<(usize, usize)>> = FxHashMap::default();
         for (array, result) in arrays.iter().enumerate() {
-            for (entry, tree) in result.entries.iter().enumerate() {
-                if let Tree::Value(value) = tree {
-                    places.entry(*value).or_default().push((array, entry));
-                }
+            for (entry, &value) in result.entries.iter().enumerate() {
+                places.entry(value).or_default().push((array, entry));
             }
         }
         Self {

@@ -1,15 +1,15 @@
-//! Compiles schedules to vector instructions, for eight points at once.
+//! Compiles tapes to vector instructions, for eight points at once.
 //!
 //! A *block* is one number for each of eight points, `[f64; 8]`; arguments and results are arrays of blocks.
 //! With AVX-512 a block is one register. With AVX it is two halves: the code processes four points and runs
-//! twice. Without these, or if a schedule is too long, the points are evaluated individually with scalar code.
+//! twice. Without these, or if a tape is too long, the points are evaluated individually with scalar code.
 //! Lanes are independent, so results do not depend on the method.
 //!
 //! Cranelift lacks vectors of that width, hence this small compiler. The stages:
 //!
 //! | file | from | to |
 //! |---|---|---|
-//! | `lower.rs`, `line.rs` | schedule | values in straight-line code; linear systems of up to 12 rows unrolled |
+//! | `lower.rs`, `line.rs` | tape | values in straight-line code; linear systems of up to 12 rows unrolled |
 //! | `order.rs` | values | actions: calls early, results stored at their definition |
 //! | `registers.rs`, `slots.rs`, `instruction.rs` | actions | instructions with registers and blocks of the frame |
 //! | `assemble.rs`, `encode.rs` | instructions | machine code, followed by constants |

@@ -8,7 +8,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
-use super::assemble::input_symbols;
+use super::arguments::input_symbols;
 use super::finding::Outcome;
 use super::symbols::ids;
 use crate::program::{Array, Layout, Space};

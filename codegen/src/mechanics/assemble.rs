@@ -1,11 +1,13 @@
 //! Assembles the derived equations as the functions of a program.
 
+mod labels;
+
 use appell_runtime::model::{ModelInfo, Quantity};
-use appell_spec::mechanism::{BodyId, ConstraintId, FrameId, Mechanism};
+use appell_spec::mechanism::{ConstraintId, FrameId, Mechanism};
 
 use super::Derivation;
 use super::algebra::MOST_OF_PROGRAM;
-use super::constraints::Constraints;
+use super::arguments::{function_arguments, input_symbols};
 use super::finding::Outcome;
 use super::gibbs_appell::{
     ActualMotion, BodyMotion, acceleration_energies, acceleration_energy,
@@ -20,11 +22,12 @@ use super::motion::Motion;
 use super::positions::Positions;
 use super::reactions;
 use super::recursion::Recursion;
-use super::symbols::{Symbols, ids};
 use super::systems::systems;
-use crate::program::{Arguments, Array, Function, FunctionKind, Layout, Program, Space};
+use crate::program::{Array, Function, FunctionKind, Layout, Program, Space};
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph};
+pub(super) use labels::by_speed;
+use labels::{Source, embedded, shown_file};
 
 /// The program of a derivation, with the functions `kinds`; those of outputs or switches are omitted if there
 /// are none.
@@ -85,25 +88,6 @@ pub fn program(
         hints,
         functions,
     })
-}
-
-/// The symbols of the functions' arguments.
-pub(super) fn function_arguments(derivation: &Derivation, info: &ModelInfo) -> Arguments {
-    let symbols = &derivation.symbols;
-    let graph = &derivation.algebra.graph;
-    Arguments {
-        time: ids(graph, &[symbols.time])[0],
-        states: ids(
-            graph,
-            &[symbols.speeds.as_slice(), &symbols.coordinates].concat(),
-        ),
-        inputs: ids(graph, &input_symbols(symbols, info)),
-        parameters: ids(graph, &symbols.parameters),
-        weights: ids(graph, &symbols.weights),
-        output_weights: ids(graph, &symbols.output_weights),
-        accelerations: ids(graph, &symbols.accelerations),
-        pi: graph.as_symbol(symbols.pi),
-    }
 }
 
 impl Derivation {
@@ -219,7 +203,7 @@ impl Derivation {
             .collect();
         let unknowns = &self.symbols.accelerations;
         self.motion
-            .equations(graph, (&self.gibbs.mass_matrix, &right), unknowns)
+            .equations(graph, &self.gibbs.mass_matrix, &right, unknowns)
     }
 
     pub(super) fn mass_matrix(&self, mechanism: &Mechanism, speeds: &[Quantity]) -> Array {
@@ -614,72 +598,3 @@ const SOLVED: &str = "Appell's equations, solved.";
 const A: &str = "A = ∂ẋ/∂x: one row per rate, one column per state.";
 const B: &str = "B = ∂ẋ/∂u: one row per rate, one column per input.";
 const P: &str = "P = ∂ẋ/∂p: one row per rate, one column per parameter.";
-
-/// One entry per pseudo-velocity.
-pub(super) fn by_speed(
-    name: &str,
-    result: &str,
-    about: &str,
-    speeds: &[Quantity],
-    entries: Vec<Expr>,
-) -> Array {
-    let all = 0..entries.len();
-    Array::new(
-        result,
-        about,
-        Layout::Vector(Space::GeneralizedForces),
-        entries,
-    )
-    .labelled(speeds.iter().map(|speed| format!("{name}_{}", speed.name)))
-    .under(about, all)
-}
-
-/// Symbols of the inputs: declared ones, then signals and their rates.
-pub(super) fn input_symbols(symbols: &Symbols, info: &ModelInfo) -> Vec<Expr> {
-    let tabulated = info
-        .signal_inputs
-        .iter()
-        .map(|&(signal, order)| symbols.signals[signal][usize::from(order)]);
-    symbols.inputs.iter().copied().chain(tabulated).collect()
-}
-
-/// The constraints without rows, with the reason.
-fn embedded(mechanism: &Mechanism, constraints: &Constraints) -> impl Iterator<Item = String> {
-    let has_row =
-        |index| (constraints.rows.iter()).any(|row| row.constraint == index && !row.is_embedded());
-    let without = mechanism
-        .constraints
-        .ids()
-        .filter(move |&index| !has_row(index));
-    without.map(|index| {
-        let name = &mechanism.constraints[index].name;
-        format!("`{name}` has no row: the coordinates satisfy it identically.")
-    })
-}
-
-/// The file as shown in comments: its path, or only its name if the path is absolute.
-fn shown_file(file: &str) -> &str {
-    let path = std::path::Path::new(file);
-    let name = path.file_name().and_then(std::ffi::OsStr::to_str);
-    name.filter(|_| path.is_absolute()).unwrap_or(file)
-}
-
-/// Source locations of spec items, for comments.
-struct Source<'a>(&'a Mechanism);
-
-impl Source<'_> {
-    fn of_body(&self, index: BodyId) -> String {
-        let body = &self.0.bodies[index];
-        let file = shown_file(&self.0.file);
-        format!("Body `{}`, {file}:{}.", body.name, body.line)
-    }
-
-    fn of_constraint(&self, index: ConstraintId) -> String {
-        let constraint = &self.0.constraints[index];
-        let file = shown_file(&self.0.file);
-        format!(
-            "Constraint `{}`, {file}:{}.",
-            constraint.name, constraint.line
-        )
-    }
-}

@@ -211,16 +211,14 @@ fn scalar_rows(
             ..
         } => {
             let frame = normal.map_or(GROUND, |normal| normal.frame);
-            let rows = rolling_rows(
-                algebra,
-                mechanism,
-                kinematics,
-                &constraint.name,
-                (*body, *on),
-                *contact,
-                frame,
-            );
-            (Place::Point(*contact), rows)
+            let contact = Rolling {
+                body: *body,
+                on: *on,
+                point: *contact,
+            };
+            let name = &constraint.name;
+            let rows = rolling_rows(algebra, mechanism, kinematics, name, contact, frame);
+            (Place::Point(contact.point), rows)
         }
         ConstraintKind::Velocity {
             zero: left, equals, ..
@@ -288,20 +286,31 @@ fn scalar_rows(
     })
 }
 
+/// A rolling contact.
+#[derive(Clone, Copy)]
+struct Rolling {
+    /// The rolling body.
+    body: BodyId,
+    /// The body on which it rolls; `None` is the ground.
+    on: Option<BodyId>,
+    /// The contact point.
+    point: PointId,
+}
+
 /// The relative velocity at a rolling contact, in the components of a frame.
 fn rolling_rows(
     algebra: &mut Algebra,
     mechanism: &Mechanism,
     kinematics: &Kinematics,
     name: &str,
-    (body, on): (BodyId, Option<BodyId>),
-    contact: PointId,
+    contact: Rolling,
     frame: FrameId,
 ) -> Vec<Scalar> {
+    let Rolling { body, on, point } = contact;
     let graph = &mut algebra.graph;
-    let mut v = kinematics.material_velocity(graph, mechanism, body, contact, frame);
+    let mut v = kinematics.material_velocity(graph, mechanism, body, point, frame);
     if let Some(on) = on {
-        let carried = kinematics.material_velocity(graph, mechanism, on, contact, frame);
+        let carried = kinematics.material_velocity(graph, mechanism, on, point, frame);
         v = graph.sub3(v, carried);
     }
     let root = |body: BodyId| root_of(mechanism, mechanism.bodies[body].centre);

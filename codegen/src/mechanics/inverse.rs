@@ -9,7 +9,8 @@ use appell_spec::mechanism::Mechanism;
 
 use super::Derivation;
 use super::algebra::Algebra;
-use super::assemble::{by_speed, input_symbols};
+use super::arguments::input_symbols;
+use super::assemble::by_speed;
 use super::finding::Outcome;
 use super::linear_bound::BoundMotion;
 use super::motion::Motion;

@@ -91,7 +91,7 @@ impl Kinematics {
                     v: vector::ZERO,
                 },
                 Some(from) => {
-                    let velocity = kinematics.relative_to(algebra, &time, (id, from), carried);
+                    let velocity = kinematics.relative_to(algebra, &time, id, from, carried);
                     match effort {
                         Effort::Plain => velocity,
                         Effort::Recursive => FrameVector {
@@ -99,7 +99,7 @@ impl Kinematics {
                             ..velocity
                         },
                         Effort::Shortest(contacts) => {
-                            kinematics.shortest(algebra, mechanism, (id, velocity), contacts)
+                            kinematics.shortest(algebra, mechanism, id, velocity, contacts)
                         }
                     }
                 }
@@ -114,7 +114,8 @@ impl Kinematics {
         &self,
         algebra: &mut Algebra,
         time: &TimeDerivative<'_>,
-        (point, from): (PointId, PointId),
+        point: PointId,
+        from: PointId,
         carried: &[Carried],
     ) -> FrameVector {
         let FrameVector { frame, v: at } = self.offsets[point];
@@ -137,7 +138,8 @@ impl Kinematics {
         &self,
         algebra: &mut Algebra,
         mechanism: &Mechanism,
-        (point, differentiated): (PointId, FrameVector),
+        point: PointId,
+        differentiated: FrameVector,
         contacts: &[RollingContact],
     ) -> FrameVector {
         let mut best = self.shortest_form(algebra, differentiated);

@@ -305,7 +305,10 @@ impl Context<'_> {
                 frame,
                 vector,
             } => {
-                let force = self.vector(algebra, vector)?;
+                let force = FrameVector {
+                    frame: *frame,
+                    v: self.vector(algebra, vector)?,
+                };
                 let mut v = match body {
                     Some(body) => self.kinematics.material_velocity(
                         &mut algebra.graph,
@@ -320,7 +323,7 @@ impl Context<'_> {
                     let reacting = self.point_velocity(algebra, *other, *frame);
                     v = algebra.graph.sub3(v, reacting);
                 }
-                Ok(working(algebra, (*frame, force), v))
+                Ok(working(algebra, force, v))
             }
             LoadKind::Torque {
                 on,
@@ -328,13 +331,16 @@ impl Context<'_> {
                 frame,
                 vector,
             } => {
-                let torque = self.vector(algebra, vector)?;
+                let torque = FrameVector {
+                    frame: *frame,
+                    v: self.vector(algebra, vector)?,
+                };
                 let mut w = self.body_rate(algebra, *on, *frame);
                 if let Some(other) = reaction_on {
                     let reacting = self.body_rate(algebra, *other, *frame);
                     w = algebra.graph.sub3(w, reacting);
                 }
-                Ok(working(algebra, (*frame, torque), w))
+                Ok(working(algebra, torque, w))
             }
             LoadKind::Spring {
                 between,
@@ -493,15 +499,16 @@ fn pairs(force: Vec3, velocity: Vec3) -> Vec<Work> {
         .collect()
 }
 
-fn working(algebra: &mut Algebra, (frame, force): (FrameId, Vec3), velocity: Vec3) -> AppliedLoad {
-    let mut work = pairs(force, velocity);
+/// The load of a force or a torque, with a velocity in the components of the same frame.
+fn working(algebra: &mut Algebra, force: FrameVector, velocity: Vec3) -> AppliedLoad {
+    let mut work = pairs(force.v, velocity);
     work.retain(|w| w.force != Graph::ZERO);
     for w in &mut work {
         w.velocity = algebra.shortest(w.velocity);
     }
     AppliedLoad {
         work,
-        acts: Acts::Vector(FrameVector { frame, v: force }),
+        acts: Acts::Vector(force),
         ..AppliedLoad::default()
     }
 }

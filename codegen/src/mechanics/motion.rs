@@ -154,7 +154,8 @@ impl Motion {
     pub fn equations(
         &self,
         graph: &mut Graph,
-        (mass_matrix, right): (&[Vec<Expr>], &[Expr]),
+        mass_matrix: &[Vec<Expr>],
+        right: &[Expr],
         unknowns: &[Expr],
     ) -> Vec<[Expr; 2]> {
         let opened = |graph: &Graph, e: Expr| graph.named_value(e).unwrap_or(e);

@@ -62,7 +62,8 @@ impl OpenSystem {
     pub fn keep(
         &mut self,
         algebra: &mut Algebra,
-        (column, rates): (usize, &[Expr]),
+        column: usize,
+        rates: &[Expr],
         equation: &Equation,
     ) -> bool {
         let graph = &mut algebra.graph;

@@ -241,8 +241,8 @@ impl Recursion {
             kind: "",
         };
         let motions = self.links.motions(algebra, &driven);
-        let inertias = (self.own.as_slice(), self.composites.as_slice());
-        Differentiable::new(algebra, &self.links, inertias, self.rise, motions)
+        let (own, composites) = (&self.own, &self.composites);
+        Differentiable::new(algebra, &self.links, own, composites, self.rise, motions)
     }
 
     /// `∂(Π − b − M ω̇)/∂z` at fixed ω̇; z is a coordinate, a speed, an input or a signal.

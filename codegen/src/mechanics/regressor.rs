@@ -12,7 +12,8 @@ use appell_spec::mechanism::{
 };
 use appell_spec::units::{Dimension, Unit};
 
-use super::assemble::{by_speed, function_arguments};
+use super::arguments::function_arguments;
+use super::assemble::by_speed;
 use super::expressions::Lowering;
 use super::finding::{Item, Outcome, division_by_zero};
 use super::info::{info, tabulated_inputs};

@@ -84,7 +84,7 @@ impl Answering<'_> {
                     Ok(self.rate_of(algebra, w, frame)[axis.index()])
                 }
                 Response::Reaction(constraint, along) => {
-                    self.reaction(algebra, &reactions, constraint, along.unzip())
+                    self.reaction(algebra, &reactions, constraint, along)
                 }
                 Response::NormalForce(constraint) => self.normal(algebra, &reactions, constraint),
                 Response::DriveForce(speed) => {
@@ -151,11 +151,11 @@ impl Answering<'_> {
         algebra: &mut Algebra,
         reactions: &[Vec3],
         constraint: ConstraintId,
-        (axis, frame): (Option<Axis>, Option<FrameId>),
+        along: Option<(Axis, FrameId)>,
     ) -> Result<Expr, Untold> {
         let place = self.place_of(constraint)?;
         let v = *reactions.get(place).ok_or(Untold::Undetermined)?;
-        let (Some(axis), Some(frame)) = (axis, frame) else {
+        let Some((axis, frame)) = along else {
             return Ok(v[0]);
         };
         let force = FrameVector { frame: GROUND, v };

@@ -1,17 +1,19 @@
-//! Turns the working graph into steps: decides which nodes are bound to names, their order and
-//! their names.
+//! Writes the working graph as a tape: decides which nodes are bound to names, their order and their names.
 
 mod factors;
+mod naming;
 
-use super::dag::{Dag, Id, Item, Name, Op};
+use rustc_hash::{FxHashMap, FxHashSet};
+
+use super::dag::{Dag, Id, Item, Op};
 use super::monomial::Monomial;
 use super::names::{ArgumentNames, Names};
 use super::outline::Outline;
 use super::piece::{Level, Piece, describe};
-use super::signs::{choose_signs, keeps_its_name};
-use super::steps::{Argument, Operation, ResultArray, Schedule, Step, Tree, Value};
+use super::signs::choose_signs;
 use crate::program::{Function, Own, Program};
 use crate::symbolic::{Function as Elementary, Rational};
+use crate::tape::{Argument, Arithmetic, Operation, ResultArray, Tape, Value};
 
 /// Maximum columns of an emitted line.
 const COLUMNS: usize = 88;
@@ -21,18 +23,18 @@ const FRAME: usize = 12;
 const USUAL: usize = 24;
 /// Columns available on the continuation lines of a long sum.
 const MORE_LINES: usize = 140;
-/// Wider trees are not inlined into other trees.
+/// Wider expressions are not written inside others.
 const INLINE: usize = 72;
-/// Columns guaranteed to a tree, however long its name is.
+/// Columns guaranteed to an expression, however long its name is.
 const NARROWEST: usize = 30;
 
-/// The steps of a function. `hints` marks the nodes that equal a hint of the program up to sign.
+/// The tape of a function. `hints` marks the nodes that equal a hint of the program up to sign.
 pub(super) fn bind(
     program: &Program,
     function: &Function,
     dag: &Dag,
     hints: Vec<Option<(usize, bool)>>,
-) -> Schedule {
+) -> Tape {
     let mut binding = Binding::new(program, function, dag, hints);
     let mut seen = vec![false; dag.len()];
     for (title, roots) in binding.outline.paragraphs(function) {
@@ -68,16 +70,15 @@ struct Binding<'a> {
     parts: Vec<u32>,
     built: Vec<Option<Built>>,
     names: Names,
-    values: Vec<String>,
-    /// The monomial of each value, where its name denotes one.
-    products: Vec<Option<Monomial>>,
+    tape: Tape,
+    /// The monomials of values whose names denote one.
+    products: FxHashMap<Value, Monomial>,
     /// Values named by hints.
-    hinted: Vec<bool>,
-    steps: Vec<Step>,
+    hinted: FxHashSet<Value>,
     title: Option<String>,
     systems_done: Vec<bool>,
-    /// System of each factorisation.
-    factorisations: Vec<u32>,
+    /// Systems with their factorisations.
+    factorisations: Vec<(u32, Value)>,
 }
 
 impl<'a> Binding<'a> {
@@ -116,10 +117,9 @@ impl<'a> Binding<'a> {
             parts: vec![0; dag.len()],
             built: vec![None; dag.len()],
             names,
-            values: Vec::new(),
-            products: Vec::new(),
-            hinted: Vec::new(),
-            steps: Vec::new(),
+            tape: Tape::default(),
+            products: FxHashMap::default(),
+            hinted: FxHashSet::default(),
             title: None,
             systems_done: vec![false; dag.systems.len()],
             factorisations: Vec::new(),
@@ -127,66 +127,50 @@ impl<'a> Binding<'a> {
         }
     }
 
-    fn finish(self, function: &Function) -> Schedule {
-        let mut results = self.dag.results.iter();
-        let results: Vec<ResultArray> = function
-            .results
-            .iter()
-            .map(|array| ResultArray {
+    fn finish(mut self, function: &Function) -> Tape {
+        let dag = self.dag;
+        let mut results = dag.results.iter();
+        for array in &function.results {
+            let own = results.by_ref().take(array.entries.len());
+            let entries = own.map(|&item| self.signed(item).value).collect();
+            self.tape.results.push(ResultArray {
                 name: array.name.clone(),
-                entries: results
-                    .by_ref()
-                    .take(array.entries.len())
-                    .map(|&item| self.signed(item).tree)
-                    .collect(),
-            })
-            .collect();
-        let mut used: Vec<Argument> = self
-            .outline
-            .order
-            .iter()
-            .filter_map(|&id| match self.dag.op(id) {
-                Op::Argument(argument) => Some(*argument),
-                _ => None,
-            })
-            .collect();
-        used.sort_unstable();
-        Schedule {
-            arguments: used,
-            steps: self.steps,
-            results,
-            names: self.values,
+                entries,
+            });
         }
+        self.tape.in_order_of_text()
     }
 
     /// The piece of an operand whose flip is a sign, and whether it is to be negated.
-    fn part(&self, item: Item) -> (Piece, bool) {
+    fn part(&mut self, item: Item) -> (Piece, bool) {
         match &self.built[item.id.index()] {
-            Some(built) => (built.piece.clone(), built.negative != item.flip),
+            Some(built) => (built.piece, built.negative != item.flip),
             // Operands are built before their users.
-            None => (Piece::name(Tree::Constant(Rational::ZERO), "zero"), false),
+            None => (self.constant(&Rational::ZERO), false),
         }
     }
 
-    fn constant(&self, value: &Rational) -> Piece {
-        Piece::name(
-            Tree::Constant(value.clone()),
-            &self.arguments.constant(value),
-        )
+    fn constant(&mut self, value: &Rational) -> Piece {
+        let name = self.arguments.constant(value);
+        Piece::name(self.tape.constant(value.clone()), &name)
     }
 
     /// Sort key of a term among the terms of its sign.
-    fn place_in_sum(&self, tree: &Tree) -> (u8, u32) {
-        Monomial::of(tree, &self.products).map_or((2, 0), |monomial| monomial.place_in_sum())
+    fn place_in_sum(&self, value: Value) -> (u8, u32) {
+        let monomial = Monomial::of(value, &self.tape, &self.products);
+        monomial.map_or((2, 0), |monomial| monomial.place_in_sum())
     }
 
     /// The piece of an operand, with its sign.
-    fn signed(&self, item: Item) -> Piece {
+    fn signed(&mut self, item: Item) -> Piece {
         let (piece, negative) = self.part(item);
-        match (negative, &piece.tree) {
+        match (negative, self.tape.unnamed(piece.value)) {
             (false, _) => piece,
-            (true, Tree::Constant(value)) => self.constant(&-value),
-            (true, _) => piece.negated(),
+            (true, Some(Operation::Constant(value))) => {
+                let opposite = -value;
+                self.constant(&opposite)
+            }
+            (true, _) => piece.negated(&mut self.tape),
         }
     }
 
@@ -196,10 +180,10 @@ impl<'a> Binding<'a> {
         }
         let (piece, negative) = match self.dag.op(id) {
             Op::Number(value) => (self.constant(value), false),
-            Op::Argument(argument) => (
-                Piece::name(Tree::Argument(*argument), self.arguments.get(*argument)),
-                false,
-            ),
+            Op::Argument(argument) => {
+                let value = self.tape.argument(*argument);
+                (Piece::name(value, self.arguments.get(*argument)), false)
+            }
             Op::Sum(terms) => self.sum(id, terms),
             Op::Product(factors) => self.product(id, factors),
             Op::Function(_, angle) if self.outline.partner[id.index()].is_some() => {
@@ -207,7 +191,7 @@ impl<'a> Binding<'a> {
             }
             Op::Function(function, argument) => {
                 let [argument] = self.operands(id, [*argument]);
-                (argument.function(*function), false)
+                (argument.function(&mut self.tape, *function), false)
             }
             Op::Kept(inner) => {
                 self.built[id.index()] = self.built[inner.index()].clone();
@@ -215,15 +199,15 @@ impl<'a> Binding<'a> {
             }
             Op::Atan2(items) => {
                 let [y, x] = self.operands(id, *items);
-                (y.atan2(x), false)
+                (y.atan2(&mut self.tape, x), false)
             }
             Op::Power(items) => {
                 let [base, exponent] = self.operands(id, *items);
-                (base.power(exponent), false)
+                (base.power(&mut self.tape, exponent), false)
             }
             Op::Choice(relation, items) => {
                 let operands = self.operands(id, *items);
-                (Piece::choice(*relation, operands), false)
+                (Piece::choice(&mut self.tape, *relation, operands), false)
             }
             Op::Solution { system, .. } => return self.solve(*system),
         };
@@ -269,14 +253,14 @@ impl<'a> Binding<'a> {
         // `a - 2 b` instead of `a + -2 b`, if there is a positive term to start with.
         let positive = parts
             .iter()
-            .any(|(piece, minus)| !minus && !piece.starts_negative());
+            .any(|(piece, minus)| !minus && !piece.starts_negative(&self.tape));
         for (piece, minus) in parts.iter_mut().filter(|_| positive) {
-            if piece.starts_negative() {
-                *piece = piece.clone().opposite();
+            if piece.starts_negative(&self.tape) {
+                *piece = piece.opposite(&mut self.tape);
                 *minus = !*minus;
             }
         }
-        parts.sort_by_key(|(piece, minus)| (*minus, self.place_in_sum(&piece.tree)));
+        parts.sort_by_key(|(piece, minus)| (*minus, self.place_in_sum(piece.value)));
         let room = self.room_of_sum(id);
         let mut sum: Option<Piece> = None;
         for (part, minus) in parts {
@@ -284,12 +268,12 @@ impl<'a> Binding<'a> {
                 None => part,
                 Some(sum) => {
                     let operation = if minus {
-                        Operation::Subtract
+                        Arithmetic::Subtract
                     } else {
-                        Operation::Add
+                        Arithmetic::Add
                     };
                     let (sum, part) = self.fitting(id, room, operation, sum, part);
-                    sum.binary(operation, part)
+                    sum.binary(&mut self.tape, operation, part)
                 }
             });
         }
@@ -311,16 +295,15 @@ impl<'a> Binding<'a> {
                 above.push(piece);
             }
         }
-        above.sort_by_key(|piece| reading_order(&piece.tree));
-        below.sort_by_key(|piece| reading_order(&piece.tree));
+        above.sort_by_key(|piece| self.reading_order(piece.value));
+        below.sort_by_key(|piece| self.reading_order(piece.value));
         let mut negative = natural;
-        if let Some(Piece {
-            tree: Tree::Constant(value),
-            ..
-        }) = above.first()
+        if let Some(first) = above.first()
+            && let Some(Operation::Constant(value)) = self.tape.unnamed(first.value)
             && natural != self.minus[id.index()]
         {
-            above[0] = self.constant(&-value);
+            let opposite = -value;
+            above[0] = self.constant(&opposite);
             negative = !natural;
         }
         let numerator = self.chain(id, above);
@@ -330,8 +313,8 @@ impl<'a> Binding<'a> {
                 let numerator = numerator.unwrap_or_else(|| self.constant(&Rational::ONE));
                 let room = self.room(id);
                 let (numerator, denominator) =
-                    self.fitting(id, room, Operation::Divide, numerator, denominator);
-                numerator.binary(Operation::Divide, denominator)
+                    self.fitting(id, room, Arithmetic::Divide, numerator, denominator);
+                numerator.binary(&mut self.tape, Arithmetic::Divide, denominator)
             }
             (None, None) => self.constant(&Rational::ONE),
         };
@@ -347,8 +330,8 @@ impl<'a> Binding<'a> {
                 None => factor,
                 Some(product) => {
                     let (product, factor) =
-                        self.fitting(id, room, Operation::Multiply, product, factor);
-                    product.binary(Operation::Multiply, factor)
+                        self.fitting(id, room, Arithmetic::Multiply, product, factor);
+                    product.binary(&mut self.tape, Arithmetic::Multiply, factor)
                 }
             });
         }
@@ -361,7 +344,7 @@ impl<'a> Binding<'a> {
         &mut self,
         id: Id,
         room: usize,
-        operation: Operation,
+        operation: Arithmetic,
         left: Piece,
         right: Piece,
     ) -> (Piece, Piece) {
@@ -386,7 +369,7 @@ impl<'a> Binding<'a> {
         (left, right)
     }
 
-    /// Columns available to the tree of a node.
+    /// Columns available to the expression of a node.
     fn room(&self, id: Id) -> usize {
         let made_up = || {
             let consumer = self.outline.feeds[id.index()].and_then(|feed| self.given_name(feed));
@@ -428,26 +411,20 @@ impl<'a> Binding<'a> {
             _ => (partner, id),
         };
         let angle = self.signed(angle);
-        let text = describe(&angle.tree, &self.values, &self.products, &self.arguments);
-        let mut value = |of: Id, prefix: &str| {
+        let text = describe(angle.value, &self.tape, &self.products, &self.arguments);
+        let whole = self.push(Operation::SinCos(angle.value));
+        for (index, of, prefix) in [(0, sin, "sin"), (1, cos, "cos")] {
             let wanted = match (&text, self.given_name(of)) {
                 (Some(text), _) => format!("{prefix}_{text}"),
                 (None, Some(name)) => name,
                 (None, None) => self.fallback(of, prefix),
             };
-            let (value, piece) = self.new_value(&wanted);
+            let piece = self.named_value(whole.part(index), &wanted);
             self.built[of.index()] = Some(Built {
                 piece,
                 negative: false,
             });
-            value
-        };
-        let (sin, cos) = (value(sin, "sin"), value(cos, "cos"));
-        self.push(Step::SinCos {
-            sin,
-            cos,
-            angle: angle.tree,
-        });
+        }
     }
 
     fn solve(&mut self, system: u32) {
@@ -457,43 +434,31 @@ impl<'a> Binding<'a> {
         let dag = self.dag;
         let matrix = &dag.systems[system as usize].matrix;
         let right = &dag.systems[system as usize].right;
-        let same = |other: &u32| dag.systems[*other as usize].matrix == *matrix;
-        let known = self.factorisations.iter().position(same);
-        let number = known.unwrap_or(self.factorisations.len());
-        let factorisation = u32::try_from(number).unwrap_or(u32::MAX);
-        if known.is_none() {
-            self.factorisations.push(system);
-            let matrix = matrix.iter().map(|&item| self.signed(item).tree).collect();
-            self.push(Step::Factor {
-                factorisation,
-                size: right.len(),
-                matrix,
-            });
-        }
-        let right = right.iter().map(|&item| self.signed(item).tree).collect();
-        let unknowns = self.unknowns(system);
-        let values = unknowns
-            .into_iter()
-            .enumerate()
-            .map(|(row, unknown)| {
-                let wanted = unknown
-                    .and_then(|id| self.given_name(id))
-                    .unwrap_or_else(|| format!("solution_{}_{}", system + 1, row + 1));
-                let (value, piece) = self.new_value(&wanted);
-                if let Some(id) = unknown {
-                    self.built[id.index()] = Some(Built {
-                        piece,
-                        negative: false,
-                    });
-                }
-                value
-            })
-            .collect();
-        self.push(Step::Solve {
+        let same = |(other, _): &&(u32, Value)| dag.systems[*other as usize].matrix == *matrix;
+        let known = self.factorisations.iter().find(same).map(|known| known.1);
+        let factorisation = known.unwrap_or_else(|| {
+            let matrix = matrix.iter().map(|&item| self.signed(item).value).collect();
+            let made = self.push(Operation::Factorise(matrix));
+            self.factorisations.push((system, made));
+            made
+        });
+        let right = right.iter().map(|&item| self.signed(item).value).collect();
+        let whole = self.push(Operation::Solve {
             factorisation,
-            values,
             right,
         });
+        for (row, unknown) in (0..).zip(self.unknowns(system)) {
+            let wanted = unknown
+                .and_then(|id| self.given_name(id))
+                .unwrap_or_else(|| format!("solution_{}_{}", system + 1, row + 1));
+            let piece = self.named_value(whole.part(row), &wanted);
+            if let Some(id) = unknown {
+                self.built[id.index()] = Some(Built {
+                    piece,
+                    negative: false,
+                });
+            }
+        }
     }
 
     /// The nodes of the unknowns of a system, row by row.
@@ -511,158 +476,47 @@ impl<'a> Binding<'a> {
         unknowns
     }
 
-    /// Name from the derivation, or of the result.
-    fn given_name(&self, id: Id) -> Option<String> {
-        let label = self.outline.labels[id.index()].as_ref();
-        let derived = self.derived_name(id);
-        let derived = derived.map(|name| &self.program.graph.definition(name.definition).name);
-        derived.or(label.map(|label| &label.0)).cloned()
+    /// Binds a value to a name. Names are in the order of their definitions, so an operation that others follow is
+    /// repeated here; the earlier one is dead.
+    fn define(&mut self, name: &str, piece: Piece) -> Piece {
+        let operation = self.tape.operation(piece.value).clone();
+        debug_assert!(!matches!(operation, Operation::Part(..)), "{name}");
+        let value = self.push(operation);
+        self.named_value(value, name)
     }
 
-    /// Name from the derivation; the name of a result takes precedence over one made up by
-    /// differentiation.
-    fn derived_name(&self, id: Id) -> Option<Name> {
-        let label = self.outline.labels[id.index()].as_ref();
-        self.dag.names[id.index()].filter(|name| !name.automatic || label.is_none())
-    }
-
-    /// Whether the name of a node denotes minus the node; `None` without a name.
-    fn sign_of_name(&self, id: Id) -> Option<bool> {
-        let label = self.outline.labels[id.index()].as_ref();
-        let derived = self.derived_name(id).map(|name| name.negative);
-        derived.or(label.map(|label| label.1))
-    }
-
-    /// Binds a value to its most informative name. `negative` says that the piece is minus the
-    /// node.
-    fn named(&mut self, id: Id, piece: Piece, negative: bool) -> Built {
-        let sign = self.sign_of_name(id);
-        let given = self
-            .given_name(id)
-            .filter(|_| !self.tells_itself(id, &piece));
-        let (piece, negative) = match given {
-            Some(name) if sign == Some(negative) => (self.define(&name, piece.tree), negative),
-            Some(name) if self.takes_its_sign(id) => {
-                (self.define(&name, piece.opposite().tree), !negative)
-            }
-            // A value of the opposite sign is named after its own operation.
-            _ => {
-                let hint = self.hint(id, negative);
-                (self.define_by_making(id, piece.tree, hint), negative)
-            }
-        };
-        Built { piece, negative }
-    }
-
-    /// Whether a shared value is better named after its factors than after one of its uses.
-    fn tells_itself(&self, id: Id, piece: &Piece) -> bool {
-        const FEW: usize = 3;
-        self.outline.is_entry(id)
-            && self.derived_name(id).is_none_or(|name| name.automatic)
-            && self.outline.feeds_others(id)
-            && Monomial::of(&piece.tree, &self.products).is_some_and(|product| {
-                // A hint may add a name but not replace one.
-                let hinted = product.values().any(|value| self.hinted[value.0 as usize]);
-                !hinted
-                    && product.length() <= FEW
-                    && product.name(&self.values, &self.arguments).is_some()
-            })
-    }
-
-    /// Whether a value computed with the opposite sign is negated to keep its name.
-    fn takes_its_sign(&self, id: Id) -> bool {
-        self.dag.names[id.index()].is_some()
-            || keeps_its_name(self.dag, id)
-            || !self.outline.is_shared(id)
-    }
-
-    /// The name of a hint, or one made of the cofactors; `negative` says that minus the node is
-    /// bound.
-    fn hint(&self, id: Id, negative: bool) -> Option<String> {
-        let hint = self.hints[id.index()].and_then(|(number, opposite)| {
-            let hint = &self.program.hints[number];
-            if opposite == negative {
-                Some(hint.name.clone())
-            } else {
-                hint.opposite.clone()
-            }
-        });
-        hint.or_else(|| self.by_factors(id, negative))
-    }
-
-    /// `consumer_part_2`
-    fn fallback(&mut self, id: Id, word: &str) -> String {
-        let feed = self.outline.feeds[id.index()];
-        let consumer = feed
-            .and_then(|feed| self.given_name(feed))
-            .unwrap_or_else(|| "result".to_owned());
-        let count = &mut self.parts[feed.unwrap_or(id).index()];
-        *count += 1;
-        format!("{consumer}_{word}_{count}")
-    }
-
-    /// Binds a subtree that is too wide for a line.
-    fn define_part(&mut self, id: Id, piece: Piece) -> Piece {
-        self.define_by_making(id, piece.tree, None)
-    }
-
-    /// Binds a value to a name made from its operation.
-    fn define_by_making(&mut self, id: Id, tree: Tree, hint: Option<String>) -> Piece {
-        let described = describe(&tree, &self.values, &self.products, &self.arguments);
-        let product = described
-            .is_some()
-            .then(|| Monomial::of(&tree, &self.products));
-        let hinted = described.is_none() && hint.is_some();
-        let name = described
-            .or(hint)
-            .unwrap_or_else(|| self.fallback(id, "part"));
-        let piece = self.define(&name, tree);
-        if let Some(last) = self.hinted.last_mut() {
-            *last = hinted;
-        }
-        if let Some(last) = self.products.last_mut() {
-            *last = product.flatten();
-        }
-        piece
-    }
-
-    fn define(&mut self, name: &str, tree: Tree) -> Piece {
-        let (value, piece) = self.new_value(name);
-        self.push(Step::Let { value, tree });
-        piece
-    }
-
-    fn new_value(&mut self, wanted: &str) -> (Value, Piece) {
+    fn named_value(&mut self, value: Value, wanted: &str) -> Piece {
         let name = self.names.fresh(wanted);
-        let value = Value(u32::try_from(self.values.len()).unwrap_or(u32::MAX));
-        let piece = Piece::name(Tree::Value(value), &name);
-        self.values.push(name);
-        self.products.push(None);
-        self.hinted.push(false);
-        (value, piece)
+        let piece = Piece::name(value, &name);
+        self.tape.names[value.index()] = Some(name);
+        piece
     }
 
-    fn push(&mut self, step: Step) {
+    /// Adds the operation of a statement, under the heading that is due.
+    fn push(&mut self, operation: Operation) -> Value {
+        let value = self.tape.push(operation);
         if let Some(title) = self.title.take() {
-            self.steps.push(Step::Paragraph { title });
+            self.tape.headings.push((value, title));
         }
-        self.steps.push(step);
+        value
     }
-}
 
-/// Sort key: numbers, then parameters, values and variables, each in their order, then sums in
-/// parentheses.
-fn reading_order(tree: &Tree) -> (u8, u32) {
-    match tree {
-        Tree::Constant(_) => (0, 0),
-        Tree::Argument(Argument::Parameter(i)) => (1, *i),
-        Tree::Value(Value(i)) => (2, *i),
-        Tree::Argument(Argument::Time) => (3, 0),
-        Tree::Argument(Argument::State(i)) => (4, *i),
-        Tree::Argument(Argument::Input(i)) => (5, *i),
-        Tree::Argument(
-            Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i),
-        ) => (6, *i),
-        _ => (7, 0),
+    /// Sort key: numbers, then parameters, values and variables, each in their order, then sums in
+    /// parentheses.
+    fn reading_order(&self, value: Value) -> (u8, u32) {
+        match self.tape.unnamed(value) {
+            None => (2, value.0),
+            Some(Operation::Constant(_)) => (0, 0),
+            Some(Operation::Argument(argument)) => match *argument {
+                Argument::Parameter(i) => (1, i),
+                Argument::Time => (3, 0),
+                Argument::State(i) => (4, i),
+                Argument::Input(i) => (5, i),
+                Argument::Weight(i) | Argument::OutputWeight(i) | Argument::Acceleration(i) => {
+                    (6, i)
+                }
+            },
+            Some(_) => (7, 0),
+        }
     }
 }

@@ -8,8 +8,8 @@ use std::hash::BuildHasher;
 
 use rustc_hash::{FxBuildHasher, FxHashMap};
 
-use super::steps::Argument;
 use crate::symbolic::{Function, Rational, Relation};
+use crate::tape::Argument;
 
 /// A node of the working graph.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]

@@ -3,9 +3,9 @@
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::dag::{Dag, Item, Name, Op, System};
-use super::steps::Argument;
 use crate::program::{Function, Program};
 use crate::symbolic::{Expr, Graph, Node, Rational, SymbolId};
+use crate::tape::Argument;
 
 /// The working graph of all results of a function.
 ///

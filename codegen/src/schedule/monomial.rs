@@ -1,9 +1,11 @@
 //! Names products by their factors, independent of association: `m·(R·R)` and `(m·R)·R` are both
 //! `m_R_squared`, in every function.
 
+use rustc_hash::FxHashMap;
+
 use super::names::{ArgumentNames, LONGEST, joined_up_to};
-use super::steps::{Argument, Operation, Tree, Value};
 use crate::symbolic::Rational;
+use crate::tape::{Argument, Arithmetic, Operation, Tape, Value};
 
 /// Longest name of a product, or quotient, of two factors.
 const LONGEST_OF_TWO: usize = 40;
@@ -27,31 +29,36 @@ pub(super) struct Monomial {
 }
 
 impl Monomial {
-    /// The monomial that a tree represents, if any. `products` holds the monomials of the values.
-    pub(super) fn of(tree: &Tree, products: &[Option<Monomial>]) -> Option<Self> {
-        match tree {
-            Tree::Constant(value) => Some(Self {
+    /// The monomial that a value represents, if any. `products` has the monomials of named values.
+    pub(super) fn of(
+        value: Value,
+        tape: &Tape,
+        products: &FxHashMap<Value, Monomial>,
+    ) -> Option<Self> {
+        let of = |value: &Value| Self::of(*value, tape, products);
+        let Some(operation) = tape.unnamed(value) else {
+            let known = products.get(&value).cloned();
+            return Some(known.unwrap_or_else(|| Self::factor(Factor::Value(value))));
+        };
+        match operation {
+            Operation::Constant(value) => Some(Self {
                 coefficient: value.clone(),
                 powers: Vec::new(),
             }),
-            Tree::Argument(Argument::Parameter(i)) => Some(Self::factor(Factor::Parameter(*i))),
-            Tree::Argument(argument) => Some(Self::factor(Factor::Argument(*argument))),
-            Tree::Value(value) => {
-                let known = products.get(value.0 as usize)?.clone();
-                Some(known.unwrap_or_else(|| Self::factor(Factor::Value(*value))))
+            Operation::Argument(Argument::Parameter(i)) => {
+                Some(Self::factor(Factor::Parameter(*i)))
             }
-            Tree::Negate(a) => {
-                let a = Self::of(a, products)?;
+            Operation::Argument(argument) => Some(Self::factor(Factor::Argument(*argument))),
+            Operation::Negate(a) => {
+                let a = of(a)?;
                 Some(Self {
                     coefficient: -&a.coefficient,
                     ..a
                 })
             }
-            Tree::Binary(Operation::Multiply, a, b) => {
-                Some(Self::of(a, products)?.times(&Self::of(b, products)?, 1))
-            }
-            Tree::Binary(Operation::Divide, a, b) => {
-                let (above, below) = (Self::of(a, products)?, Self::of(b, products)?);
+            Operation::Binary(Arithmetic::Multiply, a, b) => Some(of(a)?.times(&of(b)?, 1)),
+            Operation::Binary(Arithmetic::Divide, a, b) => {
+                let (above, below) = (of(a)?, of(b)?);
                 (!below.coefficient.is_zero()).then(|| above.times(&below, -1))
             }
             _ => None,
@@ -110,7 +117,7 @@ impl Monomial {
     }
 
     /// `m_R_squared`, `two_over_pivot`, `inv_R`, `tan_theta`; `None` where that would be too long.
-    pub(super) fn name(&self, values: &[String], arguments: &ArgumentNames) -> Option<String> {
+    pub(super) fn name(&self, tape: &Tape, arguments: &ArgumentNames) -> Option<String> {
         let mut above = Vec::new();
         let mut below = Vec::new();
         if !self.coefficient.is_one() {
@@ -119,7 +126,7 @@ impl Monomial {
         for &(factor, power) in &self.powers {
             let name = match factor {
                 Factor::Parameter(i) => arguments.get(Argument::Parameter(i)),
-                Factor::Value(value) => values.get(value.0 as usize)?,
+                Factor::Value(value) => tape.name(value)?,
                 Factor::Argument(argument) => arguments.get(argument),
             };
             let sum = name.contains("_plus_") || name.contains("_minus_");

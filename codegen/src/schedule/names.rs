@@ -2,9 +2,9 @@
 
 use rustc_hash::FxHashSet;
 
-use super::steps::Argument;
 use crate::program::Program;
-use crate::symbolic::Rational;
+use crate::symbolic::{Function, Rational};
+use crate::tape::Argument;
 
 /// Longest generated name.
 pub(super) const LONGEST: usize = 31;
@@ -218,4 +218,23 @@ pub(super) fn joined(parts: &[&str]) -> Option<String> {
 pub(super) fn joined_up_to(longest: usize, parts: &[&str]) -> Option<String> {
     let name = parts.join("_");
     (name.len() <= longest && !name.contains("_part_")).then_some(name)
+}
+
+/// Method name of a function.
+pub(crate) fn method(function: Function) -> &'static str {
+    match function {
+        Function::Sin => "sin",
+        Function::Cos => "cos",
+        Function::Asin => "asin",
+        Function::Acos => "acos",
+        Function::Atan => "atan",
+        Function::Sinh => "sinh",
+        Function::Cosh => "cosh",
+        Function::Tanh => "tanh",
+        Function::Exp => "exp",
+        Function::Ln => "ln",
+        Function::Sqrt => "sqrt",
+        Function::Abs => "abs",
+        Function::Sign => "sign",
+    }
 }

@@ -4,9 +4,9 @@ use rustc_hash::FxHashMap;
 
 use super::dag::{Dag, Id, Item, Op};
 use super::lower::definition;
-use super::steps::Argument;
 use crate::program::{Function, Program};
 use crate::symbolic::Function as Elementary;
+use crate::tape::Argument;
 
 /// Decisions about every node.
 pub(super) struct Outline<'a> {
@@ -14,7 +14,7 @@ pub(super) struct Outline<'a> {
     /// The nodes, operands before users.
     pub(super) order: Vec<Id>,
     uses: Vec<u32>,
-    /// Nodes that must not be inlined into other trees.
+    /// Nodes that must not be written inside other expressions.
     pub(super) bound: Vec<bool>,
     /// Sine and cosine of the same angle: the partner.
     pub(super) partner: Vec<Option<Id>>,

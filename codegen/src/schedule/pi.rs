@@ -1,4 +1,4 @@
-//! The circle constant in schedules: the machine's number, as an exact fraction.
+//! The circle constant on tapes: the machine's number, as an exact fraction.
 
 use crate::symbolic::Rational;
 

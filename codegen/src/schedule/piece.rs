@@ -1,32 +1,34 @@
-//! Expression trees under construction, with their printed width.
+//! Expressions of emitted text under construction, with their printed width.
+
+use rustc_hash::FxHashMap;
 
 use super::monomial::Monomial;
-use super::names::{ArgumentNames, joined};
-use super::steps::{Operation, Schedule, Tree, Value};
+use super::names::{ArgumentNames, joined, method};
 use crate::symbolic::{Function, Relation};
+use crate::tape::{Arithmetic, Operation, Tape, Value};
 
-/// Precedence of the outermost operation of a tree.
+/// Precedence of the outermost operation of an expression.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Level {
+pub(crate) enum Level {
     Sum,
     Product,
     Sign,
     Atom,
 }
 
-/// A tree with its printed width and precedence.
-#[derive(Debug, Clone)]
+/// A value with its printed width and precedence.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Piece {
-    pub(super) tree: Tree,
+    pub(super) value: Value,
     pub(super) width: usize,
     pub(super) level: Level,
 }
 
 impl Piece {
-    /// A tree that prints as a name.
-    pub(super) fn name(tree: Tree, name: &str) -> Self {
+    /// A value that prints as a name.
+    pub(super) fn name(value: Value, name: &str) -> Self {
         Self {
-            tree,
+            value,
             width: name.len(),
             level: Level::Atom,
         }
@@ -38,121 +40,132 @@ impl Piece {
     }
 
     /// Width of `self ∘ right`.
-    pub(super) fn width_of_binary(&self, operation: Operation, right: &Self) -> usize {
+    pub(super) fn width_of_binary(&self, operation: Arithmetic, right: &Self) -> usize {
         let (level, right_level) = levels(operation);
         self.width_at(level) + 3 + right.width_at(right_level)
     }
 
     /// `self ∘ right`
-    pub(super) fn binary(self, operation: Operation, right: Self) -> Self {
+    pub(super) fn binary(self, tape: &mut Tape, operation: Arithmetic, right: Self) -> Self {
         Self {
             width: self.width_of_binary(operation, &right),
-            tree: Tree::Binary(operation, Box::new(self.tree), Box::new(right.tree)),
+            value: tape.binary(operation, self.value, right.value),
             level: levels(operation).0,
         }
     }
 
     /// `-self`
-    pub(super) fn negated(self) -> Self {
+    pub(super) fn negated(self, tape: &mut Tape) -> Self {
         Self {
             width: 1 + self.width_at(Level::Atom),
-            tree: Tree::Negate(Box::new(self.tree)),
+            value: tape.push(Operation::Negate(self.value)),
             level: Level::Sign,
         }
     }
 
-    /// Whether the tree starts with a negative number.
-    pub(super) fn starts_negative(&self) -> bool {
-        let mut first = &self.tree;
-        while let Tree::Binary(Operation::Multiply | Operation::Divide, a, _) = first {
-            first = a;
+    /// Whether the text starts with a negative number.
+    pub(super) fn starts_negative(&self, tape: &Tape) -> bool {
+        let mut first = self.value;
+        loop {
+            match tape.unnamed(first) {
+                Some(Operation::Binary(Arithmetic::Multiply | Arithmetic::Divide, a, _)) => {
+                    first = *a;
+                }
+                Some(Operation::Constant(value)) => return value.is_negative(),
+                _ => return false,
+            }
         }
-        matches!(first, Tree::Constant(value) if value.is_negative())
     }
 
     /// Minus the value, with the sign moved inwards as far as rounding is unaffected.
-    pub(super) fn opposite(self) -> Self {
+    pub(super) fn opposite(self, tape: &mut Tape) -> Self {
         let width = self.width;
-        match self.tree {
-            Tree::Constant(value) => Self {
-                tree: Tree::Constant(-&value),
+        match tape.unnamed(self.value).cloned() {
+            Some(Operation::Constant(value)) => Self {
+                value: tape.constant(-&value),
                 ..self
             },
-            Tree::Negate(inner) => Self {
-                tree: *inner,
+            Some(Operation::Negate(value)) => Self {
+                value,
                 level: Level::Atom,
                 width,
             },
-            Tree::Binary(Operation::Subtract, a, b) => {
+            Some(Operation::Binary(Arithmetic::Subtract, value, b)) => {
                 let first = Self {
-                    tree: *a,
+                    value,
                     width,
                     level: Level::Product,
                 };
-                let tree = if first.starts_negative() {
-                    Tree::Binary(Operation::Add, b, Box::new(first.opposite().tree))
+                let value = if first.starts_negative(tape) {
+                    let first = first.opposite(tape).value;
+                    tape.binary(Arithmetic::Add, b, first)
                 } else {
-                    Tree::Binary(Operation::Subtract, b, Box::new(first.tree))
+                    tape.binary(Arithmetic::Subtract, b, first.value)
                 };
                 Self {
-                    tree,
+                    value,
                     width,
                     level: Level::Sum,
                 }
             }
-            Tree::Binary(operation @ (Operation::Multiply | Operation::Divide), a, b) => {
+            Some(Operation::Binary(
+                operation @ (Arithmetic::Multiply | Arithmetic::Divide),
+                value,
+                b,
+            )) => {
                 let first = Self {
-                    tree: *a,
+                    value,
                     width,
                     level: Level::Atom,
                 };
+                let first = first.opposite(tape).value;
                 Self {
-                    tree: Tree::Binary(operation, Box::new(first.opposite().tree), b),
+                    value: tape.binary(operation, first, b),
                     width: width + 1,
                     level: Level::Product,
                 }
             }
-            tree => Self { tree, ..self }.negated(),
+            _ => self.negated(tape),
         }
     }
 
     /// `self.function()`
-    pub(super) fn function(self, function: Function) -> Self {
+    pub(super) fn function(self, tape: &mut Tape, function: Function) -> Self {
         Self {
             width: self.width_at(Level::Atom) + method(function).len() + 3,
-            tree: Tree::Function(function, Box::new(self.tree)),
+            value: tape.push(Operation::Function(function, self.value)),
             level: Level::Atom,
         }
     }
 
     /// `self.atan2(x)`
-    pub(super) fn atan2(self, x: Self) -> Self {
+    pub(super) fn atan2(self, tape: &mut Tape, x: Self) -> Self {
         Self {
             width: self.width_at(Level::Atom) + x.width + ".atan2()".len(),
-            tree: Tree::Atan2(Box::new(self.tree), Box::new(x.tree)),
+            value: tape.push(Operation::Atan2(self.value, x.value)),
             level: Level::Atom,
         }
     }
 
     /// `self.powf(exponent)`
-    pub(super) fn power(self, exponent: Self) -> Self {
+    pub(super) fn power(self, tape: &mut Tape, exponent: Self) -> Self {
         Self {
             width: self.width_at(Level::Atom) + exponent.width + ".powf()".len(),
-            tree: Tree::Power(Box::new(self.tree), Box::new(exponent.tree)),
+            value: tape.push(Operation::Power(self.value, exponent.value)),
             level: Level::Atom,
         }
     }
 
     /// Compared left and right sides, value if the relation holds, value otherwise.
-    pub(super) fn choice(relation: Relation, operands: [Self; 4]) -> Self {
+    pub(super) fn choice(tape: &mut Tape, relation: Relation, operands: [Self; 4]) -> Self {
         let width: usize = operands.iter().map(|operand| operand.width).sum();
-        let [left, right, then, otherwise] = operands.map(|operand| operand.tree);
+        let [left, right, then, otherwise] = operands.map(|operand| operand.value);
         Self {
-            tree: Tree::Choice {
+            value: tape.push(Operation::Choice {
                 relation,
-                compared: Box::new([left, right]),
-                branches: Box::new([then, otherwise]),
-            },
+                compared: [left, right],
+                branches: [then, otherwise],
+            }),
             width: width + "T::if_less_or_equal(, , , )".len(),
             level: Level::Atom,
         }
@@ -160,80 +173,58 @@ impl Piece {
 }
 
 /// Precedences that an operation requires of its left and right operand.
-fn levels(operation: Operation) -> (Level, Level) {
+pub(crate) fn levels(operation: Arithmetic) -> (Level, Level) {
     match operation {
-        Operation::Add | Operation::Subtract => (Level::Sum, Level::Product),
-        Operation::Multiply | Operation::Divide => (Level::Product, Level::Sign),
-    }
-}
-
-/// Method name of a function.
-pub(crate) fn method(function: Function) -> &'static str {
-    match function {
-        Function::Sin => "sin",
-        Function::Cos => "cos",
-        Function::Asin => "asin",
-        Function::Acos => "acos",
-        Function::Atan => "atan",
-        Function::Sinh => "sinh",
-        Function::Cosh => "cosh",
-        Function::Tanh => "tanh",
-        Function::Exp => "exp",
-        Function::Ln => "ln",
-        Function::Sqrt => "sqrt",
-        Function::Abs => "abs",
-        Function::Sign => "sign",
+        Arithmetic::Add | Arithmetic::Subtract => (Level::Sum, Level::Product),
+        Arithmetic::Multiply | Arithmetic::Divide => (Level::Product, Level::Sign),
     }
 }
 
 /// A short name that describes the operation of a value, if there is one: `R_squared`, `m_R`,
-/// `inv_D`, `tan_theta`, `a_minus_b`. `products` marks the values that are products.
+/// `inv_D`, `tan_theta`, `a_minus_b`. `products` has the values that are products.
 pub(super) fn describe(
-    tree: &Tree,
-    values: &[String],
-    products: &[Option<Monomial>],
+    value: Value,
+    tape: &Tape,
+    products: &FxHashMap<Value, Monomial>,
     arguments: &ArgumentNames,
 ) -> Option<String> {
-    if let Some(monomial) = Monomial::of(tree, products) {
-        return monomial.name(values, arguments);
+    if let Some(monomial) = Monomial::of(value, tape, products) {
+        return monomial.name(tape, arguments);
     }
-    if let Some(name) = angle_sum(tree, values) {
+    if let Some(name) = angle_sum(value, tape) {
         return joined(&[&name]);
     }
-    let inner = |tree: &Tree| describe(tree, values, products, arguments);
-    match tree {
-        Tree::Negate(a) => joined(&["minus", &inner(a)?]),
-        Tree::Function(function, a) => joined(&[method(*function), &inner(a)?]),
-        Tree::Binary(operation, a, b) => {
+    let inner = |value: &Value| describe(*value, tape, products, arguments);
+    match tape.unnamed(value)? {
+        Operation::Negate(a) => joined(&["minus", &inner(a)?]),
+        Operation::Function(function, a) => joined(&[method(*function), &inner(a)?]),
+        Operation::Binary(operation, a, b) => {
             let (left, right) = (inner(a)?, inner(b)?);
             match operation {
-                Operation::Add => joined(&[&left, "plus", &right]),
-                Operation::Subtract => joined(&[&left, "minus", &right]),
-                Operation::Multiply => joined(&[&left, &right]),
-                Operation::Divide => joined(&[&left, "over", &right]),
+                Arithmetic::Add => joined(&[&left, "plus", &right]),
+                Arithmetic::Subtract => joined(&[&left, "minus", &right]),
+                Arithmetic::Multiply => joined(&[&left, &right]),
+                Arithmetic::Divide => joined(&[&left, "over", &right]),
             }
         }
         _ => None,
     }
 }
 
-/// `sin_a_minus_b` and the like for a tree expanded by an addition theorem.
-fn angle_sum(tree: &Tree, values: &[String]) -> Option<String> {
-    let Tree::Binary(operation @ (Operation::Add | Operation::Subtract), left, right) = tree else {
+/// `sin_a_minus_b` and the like for a value expanded by an addition theorem.
+fn angle_sum(value: Value, tape: &Tape) -> Option<String> {
+    let Some(Operation::Binary(operation @ (Arithmetic::Add | Arithmetic::Subtract), left, right)) =
+        tape.unnamed(value)
+    else {
         return None;
     };
     // Function and angle of both factors.
-    let factors = |tree: &Tree| {
-        let Tree::Binary(Operation::Multiply, a, b) = tree else {
+    let factors = |value: &Value| {
+        let Some(Operation::Binary(Arithmetic::Multiply, a, b)) = tape.unnamed(*value) else {
             return None;
         };
-        let factor = |tree: &Tree| {
-            let Tree::Value(Value(value)) = tree else {
-                return None;
-            };
-            values.get(*value as usize)?.split_once('_')
-        };
-        Some([factor(a)?, factor(b)?])
+        let factor = |value: Value| tape.name(value)?.split_once('_');
+        Some([factor(*a)?, factor(*b)?])
     };
     let ([(f, a), (g, b)], right) = (factors(left)?, factors(right)?);
     let swapped = [right[1], right[0]];
@@ -242,7 +233,7 @@ fn angle_sum(tree: &Tree, values: &[String]) -> Option<String> {
     if a == b || (right != partner && swapped != partner) {
         return None;
     }
-    let plus = *operation == Operation::Add;
+    let plus = *operation == Arithmetic::Add;
     match (f, g, plus) {
         ("sin", "cos", true) | ("cos", "sin", true) => Some(format!("sin_{a}_plus_{b}")),
         ("sin", "cos", false) => Some(format!("sin_{a}_minus_{b}")),
@@ -253,74 +244,4 @@ fn angle_sum(tree: &Tree, values: &[String]) -> Option<String> {
         }
         _ => None,
     }
-}
-
-/// A tree as text, for comments and dumps.
-pub(crate) fn text(tree: &Tree, schedule: &Schedule, arguments: &ArgumentNames) -> String {
-    let mut out = String::new();
-    write(&mut out, tree, Level::Sum, &schedule.names, arguments);
-    out
-}
-
-fn write(
-    out: &mut String,
-    tree: &Tree,
-    least: Level,
-    values: &[String],
-    arguments: &ArgumentNames,
-) {
-    let level = match tree {
-        Tree::Binary(Operation::Add | Operation::Subtract, ..) => Level::Sum,
-        Tree::Binary(..) => Level::Product,
-        Tree::Negate(_) => Level::Sign,
-        _ => Level::Atom,
-    };
-    let parentheses = level < least;
-    if parentheses {
-        out.push('(');
-    }
-    match tree {
-        Tree::Value(Value(value)) => out.push_str(&values[*value as usize]),
-        Tree::Argument(argument) => out.push_str(arguments.get(*argument)),
-        Tree::Constant(value) => out.push_str(&value.to_string()),
-        Tree::Negate(a) => {
-            out.push('-');
-            write(out, a, Level::Atom, values, arguments);
-        }
-        Tree::Binary(operation, a, b) => {
-            let (sign, right) = match operation {
-                Operation::Add => (" + ", Level::Product),
-                Operation::Subtract => (" - ", Level::Product),
-                Operation::Multiply => (" ", Level::Sign),
-                Operation::Divide => ("/", Level::Sign),
-            };
-            write(out, a, level, values, arguments);
-            out.push_str(sign);
-            write(out, b, right, values, arguments);
-        }
-        Tree::Function(function, a) => call(out, method(*function), &[a], values, arguments),
-        Tree::Atan2(y, x) => call(out, "atan2", &[y, x], values, arguments),
-        Tree::Power(base, exponent) => call(out, "pow", &[base, exponent], values, arguments),
-        Tree::Choice {
-            compared, branches, ..
-        } => {
-            let all = [&compared[0], &compared[1], &branches[0], &branches[1]];
-            call(out, "if_less", &all, values, arguments);
-        }
-    }
-    if parentheses {
-        out.push(')');
-    }
-}
-
-fn call(out: &mut String, name: &str, of: &[&Tree], values: &[String], arguments: &ArgumentNames) {
-    out.push_str(name);
-    out.push('(');
-    for (i, tree) in of.iter().enumerate() {
-        if i > 0 {
-            out.push_str(", ");
-        }
-        write(out, tree, Level::Sum, values, arguments);
-    }
-    out.push(')');
 }

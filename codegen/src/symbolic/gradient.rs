@@ -79,7 +79,7 @@ impl Sweep {
     /// Propagates the derivative with respect to an expression to its operands.
     fn pass_on(&mut self, graph: &mut Graph, expr: Expr, adjoint: Expr) {
         if let Node::Solution { system, row } = *graph.node(expr) {
-            self.solution(graph, (system, row as usize), adjoint);
+            self.solution(graph, system, row as usize, adjoint);
             return;
         }
         if adjoint == Graph::ZERO {
@@ -145,7 +145,7 @@ impl Sweep {
     }
 
     /// A x = b gives b̄ = A⁻ᵀ x̄ and Ā = −b̄ xᵀ, once x̄ is known for all unknowns.
-    fn solution(&mut self, graph: &mut Graph, (system, row): (u32, usize), adjoint: Expr) {
+    fn solution(&mut self, graph: &mut Graph, system: u32, row: usize, adjoint: Expr) {
         let unknowns = self.systems.entry(system).or_default();
         unknowns.adjoints.push((row, adjoint));
         unknowns.open = unknowns.open.saturating_sub(1);

@@ -38,7 +38,9 @@
 
 mod bound;
 mod cone;
+mod elimination;
 mod point;
+mod tag;
 
 use rustc_hash::FxHashMap;
 

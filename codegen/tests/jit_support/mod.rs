@@ -1,18 +1,20 @@
-//! Schedules written by hand, and their values by two routes.
+//! Tapes written by hand, and their values by two routes.
 
 #![expect(clippy::unwrap_used, reason = "a test may stop here")]
+
+mod tree;
 
 use appell_codegen::jit::{
     Elementary, Instructions, NativeFunction, Sizes, Target, VectorFunction,
 };
-use appell_codegen::schedule::{
-    Argument, Operation, ResultArray, Schedule, Step, Tree, Value, interpret,
-};
 use appell_codegen::symbolic::{Function, Rational};
+use appell_codegen::tape::{Argument, Arithmetic, Tape, interpret};
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
-/// Arguments of all test schedules: three states, two inputs, two parameters.
+pub(crate) use tree::{Step, Tree, add_result, tape};
+
+/// Arguments of all test tapes: three states, two inputs, two parameters.
 pub(crate) const SIZES: Sizes = Sizes {
     states: 3,
     inputs: 2,
@@ -47,7 +49,7 @@ impl Point {
 }
 
 pub(crate) fn value(index: u32) -> Tree {
-    Tree::Value(Value(index))
+    Tree::Value(index)
 }
 
 pub(crate) fn state(index: u32) -> Tree {
@@ -58,43 +60,26 @@ pub(crate) fn number(numerator: i64, denominator: i64) -> Tree {
     Tree::Constant(Rational::new(numerator, denominator))
 }
 
-pub(crate) fn binary(operation: Operation, a: Tree, b: Tree) -> Tree {
+pub(crate) fn binary(operation: Arithmetic, a: Tree, b: Tree) -> Tree {
     Tree::Binary(operation, Box::new(a), Box::new(b))
 }
 
 pub(crate) fn set(index: u32, tree: Tree) -> Step {
-    Step::Let {
-        value: Value(index),
-        tree,
-    }
+    Step::Let { value: index, tree }
 }
 
-/// A schedule with one result and as many values as it needs.
-pub(crate) fn schedule(steps: Vec<Step>, entries: Vec<Tree>) -> Schedule {
-    let values = 256 + 8 * steps.len();
-    Schedule {
-        arguments: Vec::new(),
-        steps,
-        results: vec![ResultArray {
-            name: "result".to_owned(),
-            entries,
-        }],
-        names: (0..values).map(|index| format!("v{index}")).collect(),
-    }
-}
-
-/// The result of a schedule in machine code. The buffer starts with numbers that must not survive.
-pub(crate) fn compiled(schedule: &Schedule, point: &Point) -> Vec<f64> {
-    let function = NativeFunction::compile(schedule, SIZES).unwrap();
-    let mut result = vec![1.0e300; schedule.results[0].entries.len()];
+/// The result of a tape in machine code. The buffer starts with numbers that must not survive.
+pub(crate) fn compiled(tape: &Tape, point: &Point) -> Vec<f64> {
+    let function = NativeFunction::compile(tape, SIZES).unwrap();
+    let mut result = vec![1.0e300; tape.results[0].entries.len()];
     function.call(point.at(), [&mut result]);
     result
 }
 
-/// The result of a schedule, step by step.
-pub(crate) fn interpreted(schedule: &Schedule, point: &Point) -> Vec<f64> {
+/// The result of a tape, step by step.
+pub(crate) fn interpreted(tape: &Tape, point: &Point) -> Vec<f64> {
     let Point { t, x, u, p } = point;
-    interpret(schedule, *t, x, u, p).remove(0)
+    interpret(tape, *t, x, u, p).remove(0)
 }
 
 /// Equal bit for bit; the sign and payload of NaN are not part of a result.
@@ -107,13 +92,13 @@ pub(crate) fn same(a: &[f64], b: &[f64]) -> bool {
 
 /// All routes give the same bits.
 #[track_caller]
-pub(crate) fn agrees(schedule: &Schedule, point: &Point) {
-    let (found, expected) = (compiled(schedule, point), interpreted(schedule, point));
+pub(crate) fn agrees(tape: &Tape, point: &Point) {
+    let (found, expected) = (compiled(tape, point), interpreted(tape, point));
     assert!(
         same(&found, &expected),
-        "{found:?}\n{expected:?}\nat {point:?}\n{schedule:#?}"
+        "{found:?}\n{expected:?}\nat {point:?}\n{tape:#?}"
     );
-    agrees_in_lanes(schedule, &around(point));
+    agrees_in_lanes(tape, &around(point));
 }
 
 /// Code for every kind of vector instructions that this processor has, and scalar code, each with
@@ -135,11 +120,11 @@ pub(crate) fn targets() -> impl Iterator<Item = Target> {
 
 /// Every lane is bit-identical to scalar code, for all instruction sets.
 #[track_caller]
-pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
-    let standard = points.each_ref().map(|point| interpreted(schedule, point));
-    let own = NativeFunction::compile_with(schedule, SIZES, Elementary::Own).unwrap();
+pub(crate) fn agrees_in_lanes(tape: &Tape, points: &[Point; LANES]) {
+    let standard = points.each_ref().map(|point| interpreted(tape, point));
+    let own = NativeFunction::compile_with(tape, SIZES, Elementary::Own).unwrap();
     let own = points.each_ref().map(|point| {
-        let mut result = vec![1.0e300; schedule.results[0].entries.len()];
+        let mut result = vec![1.0e300; tape.results[0].entries.len()];
         own.call(point.at(), [&mut result]);
         result
     });
@@ -148,12 +133,12 @@ pub(crate) fn agrees_in_lanes(schedule: &Schedule, points: &[Point; LANES]) {
             Elementary::Standard => &standard,
             Elementary::Own => &own,
         };
-        let found = in_lanes(schedule, points, target);
+        let found = in_lanes(tape, points, target);
         for (l, expected) in expected.iter().enumerate() {
             let found = lane(&found, l);
             assert!(
                 same(&found, expected),
-                "{found:?}\n{expected:?}\nin lane {l} at {:?}\n{target:?}\n{schedule:#?}",
+                "{found:?}\n{expected:?}\nin lane {l} at {:?}\n{target:?}\n{tape:#?}",
                 points[l]
             );
         }
@@ -165,19 +150,15 @@ pub(crate) fn lane(blocks: &[[f64; LANES]], lane: usize) -> Vec<f64> {
     blocks.iter().map(|block| block[lane]).collect()
 }
 
-/// The result of a schedule at eight points. The buffer starts with numbers that must not survive.
-pub(crate) fn in_lanes(
-    schedule: &Schedule,
-    points: &[Point; LANES],
-    target: Target,
-) -> Vec<[f64; LANES]> {
-    let function = VectorFunction::compile_for(schedule, SIZES, target).unwrap();
+/// The result of a tape at eight points. The buffer starts with numbers that must not survive.
+pub(crate) fn in_lanes(tape: &Tape, points: &[Point; LANES], target: Target) -> Vec<[f64; LANES]> {
+    let function = VectorFunction::compile_for(tape, SIZES, target).unwrap();
     assert_eq!(
         function.is_vector(),
         target.instructions != Instructions::Scalar,
         "{target:?}"
     );
-    evaluated(&function, points, schedule.results[0].entries.len())
+    evaluated(&function, points, tape.results[0].entries.len())
 }
 
 /// The result of a function, of so many numbers, at eight points.
@@ -233,28 +214,27 @@ pub(crate) fn function(function: Function, argument: Tree) -> Tree {
 }
 
 /// A system of so many rows whose matrix needs row exchanges, solved for two right-hand sides.
-pub(crate) fn system(rows: u32) -> Schedule {
+pub(crate) fn system(rows: u32) -> Tape {
     let entry = |i: u32, j: u32| {
         let weight = number(i64::from((i * 31 + j * 17 + 5) % 23) - 11, 7);
-        let product = binary(Operation::Multiply, state((i + j) % 3), state(j % 3));
-        binary(Operation::Add, weight, product)
+        let product = binary(Arithmetic::Multiply, state((i + j) % 3), state(j % 3));
+        binary(Arithmetic::Add, weight, product)
     };
     let pairs = (0..rows).flat_map(|i| (0..rows).map(move |j| (i, j)));
     let matrix = pairs.map(|(i, j)| entry(i, j)).collect();
     let solve = |first: u32, right: Vec<Tree>| Step::Solve {
         factorisation: 0,
-        values: (first..first + rows).map(Value).collect(),
+        values: (first..first + rows).collect(),
         right,
     };
     let steps = vec![
         Step::Factor {
             factorisation: 0,
-            size: rows as usize,
             matrix,
         },
         solve(0, (0..rows).map(|i| state(i % 3)).collect()),
         // The second right-hand side contains the first unknowns.
         solve(rows, (0..rows).map(value).rev().collect()),
     ];
-    schedule(steps, (0..2 * rows).map(value).collect())
+    tape(steps, (0..2 * rows).map(value).collect())
 }

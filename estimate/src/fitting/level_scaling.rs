@@ -5,7 +5,6 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::free::Selection;
 use super::posterior::{Point, Posterior};
 use crate::EstimateError;
 use crate::data::setup::Disturbance;
@@ -22,10 +21,8 @@ pub(crate) struct LevelScaling {
 
 impl LevelScaling {
     /// About a point.
-    pub(crate) fn of(
-        (estimation, selection): (&Estimation<'_>, &Selection<'_>),
-        point: &Point,
-    ) -> Result<Self, EstimateError> {
+    pub(crate) fn of(posterior: &Posterior<'_, '_>, point: &Point) -> Result<Self, EstimateError> {
+        let (estimation, selection) = (posterior.estimation, posterior.selection);
         let free = selection.free;
         let mut slopes = DMatrix::zeros(free.len(), free.len());
         let levels: Vec<(usize, usize)> = (0..free.len())
@@ -60,7 +57,8 @@ impl LevelScaling {
     /// The step of [`Posterior::step`] in coordinates with levels scaled to accelerations.
     pub(crate) fn step(
         &self,
-        (posterior, point): (&Posterior<'_, '_>, &Point),
+        posterior: &Posterior<'_, '_>,
+        point: &Point,
         curvature: &DMatrix<f64>,
         damping: f64,
     ) -> (DVector<f64>, f64) {
@@ -85,17 +83,13 @@ fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, E
     for (run, recording) in runs.iter().enumerate() {
         let first = layout.place(Unknown::Initial { run, state: 0 })?;
         let commands = command::at_start(recording);
-        let at = (
-            recording.times()[0],
-            &values[first..first + n],
-            commands.as_slice(),
-        );
+        let (t, z) = (recording.times()[0], &values[first..first + n]);
         let mut columns = vec![0.0; s * s];
         columns
             .iter_mut()
             .step_by(s + 1)
             .for_each(|entry| *entry = 1.0);
-        let place = Place::new(layout, values, at);
+        let place = Place::new(layout, values, t, z, &commands);
         plant.accelerations(place, &mut scratch, &mut columns);
         for (log, mobility) in logs.iter_mut().zip(columns.iter().step_by(s + 1)) {
             *log += mobility.abs().ln() / runs.len() as f64;

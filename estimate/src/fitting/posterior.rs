@@ -44,15 +44,15 @@ impl Posterior<'_, '_> {
         let coordinates = self.selection.coordinates(values)?;
         let mut values = values.to_vec();
         self.selection.write(&coordinates, &mut values);
-        let likelihood = self.estimation.gradient(&values)?;
-        Ok(self.point((values, coordinates), likelihood))
+        let (log_likelihood, slopes) = self.estimation.gradient(&values)?;
+        Ok(self.point(values, coordinates, log_likelihood, &slopes))
     }
 
     /// After a step from a point.
     pub(crate) fn moved(&self, point: &Point, step: &DVector<f64>) -> Result<Point, EstimateError> {
         let (values, coordinates) = self.stepped(point, step);
-        let likelihood = self.estimation.gradient(&values)?;
-        Ok(self.point((values, coordinates), likelihood))
+        let (log_likelihood, slopes) = self.estimation.gradient(&values)?;
+        Ok(self.point(values, coordinates, log_likelihood, &slopes))
     }
 
     /// The same if the objective rises by more than `gain`; most other steps are rejected before their gradient is
@@ -65,7 +65,7 @@ impl Posterior<'_, '_> {
             rise > gain || point.is_rounding(rise)
         };
         let (likelihood, slopes) = self.estimation.gradient_if(&values, may_be).ok()?;
-        let next = self.point((values, coordinates), (likelihood, slopes?));
+        let next = self.point(values, coordinates, likelihood, &slopes?);
         (next.objective.is_finite() && point.is_worse_than(&next, gain)).then_some(next)
     }
 
@@ -83,11 +83,13 @@ impl Posterior<'_, '_> {
     /// The log-posterior from the log-likelihood and its slopes.
     fn point(
         &self,
-        (values, coordinates): (Vec<f64>, DVector<f64>),
-        (log_likelihood, slopes): (f64, Vec<f64>),
+        values: Vec<f64>,
+        coordinates: DVector<f64>,
+        log_likelihood: f64,
+        slopes: &[f64],
     ) -> Point {
         let (prior, by_prior) = self.selection.prior(&coordinates);
-        let gradient = self.selection.gradient(&values, &slopes) + by_prior;
+        let gradient = self.selection.gradient(&values, slopes) + by_prior;
         let limits = self.selection.limits();
         let all = coordinates.iter().zip(&gradient).zip(limits);
         let is_held = all.map(|((&x, &slope), [low, high])| {

@@ -45,11 +45,11 @@ impl Fit {
         let mut levels = Levels::default();
         let mut point = posterior.at(start)?;
         let mut information = levels.information(&posterior, &point)?;
-        let mut scaling = LevelScaling::of((estimation, &selection), &point)?;
+        let mut scaling = LevelScaling::of(&posterior, &point)?;
         let (mut damping, mut steps) = (0.0, 0);
         let mut gained = [f64::INFINITY; LAST];
         loop {
-            let (step, gain) = scaling.step((&posterior, &point), &information, damping);
+            let (step, gain) = scaling.step(&posterior, &point, &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
             let ends = steps >= effort.steps || damping > DAMPED[1];
@@ -57,7 +57,7 @@ impl Fit {
             if is_over || ends {
                 let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
                 if !is_over {
-                    let (step, more) = scaling.step((&posterior, &point), &information, DAMPING);
+                    let (step, more) = scaling.step(&posterior, &point, &information, DAMPING);
                     // If no step succeeds, the point is accepted if the predicted gain is small.
                     if !(0.0..=FLAT * effort.gain).contains(&more) {
                         (promised, gain) = (step, more);
@@ -96,7 +96,7 @@ impl Fit {
                     }
                     point = next;
                     information = levels.information(&posterior, &point)?;
-                    scaling = LevelScaling::of((estimation, &selection), &point)?;
+                    scaling = LevelScaling::of(&posterior, &point)?;
                 }
                 None => damping = (MORE * damping).max(DAMPING),
             }

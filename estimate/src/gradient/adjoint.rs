@@ -76,11 +76,11 @@ pub(crate) fn adjoint(pass: &mut Pass<'_>, rows: &Range<usize>, gradient: &mut [
         }
         Record::Measure { samples, held, .. } => {
             let samples = &shared.samples[samples.clone()];
-            back.measure((samples, held), rows, tape, gradient);
+            back.measure(samples, held, rows, tape, gradient);
         }
         Record::Close { t, held, tape: at } => {
             let [z, root] = pieces(&mut tape[*at..], [n, n * n]);
-            back.open((*t, held), z, root);
+            back.open(*t, held, z, root);
         }
         Record::Parts { .. } => {}
     });
@@ -103,13 +103,13 @@ impl Backward<'_, '_> {
     }
 
     /// Loops that were closed.
-    fn open(&mut self, (t, held): (f64, &[f64]), z: &mut [f64], root: &[f64]) {
+    fn open(&mut self, t: f64, held: &[f64], z: &mut [f64], root: &[f64]) {
         let Some(closure) = &mut self.closure else {
             return;
         };
         let closed = z.to_vec();
         let StateSpace { plant, layout, .. } = self.pass.system;
-        let place = Place::new(layout, self.pass.values, (t, &closed, held));
+        let place = Place::new(layout, self.pass.values, t, &closed, held);
         // The forward pass succeeded here.
         let _ = closure.close(plant, place, &mut self.scratch, z);
         let mut sums = Sums {
@@ -118,8 +118,14 @@ impl Backward<'_, '_> {
             lags: &mut self.lags,
             u: &mut self.inputs,
         };
-        let covariance = (root, self.p.as_mut_slice());
-        closure.adjoint(plant, place, &mut self.scratch, covariance, &mut sums);
+        closure.adjoint(
+            plant,
+            place,
+            &mut self.scratch,
+            root,
+            &mut self.p,
+            &mut sums,
+        );
     }
 
     /// A step.
@@ -245,7 +251,8 @@ impl Backward<'_, '_> {
             self.pass.system.plant,
             span,
             &mut self.scratch,
-            (&on.stages, effects),
+            &on.stages,
+            effects,
             &mut self.reverse,
             &mut sums,
         )
@@ -255,7 +262,8 @@ impl Backward<'_, '_> {
     /// before the first.
     fn measure(
         &mut self,
-        (samples, held): (&[Sample], &[f64]),
+        samples: &[Sample],
+        held: &[f64],
         rows: &Range<usize>,
         tape: &mut [f64],
         gradient: &mut [f64],
@@ -273,7 +281,7 @@ impl Backward<'_, '_> {
         for sample in samples.iter().rev() {
             let on = pass.sizes.sample(&mut tape[sample.tape..]);
             let seed = f64::from(u8::from(rows.contains(&sample.innovation.row)));
-            let by_quantity = self.scalar(sample, &on, (&prior, &mut by_prior), seed, gradient);
+            let by_quantity = self.scalar(sample, &on, &prior, &mut by_prior, seed, gradient);
             // `vector[0]` now holds the gradient with respect to the slope.
             let channel = sample.innovation.channel;
             let place = pass.system.layout.scale(channel);
@@ -298,8 +306,7 @@ impl Backward<'_, '_> {
         if outputs {
             self.inputs.fill(0.0);
             let t = pass.time_of(&first.innovation);
-            let at = (t, prior.as_slice(), held);
-            let place = Place::new(pass.system.layout, pass.values, at);
+            let place = Place::new(pass.system.layout, pass.values, t, &prior, held);
             let mut sums = Sums {
                 z: &mut self.z,
                 p: &mut self.parameters,
@@ -328,7 +335,8 @@ impl Backward<'_, '_> {
         &mut self,
         sample: &Sample,
         on: &SampleTape<'_>,
-        (prior, by_prior): (&[f64], &mut [f64]),
+        prior: &[f64],
+        by_prior: &mut [f64],
         seed: f64,
         gradient: &mut [f64],
     ) -> f64 {

@@ -56,7 +56,7 @@ impl Estimation<'_> {
         }
         let run = self.longest();
         let unknowns: Vec<Unknown> = levels.iter().map(|&i| free[i].unknown).collect();
-        let block = levels::information(self, (run, values), &unknowns)?;
+        let block = levels::information(self, run, values, &unknowns)?;
         let rows = |run: usize| self.recordings()[run].times().len();
         let all: usize = (0..self.recordings().len()).map(rows).sum();
         let scale = all as f64 / rows(run) as f64;

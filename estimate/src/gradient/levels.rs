@@ -17,7 +17,8 @@ use crate::motion::timeline::{Action, Advance};
 /// Fisher information of some levels, in SI, from the innovations of a recording.
 pub(crate) fn information(
     estimation: &Estimation<'_>,
-    (run, values): (usize, &[f64]),
+    run: usize,
+    values: &[f64],
     levels: &[Unknown],
 ) -> Result<DMatrix<f64>, EstimateError> {
     let count = levels.len();

@@ -98,7 +98,7 @@ impl Estimation<'_> {
         let runs = self.over_runs(|run| {
             let actions = self.actions(run, values);
             let pass = self.fresh(run, values, &actions);
-            let mut forward = Forward::new(self, pass, (directions, shapes), columns);
+            let mut forward = Forward::new(self, pass, directions, shapes, columns);
             for &action in &actions {
                 forward.act(action)?;
             }
@@ -179,7 +179,8 @@ impl<'p, 'a> Forward<'p, 'a> {
     fn new(
         estimation: &'p Estimation<'a>,
         pass: Pass<'p>,
-        (directions, shapes): (&[Direction], Option<Shapes<'p>>),
+        directions: &[Direction],
+        shapes: Option<Shapes<'p>>,
         columns: usize,
     ) -> Self {
         let (setup, n) = (estimation.setup(), pass.sizes.n);
@@ -248,8 +249,8 @@ impl<'p, 'a> Forward<'p, 'a> {
                         _ => None,
                     })
                     .collect();
-                for step in steps {
-                    self.advance(step);
+                for (advance, tape) in steps {
+                    self.advance(advance, tape);
                 }
                 self.earlier.clone_from(&self.pass.held);
             }
@@ -271,8 +272,8 @@ impl<'p, 'a> Forward<'p, 'a> {
             Action::Advance(advance) => advance.t + advance.h,
             _ => recording_time(recording, action),
         };
-        let at = (t, self.pass.z.as_slice(), self.pass.held.as_slice());
-        let place = Place::new(self.pass.system.layout, self.pass.values, at);
+        let (z, held) = (&self.pass.z, &self.pass.held);
+        let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
         for (column, direction) in self.directions.iter().enumerate() {
             if let Direction::Value(Unknown::Parameter(index)) = *direction {
                 let plant = self.pass.system.plant;
@@ -285,18 +286,18 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     /// Z ← F (Z + H) + H, where H is half of the increment of the step, by the slopes at its
     /// midpoint.
-    fn advance(&mut self, (advance, tape): (Advance, usize)) {
+    fn advance(&mut self, advance: Advance, tape: usize) {
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
         let info = self.estimation.setup().model.info();
         let (states, parameters) = (info.state_len(), info.parameter_len());
         // Lags may be as short as the step: their slopes follow its stages.
-        let lagged = self.lagged((advance, tape));
+        let lagged = self.lagged(advance, tape);
         let disturbances = self.pass.sizes.disturbances;
         let plant = self.pass.system.plant;
         let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
         let middle = &on.stages.z[n..2 * n];
-        let at = (advance.t + half, middle, &*on.held);
-        let place = Place::new(self.pass.system.layout, self.pass.values, at);
+        let (values, t) = (self.pass.values, advance.t + half);
+        let place = Place::new(self.pass.system.layout, values, t, middle, on.held);
         self.added.fill(0.0);
         if self.directions.iter().any(is_parameter) {
             plant.parameter_jacobian(place, &mut self.scratch, &mut self.by_parameters);
@@ -345,9 +346,8 @@ impl<'p, 'a> Forward<'p, 'a> {
             if let Direction::LateInput(input) = *direction {
                 let slope = command::slope(on.held, input, place.t);
                 if slope != 0.0 {
-                    let slopes: (&mut [f64], &mut [f64]) =
-                        (&mut self.by_states, &mut self.by_inputs);
-                    let by = by_input(plant, place, &mut self.scratch, slopes, input);
+                    let (by_states, by_inputs) = (&mut self.by_states, &mut self.by_inputs);
+                    let by = by_input(plant, place, &mut self.scratch, by_states, by_inputs, input);
                     for (state, by) in by.into_iter().enumerate() {
                         self.added[state * columns + column] -= half * slope * by;
                     }
@@ -367,7 +367,7 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     /// Increments of a step by the direct effect of directions on the rates of lags, each with its
     /// column.
-    fn lagged(&mut self, (advance, tape): (Advance, usize)) -> Vec<(usize, Vec<f64>)> {
+    fn lagged(&mut self, advance: Advance, tape: usize) -> Vec<(usize, Vec<f64>)> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
         let (n, states) = (
             self.pass.sizes.n,
@@ -383,7 +383,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             lags,
         };
         let stage = |i: usize| span.place(i, &on.stages.z[i * n..(i + 1) * n]);
-        let added = |state, rates| added_by_rate(&on.stages, (n, advance.h), state, rates);
+        let added = |state, rates| added_by_rate(&on.stages, n, advance.h, state, rates);
         let mut filters = [const { Vec::new() }; 4];
         if self.directions.iter().any(is_parameter) {
             filters = ALL.map(|i| plant.filters_by_parameters(stage(i), &mut self.scratch));
@@ -423,10 +423,10 @@ impl<'p, 'a> Forward<'p, 'a> {
             if old.to_bits() == new.to_bits() {
                 continue;
             }
-            let at = (t, self.pass.z.as_slice(), self.pass.held.as_slice());
-            let place = Place::new(self.pass.system.layout, self.pass.values, at);
-            let slopes: (&mut [f64], &mut [f64]) = (&mut self.by_states, &mut self.by_inputs);
-            let by = by_input(plant, place, &mut self.scratch, slopes, input);
+            let (z, held) = (&self.pass.z, &self.pass.held);
+            let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
+            let (by_states, by_inputs) = (&mut self.by_states, &mut self.by_inputs);
+            let by = by_input(plant, place, &mut self.scratch, by_states, by_inputs, input);
             for (state, by) in by.into_iter().enumerate() {
                 self.z[state * self.columns + column] += (old - new) * by;
             }
@@ -442,8 +442,8 @@ impl<'p, 'a> Forward<'p, 'a> {
             let t = self.pass.time_of(&sample.innovation);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
-            let at = (t, &*z, self.earlier.as_slice());
-            let place = Place::new(self.pass.system.layout, self.pass.values, at);
+            let (values, earlier) = (self.pass.values, &self.earlier);
+            let place = Place::new(self.pass.system.layout, values, t, z, earlier);
             let start = self.rows.len();
             self.rows.resize(start + columns, 0.0);
             let row = &mut self.rows[start..];
@@ -511,12 +511,9 @@ impl<'p, 'a> Forward<'p, 'a> {
             vec![0.0; setup.lag_len()],
         );
         let mut by_inputs = vec![0.0; info.declared_inputs];
-        let at = (
-            self.pass.time_of(&sample.innovation),
-            self.pass.z.as_slice(),
-            self.pass.held.as_slice(),
-        );
-        let place = Place::new(self.pass.system.layout, self.pass.values, at);
+        let t = self.pass.time_of(&sample.innovation);
+        let (z, held) = (&self.pass.z, &self.pass.held);
+        let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
         let mut sums = Sums {
             z: &mut by.0,
             p: &mut by.1,
@@ -537,7 +534,8 @@ fn by_input(
     plant: &Plant<'_>,
     place: Place<'_>,
     scratch: &mut Scratch,
-    (by_states, by_inputs): (&mut [f64], &mut [f64]),
+    by_states: &mut [f64],
+    by_inputs: &mut [f64],
     input: usize,
 ) -> Vec<f64> {
     let info = plant.info();

@@ -146,7 +146,8 @@ impl Track {
     /// The same where the last columns of the records are no coordinates: they share the knots, whose spacing is
     /// chosen without them.
     pub fn beside(records: &[Record], others: usize) -> Result<Self, InverseError> {
-        let pieces: Vec<Piece> = records.iter().enumerate().flat_map(cut).collect();
+        let runs = records.iter().enumerate();
+        let pieces: Vec<Piece> = runs.flat_map(|(run, record)| cut(run, record)).collect();
         let (spacing, left) = distance(&pieces, others).ok_or(InverseError::TooShort)?;
         let mut track = Self {
             spacing,
@@ -197,7 +198,7 @@ impl Stretch {
 }
 
 /// Complete rows of a record, cut at its gaps.
-fn cut((run, record): (usize, &Record)) -> Vec<Piece> {
+fn cut(run: usize, record: &Record) -> Vec<Piece> {
     let complete: Vec<usize> = (0..record.times.len())
         .filter(|&row| record.values.row(row).iter().all(|value| value.is_finite()))
         .collect();

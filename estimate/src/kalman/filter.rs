@@ -64,6 +64,10 @@ struct Reading {
     /// Sampling time in s.
     t: f64,
     measured: f64,
+    /// Offset of its numbers on the tape.
+    tape: usize,
+    /// Offset of those of the first scalar of its moment.
+    prior: usize,
 }
 
 /// One run of the filter along a recording.
@@ -95,11 +99,12 @@ impl<'a> Pass<'a> {
     pub(crate) fn over(
         system: StateSpace<'a>,
         values: &'a [f64],
-        (run, recording): (usize, &Recording),
+        run: usize,
+        recording: &Recording,
         actions: &[Action],
         tape: Option<Vec<f64>>,
     ) -> Result<Self, EstimateError> {
-        let mut pass = Self::new(system, values, (run, recording), actions, tape);
+        let mut pass = Self::new(system, values, run, recording, actions, tape);
         for &action in actions {
             pass.act(recording, action)?;
         }
@@ -110,7 +115,8 @@ impl<'a> Pass<'a> {
     pub(crate) fn new(
         system: StateSpace<'a>,
         values: &'a [f64],
-        (run, recording): (usize, &Recording),
+        run: usize,
+        recording: &Recording,
         actions: &[Action],
         tape: Option<Vec<f64>>,
     ) -> Self {
@@ -187,7 +193,7 @@ impl<'a> Pass<'a> {
                 let first = self.records.is_empty();
                 let StateSpace { setup, layout, .. } = self.system;
                 let switch = Switch { row, input, first };
-                switch.apply(&mut self.held, (setup, layout, self.values), recording);
+                switch.apply(&mut self.held, setup, layout, self.values, recording);
                 if first {
                     self.close(recording.times()[row])?;
                 }
@@ -271,7 +277,7 @@ impl<'a> Pass<'a> {
         // Loops are closed only after whole steps.
         let halvings = if self.system.setup.has_corners && self.closure.is_none() {
             let states = self.system.plant.info().state_len();
-            halvings(&on.stages, (n, states), h).min(MOST_HALVINGS - halved)
+            halvings(&on.stages, n, states, h).min(MOST_HALVINGS - halved)
         } else {
             0
         };
@@ -345,7 +351,7 @@ impl<'a> Pass<'a> {
             return Ok(());
         };
         let z = self.z.clone();
-        let place = Place::new(self.system.layout, self.values, (t, &z, &self.held));
+        let place = Place::new(self.system.layout, self.values, t, &z, &self.held);
         let run = self.run;
         closure
             .close(self.system.plant, place, &mut self.scratch, &mut self.z)
@@ -373,15 +379,16 @@ impl<'a> Pass<'a> {
         let held = self.linearise_outputs(self.sampling_time(t, only), &channels);
         let prior = self.record(channels.len() * self.sizes.sample_len());
         for (count, &channel) in channels.iter().enumerate() {
-            let tape = prior + count * self.sizes.sample_len();
             let reading = Reading {
                 row,
                 channel,
                 t,
                 measured: measured[channel],
+                tape: prior + count * self.sizes.sample_len(),
+                prior,
             };
-            let quantity = self.keep(channel, (prior, tape));
-            self.update(reading, quantity, (prior, tape))?;
+            let quantity = self.keep(reading);
+            self.update(reading, quantity)?;
         }
         let samples = first..self.samples.len();
         let row = only.is_none().then_some(row);
@@ -423,15 +430,21 @@ impl<'a> Pass<'a> {
         if !channels.iter().any(is_output) {
             return Vec::new();
         }
-        let place = Place::new(layout, self.values, (t, &self.z, &self.held));
+        let place = Place::new(layout, self.values, t, &self.z, &self.held);
         let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
         plant.outputs(place, &mut self.scratch, outputs, slopes);
         self.held.clone()
     }
 
     /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale
-    /// and bias, in the state before the first scalar of this time, whose tape is `prior`.
-    fn keep(&mut self, channel: usize, (prior, tape): (usize, usize)) -> f64 {
+    /// and bias, in the state before the first scalar of this time.
+    fn keep(&mut self, reading: Reading) -> f64 {
+        let Reading {
+            channel,
+            tape,
+            prior,
+            ..
+        } = reading;
         let n = self.sizes.n;
         let (earlier, rest) = self.tape.split_at_mut(tape);
         let SampleTape { c, z, root, .. } = self.sizes.sample(rest);
@@ -457,17 +470,14 @@ impl<'a> Pass<'a> {
     }
 
     /// Updates the state and the root of P by a scalar.
-    fn update(
-        &mut self,
-        reading: Reading,
-        quantity: f64,
-        (prior, tape): (usize, usize),
-    ) -> Result<(), EstimateError> {
+    fn update(&mut self, reading: Reading, quantity: f64) -> Result<(), EstimateError> {
         let Reading {
             row,
             channel,
             t,
             measured,
+            tape,
+            prior,
         } = reading;
         let n = self.sizes.n;
         let (earlier, rest) = self.tape.split_at_mut(tape);

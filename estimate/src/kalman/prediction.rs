@@ -187,8 +187,8 @@ impl<'a> Walk<'a> {
                         input,
                         first: false,
                     };
-                    let values = (setup, layout, self.values);
-                    switch.apply(&mut self.held, values, self.recording);
+                    let (values, recording) = (self.values, self.recording);
+                    switch.apply(&mut self.held, setup, layout, values, recording);
                 }
                 Action::Measure { row, channel } => {
                     let horizon = if everything { 0.0 } else { horizon };
@@ -231,7 +231,7 @@ impl<'a> Walk<'a> {
                         let delay = |channel| self.values[self.system.layout.sensor_delay(channel)];
                         let t = self.recording.times()[row] - only.map_or(0.0, delay);
                         let place =
-                            Place::new(self.system.layout, self.values, (t, &self.z, &self.held));
+                            Place::new(self.system.layout, self.values, t, &self.z, &self.held);
                         self.system
                             .plant
                             .output_values(place, &mut self.scratch, &mut outputs);
@@ -263,8 +263,7 @@ impl<'a> Walk<'a> {
         let t = advance.t + advance.h;
         if let Some(closure) = &mut self.closure {
             let open = self.z.clone();
-            let at = (t, open.as_slice(), self.held.as_slice());
-            let place = Place::new(self.system.layout, self.values, at);
+            let place = Place::new(self.system.layout, self.values, t, &open, &self.held);
             // A prediction without a solution of the loop constraints has infinite errors.
             if closure
                 .close(self.system.plant, place, &mut self.scratch, &mut self.z)
@@ -282,8 +281,8 @@ impl<'a> Walk<'a> {
         self.stage.copy_from_slice(&self.z);
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
-            let at = (t + part * h, self.stage.as_slice(), self.held.as_slice());
-            let place = Place::new(self.system.layout, self.values, at);
+            let (t, z) = (t + part * h, &self.stage);
+            let place = Place::new(self.system.layout, self.values, t, z, &self.held);
             let rates = &mut self.rates[stage * n..(stage + 1) * n];
             self.system.plant.rates(place, &mut self.scratch, rates);
             add_scaled(h * weight, rates, &mut after);
@@ -294,7 +293,7 @@ impl<'a> Walk<'a> {
         }
         let has_corners = self.system.setup.has_corners && self.closure.is_none();
         let is_cut = has_corners && halved < MOST_HALVINGS;
-        if is_cut && is_uneven(&self.rates, (n, self.system.plant.info().state_len())) {
+        if is_cut && is_uneven(&self.rates, n, self.system.plant.info().state_len()) {
             for part in advance.parts(1) {
                 self.step(part, halved + 1);
             }

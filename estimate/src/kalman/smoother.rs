@@ -66,13 +66,13 @@ impl Estimation<'_> {
                 let independent: Vec<usize> = match &mut closure {
                     Some(closure) => {
                         let t = advance.t + advance.h;
-                        let place = Place::new(self.layout(), values, (t, on.after, on.held));
+                        let place = Place::new(self.layout(), values, t, on.after, on.held);
                         closure.choose(pass.system.plant, place, &mut scratch);
                         closure.independent().collect()
                     }
                     None => (0..pass.sizes.n).collect(),
                 };
-                step_back(&pass, *advance, (&on, &independent), &mut last);
+                step_back(&pass, *advance, &on, &independent, &mut last);
             }
             Record::Measure { row: Some(row), .. } => {
                 last.t = self.recordings()[run].times()[*row];
@@ -83,7 +83,7 @@ impl Estimation<'_> {
         if let Some(closure) = &mut closure {
             for row in &mut rows {
                 let (t, open) = (row.t, row.state.clone());
-                let place = Place::new(self.layout(), values, (t, &open, &pass.held));
+                let place = Place::new(self.layout(), values, t, &open, &pass.held);
                 closure
                     .close(pass.system.plant, place, &mut scratch, &mut row.state)
                     .map_err(|source| EstimateError::Open { run, t, source })?;
@@ -99,7 +99,8 @@ impl Estimation<'_> {
 fn step_back(
     pass: &Pass<'_>,
     advance: Advance,
-    (on, independent): (&StepTape<'_>, &[usize]),
+    on: &StepTape<'_>,
+    independent: &[usize],
     last: &mut Smoothed,
 ) {
     let (n, d, r) = (pass.sizes.n, pass.sizes.disturbances, independent.len());

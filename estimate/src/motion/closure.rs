@@ -208,7 +208,8 @@ impl Closure {
         plant: &Plant<'_>,
         place: Place<'_>,
         scratch: &mut Scratch,
-        (root, covariance): (&[f64], &mut [f64]),
+        root: &[f64],
+        covariance: &mut [f64],
         sums: &mut Sums<'_>,
     ) {
         let (n, count) = (self.n, self.dependent.len());

@@ -63,7 +63,9 @@ impl Switch {
     pub(crate) fn apply(
         self,
         commands: &mut [f64],
-        (setup, layout, values): (&Setup<'_>, Layout, &[f64]),
+        setup: &Setup<'_>,
+        layout: Layout,
+        values: &[f64],
         recording: &Recording,
     ) {
         let t = recording.times()[self.row];

@@ -53,7 +53,9 @@ impl<'a> Place<'a> {
     pub(crate) fn new(
         layout: Layout,
         values: &'a [f64],
-        (t, z, held): (f64, &'a [f64], &'a [f64]),
+        t: f64,
+        z: &'a [f64],
+        held: &'a [f64],
     ) -> Self {
         let lags = layout.lag(0);
         Self {

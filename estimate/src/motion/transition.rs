@@ -126,7 +126,8 @@ pub(crate) fn step(
 /// Increment of a step by an additional rate of one state, given at each stage.
 pub(crate) fn added_by_rate(
     stages: &Stages<'_>,
-    (n, h): (usize, f64),
+    n: usize,
+    h: f64,
     along: usize,
     rates: [f64; 4],
 ) -> Vec<f64> {
@@ -145,7 +146,7 @@ pub(crate) fn added_by_rate(
 
 /// Number of halvings of a step required by the first `own` states: for a kink, such as that of
 /// regularised dry friction, or for a fast decay.
-pub(crate) fn halvings(stages: &Stages<'_>, (n, own): (usize, usize), h: f64) -> u32 {
+pub(crate) fn halvings(stages: &Stages<'_>, n: usize, own: usize, h: f64) -> u32 {
     // The trace of A² is the sum of the squares of the eigenvalues.
     let squares = |a: &[f64]| -> f64 {
         let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
@@ -156,14 +157,14 @@ pub(crate) fn halvings(stages: &Stages<'_>, (n, own): (usize, usize), h: f64) ->
     let decays = h * fastest.sqrt() / STIFF;
     let short_enough = |halvings: &u32| decays <= f64::from(1_u32 << halvings);
     match (0..MOST_HALVINGS).find(short_enough) {
-        Some(0) => u32::from(is_uneven(stages.k, (n, own))),
+        Some(0) => u32::from(is_uneven(stages.k, n, own)),
         Some(halvings) => halvings,
         None => MOST_HALVINGS,
     }
 }
 
 /// Whether the rates of the first `own` states differ between stages more than in a smooth motion.
-pub(crate) fn is_uneven(k: &[f64], (n, own): (usize, usize)) -> bool {
+pub(crate) fn is_uneven(k: &[f64], n: usize, own: usize) -> bool {
     let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage| &k[stage * n..(stage + 1) * n]);
     (0..own).any(|i| {
         let odds = (k1[i] - k2[i] - k3[i] + k4[i]).abs() + (k3[i] - k2[i]).abs();
@@ -240,7 +241,8 @@ pub(crate) fn adjoint(
     plant: &Plant<'_>,
     span: Span<'_>,
     scratch: &mut Scratch,
-    (stages, effects): (&Stages<'_>, Effects<'_>),
+    stages: &Stages<'_>,
+    effects: Effects<'_>,
     back: &mut Reverse,
     sums: &mut Sums<'_>,
 ) -> ByEnds {

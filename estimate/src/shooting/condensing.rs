@@ -59,7 +59,7 @@ impl Condensed {
             let mut carried = DMatrix::zeros(0, weights.sizes.len() + q + 1);
             let mut eliminated = Vec::with_capacity(pieces.len());
             for place in 0..pieces.len() {
-                let block = block(pieces, (run, place), &carried, weights);
+                let block = block(pieces, run, place, &carried, weights);
                 let (pivots, next) = eliminate(block, weights.sizes.len());
                 gained += 0.5 * pivots.right.norm_squared();
                 eliminated.push(pivots);
@@ -179,7 +179,8 @@ fn gap(piece: &Segment, next: &DVector<f64>, weights: &Weights<'_>) -> DVector<f
 /// is the last, of the free values, and the right side.
 fn block(
     pieces: &[Segment],
-    (run, place): (usize, usize),
+    run: usize,
+    place: usize,
     carried: &DMatrix<f64>,
     weights: &Weights<'_>,
 ) -> DMatrix<f64> {

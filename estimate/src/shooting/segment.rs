@@ -74,7 +74,8 @@ impl<'a> SegmentIntegrator<'a> {
     /// All segments of the run: rows at which they begin, and states there.
     pub(super) fn along(
         mut self,
-        (nodes, states): (&Vec<usize>, &Vec<DVector<f64>>),
+        nodes: &[usize],
+        states: &[DVector<f64>],
     ) -> Result<Vec<Segment>, EstimateError> {
         let mut pieces = Vec::with_capacity(nodes.len());
         self.begin(nodes[0], &states[0])?;
@@ -89,8 +90,8 @@ impl<'a> SegmentIntegrator<'a> {
                         first: is_first,
                     };
                     let (setup, layout) = (self.estimation.setup(), self.estimation.layout());
-                    let values = (setup, layout, self.values);
-                    switch.apply(&mut self.held, values, self.recording);
+                    let (values, recording) = (self.values, self.recording);
+                    switch.apply(&mut self.held, setup, layout, values, recording);
                     is_first = false;
                 }
                 Action::Measure { row, channel } => {
@@ -121,8 +122,8 @@ impl<'a> SegmentIntegrator<'a> {
             self.recording.times()[row],
             self.estimation.plant(),
         );
-        let at = (t, state.as_slice(), self.held.as_slice());
-        let place = Place::new(self.estimation.layout(), self.values, at);
+        let (layout, z) = (self.estimation.layout(), state.as_slice());
+        let place = Place::new(layout, self.values, t, z, &self.held);
         closure
             .close(plant, place, &mut self.scratch, &mut self.z)
             .map_err(|source| EstimateError::Open { run, t, source })?;
@@ -157,8 +158,8 @@ impl<'a> SegmentIntegrator<'a> {
         let (mut slopes, held) = (vec![0.0; n * n], self.held.clone());
         for (i, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if i == 0 { 0.0 } else { STAGES[i - 1] };
-            let at = (t + part * h, stage.as_slice(), held.as_slice());
-            let place = Place::new(self.estimation.layout(), self.values, at);
+            let (layout, t) = (self.estimation.layout(), t + part * h);
+            let place = Place::new(layout, self.values, t, &stage, &held);
             let plant = self.estimation.plant();
             let rates = &mut rates[i * n..(i + 1) * n];
             plant.jacobian(place, &mut self.scratch, rates, &mut slopes);
@@ -175,7 +176,7 @@ impl<'a> SegmentIntegrator<'a> {
         }
         let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
         let is_cut = has_corners && halved < MOST_HALVINGS;
-        if is_cut && is_uneven(&rates, (n, self.estimation.plant().info().state_len())) {
+        if is_cut && is_uneven(&rates, n, self.estimation.plant().info().state_len()) {
             (self.z, self.by) = (before, by_before);
             for part in advance.parts(1) {
                 self.advance(part, halved + 1);
@@ -227,7 +228,7 @@ impl<'a> SegmentIntegrator<'a> {
             0
         };
         let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
-        let place = Place::new(layout, self.values, (t, &self.z, &self.held));
+        let place = Place::new(layout, self.values, t, &self.z, &self.held);
         if count > 0 {
             let plant = self.estimation.plant();
             plant.outputs(place, &mut self.scratch, &mut outputs, &mut slopes);

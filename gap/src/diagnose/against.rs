@@ -94,7 +94,7 @@ pub fn against(
         present: taken.effects.clone(),
         ..options.clone()
     };
-    let mut report = diagnosed((&set, Some(&known)), effects, &options, &mut stage)?;
+    let mut report = diagnosed(&set, Some(&known), effects, &options, &mut stage)?;
     let is_changed = report.verdict != GapVerdict::NoGap && matters(&report, &set, &told);
     if !is_changed {
         report.verdict = GapVerdict::NoGap;

@@ -93,7 +93,7 @@ impl<'a> Rival<'a> {
         if main.is_over_windows() {
             let windows = main.set.rebound(&alternative.spec)?;
             let levels = bench.levels(&fitted)?;
-            bench = Bench::over(&windows, (&bench, &levels))?.with_weight_of(main);
+            bench = Bench::over(&windows, &bench, &levels)?.with_weight_of(main);
             fitted = bench.nominal()?;
         }
         let extra: Vec<bool> = own.iter().map(|column| !shared.contains(column)).collect();

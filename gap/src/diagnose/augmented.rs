@@ -44,7 +44,8 @@ const PROMISING: f64 = 0.5;
 /// any case: the gain that it explains, at most `by_inputs`, is subtracted. `best` is the largest gain of the
 /// other candidates.
 pub(super) fn screened(
-    (bench, fitted): (&Bench<'_>, &Fitted),
+    bench: &Bench<'_>,
+    fitted: &Fitted,
     by_inputs: f64,
     best: f64,
 ) -> Result<Vec<Screened>, DiagnoseError> {
@@ -262,15 +263,14 @@ impl<'g, 'b> Grid<'g, 'b> {
     /// Evaluates sizes and factors of the shape, the best first, with process noise multiplied by `levels`. If none is
     /// promising, the gains are those extrapolated from the sample.
     fn tried(&self, all: &[(f64, f64)], levels: f64) -> Result<Vec<Tried>, DiagnoseError> {
-        let whole = (
-            self.bench.recordings.as_slice(),
-            self.fitted.fit.log_likelihood,
-        );
-        let Some(sample) = self.sample else {
-            return self.gains(all, levels, whole);
+        let on_all_rows = |all: &[(f64, f64)]| {
+            let log_likelihood = self.fitted.fit.log_likelihood;
+            self.gains(all, levels, &self.bench.recordings, log_likelihood)
         };
-        let beginnings = (sample.recordings.as_slice(), sample.log_likelihood);
-        let mut rough = self.gains(all, levels, beginnings)?;
+        let Some(sample) = self.sample else {
+            return on_all_rows(all);
+        };
+        let mut rough = self.gains(all, levels, &sample.recordings, sample.log_likelihood)?;
         for one in &mut rough {
             one.gain *= sample.scale;
         }
@@ -285,7 +285,7 @@ impl<'g, 'b> Grid<'g, 'b> {
             .take(BEST)
             .map(|one| (one.size, one.factor))
             .collect();
-        self.gains(&best, levels, whole)
+        on_all_rows(&best)
     }
 
     /// Their gains on some recordings, relative to this log likelihood of the hypothesis, without those at which the
@@ -294,7 +294,8 @@ impl<'g, 'b> Grid<'g, 'b> {
         &self,
         all: &[(f64, f64)],
         levels: f64,
-        (recordings, log_likelihood): (&[Recording], f64),
+        recordings: &[Recording],
+        log_likelihood: f64,
     ) -> Result<Vec<Tried>, DiagnoseError> {
         let (bench, fitted) = (self.bench, self.fitted);
         let estimation = Estimation::new(&self.setup, recordings)?;

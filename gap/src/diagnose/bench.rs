@@ -8,11 +8,11 @@ use appell_estimate::{
 use appell_runtime::model::Model;
 
 use super::DiagnoseError;
-use super::evidence::Evidence;
-use super::evidence::Fitted;
+use super::evidence::{Evidence, Fitted};
 use super::feedback::{InputInnovations, for_kicks};
 use super::hardware::Hardware;
 use super::imperfection::{Imperfection, perfect};
+use super::start_levels::{level, sizes};
 use super::unmodelled::UnmodelledChannel;
 use crate::effects::{Acts, Candidate, EffectModel, Part as Role};
 use crate::identify::{Options, Problem, longest_step};
@@ -127,7 +127,7 @@ impl<'a> Bench<'a> {
         }
         let (problem, sizes, layout) = {
             let estimation = Estimation::new(&setup, &recordings)?;
-            let mut problem = Problem::of(&set, &estimation, (&Options::tolerant(), &[]))?;
+            let mut problem = Problem::of(&set, &estimation, &Options::tolerant(), &[])?;
             level(&estimation, &mut problem)?;
             let sizes = sizes(&estimation, &problem)?;
             (problem, sizes, estimation.layout())
@@ -436,7 +436,7 @@ impl<'a> Bench<'a> {
             return Ok(fitted);
         }
         // Far from an optimum Newton's method may progress where Fisher scoring does not.
-        let further = self.fit_by((Fit::of, self.effort()), &[], estimation, &levels);
+        let further = self.fit_by(Fit::of, self.effort(), &[], estimation, &levels);
         Ok(further.unwrap_or(fitted))
     }
 
@@ -467,7 +467,7 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by((Fit::quick, self.effort()), members, estimation, start)
+        self.fit_by(Fit::quick, self.effort(), members, estimation, start)
     }
 
     /// Fits some values.
@@ -477,7 +477,7 @@ impl<'a> Bench<'a> {
         start: &[f64],
         free: &[Free],
     ) -> Result<Fit, DiagnoseError> {
-        self.weighed(estimation, start, free, (Fit::quick, self.effort()))
+        self.weighed(estimation, start, free, Fit::quick, self.effort())
     }
 
     /// Fits the noise levels alone.
@@ -496,7 +496,7 @@ impl<'a> Bench<'a> {
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
-        self.fit_by((Fit::quick, SHARES), members, estimation, start)
+        self.fit_by(Fit::quick, SHARES, members, estimation, start)
     }
 
     fn effort(&self) -> Effort {
@@ -509,14 +509,15 @@ impl<'a> Bench<'a> {
 
     fn fit_by(
         &self,
-        search: (Search, Effort),
+        search: Search,
+        effort: Effort,
         members: &[usize],
         estimation: &Estimation<'_>,
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        let fit = self.weighed(estimation, start, &free, search)?;
-        let by_inputs = for_kicks(&self.input_innovations, self.weight, (estimation, &fit))?;
+        let fit = self.weighed(estimation, start, &free, search, effort)?;
+        let by_inputs = for_kicks(&self.input_innovations, self.weight, estimation, &fit)?;
         let evidence = Evidence::of(self, members, &fit, by_inputs);
         Ok(Fitted {
             members: members.to_vec(),
@@ -535,7 +536,8 @@ impl Bench<'_> {
         estimation: &Estimation<'_>,
         start: &[f64],
         free: &[Free],
-        (search, effort): (Search, Effort),
+        search: Search,
+        effort: Effort,
     ) -> Result<Fit, DiagnoseError> {
         let firm = free.iter().map(|one| Free {
             prior: (one.prior).map(|[value, deviation]| [value, deviation * self.weight.sqrt()]),
@@ -589,53 +591,4 @@ fn admit(setup: &mut Setup<'_>, acts: Acts, step: f64) {
 
 fn longest_delay(step: f64) -> f64 {
     LONGEST_DELAY.max(DELAY_STEPS * step)
-}
-
-/// Maximises the likelihood over the process noise of each equation in turn, by powers of ten: the levels of different
-/// equations are nearly independent.
-fn level(estimation: &Estimation<'_>, problem: &mut Problem) -> Result<(), DiagnoseError> {
-    let layout = estimation.layout();
-    let mut best = estimation.log_likelihood(&problem.start)?;
-    for index in 0..estimation.setup().disturbances.len() {
-        let place = layout.place(Unknown::Disturbance(index))?;
-        let Some([low, high]) = problem
-            .levels
-            .iter()
-            .find(|free| free.unknown == Unknown::Disturbance(index))
-            .map(|free| free.range)
-        else {
-            continue;
-        };
-        for factor in [10.0, 0.1] {
-            let mut moved = problem.start.clone();
-            loop {
-                moved[place] *= factor;
-                if !(low..=high).contains(&moved[place]) {
-                    break;
-                }
-                match estimation.log_likelihood(&moved) {
-                    Ok(likelihood) if likelihood > best => {
-                        best = likelihood;
-                        problem.start.clone_from(&moved);
-                    }
-                    _ => break,
-                }
-            }
-        }
-    }
-    Ok(())
-}
-
-/// Initial standard deviations of the states: typical sizes of unmeasured ones.
-fn sizes(estimation: &Estimation<'_>, problem: &Problem) -> Result<Vec<f64>, DiagnoseError> {
-    let layout = estimation.layout();
-    let states = 0..estimation.setup().model.info().state_len();
-    let size = |state| {
-        let mut most = 0.0_f64;
-        for run in 0..estimation.recordings().len() {
-            most = most.max(problem.start[layout.place(Unknown::Spread { run, state })?]);
-        }
-        Ok(most)
-    };
-    states.map(size).collect()
 }

@@ -92,7 +92,8 @@ pub(super) fn of(
 pub(super) fn of_alternative(
     name: &str,
     paired: &Paired,
-    (floor, tolerance): (f64, f64),
+    floor: f64,
+    tolerance: f64,
 ) -> Vec<Share> {
     let gap = move |means: &[f64]| means[0] - floor * floor;
     let part = |name: &str, share: &dyn Fn(&[f64]) -> f64| {
@@ -164,7 +165,8 @@ fn subset(effects: &[(String, Vec<usize>)], set: usize) -> Vec<usize> {
 /// The fit with some members of the best hypothesis. It starts from the best known fit of a subset,
 /// and with the sizes of the members in the whole hypothesis.
 pub(super) fn with(
-    (bench, comparison): (&Bench<'_>, &Comparison),
+    bench: &Bench<'_>,
+    comparison: &Comparison,
     best: &Fitted,
     members: &[usize],
 ) -> Result<Fitted, DiagnoseError> {

@@ -79,7 +79,8 @@ pub(super) fn told(set: &DataSet) -> Result<Told, DiagnoseError> {
 
 /// The diagnosis; held-out runs and earlier recordings are read at its end only.
 pub(super) fn diagnose(
-    (set, before): (&DataSet, Option<&DataSet>),
+    set: &DataSet,
+    before: Option<&DataSet>,
     model: &EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),

@@ -95,7 +95,7 @@ fn gain(bench: &Bench<'_>, base: &Fitted) -> Result<f64, DiagnoseError> {
     let mut free = other.free(&own, &setup);
     free.extend(walks.iter().map(|walk| walk.free));
     let fit = other.fit_free(&estimation, &start, &free)?;
-    let by_inputs = for_kicks(&other.input_innovations, other.weight, (&estimation, &fit))?;
+    let by_inputs = for_kicks(&other.input_innovations, other.weight, &estimation, &fit)?;
     Ok(Evidence::of(&other, &own, &fit, by_inputs).log() - base.evidence.log())
 }
 

@@ -167,10 +167,11 @@ impl Comparison {
     /// are tried; `None` if it is rejected.
     pub(super) fn of(
         bench: &Bench<'_>,
-        known: (Fitted, Vec<Fitted>),
+        nominal: Fitted,
+        known: Vec<Fitted>,
         look: impl FnMut(&Fitted) -> Look,
     ) -> Result<Option<Self>, DiagnoseError> {
-        let mut search = Search::new(bench, known);
+        let mut search = Search::new(bench, nominal, known);
         let holds = search.run(look)?;
         holds.then(|| Self::found(bench, search)).transpose()
     }
@@ -178,9 +179,10 @@ impl Comparison {
     /// Compares the nominal model and known hypotheses, and extends the best of them while that improves it.
     pub(super) fn among(
         bench: &Bench<'_>,
-        known: (Fitted, Vec<Fitted>),
+        nominal: Fitted,
+        known: Vec<Fitted>,
     ) -> Result<Self, DiagnoseError> {
-        let mut search = Search::new(bench, known);
+        let mut search = Search::new(bench, nominal, known);
         search.better()?;
         Self::found(bench, search)
     }
@@ -205,7 +207,7 @@ impl Comparison {
     pub(super) fn with(self, bench: &Bench<'_>, known: Vec<Fitted>) -> Result<Self, DiagnoseError> {
         let nominal = self.nominal().clone();
         let own = self.fits.into_iter().map(|(own, _)| own);
-        let mut search = Search::new(bench, (nominal, own.chain(known)));
+        let mut search = Search::new(bench, nominal, own.chain(known));
         search.failed = self.failed;
         Self::found(bench, search)
     }
@@ -278,10 +280,15 @@ impl Comparison {
     }
 }
 
+/// Whether the sensitivities at the end of a search have no meaning.
+pub(super) fn diverges(fit: &Fit) -> bool {
+    fit.gain > MOST_PROMISED
+}
+
 /// The reason why a search ended early.
 fn ended(fit: &Fit) -> String {
     let steps = fit.steps;
-    if fit.gain > MOST_PROMISED {
+    if diverges(fit) {
         return format!(
             "its search ended after {steps} steps at diverging sensitivities, as with stiff friction: it may explain \
              more than reported"

@@ -111,7 +111,7 @@ impl Evidence {
                 let stretch = (in_value / deviations[place]).ln();
                 let two_sided = free.range[0] < neutral;
                 let hardware = &bench.hardware;
-                hardware.of_size(free.unknown, (size, in_value), two_sided) + stretch
+                hardware.of_size(free.unknown, size, in_value, two_sided) + stretch
             };
         }
         // A member whose size is zero, at its limit, is not significant.

@@ -38,6 +38,19 @@ struct Rig<'a> {
     channels: Vec<[f64; 2]>,
 }
 
+/// A test signal on one input.
+#[derive(Clone, Copy)]
+struct TestSignal {
+    /// Index of the input.
+    input: usize,
+    /// Limits of the input.
+    limits: [f64; 2],
+    /// Course over time.
+    shape: Excitation,
+    /// Amplitude relative to the limits.
+    size: f64,
+}
+
 /// The best experiment for two hypotheses; `None` if no input that was tried keeps the motion
 /// within its limits.
 pub(super) fn experiment(
@@ -57,29 +70,39 @@ pub(super) fn experiment(
         return Ok(None);
     };
     let rig = Rig::new(bench, limits);
-    let mut best: Option<(f64, Excitation, usize, f64, Recording)> = None;
+    let mut best: Option<(f64, TestSignal, Recording)> = None;
     for (input, limits) in rig.inputs.iter().enumerate() {
         let Some(limits) = limits else { continue };
         // A motion that leaves its limits without input does so with any.
-        let idle = (Excitation::library(rig.duration, rig.step)[0], 0.0);
-        if rig.made(truth, (input, *limits), idle)?.is_none() {
+        let idle = TestSignal {
+            input,
+            limits: *limits,
+            shape: Excitation::library(rig.duration, rig.step)[0],
+            size: 0.0,
+        };
+        if rig.made(truth, idle)?.is_none() {
             continue;
         }
         for shape in Excitation::library(rig.duration, rig.step) {
             // Smaller inputs if larger ones leave the limits.
             for size in SIZES {
-                let Some(recording) = rig.made(truth, (input, *limits), (shape, size))? else {
+                let signal = TestSignal {
+                    shape,
+                    size,
+                    ..idle
+                };
+                let Some(recording) = rig.made(truth, signal)? else {
                     continue;
                 };
                 let d = distance(bench, rival, &recording)?;
                 if d.is_finite() && best.as_ref().is_none_or(|best| d > best.0) {
-                    best = Some((d, shape, input, size, recording));
+                    best = Some((d, signal, recording));
                 }
                 break;
             }
         }
     }
-    let Some((d, shape, input, size, recording)) = best else {
+    let Some((d, signal, recording)) = best else {
         return Ok(None);
     };
     let gap = truth.evidence.log_likelihood - rival.evidence.log_likelihood;
@@ -88,9 +111,10 @@ pub(super) fn experiment(
     Ok(Some(Experiment {
         separates: pair.map(<[String]>::to_vec),
         about: format!(
-            "{shape} on {}, {:.0} % of its limits",
-            name(input),
-            100.0 * size
+            "{} on {}, {:.0} % of its limits",
+            signal.shape,
+            name(signal.input),
+            100.0 * signal.size
         ),
         separation_now: now,
         separation_then: now.hypot(d),
@@ -153,18 +177,14 @@ impl<'a> Rig<'a> {
     }
 
     /// The recording without noise that a hypothesis predicts; `None` if the motion leaves its limits.
-    fn made(
-        &self,
-        truth: &Fitted,
-        (input, [low, high]): (usize, [f64; 2]),
-        (shape, size): (Excitation, f64),
-    ) -> Result<Option<Recording>, DiagnoseError> {
-        let samples = shape.samples(self.duration, self.step);
+    fn made(&self, truth: &Fitted, signal: TestSignal) -> Result<Option<Recording>, DiagnoseError> {
+        let samples = signal.shape.samples(self.duration, self.step);
         let (rows, columns, channels) = (samples.len(), self.inputs.len(), self.channels.len());
         let mut inputs = vec![0.0; rows * columns];
-        let (centre, half) = (0.5 * (low + high), 0.5 * size * (high - low));
+        let [low, high] = signal.limits;
+        let (centre, half) = (0.5 * (low + high), 0.5 * signal.size * (high - low));
         for (row, sample) in samples.iter().enumerate() {
-            inputs[row * columns + input] = centre + half * sample;
+            inputs[row * columns + signal.input] = centre + half * sample;
         }
         let times = (0..rows).map(|row| row as f64 * self.step).collect();
         // The first row is missing; at all others the innovations against zero are the negative predictions.

@@ -91,7 +91,8 @@ impl InputInnovations {
 pub(super) fn for_kicks(
     own: &InputInnovations,
     weight: f64,
-    (estimation, fit): (&Estimation<'_>, &Fit),
+    estimation: &Estimation<'_>,
+    fit: &Fit,
 ) -> Result<f64, EstimateError> {
     if own.count == 0 {
         return Ok(0.0);

@@ -57,7 +57,7 @@ impl Normal {
         });
         let scores = DVector::from_fn(order.len(), |i, _| self.scores[order[i]]);
         let log_likelihood = -0.5 * (self.scales + self.square);
-        Gram::beside(0..first.len(), (&squares, &scores), log_likelihood)
+        Gram::beside(0..first.len(), &squares, &scores, log_likelihood)
     }
 }
 
@@ -224,7 +224,8 @@ impl Gram {
     /// Eliminates the first columns from all others.
     pub(super) fn beside(
         first: Range<usize>,
-        (squares, scores): (&DMatrix<f64>, &DVector<f64>),
+        squares: &DMatrix<f64>,
+        scores: &DVector<f64>,
         log_likelihood: f64,
     ) -> Self {
         let (free, own) = (first.len(), squares.ncols() - first.len());

@@ -77,7 +77,8 @@ impl Hardware {
     pub(super) fn of_size(
         &self,
         unknown: Unknown,
-        (size, deviation): (f64, f64),
+        size: f64,
+        deviation: f64,
         is_two_sided: bool,
     ) -> f64 {
         let alike = match unknown {

@@ -73,7 +73,9 @@ impl HeldOut {
     /// with the errors of the nominal model on `others`, in the same units.
     pub(super) fn how_far(
         &self,
-        (bench, comparison, leader): (&Bench<'_>, &Comparison, &Leader<'_>),
+        bench: &Bench<'_>,
+        comparison: &Comparison,
+        leader: &Leader<'_>,
         others: Option<&Self>,
         options: &Options,
     ) -> Result<Option<HowFar>, DiagnoseError> {
@@ -112,7 +114,7 @@ impl HeldOut {
         let paired = Paired::of(&[&stated, &refit, &effect]);
         let means = paired.means();
         let budget = if let Some(name) = leader.alternative {
-            budget::of_alternative(name, &paired, (floor, tolerance))
+            budget::of_alternative(name, &paired, floor, tolerance)
         } else {
             let (best, law) = match leader.law {
                 Some(law) => {
@@ -133,13 +135,13 @@ impl HeldOut {
             };
             let parts = budget::effects(bench.effects, &best.members);
             budget::of(&parts, &ends, |members| {
-                errors(&budget::with((bench, comparison), best, members)?)
+                errors(&budget::with(bench, comparison, best, members)?)
             })?
         };
         let runs = self.names.clone();
         Ok(Some(HowFar {
             before: before.transpose()?,
-            ..HowFar::of(&paired, (horizon, floor), budget, runs)
+            ..HowFar::of(&paired, horizon, floor, budget, runs)
         }))
     }
 
@@ -158,7 +160,8 @@ impl HowFar {
     /// From the errors of the stated model, the re-fitted one and the leading hypothesis.
     pub(super) fn of(
         paired: &Paired,
-        (horizon_s, floor): (f64, f64),
+        horizon_s: f64,
+        floor: f64,
         budget: Vec<Share>,
         runs: Vec<String>,
     ) -> Self {

@@ -70,7 +70,10 @@ impl Judged<'_> {
 /// The ranking by one-step predictions if it is validated by simulations over windows, otherwise that by these.
 /// Other hypotheses than the nominal model may be known.
 pub(super) fn judged<'a>(
-    (bench, (nominal, known), screen): (Bench<'a>, (Fitted, Vec<Fitted>), Screen),
+    bench: Bench<'a>,
+    screen: Screen,
+    nominal: Fitted,
+    known: Vec<Fitted>,
     over: Bench<'a>,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
@@ -79,7 +82,7 @@ pub(super) fn judged<'a>(
         bench: &bench,
         again: BTreeMap::new(),
     };
-    let stepwise = seen.one_step((&nominal, &known))?;
+    let stepwise = seen.one_step(&nominal, &known)?;
     let holds = stepwise.as_ref().filter(|(_, holds)| *holds);
     let again = holds.and_then(|(stepwise, _)| seen.again(stepwise.best()));
     let again = again.map(|again| again.fitted.clone());
@@ -101,7 +104,7 @@ pub(super) fn judged<'a>(
         let whole = if comparison.leads_unknown() && !none(&comparison) {
             let again = bench.fitted_again(&over, comparison.best());
             let known = again.into_iter().map(|(_, again)| again).collect();
-            nothing_left((&bench, &nominal), known, stepwise.take())?
+            nothing_left(&bench, &nominal, known, stepwise.take())?
         } else {
             None
         };
@@ -125,7 +128,7 @@ pub(super) fn judged<'a>(
     // One-step predictions decide also if no simulation reproduces the recordings.
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise),
-        None => Comparison::of(&bench, (nominal, known), |_| Look::Holds)?,
+        None => Comparison::of(&bench, nominal, known, |_| Look::Holds)?,
     };
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("testing laws outside the library");
@@ -146,7 +149,8 @@ pub(super) fn judged<'a>(
 /// periods.
 pub(super) fn lengthened<'a>(
     judged: Judged<'a>,
-    (levels, whole): (&[(Unknown, f64)], &DataSet),
+    levels: &[(Unknown, f64)],
+    whole: &DataSet,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'a>, DiagnoseError> {
     let mut before = length(whole);
@@ -159,8 +163,8 @@ pub(super) fn lengthened<'a>(
         }
         before = longer;
         stage("fitting simulations over longer windows");
-        let windows = whole.windows(longer, (count, rows))?;
-        let over = Bench::over(&windows, (&judged.bench, levels))?;
+        let windows = whole.windows(longer, count, rows)?;
+        let over = Bench::over(&windows, &judged.bench, levels)?;
         let Ok((_, again)) = over.fitted_again(&judged.bench, best) else {
             break;
         };
@@ -171,7 +175,7 @@ pub(super) fn lengthened<'a>(
         let known = fits.filter(|(own, _)| !own.members.is_empty());
         let known = known.filter_map(|(own, _)| over.fitted_again(&judged.bench, own).ok());
         let known = known.map(|(_, again)| again).collect();
-        let mut comparison = Comparison::among(&over, (over.nominal()?, known))?;
+        let mut comparison = Comparison::among(&over, over.nominal()?, known)?;
         let [found, nominal] = [comparison.best(), comparison.nominal()];
         let gain = found.fit.log_likelihood - nominal.fit.log_likelihood;
         if over.left(gain) < IMMATERIAL {
@@ -189,13 +193,14 @@ pub(super) fn lengthened<'a>(
 /// The ranking by one-step predictions, if they leave no significant remainder: an unstable mechanism cannot be predicted
 /// over windows of any length. Some hypotheses may be `known`.
 fn nothing_left(
-    (bench, nominal): (&Bench<'_>, &Fitted),
+    bench: &Bench<'_>,
+    nominal: &Fitted,
     known: Vec<Fitted>,
     stepwise: Option<Comparison>,
 ) -> Result<Option<Comparison>, DiagnoseError> {
     let comparison = match stepwise {
         Some(stepwise) => Some(stepwise.with(bench, known)?),
-        None => Comparison::of(bench, (nominal.clone(), known), |_| Look::Holds)?,
+        None => Comparison::of(bench, nominal.clone(), known, |_| Look::Holds)?,
     };
     let Some(mut comparison) = comparison else {
         return Ok(None);
@@ -210,7 +215,7 @@ fn nothing_left(
 fn simulated(over: &Bench<'_>, known: Vec<Fitted>) -> Result<(Screen, Comparison), DiagnoseError> {
     let nominal = over.nominal()?;
     let screen = Screen::of(over, &nominal)?;
-    let comparison = Comparison::of(over, (nominal, known), |_| Look::Holds)?;
+    let comparison = Comparison::of(over, nominal, known, |_| Look::Holds)?;
     Ok((screen, comparison.ok_or(DiagnoseError::NothingToFit)?))
 }
 
@@ -242,12 +247,13 @@ impl Seen<'_, '_> {
     /// They do not if process noise absorbs a missing effect.
     fn one_step(
         &mut self,
-        (nominal, known): (&Fitted, &[Fitted]),
+        nominal: &Fitted,
+        known: &[Fitted],
     ) -> Result<Option<(Comparison, bool)>, DiagnoseError> {
         let (bench, over) = (self.bench, self.over);
-        let known = (nominal.clone(), known.to_vec());
         let look = |fitted: &Fitted| self.look(fitted, nominal);
-        let Some(mut comparison) = Comparison::of(bench, known, look)? else {
+        let found = Comparison::of(bench, nominal.clone(), known.to_vec(), look)?;
+        let Some(mut comparison) = found else {
             return Ok(None);
         };
         let of_nominal = self.again(nominal).map(Again::log_likelihood);
@@ -314,7 +320,7 @@ impl Seen<'_, '_> {
 /// The runs, cut into windows of half a typical period: long enough that forces affect the motion, short
 /// enough that errors do not dominate it.
 pub(super) fn windows(set: &DataSet) -> Result<DataSet, DiagnoseError> {
-    Ok(set.windows(length(set), (WINDOWS, ROWS))?)
+    Ok(set.windows(length(set), WINDOWS, ROWS)?)
 }
 
 /// Half of a typical period in s: that of a harmonic motion with the ratio of deviation to rate of a channel, the

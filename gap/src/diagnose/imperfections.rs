@@ -36,7 +36,7 @@ pub(super) fn immaterial(judged: &Judged<'_>) -> Result<Vec<Imperfection>, Diagn
     for member in of_channels {
         let mut others = best.members.clone();
         others.retain(|&own| own != member);
-        let without = budget::with((bench, comparison), best, &others)?;
+        let without = budget::with(bench, comparison, best, &others)?;
         let acts = bench.candidate(member).acts;
         let (Some(free), Some(channel)) = (bench.of_signal(acts, &setup), acts.channel()) else {
             continue;

@@ -101,7 +101,8 @@ pub(super) fn fitted<'l>(
 pub(super) fn measured<'l>(
     fitted: Vec<Result<FittedLaw<'l>, DiagnoseError>>,
     comparison: &mut Comparison,
-    (bench, runs): (&Bench<'_>, &DataSet),
+    bench: &Bench<'_>,
+    runs: &DataSet,
 ) -> Option<Result<FittedLaw<'l>, DiagnoseError>> {
     let evidence = |law: &Result<FittedLaw<'_>, DiagnoseError>| {
         let found = law.as_ref();
@@ -112,7 +113,7 @@ pub(super) fn measured<'l>(
     let holds = |law: &Result<FittedLaw<'_>, DiagnoseError>, comparison: &mut Comparison| match law
     {
         Ok(law) if law.base.members.len() < comparison.best().members.len() => {
-            law.predicts((comparison.best(), bench), runs)
+            law.predicts(comparison.best(), bench, runs)
                 .unwrap_or(false)
                 && comparison.weigh_alone(bench, law.log_evidence, law.left)
         }
@@ -127,7 +128,8 @@ impl FittedLaw<'_> {
     /// cause.
     fn predicts(
         &self,
-        (other, bench): (&Fitted, &Bench<'_>),
+        other: &Fitted,
+        bench: &Bench<'_>,
         runs: &DataSet,
     ) -> Result<bool, DiagnoseError> {
         let runs = runs.all(Part::Test);

@@ -45,14 +45,15 @@ struct Error {
 
 /// The windows of some recordings, the worst first.
 pub(super) fn windows(
-    (bench, fitted): (&Bench<'_>, &Fitted),
+    bench: &Bench<'_>,
+    fitted: &Fitted,
     set: &DataSet,
     recordings: &[Recording],
 ) -> Result<Vec<Window>, DiagnoseError> {
     if recordings.is_empty() {
         return Ok(Vec::new());
     }
-    let mut errors = errors((bench, fitted), recordings)?;
+    let mut errors = errors(bench, fitted, recordings)?;
     let mut channels = 0;
     for error in &errors {
         channels = channels.max(error.channel + 1);
@@ -95,7 +96,7 @@ pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSe
     }
     let bench = &judged.bench;
     let runs = HeldOut::of(&whole.all(Part::Test), bench)?;
-    let found = windows((bench, comparison.best()), whole, &runs.recordings)?;
+    let found = windows(bench, comparison.best(), whole, &runs.recordings)?;
     let margin = 0.5 * windows::length(bench);
     let cut = found.into_iter();
     let cut = cut.map(|one| (one.run, [one.from - margin, one.to + margin]));
@@ -105,7 +106,8 @@ pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSe
 
 /// Moduli of the prediction errors, in expected standard deviations.
 fn errors(
-    (bench, fitted): (&Bench<'_>, &Fitted),
+    bench: &Bench<'_>,
+    fitted: &Fitted,
     recordings: &[Recording],
 ) -> Result<Vec<Error>, DiagnoseError> {
     let setup = bench.setup(&fitted.members);

@@ -87,7 +87,7 @@ impl Screen {
     pub(super) fn of(bench: &Bench<'_>, fitted: &Fitted) -> Result<Self, DiagnoseError> {
         let mut screen = Self::first_order(bench, fitted)?;
         let best = screen.list.first().map_or(0.0, |best| best.gain);
-        let augmented = augmented::screened((bench, fitted), fitted.evidence.by_inputs, best)?;
+        let augmented = augmented::screened(bench, fitted, fitted.evidence.by_inputs, best)?;
         screen.list.extend(augmented);
         screen.list.sort_by(|a, b| b.gain.total_cmp(&a.gain));
         Ok(screen)

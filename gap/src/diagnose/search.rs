@@ -13,7 +13,7 @@ use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::prior::{names, prior};
 use super::screen::quieten;
-use super::sets::{Set, Sets, is_fixed};
+use super::sets::{Set, Sets, SizeEstimates, is_fixed};
 use crate::effects::{Acts, Part};
 
 /// Number of sets that are fitted before the next linearisation, and of rivals that are fitted about the best one.
@@ -57,7 +57,8 @@ impl<'b, 'a> Search<'b, 'a> {
     /// From the nominal model and other known fits.
     pub(super) fn new(
         bench: &'b Bench<'a>,
-        (nominal, known): (Fitted, impl IntoIterator<Item = Fitted>),
+        nominal: Fitted,
+        known: impl IntoIterator<Item = Fitted>,
     ) -> Self {
         let mut search = Self {
             bench,
@@ -287,16 +288,11 @@ impl<'b, 'a> Search<'b, 'a> {
             }
         }
         quieten(&estimation, &mut start, set.levels)?;
-        for (candidate, sizes, deviations) in &set.sizes {
-            place(
-                bench,
-                &estimation,
-                (*candidate, sizes, deviations),
-                &mut start,
-            )?;
-            if from.members.contains(candidate) {
+        for sizes in &set.sizes {
+            place(bench, &estimation, sizes, &mut start)?;
+            if from.members.contains(&sizes.candidate) {
                 // Its shape has been estimated already.
-                for (index, part) in bench.own(bench.candidate(*candidate)) {
+                for (index, part) in bench.own(bench.candidate(sizes.candidate)) {
                     if part.is_shape() {
                         start[index] = carried[index];
                     }
@@ -482,13 +478,13 @@ fn best_fit(
 fn place(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
-    (candidate, sizes, deviations): (usize, &[f64], &[f64]),
+    sizes: &SizeEstimates,
     values: &mut [f64],
 ) -> Result<(), DiagnoseError> {
     let layout = estimation.layout();
     let setup = estimation.setup();
-    let candidate = bench.candidate(candidate);
-    let first = sizes.first().copied().unwrap_or(0.0);
+    let candidate = bench.candidate(sizes.candidate);
+    let first = sizes.values.first().copied().unwrap_or(0.0);
     let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
     let values_now = bench
         .effects
@@ -512,8 +508,8 @@ fn place(
                         continue;
                     }
                     Part::Size | Part::Term(_) => {
-                        let size = sizes[direction];
-                        let least = deviations[direction];
+                        let size = sizes.values[direction];
+                        let least = sizes.deviations[direction];
                         let size = if size.abs() > 0.0 { size } else { least };
                         set(unknown, size)?;
                     }

@@ -34,12 +34,23 @@ const MOST_CHOICES: usize = 60;
 /// Largest number of components of a vector whose subsets are evaluated.
 const MOST_COMPONENTS: usize = 6;
 
+/// The best sizes of a candidate.
+#[derive(Debug, Clone)]
+pub(super) struct SizeEstimates {
+    /// Index of the candidate.
+    pub(super) candidate: usize,
+    /// One for each of its directions.
+    pub(super) values: Vec<f64>,
+    /// Their standard deviations.
+    pub(super) deviations: Vec<f64>,
+}
+
 /// A set of candidates with its expected posterior.
 #[derive(Debug, Clone)]
 pub(super) struct Set {
     pub(super) members: Vec<usize>,
-    /// The best sizes of the candidates with sensitivities, and their standard deviations.
-    pub(super) sizes: Vec<(usize, Vec<f64>, Vec<f64>)>,
+    /// The best sizes of its candidates.
+    pub(super) sizes: Vec<SizeEstimates>,
     /// Expected log posterior, comparable with that of fits.
     pub(super) log_posterior: f64,
     /// Factor on the process noise at the start of its fit.
@@ -144,8 +155,8 @@ impl<'b, 'a> Sets<'b, 'a> {
         shapes(bench, &mut values, &fitted.members);
         let is_fixed = |&member: &usize| is_fixed(bench, member);
         let fixed: Vec<usize> = fitted.members.iter().copied().filter(is_fixed).collect();
-        let (columns, of_columns) = columns(bench, fitted, (&estimation, &values))?;
-        let nuisances = nuisances(bench, fitted, (&of_columns, &columns));
+        let (columns, of_columns) = columns(bench, fitted, &estimation, &values)?;
+        let nuisances = nuisances(bench, fitted, &of_columns, &columns);
         let directions: Vec<Direction> = (nuisances.iter().map(|one| one.direction))
             .chain(of_columns)
             .collect();
@@ -160,7 +171,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             let tangent = bench
                 .input_innovations
                 .with_kicks(|kicks| estimation.tangent(&values, &directions, kicks))?;
-            Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, (&nuisances, &columns)))
+            Ok::<Level, DiagnoseError>(Level::of(bench, scale, &tangent, &nuisances, &columns))
         });
         // With less process noise the filter may diverge.
         let mut found = Vec::new();
@@ -336,15 +347,19 @@ impl<'b, 'a> Sets<'b, 'a> {
             .collect();
         let sizes = members.iter().map(|&candidate| {
             let count = directions(self.bench, candidate).len();
-            let [mut sizes, mut deviations] = [vec![0.0; count], vec![0.0; count]];
+            let [mut values, mut deviations] = [vec![0.0; count], vec![0.0; count]];
             for (place, &column) in columns.iter().enumerate() {
                 let column = &self.columns[column];
                 if column.candidate == candidate {
-                    sizes[column.direction] = solved.sizes[place];
+                    values[column.direction] = solved.sizes[place];
                     deviations[column.direction] = solved.deviations[place];
                 }
             }
-            (candidate, sizes, deviations)
+            SizeEstimates {
+                candidate,
+                values,
+                deviations,
+            }
         });
         let sizes = sizes.collect();
         members.extend(&self.fixed);
@@ -386,7 +401,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             let of_error = hardware.of_error(unknown, size).filter(|_| known.is_some());
             value += match (of_error, known) {
                 (Some((density, _)), Some(wrong)) => density + 0.5 * (size / wrong).powi(2),
-                _ => hardware.of_size(unknown, (size, deviation), !is_positive),
+                _ => hardware.of_size(unknown, size, deviation, !is_positive),
             };
         }
         Some((value + log_prior, solved))
@@ -405,7 +420,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             Some(level.gram.solved(&self.choices[place].columns)?.gain)
         });
         let best = singles.fold(0.0, f64::max);
-        let list = augmented::screened((bench, fitted), for_kicks, best)?;
+        let list = augmented::screened(bench, fitted, for_kicks, best)?;
         let set = |one: Screened| {
             let mut members = fitted.members.clone();
             members.push(one.candidate);
@@ -416,7 +431,11 @@ impl<'b, 'a> Sets<'b, 'a> {
                 members,
                 log_posterior: log_posterior + one.gain - occam(one.gain) + more,
                 levels: one.levels,
-                sizes: vec![(one.candidate, one.sizes, one.deviations)],
+                sizes: vec![SizeEstimates {
+                    candidate: one.candidate,
+                    values: one.sizes,
+                    deviations: one.deviations,
+                }],
                 starts: one.starts,
             }
         };
@@ -439,7 +458,8 @@ pub(super) fn is_fixed(bench: &Bench<'_>, member: usize) -> bool {
 fn columns(
     bench: &Bench<'_>,
     fitted: &Fitted,
-    (estimation, values): (&Estimation<'_>, &[f64]),
+    estimation: &Estimation<'_>,
+    values: &[f64],
 ) -> Result<(Vec<Column>, Vec<Direction>), DiagnoseError> {
     let (setup, layout) = (estimation.setup(), estimation.layout());
     let at = |list: &[usize], input: usize| list.iter().position(|own| *own == input);
@@ -497,7 +517,8 @@ fn columns(
 fn nuisances(
     bench: &Bench<'_>,
     fitted: &Fitted,
-    (of_columns, columns): (&[Direction], &[Column]),
+    of_columns: &[Direction],
+    columns: &[Column],
 ) -> Vec<Nuisance> {
     let mut all = Vec::new();
     for (place, free) in fitted.fit.free.iter().enumerate() {
@@ -535,7 +556,8 @@ impl Level {
         bench: &Bench<'_>,
         scale: f64,
         tangent: &Tangent,
-        (nuisances, columns): (&[Nuisance], &[Column]),
+        nuisances: &[Nuisance],
+        columns: &[Column],
     ) -> Self {
         let (free, own) = (nuisances.len(), columns.len());
         let kicks = tangent.slopes.ncols() - free - own;

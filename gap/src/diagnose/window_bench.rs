@@ -36,7 +36,8 @@ impl Bench<'_> {
     /// a prediction.
     pub(super) fn over(
         windows: &DataSet,
-        (from, levels): (&Self, &[(Unknown, f64)]),
+        from: &Self,
+        levels: &[(Unknown, f64)],
     ) -> Result<Self, DiagnoseError> {
         let quiet = |estimation: &Estimation<'_>, problem: &mut Problem| {
             let layout = estimation.layout();

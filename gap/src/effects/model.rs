@@ -78,7 +78,7 @@ struct Hypothesis {
     members: Vec<usize>,
     /// The equations that also contain all other candidates.
     whole: Arc<JitModel>,
-    own: Option<JitModel>,
+    own: JitModel,
     next: OnceLock<Box<Hypothesis>>,
 }
 
@@ -279,10 +279,7 @@ impl EffectModel {
         loop {
             let one = place.get_or_init(|| Box::new(self.hypothesis(members, whole)));
             if one.members == members && Arc::ptr_eq(&one.whole, whole) {
-                return match &one.own {
-                    Some(own) => own,
-                    None => &**whole,
-                };
+                return &one.own;
             }
             place = &one.next;
         }
@@ -301,7 +298,7 @@ impl EffectModel {
             .collect();
         Hypothesis {
             members: members.to_vec(),
-            own: whole.without(&zeros).ok(),
+            own: whole.without(&zeros),
             whole: whole.clone(),
             next: OnceLock::new(),
         }

@@ -43,7 +43,8 @@ impl Problem {
     pub(crate) fn of(
         set: &DataSet,
         estimation: &Estimation<'_>,
-        (options, additions): (&Options, &[Addition]),
+        options: &Options,
+        additions: &[Addition],
     ) -> Result<Self, IdentifyError> {
         let (layout, setup) = (estimation.layout(), estimation.setup());
         let drifts = drift::named(&options.drifting, set, setup.model.info())?;

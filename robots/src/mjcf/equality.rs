@@ -186,18 +186,17 @@ impl<'x> Reader<'x, '_> {
             None => None,
         };
         let zeros = [joint.zero, other.map_or(0.0, |other| other.zero)];
-        let sums = (
-            Sum::of(&joint.name),
-            other.map(|other| Sum::of(&other.name)),
-        );
-        self.couple(element, sums, zeros, read)
+        let follows = Sum::of(&joint.name);
+        let other = other.map(|other| Sum::of(&other.name));
+        self.couple(element, follows, other, zeros, read)
     }
 
     /// Adds the equation of two sums; without the second, the first is constant.
     pub(super) fn couple(
         &self,
         element: Element<'x>,
-        (follows, other): (Sum, Option<Sum>),
+        follows: Sum,
+        other: Option<Sum>,
         zeros: [f64; 2],
         read: &mut Equality,
     ) -> Option<()> {

@@ -249,10 +249,8 @@ impl<'x> Reader<'x, '_> {
                 .at(|joint| self.joint(joint).map_or(0.0, |own| own.zero))
         };
         let zeros = [drawn(follows), other.map_or(0.0, drawn)];
-        let sums = (
-            follows.length.clone(),
-            other.map(|other| other.length.clone()),
-        );
-        self.couple(element, sums, zeros, read)
+        let follows = follows.length.clone();
+        let other = other.map(|other| other.length.clone());
+        self.couple(element, follows, other, zeros, read)
     }
 }

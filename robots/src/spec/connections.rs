@@ -19,7 +19,10 @@ impl Writer<'_> {
             for meeting in meetings {
                 let called = names.new_one(&name);
                 let along = self.frame_of(meeting.along);
-                let [first, second] = [0, 1].map(|end| self.end(&called, end, meeting.ends[end]));
+                let [first, second] = [0, 1].map(|end| {
+                    let (body, at) = meeting.ends[end];
+                    self.end(&called, end, body, at)
+                });
                 for &(axis, follower) in &meeting.rows {
                     let axis = AXES[axis];
                     let of = |point: &str| match along.as_str() {
@@ -42,7 +45,7 @@ impl Writer<'_> {
     }
 
     /// The point at one end of a connection.
-    fn end(&mut self, connection: &str, end: usize, (body, at): (Option<usize>, Vector)) -> String {
+    fn end(&mut self, connection: &str, end: usize, body: Option<usize>, at: Vector) -> String {
         if is_zero(at) {
             return self.point_of(body);
         }

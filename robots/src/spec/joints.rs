@@ -5,7 +5,7 @@ use crate::model::{Joint, Motion};
 use crate::rotation::Pose;
 use crate::table::{Item, list};
 
-use super::resistances::Owner;
+use super::resistances::{Owner, Property};
 use super::units::Units;
 use super::{Writer, operand, sentence};
 
@@ -159,8 +159,11 @@ impl Writer<'_> {
         let q = self.called.coordinates[index].clone();
         let is_free = joint.motion == Motion::Free;
         let of = format!("joint {}", joint.name);
-        let number = |unit: &'static str, letter: &'static str| {
-            (joint.armature, unit, letter, "inertia of the drive")
+        let number = |unit: &'static str, letter: &'static str| Property {
+            value: joint.armature,
+            unit,
+            letter,
+            about: "inertia of the drive",
         };
         let inertia = self.of_owner(&q, &joint.name, "joint", number("kg*m^2", "armature"));
         let rotor = self.places.new_one(&format!("rotor_{q}"));
@@ -170,14 +173,14 @@ impl Writer<'_> {
             let frame = self.called.frames[index].clone();
             self.weightless
                 .push((q.clone(), point.clone(), mass.clone()));
-            return self.rotor(&rotor, &frame, (&point, &mass), &inertia, &of);
+            return self.rotor(&rotor, &frame, &point, &mass, &inertia, &of);
         }
         let all = &self.called.several[index];
         let quaternion = all[all.len() - 4..].to_vec();
         let item = Item::default().text("parent", "ground");
         self.frames
             .add(&rotor, &item.raw("quaternion", &list(&quaternion)));
-        self.rotor(&rotor, &rotor, ("O", "0"), &inertia, &of);
+        self.rotor(&rotor, &rotor, "O", "0", &inertia, &of);
     }
 
     fn coordinate(&mut self, index: usize, q: &str, units: &Units) {
@@ -207,12 +210,12 @@ impl Writer<'_> {
 
     /// Armature: inertia of a rotor that moves with its joint only.
     fn armature(&mut self, joint: &Joint, q: &str, units: &Units) {
-        let number = (
-            joint.armature,
-            units.inertia,
-            "armature",
-            "inertia of the drive",
-        );
+        let number = Property {
+            value: joint.armature,
+            unit: units.inertia,
+            letter: "armature",
+            about: "inertia of the drive",
+        };
         let inertia = self.of_owner(q, &joint.name, "joint", number);
         self.turning_rotor(q, q, inertia, units, &format!("joint {}", joint.name));
     }
@@ -239,7 +242,7 @@ impl Writer<'_> {
             .text("parent", "ground")
             .text("about_axis", "z");
         self.frames.add(&rotor, &item.text("by", &by));
-        self.rotor(&rotor, &rotor, ("O", "0"), &inertia, of);
+        self.rotor(&rotor, &rotor, "O", "0", &inertia, of);
     }
 
     /// A body with an inertia about every axis of a frame.
@@ -247,7 +250,8 @@ impl Writer<'_> {
         &mut self,
         rotor: &str,
         frame: &str,
-        (centre, mass): (&str, &str),
+        centre: &str,
+        mass: &str,
         inertia: &str,
         of: &str,
     ) {

@@ -23,6 +23,19 @@ pub(super) struct Owner<'a> {
     pub(super) units: &'a Units,
 }
 
+/// A physical property of a joint or a tendon.
+#[derive(Clone, Copy)]
+pub(super) struct Property<'a> {
+    /// Its value in the unit.
+    pub(super) value: f64,
+    /// Its SI unit.
+    pub(super) unit: &'static str,
+    /// The beginning of its name as a parameter.
+    pub(super) letter: &'a str,
+    /// Its description, without the joint or tendon.
+    pub(super) about: &'a str,
+}
+
 impl Writer<'_> {
     /// A number of a joint or a tendon, as an expression.
     pub(super) fn of_owner(
@@ -30,16 +43,16 @@ impl Writer<'_> {
         called: &str,
         of: &str,
         kind: &str,
-        (value, unit, letter, about): (f64, &'static str, &str, &str),
+        property: Property<'_>,
     ) -> String {
         let number = Number {
-            value,
-            unit,
-            letter: &format!("{letter}_{called}"),
+            value: property.value,
+            unit: property.unit,
+            letter: &format!("{}_{called}", property.letter),
             of,
-            about: &format!("{about} of {kind} {of}"),
+            about: &format!("{} of {kind} {of}", property.about),
             kind: Kind::Other,
-            never_negative: value >= 0.0 && !letter.starts_with("relaxed"),
+            never_negative: property.value >= 0.0 && !property.letter.starts_with("relaxed"),
         };
         self.numbers.write(number, &mut self.quantities)
     }
@@ -60,7 +73,8 @@ impl Writer<'_> {
         owner: &Owner<'_>,
         word: &str,
         factors: Polynomial,
-        (units, powers): ([&'static str; 3], [String; 3]),
+        units: [&'static str; 3],
+        powers: [String; 3],
     ) -> String {
         let mut force = "0".to_owned();
         for (index, (factor, power)) in factors.into_iter().zip(powers).enumerate() {
@@ -71,7 +85,12 @@ impl Writer<'_> {
                 0 => word.to_owned(),
                 _ => format!("{word}_{}", index + 1),
             };
-            let number = (factor, units[index], letter.as_str(), word);
+            let number = Property {
+                value: factor,
+                unit: units[index],
+                letter: &letter,
+                about: word,
+            };
             let factor = self.of_owner(owner.called, owner.of, owner.kind, number);
             let term = format!("{factor}*{power}");
             force = match (force.as_str(), term.strip_prefix('-')) {
@@ -94,14 +113,19 @@ impl Writer<'_> {
                     format!("{factor}*abs({rate})"),
                     format!("{factor}^3"),
                 ];
-                let powers = (owner.units.damping, powers);
-                let force = self.opposing(owner, "damping", damping, powers);
+                let units = owner.units.damping;
+                let force = self.opposing(owner, "damping", damping, units, powers);
                 self.resist(owner, "damping", &force);
             }
             return;
         };
         if linear != 0.0 {
-            let number = (linear, owner.units.damping[0], "damping", "damping");
+            let number = Property {
+                value: linear,
+                unit: owner.units.damping[0],
+                letter: "damping",
+                about: "damping",
+            };
             let damping = self.of_owner(owner.called, owner.of, owner.kind, number);
             let item = Item::default()
                 .text("kind", "damper")
@@ -116,22 +140,21 @@ impl Writer<'_> {
         if is_zero(stiffness) {
             return;
         }
-        let about = "coordinate of the relaxed spring";
-        let unit = owner.units.coordinate;
+        let relaxed_at = |value: f64| Property {
+            value,
+            unit: owner.units.coordinate,
+            letter: "relaxed",
+            about: "coordinate of the relaxed spring",
+        };
         if let [linear, 0.0, 0.0] = stiffness {
-            let number = (
-                linear,
-                owner.units.stiffness[0],
-                "stiffness",
-                "stiffness of the spring",
-            );
+            let number = Property {
+                value: linear,
+                unit: owner.units.stiffness[0],
+                letter: "stiffness",
+                about: "stiffness of the spring",
+            };
             let stiffness = self.of_owner(owner.called, owner.of, owner.kind, number);
-            let relaxed = self.of_owner(
-                owner.called,
-                owner.of,
-                owner.kind,
-                (relaxed, unit, "relaxed", about),
-            );
+            let relaxed = self.of_owner(owner.called, owner.of, owner.kind, relaxed_at(relaxed));
             let item = Item::default()
                 .text("kind", "spring")
                 .text("coordinate", owner.along.1)
@@ -144,12 +167,7 @@ impl Writer<'_> {
             self.loads.add(&format!("spring_{}", owner.called), &item);
             return;
         }
-        let relaxed = self.of_owner(
-            owner.called,
-            owner.of,
-            owner.kind,
-            (-relaxed, unit, "relaxed", about),
-        );
+        let relaxed = self.of_owner(owner.called, owner.of, owner.kind, relaxed_at(-relaxed));
         let x = plus(owner.along.1, &relaxed);
         self.elastic(owner, stiffness, &x);
     }
@@ -158,12 +176,7 @@ impl Writer<'_> {
     pub(super) fn elastic(&mut self, owner: &Owner<'_>, stiffness: Polynomial, strain: &str) {
         let x = operand(strain);
         let powers = [x.clone(), format!("{x}^2"), format!("{x}^3")];
-        let force = self.opposing(
-            owner,
-            "stiffness",
-            stiffness,
-            (owner.units.stiffness, powers),
-        );
+        let force = self.opposing(owner, "stiffness", stiffness, owner.units.stiffness, powers);
         self.resist(owner, "spring", &force);
     }
 
@@ -172,7 +185,12 @@ impl Writer<'_> {
         if friction == 0.0 {
             return;
         }
-        let number = (friction, owner.units.force, "friction", "dry friction");
+        let number = Property {
+            value: friction,
+            unit: owner.units.force,
+            letter: "friction",
+            about: "dry friction",
+        };
         let friction = self.of_owner(owner.called, owner.of, owner.kind, number);
         let slow = quantity(SLOW, owner.units.rate);
         let force = format!("-{friction}*smooth_sign({rate}, {slow})");

@@ -6,7 +6,7 @@ use crate::model::{Coupling, Motion, Sum, Tendon};
 use crate::rotation::is_zero;
 use crate::table::Item;
 
-use super::resistances::Owner;
+use super::resistances::{Owner, Property};
 use super::units::Units;
 use super::{Writer, operand, plus};
 
@@ -88,7 +88,12 @@ impl Writer<'_> {
                 self.elastic(&owner, tendon.stiffness, &strain);
             }
             if tendon.armature != 0.0 {
-                let number = (tendon.armature, units.inertia, "armature", "inertia");
+                let number = Property {
+                    value: tendon.armature,
+                    unit: units.inertia,
+                    letter: "armature",
+                    about: "inertia",
+                };
                 let inertia = self.of_owner(&called, &tendon.name, "tendon", number);
                 let of = format!("tendon {}", tendon.name);
                 self.turning_rotor(&called, &length, inertia, &units, &of);

@@ -113,7 +113,7 @@ impl<P: EmbeddedPair> Solver<P> {
             }
             let known = watcher.stops.known_after(t);
             is_guess |= next_h.is_none() && options.first_step.is_none();
-            let h = next_h.unwrap_or_else(|| self.first_step(f, (t, longest), known, options));
+            let h = next_h.unwrap_or_else(|| self.first_step(f, t, longest, known, options));
             let stride = watcher.stops.stride(t, h);
             // The old rates apply up to a switching time.
             let mut f = |t: f64, x: &[f64], rates: &mut [f64]| f(t.min(stride.last), x, rates);
@@ -239,7 +239,8 @@ impl<P: EmbeddedPair> Solver<P> {
     fn first_step<F>(
         &mut self,
         f: &mut F,
-        (t, longest): (f64, f64),
+        t: f64,
+        longest: f64,
         stop: Stop,
         options: &Options,
     ) -> f64

@@ -22,8 +22,8 @@ use super::instruction::{Instruction, Memory, Operand, Register};
 use super::line::{Array, Binary, Routine};
 use super::registers::Allocated;
 use super::routines;
-use crate::schedule::Operation;
 use crate::symbolic::Relation;
+use crate::tape::Arithmetic;
 
 /// Bytes of eight numbers: the stride of arguments and results.
 const BLOCK: i32 = 64;
@@ -329,10 +329,10 @@ fn opcode(operation: Binary) -> Opcode {
     match operation {
         Binary::And => Opcode::AND,
         Binary::Xor => Opcode::XOR,
-        Binary::Arithmetic(Operation::Add) => Opcode::ADD,
-        Binary::Arithmetic(Operation::Subtract) => Opcode::SUBTRACT,
-        Binary::Arithmetic(Operation::Multiply) => Opcode::MULTIPLY,
-        Binary::Arithmetic(Operation::Divide) => Opcode::DIVIDE,
+        Binary::Arithmetic(Arithmetic::Add) => Opcode::ADD,
+        Binary::Arithmetic(Arithmetic::Subtract) => Opcode::SUBTRACT,
+        Binary::Arithmetic(Arithmetic::Multiply) => Opcode::MULTIPLY,
+        Binary::Arithmetic(Arithmetic::Divide) => Opcode::DIVIDE,
     }
 }
 

@@ -3,13 +3,13 @@
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
-use super::super::check::{Checked, check, lengths};
+use super::super::check::{Checked, check};
 use super::super::native::NativeFunction;
 use super::super::{JitError, Sizes};
 use super::machine::{Machine, Target};
-use crate::schedule::{Schedule, interpret_weighted};
+use crate::tape::{Tape, interpret_weighted};
 
-/// One schedule in machine code for blocks of eight points. The code lives as long as this value; several
+/// One tape in machine code for blocks of eight points. The code lives as long as this value; several
 /// threads may call it at the same time.
 ///
 /// Each lane is bit-identical to a [`NativeFunction`] with the same elementary functions. It is fastest if
@@ -28,27 +28,23 @@ pub struct VectorFunction {
 enum How {
     Vector(Machine),
     PlaceByPlace(NativeFunction),
-    Interpreted(Schedule),
+    Interpreted(Tape),
 }
 
 impl VectorFunction {
-    /// Compiles a schedule of a model with arguments of these sizes, for this processor.
-    pub fn compile(schedule: &Schedule, sizes: Sizes) -> Result<Self, JitError> {
-        Self::compile_for(schedule, sizes, Target::default())
+    /// Compiles a tape of a model with arguments of these sizes, for this processor.
+    pub fn compile(tape: &Tape, sizes: Sizes) -> Result<Self, JitError> {
+        Self::compile_for(tape, sizes, Target::default())
     }
 
     /// [`Self::compile`] with the given instructions and elementary functions. If the processor lacks the
     /// instructions, or the code would be too long, points are evaluated individually.
-    pub fn compile_for(
-        schedule: &Schedule,
-        sizes: Sizes,
-        target: Target,
-    ) -> Result<Self, JitError> {
-        if let Some(vector) = Self::all_at_once(schedule, sizes, target)? {
+    pub fn compile_for(tape: &Tape, sizes: Sizes, target: Target) -> Result<Self, JitError> {
+        if let Some(vector) = Self::all_at_once(tape, sizes, target)? {
             return Ok(vector);
         }
-        let native = NativeFunction::compile_with(schedule, sizes, target.elementary)?;
-        let checked = check(schedule, sizes)?;
+        let native = NativeFunction::compile_with(tape, sizes, target.elementary)?;
+        let checked = check(tape, sizes)?;
         Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
     }
 
@@ -56,32 +52,26 @@ impl VectorFunction {
     ///
     /// # Errors
     ///
-    /// If the schedule uses undefined values.
+    /// If the tape uses undefined values.
     pub fn compile_or_interpret(
-        schedule: &Schedule,
+        tape: &Tape,
         sizes: Sizes,
         target: Target,
     ) -> Result<Self, JitError> {
-        Self::compile_for(schedule, sizes, target).or_else(|error| match error {
-            JitError::TooManyOperations { .. }
-            | JitError::TooManyRows { .. }
-            | JitError::TooDeep { .. } => Ok(Self {
-                how: How::Interpreted(schedule.clone()),
+        Self::compile_for(tape, sizes, target).or_else(|error| match error {
+            JitError::TooManyOperations { .. } | JitError::TooManyRows { .. } => Ok(Self {
+                how: How::Interpreted(tape.clone()),
                 sizes,
                 weights: 0,
-                results: lengths(schedule),
+                results: tape.lengths(),
             }),
             other => Err(other),
         })
     }
 
     /// [`Self::compile_for`], but `None` if points would be evaluated individually.
-    fn all_at_once(
-        schedule: &Schedule,
-        sizes: Sizes,
-        target: Target,
-    ) -> Result<Option<Self>, JitError> {
-        let checked = check(schedule, sizes)?;
+    fn all_at_once(tape: &Tape, sizes: Sizes, target: Target) -> Result<Option<Self>, JitError> {
+        let checked = check(tape, sizes)?;
         let machine = Machine::compile(&checked, target)?;
         Ok(machine.map(|machine| Self::new(How::Vector(machine), &checked, sizes)))
     }
@@ -91,7 +81,7 @@ impl VectorFunction {
             how,
             sizes,
             weights: checked.weights,
-            results: lengths(checked.schedule),
+            results: checked.tape.lengths(),
         }
     }
 
@@ -100,11 +90,11 @@ impl VectorFunction {
         matches!(self.how, How::Vector(_))
     }
 
-    /// Evaluates the function: one slice for each result of the schedule, in its order.
+    /// Evaluates the function: one slice for each result of the tape, in its order.
     ///
     /// # Panics
     ///
-    /// If the length of a slice differs from the schedule's results or from the sizes it was compiled for; no
+    /// If the length of a slice differs from the tape's results or from the sizes it was compiled for; no
     /// code is executed then.
     #[inline]
     pub fn call<const N: usize>(&self, at: AtLanes<'_>, results: [&mut [[f64; LANES]]; N]) {
@@ -115,7 +105,7 @@ impl VectorFunction {
     ///
     /// # Panics
     ///
-    /// As [`Self::call`], and if there are fewer weights than the schedule uses.
+    /// As [`Self::call`], and if there are fewer weights than the tape uses.
     #[inline]
     pub fn call_weighted<const N: usize>(
         &self,
@@ -132,9 +122,9 @@ impl VectorFunction {
                     native.call_weighted(at, weights, results);
                 });
             }
-            How::Interpreted(schedule) => {
+            How::Interpreted(tape) => {
                 place_by_place(at, weights, results, |at, weights, results| {
-                    let found = interpret_weighted(schedule, at, weights);
+                    let found = interpret_weighted(tape, at, weights);
                     for (result, found) in results.into_iter().zip(found) {
                         result.copy_from_slice(&found);
                     }

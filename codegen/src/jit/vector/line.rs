@@ -1,9 +1,9 @@
 //! A function as straight-line code of vector operations.
 
-use crate::schedule::Operation;
 use crate::symbolic::{Function, Relation};
+use crate::tape::Arithmetic;
 
-/// A value, numbered in the order of the schedule: operands come first.
+/// A value, numbered in the order of the tape: operands come first.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub(super) struct Id(pub(super) u32);
 
@@ -69,7 +69,7 @@ impl Node {
 /// Operations of one instruction with two operands.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) enum Binary {
-    Arithmetic(Operation),
+    Arithmetic(Arithmetic),
     /// Bitwise and.
     And,
     /// Bitwise exclusive or.
@@ -81,7 +81,7 @@ impl Binary {
     pub(super) fn is_commutative(self) -> bool {
         !matches!(
             self,
-            Self::Arithmetic(Operation::Subtract | Operation::Divide)
+            Self::Arithmetic(Arithmetic::Subtract | Arithmetic::Divide)
         )
     }
 }

@@ -1,6 +1,6 @@
-//! Lowers a checked schedule to straight-line code of vector operations.
+//! Lowers a checked tape to straight-line code of vector operations.
 //!
-//! Operations and their association are those of the schedule: each lane is bit-identical to the scalar code.
+//! Operations and their association are those of the tape: each lane is bit-identical to the scalar code.
 //! Only bit-identical rewritings are applied, such as `a + (-b)` to `a - b`. Common subexpressions and dead
 //! code are eliminated.
 
@@ -9,8 +9,8 @@ use rustc_hash::FxHashMap;
 use super::super::check::Checked;
 use super::line::{Action, Array, Binary, Call, Id, Line, Node, Routine};
 use super::order::order;
-use crate::schedule::{Argument, Operation, Step, Tree, Value};
 use crate::symbolic::{Function, Relation};
+use crate::tape::{Argument, Arithmetic, Operation, Tape, Value};
 
 /// Larger systems are solved by a routine, lane by lane.
 const MOST_ROWS_IN_LINE: usize = 12;
@@ -18,37 +18,42 @@ const MOST_ROWS_IN_LINE: usize = 12;
 /// All bits except the sign.
 const MAGNITUDE: u64 = u64::MAX >> 1;
 
-/// The line of a schedule.
+/// The line of a tape.
 pub(super) fn lower(checked: &Checked<'_>) -> Line {
     let mut lowering = Lowering {
         nodes: Vec::new(),
         known: FxHashMap::default(),
         calls: Vec::new(),
-        values: vec![Id(0); checked.schedule.names.len()],
+        tape: checked.tape,
+        values: vec![Id(0); checked.tape.operations.len()],
+        parts: Vec::new(),
         systems: FxHashMap::default(),
     };
-    for step in &checked.schedule.steps {
-        lowering.step(step);
+    for value in (0..).map(Value).take(checked.tape.operations.len()) {
+        lowering.operation(value);
     }
     let mut stores = Vec::new();
-    for (result, array) in (0..).zip(&checked.schedule.results) {
-        for (entry, tree) in (0..).zip(&array.entries) {
-            stores.push(Action::Store(lowering.tree(tree), result, entry));
+    for (result, array) in (0..).zip(&checked.tape.results) {
+        for (entry, &value) in (0..).zip(&array.entries) {
+            stores.push(Action::Store(lowering.value(value), result, entry));
         }
     }
     let Lowering { nodes, calls, .. } = lowering;
     order(nodes, calls, stores)
 }
 
-struct Lowering {
+struct Lowering<'a> {
     nodes: Vec<Node>,
     /// Values by definition, for hash consing.
     known: FxHashMap<Node, Id>,
     calls: Vec<Call>,
-    /// Results of the steps.
+    tape: &'a Tape,
+    /// Values computed so far. Arguments and numbers are not among them; see [`Self::value`].
     values: Vec<Id>,
-    /// Matrices and factors by the number of the factorisation.
-    systems: FxHashMap<u32, System>,
+    /// Parts of the latest operation with parts.
+    parts: Vec<Id>,
+    /// Matrices and factors, by factorisation.
+    systems: FxHashMap<Value, System>,
 }
 
 enum System {
@@ -67,88 +72,78 @@ struct Factors {
     exchanged: Vec<Id>,
 }
 
-impl Lowering {
-    fn step(&mut self, step: &Step) {
-        match step {
-            Step::Let { value, tree } => {
-                let computed = self.tree(tree);
-                self.define(*value, computed);
-            }
-            Step::SinCos { sin, cos, angle } => {
-                let angle = self.tree(angle);
-                let pair = self.call(Routine::SinCos, vec![angle], 2);
-                self.define(*sin, pair[0]);
-                self.define(*cos, pair[1]);
-            }
-            Step::Factor {
-                factorisation,
-                size,
-                matrix,
-            } => {
-                let matrix = self.trees(matrix);
-                let system = if *size <= MOST_ROWS_IN_LINE {
-                    System::Factors(self.factor(matrix, *size))
-                } else {
-                    System::Matrix(matrix)
-                };
-                self.systems.insert(*factorisation, system);
-            }
-            Step::Solve {
-                factorisation,
-                values,
-                right,
-            } => {
-                let right = self.trees(right);
-                for (value, unknown) in values.iter().zip(self.solve(*factorisation, right)) {
-                    self.define(*value, unknown);
-                }
-            }
-            Step::Paragraph { .. } => {}
-        }
-    }
-
-    fn define(&mut self, value: Value, computed: Id) {
-        self.values[value.0 as usize] = computed;
-    }
-
-    fn trees(&mut self, trees: &[Tree]) -> Vec<Id> {
-        trees.iter().map(|tree| self.tree(tree)).collect()
-    }
-
-    fn tree(&mut self, tree: &Tree) -> Id {
-        match tree {
-            Tree::Value(value) => self.values[value.0 as usize],
-            Tree::Argument(argument) => self.argument(*argument),
-            Tree::Constant(number) => self.constant(number.to_f64()),
-            Tree::Negate(a) => {
-                let a = self.tree(a);
+impl Lowering<'_> {
+    fn operation(&mut self, value: Value) {
+        let computed = match self.tape.operation(value) {
+            // Made at their first use.
+            Operation::Argument(_) | Operation::Constant(_) => return,
+            Operation::Negate(a) => {
+                let a = self.value(*a);
                 self.negate(a)
             }
-            Tree::Binary(operation, a, b) => {
-                let (a, b) = (self.tree(a), self.tree(b));
+            Operation::Binary(operation, a, b) => {
+                let (a, b) = (self.value(*a), self.value(*b));
                 self.arithmetic(*operation, a, b)
             }
-            Tree::Function(function, a) => {
-                let a = self.tree(a);
+            Operation::Function(function, a) => {
+                let a = self.value(*a);
                 self.function(*function, a)
             }
-            Tree::Atan2(y, x) => {
-                let given = vec![self.tree(y), self.tree(x)];
+            Operation::Atan2(y, x) => {
+                let given = self.all(&[*y, *x]);
                 self.call(Routine::Atan2, given, 1)[0]
             }
-            Tree::Power(base, exponent) => {
-                let given = vec![self.tree(base), self.tree(exponent)];
+            Operation::Power(base, exponent) => {
+                let given = self.all(&[*base, *exponent]);
                 self.call(Routine::Power, given, 1)[0]
             }
-            Tree::Choice {
+            Operation::Choice {
                 relation,
                 compared,
                 branches,
             } => {
-                let compared = compared.each_ref().map(|tree| self.tree(tree));
-                let branches = branches.each_ref().map(|tree| self.tree(tree));
+                let compared = compared.map(|value| self.value(value));
+                let branches = branches.map(|value| self.value(value));
                 self.choice(*relation, compared, branches)
             }
+            Operation::SinCos(angle) => {
+                let angle = self.value(*angle);
+                self.parts = self.call(Routine::SinCos, vec![angle], 2);
+                return;
+            }
+            Operation::Factorise(matrix) => {
+                let (rows, matrix) = (matrix.len().isqrt(), self.all(matrix));
+                let system = if rows <= MOST_ROWS_IN_LINE {
+                    System::Factors(self.factor(matrix, rows))
+                } else {
+                    System::Matrix(matrix)
+                };
+                self.systems.insert(value, system);
+                return;
+            }
+            Operation::Solve {
+                factorisation,
+                right,
+            } => {
+                let right = self.all(right);
+                self.parts = self.solve(*factorisation, right);
+                return;
+            }
+            Operation::Part(_, index) => self.parts[*index as usize],
+        };
+        self.values[value.index()] = computed;
+    }
+
+    fn all(&mut self, values: &[Value]) -> Vec<Id> {
+        values.iter().map(|&value| self.value(value)).collect()
+    }
+
+    /// A value that an operation uses.
+    fn value(&mut self, value: Value) -> Id {
+        match self.tape.operation(value) {
+            Operation::Argument(argument) => self.argument(*argument),
+            Operation::Constant(number) => self.constant(number.to_f64()),
+            _ => self.values[value.index()],
         }
     }
 
@@ -174,13 +169,13 @@ impl Lowering {
         *self.known.entry(node).or_insert_with(|| push(nodes, node))
     }
 
-    fn arithmetic(&mut self, operation: Operation, a: Id, b: Id) -> Id {
+    fn arithmetic(&mut self, operation: Arithmetic, a: Id, b: Id) -> Id {
         // Subtraction equals addition of the negative bit by bit, except for the sign of NaN.
         let (operation, a, b) = match (operation, self.negated(a), self.negated(b)) {
-            (Operation::Add, _, Some(b)) => (Operation::Subtract, a, b),
-            (Operation::Add, Some(a), _) => (Operation::Subtract, b, a),
-            (Operation::Subtract, _, Some(b)) => (Operation::Add, a, b),
-            (Operation::Multiply | Operation::Divide, Some(a), Some(b)) => (operation, a, b),
+            (Arithmetic::Add, _, Some(b)) => (Arithmetic::Subtract, a, b),
+            (Arithmetic::Add, Some(a), _) => (Arithmetic::Subtract, b, a),
+            (Arithmetic::Subtract, _, Some(b)) => (Arithmetic::Add, a, b),
+            (Arithmetic::Multiply | Arithmetic::Divide, Some(a), Some(b)) => (operation, a, b),
             _ => (operation, a, b),
         };
         self.binary(Binary::Arithmetic(operation), a, b)
@@ -275,7 +270,7 @@ impl Lowering {
                 }
             }
             for i in k + 1..rows {
-                a[at(i, k)] = self.arithmetic(Operation::Divide, a[at(i, k)], a[at(k, k)]);
+                a[at(i, k)] = self.arithmetic(Arithmetic::Divide, a[at(i, k)], a[at(k, k)]);
                 for j in k + 1..rows {
                     a[at(i, j)] = self.reduced(a[at(i, j)], a[at(i, k)], a[at(k, j)]);
                 }
@@ -288,8 +283,8 @@ impl Lowering {
         }
     }
 
-    fn solve(&mut self, factorisation: u32, right: Vec<Id>) -> Vec<Id> {
-        // A checked schedule factorises before it solves.
+    fn solve(&mut self, factorisation: Value, right: Vec<Id>) -> Vec<Id> {
+        // A checked tape factorises before it solves.
         match self.systems.remove(&factorisation) {
             Some(System::Factors(lu)) => {
                 let unknowns = self.substitute(&lu, right);
@@ -330,15 +325,15 @@ impl Lowering {
             for k in i + 1..rows {
                 x[i] = self.reduced(x[i], lu.entries[at(i, k)], x[k]);
             }
-            x[i] = self.arithmetic(Operation::Divide, x[i], lu.entries[at(i, i)]);
+            x[i] = self.arithmetic(Arithmetic::Divide, x[i], lu.entries[at(i, i)]);
         }
         x
     }
 
     /// `a - b * c`
     fn reduced(&mut self, a: Id, b: Id, c: Id) -> Id {
-        let product = self.arithmetic(Operation::Multiply, b, c);
-        self.arithmetic(Operation::Subtract, a, product)
+        let product = self.arithmetic(Arithmetic::Multiply, b, c);
+        self.arithmetic(Arithmetic::Subtract, a, product)
     }
 }
 

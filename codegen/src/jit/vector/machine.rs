@@ -84,7 +84,7 @@ type Entry = unsafe extern "C" fn(
     *const *mut f64,
 );
 
-/// One schedule in vector code.
+/// One tape in vector code.
 #[derive(Debug)]
 pub(super) struct Machine {
     entry: Entry,
@@ -93,7 +93,7 @@ pub(super) struct Machine {
 }
 
 impl Machine {
-    /// Compiles a schedule; `None` if this processor lacks the instructions, or if the code would be too long.
+    /// Compiles a tape; `None` if this processor lacks the instructions, or if the code would be too long.
     pub(super) fn compile(checked: &Checked<'_>, target: Target) -> Result<Option<Self>, JitError> {
         let width = match target.instructions {
             _ if !target.instructions.exist() => return Ok(None),
@@ -129,8 +129,8 @@ impl Machine {
     ///
     /// # Safety
     ///
-    /// Arguments and weights have the lengths that the schedule was checked for, results those of
-    /// the schedule.
+    /// Arguments and weights have the lengths that the tape was checked for, results those of
+    /// the tape.
     #[inline]
     pub(super) unsafe fn call<const N: usize>(
         &self,

@@ -104,7 +104,7 @@ impl Flow {
     }
 
     /// Moves the reference point; the present one is at `d` from the new one and has the relative velocity `u`.
-    fn shifted(&self, graph: &mut Graph, inertia: &Inertia, (d, u): (Vec3, Vec3)) -> Self {
+    fn shifted(&self, graph: &mut Graph, inertia: &Inertia, d: Vec3, u: Vec3) -> Self {
         let (added, arriving) = (graph.scale3(inertia.mass, d), graph.scale3(inertia.mass, u));
         let h = graph.add3(inertia.moment, added);
         let moment = graph.add3(self.moment, arriving);
@@ -197,7 +197,8 @@ impl Differentiable {
     pub(super) fn new(
         algebra: &mut Algebra,
         links: &Links,
-        (own, composites): (&[Inertia], &[Inertia]),
+        own: &[Inertia],
+        composites: &[Inertia],
         ground: Vec3,
         motions: Vec<LinkMotion>,
     ) -> Self {
@@ -436,7 +437,7 @@ impl Link {
             Step::Shift { d, .. } => {
                 let u = self.leaving(graph, motions);
                 let u = named3(algebra, &format!("u_{}", self.name), u);
-                flow.shifted(&mut algebra.graph, composite, (*d, u))
+                flow.shifted(&mut algebra.graph, composite, *d, u)
             }
         }
     }

@@ -3,7 +3,7 @@
 use super::Binding;
 use crate::schedule::dag::{Id, Item, Op};
 use crate::schedule::names::joined;
-use crate::schedule::steps::{Tree, Value};
+use crate::tape::{Operation, Value};
 
 impl Binding<'_> {
     /// `consumer_per_a_b`: a value whose only cofactors on the path to the consumer are `a` and
@@ -19,7 +19,7 @@ impl Binding<'_> {
                     for other in others(items, part)? {
                         let built = self.built[other.id.index()].as_ref()?;
                         negative ^= built.negative;
-                        factors.push(self.name_of_factor(&built.piece.tree)?);
+                        factors.push(self.name_of_factor(built.piece.value)?);
                     }
                 }
                 Op::Sum(items) => {
@@ -43,11 +43,11 @@ impl Binding<'_> {
     }
 
     /// The name of a factor, unless it is a number or itself a quotient of this kind.
-    fn name_of_factor(&self, tree: &Tree) -> Option<&str> {
-        let name = match tree {
-            Tree::Value(Value(value)) => self.values[*value as usize].as_str(),
-            Tree::Argument(argument) => self.arguments.get(*argument),
-            _ => return None,
+    fn name_of_factor(&self, value: Value) -> Option<&str> {
+        let name = match self.tape.unnamed(value) {
+            None => self.tape.name(value)?,
+            Some(Operation::Argument(argument)) => self.arguments.get(*argument),
+            Some(_) => return None,
         };
         (!name.contains("_per_")).then_some(name)
     }

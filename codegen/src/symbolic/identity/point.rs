@@ -4,19 +4,8 @@ use rustc_hash::FxHashMap;
 
 use super::super::field::{Element, PRIME, Rotation, keyed};
 use super::super::{Expr, Function, Graph, Node, Rational, Relation, SymbolId};
-
-/// Domains of the pseudo-random values.
-mod tag {
-    pub(super) const SYMBOL: u64 = 1;
-    pub(super) const REDRAWN: u64 = 2;
-    pub(super) const ANGLE: u64 = 3;
-    pub(super) const EXPONENT: u64 = 4;
-    pub(super) const CONDITION: u64 = 5;
-    pub(super) const ATAN2: u64 = 6;
-    pub(super) const ROOT: u64 = 7;
-    pub(super) const ROOT_OF_NUMBER: u64 = 8;
-    pub(super) const FUNCTION: u64 = 64;
-}
+use super::elimination::solve;
+use super::tag;
 
 /// Angles are multiples of `atom / ANGLE_PARTS`, which makes fractions of angles exact.
 const ANGLE_PARTS: u64 = 2304;
@@ -604,30 +593,4 @@ fn turns(coefficient: &Rational) -> Option<(u64, bool)> {
     }
     let quotient = (i128::from(multiple) * divisor.x.rem_euclid(order)).rem_euclid(order);
     Some((u64::try_from(quotient).ok()?, n < 0))
-}
-
-/// Gaussian elimination; `None` for a singular matrix.
-fn solve(mut a: Vec<Element>, mut b: Vec<Element>) -> Option<Box<[Element]>> {
-    let n = b.len();
-    for k in 0..n {
-        let pivot = (k..n).find(|&i| !a[i * n + k].is_zero())?;
-        for j in 0..n {
-            a.swap(k * n + j, pivot * n + j);
-        }
-        b.swap(k, pivot);
-        let inverse = a[k * n + k].inverse()?;
-        for i in 0..n {
-            let factor = a[i * n + k] * inverse;
-            if i == k || factor.is_zero() {
-                continue;
-            }
-            for j in k..n {
-                a[i * n + j] = a[i * n + j] - factor * a[k * n + j];
-            }
-            b[i] = b[i] - factor * b[k];
-        }
-    }
-    (0..n)
-        .map(|k| Some(b[k] * a[k * n + k].inverse()?))
-        .collect()
 }

@@ -302,7 +302,7 @@ fn how_far(
     })?;
     let mut runs: Vec<String> = test.stretches.iter().map(|(run, _)| run.clone()).collect();
     runs.dedup();
-    Ok(HowFar::of(&paired, (0.0, floor), budget, runs))
+    Ok(HowFar::of(&paired, 0.0, floor, budget, runs))
 }
 
 /// Mean squares of the residual forces, by blocks of time.

@@ -21,7 +21,7 @@ pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
             reaction_on,
             frame,
             vector,
-        } => force(w, load, (*on, *body, *reaction_on), *frame, vector),
+        } => force(w, load, *on, *body, *reaction_on, *frame, vector),
         LoadKind::Torque {
             on,
             reaction_on,
@@ -101,7 +101,9 @@ fn gravity(w: &mut Writer<'_>, load: &Load, down: [i8; 3], acceleration: &Spec) 
 fn force(
     w: &mut Writer<'_>,
     load: &Load,
-    (on, body, reaction_on): (PointId, Option<BodyId>, Option<PointId>),
+    on: PointId,
+    body: Option<BodyId>,
+    reaction_on: Option<PointId>,
     frame: FrameId,
     vector: &[Spec; 3],
 ) -> Said {

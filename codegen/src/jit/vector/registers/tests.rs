@@ -5,7 +5,7 @@ use appell_test_kit::Random;
 use super::super::line::{Array, Call};
 use super::super::order::order;
 use super::*;
-use crate::schedule::Operation;
+use crate::tape::Arithmetic;
 
 /// A hash of all arguments in order.
 fn mixed(parts: &[u64]) -> u64 {
@@ -226,9 +226,9 @@ fn random_line(random: &mut Random, len: usize) -> (Line, Vec<Action>) {
             }
             kind => {
                 let operation = match kind % 3 {
-                    0 => Operation::Add,
-                    1 => Operation::Subtract,
-                    _ => Operation::Divide,
+                    0 => Arithmetic::Add,
+                    1 => Arithmetic::Subtract,
+                    _ => Arithmetic::Divide,
                 };
                 Node::Binary(Binary::Arithmetic(operation), any(random), any(random))
             }

@@ -24,7 +24,7 @@ struct Row {
 }
 
 /// Each row: documentation, kind, name of the emitted function, name of its result struct, purpose, the results
-/// that [`Model`](appell_runtime::Model) has, a sentence.
+/// that [`Model`](appell_runtime::model::Model) has, a sentence.
 macro_rules! functions {
     ($($(#[$doc:meta])* $kind:ident = $name:literal $structure:literal $purpose:ident
         [$($result:literal),*] $about:literal;)*) => {
@@ -202,7 +202,7 @@ impl FunctionKind {
         self.row().about
     }
 
-    /// The results that [`Model`](appell_runtime::Model) has, in its order.
+    /// The results that [`Model`](appell_runtime::model::Model) has, in its order.
     pub fn model_results(self) -> &'static [&'static str] {
         self.row().results
     }

@@ -5,7 +5,7 @@
 
 use crate::oscillator::{Oscillator, drive};
 use appell_estimate::{
-    Disturbance, Estimation, Free, Measured, Recording, Sensitivity, Setup, Unknown,
+    Disturbance, Effort, Estimation, Fit, Free, Measured, Recording, Sensitivity, Setup, Unknown,
 };
 use nalgebra::{DMatrix, DVector, Matrix2, Vector2};
 
@@ -244,6 +244,23 @@ fn the_information_of_levels_is_that_of_differences_of_the_filter() {
         let error = (found[(i, j)] - expected[(i, j)]).abs();
         assert!(error < 1e-6 * scale, "{i} {j}: {error} of {scale}");
     }
+}
+
+#[test]
+fn a_step_that_was_not_achieved_widens_a_deviation_to_that_of_the_prior_at_most() {
+    let (model, recordings) = (Oscillator::new(), [recording()]);
+    let setup = setup(&model);
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let free = [
+        Free::of(Unknown::Parameter(1)).around(0.4, 0.1),
+        Free::of(Unknown::Bias(0)),
+    ];
+    let mut fit = Fit::of(&estimation, &values(&estimation), &free, Effort::default()).unwrap();
+    let optimum = fit.deviation(0).unwrap();
+    assert!(0.0 < optimum && optimum < 0.1, "{optimum}");
+    fit.promised.fill(5e10);
+    assert_eq!(fit.deviation(0).unwrap(), 0.1);
+    assert_eq!(fit.deviation(1).unwrap(), 5e10);
 }
 
 #[test]

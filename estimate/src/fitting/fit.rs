@@ -159,10 +159,14 @@ impl Fit {
     }
 
     /// Standard deviation of a coordinate if the model is correct, enlarged by the step that was
-    /// not achieved.
+    /// not achieved, but no larger than that of its prior.
     pub fn deviation(&self, index: usize) -> Result<f64, EstimateError> {
         let variance = self.covariance()?[(index, index)];
-        Ok(variance.sqrt().hypot(self.promised[index]))
+        let deviation = variance.sqrt().hypot(self.promised[index]);
+        Ok(match self.free[index].prior {
+            Some([_, prior]) => deviation.min(prior),
+            None => deviation,
+        })
     }
 
     /// 95 % interval of a value in SI if the model is correct.

@@ -5,7 +5,7 @@ use super::alternative::Rival;
 use super::bench::Bench;
 use super::calibration::{TIED, tempered};
 use super::changes::Changes;
-use super::compare::{Comparison, diverges};
+use super::compare::{Comparison, has_deviation};
 use super::evidence::Fitted;
 use super::law::FittedLaw;
 use super::prior::{names, of_count, prior};
@@ -284,7 +284,9 @@ fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
 fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
     let info = bench.effects.info();
     let deviation = |place: usize| match fitted.fit.deviation(place) {
-        Ok(deviation) if !fitted.fit.at_limit[place] && !diverges(&fitted.fit) => deviation,
+        Ok(deviation) if !fitted.fit.at_limit[place] && has_deviation(&fitted.fit, place) => {
+            deviation
+        }
         _ => f64::NAN,
     };
     let own: Vec<usize> = bench

@@ -281,8 +281,13 @@ impl Comparison {
 }
 
 /// Whether the sensitivities at the end of a search have no meaning.
-pub(super) fn diverges(fit: &Fit) -> bool {
+fn diverges(fit: &Fit) -> bool {
     fit.gain > MOST_PROMISED
+}
+
+/// Whether the deviation of a coordinate has a meaning; where sensitivities diverge, only its prior bounds it.
+pub(super) fn has_deviation(fit: &Fit, place: usize) -> bool {
+    !diverges(fit) || fit.free[place].prior.is_some()
 }
 
 /// The reason why a search ended early.

@@ -78,7 +78,7 @@ pub struct Value {
     pub name: String,
     /// Most likely value.
     pub value: f64,
-    /// Standard deviation; NaN if it is undefined, as at a limit or where sensitivities diverge.
+    /// Standard deviation; NaN if it is undefined, as at a limit, or where sensitivities diverge and there is no prior.
     pub std: f64,
     /// Unit.
     pub unit: String,

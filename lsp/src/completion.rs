@@ -29,7 +29,7 @@ pub(crate) fn completion(document: &Document, position: Position) -> Vec<Complet
         }
         Form::Reference(target) => named(document, target, Some(&string.path)),
         Form::Quaternion => named(document, Target::Coordinate, None),
-        Form::TwoPoints => named(document, Target::Point, None),
+        Form::Two(target) => named(document, target, None),
         Form::Expression | Form::Components | Form::Matrix | Form::Inertia(_) => {
             let before = document.text.part(&(string.span.start + 1..at));
             in_expression(document, string, before)

@@ -207,6 +207,14 @@ impl Relation {
 }
 
 impl Expr {
+    /// An integer.
+    pub fn integer(value: i64, span: Span) -> Self {
+        Self {
+            kind: ExprKind::Number(BigRational::from_integer(value.into())),
+            span,
+        }
+    }
+
     /// Visits every quantity of the expression, from left to right.
     pub fn visit(&self, seen: &mut dyn FnMut(Quantity)) {
         match &self.kind {

@@ -187,8 +187,8 @@ pub enum Form {
     Components,
     /// Three rows of three expressions.
     Matrix,
-    /// Names of two points.
-    TwoPoints,
+    /// Two different names.
+    Two(Target),
     /// Names of four coordinates.
     Quaternion,
     /// One of the words for an axis, or three expressions.

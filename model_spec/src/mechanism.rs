@@ -447,21 +447,14 @@ pub enum LoadKind {
         /// Components of the torque.
         vector: Components,
     },
-    /// A linear spring.
-    Spring {
-        /// The connected points or the coordinate.
+    /// A linear spring, a linear damper, or both in parallel.
+    SpringDamper {
+        /// The displacement along which it acts.
         between: Connection,
-        /// Stiffness.
-        stiffness: Expr,
-        /// Length or angle at which it is relaxed.
-        relaxed: Expr,
-    },
-    /// A linear damper.
-    Damper {
-        /// The connected points or the coordinate.
-        between: Connection,
+        /// Its spring.
+        spring: Option<Spring>,
         /// Damping coefficient.
-        damping: Expr,
+        damping: Option<Expr>,
     },
     /// A generalised force: its power is `force * velocity`.
     Generalized {
@@ -480,8 +473,7 @@ impl Mechanism {
             LoadKind::Gravity { down, .. } => Some(down),
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
+            | LoadKind::SpringDamper { .. }
             | LoadKind::Generalized { .. } => None,
         })
     }
@@ -532,10 +524,10 @@ impl Mechanism {
 }
 
 impl LoadKind {
-    /// The connected points or the coordinate, for springs and dampers.
+    /// The displacement of a spring or damper.
     pub const fn between(&self) -> Option<&Connection> {
         match self {
-            Self::Spring { between, .. } | Self::Damper { between, .. } => Some(between),
+            Self::SpringDamper { between, .. } => Some(between),
             Self::Gravity { .. }
             | Self::Force { .. }
             | Self::Torque { .. }
@@ -543,16 +535,27 @@ impl LoadKind {
         }
     }
 
-    /// All its expressions.
+    /// All its expressions: the velocity of a generalised force, then the [`coefficients`](Self::coefficients).
     pub fn expressions(&self) -> Vec<&Expr> {
+        let velocity = match self {
+            Self::Generalized { velocity, .. } => Some(velocity),
+            _ => None,
+        };
+        velocity.into_iter().chain(self.coefficients()).collect()
+    }
+
+    /// The expressions that determine its size.
+    pub fn coefficients(&self) -> Vec<&Expr> {
         match self {
             Self::Gravity { acceleration, .. } => vec![acceleration],
             Self::Force { vector, .. } | Self::Torque { vector, .. } => vector.iter().collect(),
-            Self::Spring {
-                stiffness, relaxed, ..
-            } => vec![stiffness, relaxed],
-            Self::Damper { damping, .. } => vec![damping],
-            Self::Generalized { velocity, force } => vec![velocity, force],
+            Self::SpringDamper {
+                spring, damping, ..
+            } => {
+                let spring = spring.iter().flat_map(|own| [&own.stiffness, &own.relaxed]);
+                spring.chain(damping).collect()
+            }
+            Self::Generalized { force, .. } => vec![force],
         }
     }
 
@@ -562,22 +565,34 @@ impl LoadKind {
             Self::Force {
                 on, reaction_on, ..
             } => [Some(*on), *reaction_on].into_iter().flatten().collect(),
-            Self::Spring { between, .. } | Self::Damper { between, .. } => match *between {
-                Connection::Points(a, b) => vec![a, b],
-                Connection::Coordinate(_) => Vec::new(),
-            },
-            Self::Gravity { .. } | Self::Torque { .. } | Self::Generalized { .. } => Vec::new(),
+            Self::SpringDamper {
+                between: Connection::Points(a, b),
+                ..
+            } => vec![*a, *b],
+            Self::SpringDamper { .. }
+            | Self::Gravity { .. }
+            | Self::Torque { .. }
+            | Self::Generalized { .. } => Vec::new(),
         }
     }
 }
 
-/// The points or the coordinate to which a spring or damper is attached.
+/// A linear spring.
+#[derive(Debug, Clone)]
+pub struct Spring {
+    /// Stiffness.
+    pub stiffness: Expr,
+    /// Displacement at which it is relaxed.
+    pub relaxed: Expr,
+}
+
+/// The displacement of a spring or damper.
 #[derive(Debug, Clone)]
 pub enum Connection {
-    /// Acts along the line between two points.
+    /// The distance between two points.
     Points(PointId, PointId),
-    /// Acts on a coordinate.
-    Coordinate(CoordinateId),
+    /// A coordinate, or the sum of angles between two frames.
+    Along(Expr),
 }
 
 /// A named quantity of interest.

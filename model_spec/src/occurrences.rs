@@ -152,9 +152,11 @@ impl Finder<'_> {
                 Form::NewName => self.see(Namespace::Quantity, name, &entry.span, true),
                 _ => {}
             },
-            ValueAst::Pair(points) => {
-                for point in points {
-                    self.see(Namespace::Point, &point.value, &point.span, false);
+            ValueAst::Pair(names) => {
+                if let Form::Two(target) = entry.key.form {
+                    for name in names {
+                        self.see(target.into(), &name.value, &name.span, false);
+                    }
                 }
             }
             ValueAst::Four(coordinates) => {

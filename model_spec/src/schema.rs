@@ -123,7 +123,7 @@ fn form(form: &Form) -> Value {
         Form::Expression => expression(),
         Form::Components => list(expression(), 3),
         Form::Matrix => list(list(expression(), 3), 3),
-        Form::TwoPoints => list(name(), 2),
+        Form::Two(_) => list(name(), 2),
         Form::Quaternion => list(name(), 4),
         Form::NewNames(count) => list(name(), *count),
         Form::Values(count) => list(json!({ "type": "number" }), *count),

@@ -169,7 +169,7 @@ fn constraints_and_loads_refer_to_their_items() {
         panic!("{:?}", mechanism.loads[LoadId::new(0)]);
     };
     assert_eq!(down, [0, -1, 0]);
-    let LoadKind::Spring {
+    let LoadKind::SpringDamper {
         between: Connection::Points(a, b),
         ..
     } = mechanism.loads[LoadId::new(3)].kind

@@ -40,7 +40,7 @@ fn form_words(form: &Form) -> String {
         Form::Components => "three expressions".to_owned(),
         Form::Matrix => "three rows of three expressions".to_owned(),
         Form::Quaternion => "names of four coordinates".to_owned(),
-        Form::TwoPoints => "names of two points".to_owned(),
+        Form::Two(target) => format!("names of two {}s", target.word()),
         Form::Word(words) => words
             .iter()
             .map(|w| format!("`{}`", w.text))

@@ -15,11 +15,17 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
         let name = &load.name;
         let negative = |bench: &mut Bench, coefficient| is_negative(bench, coefficient);
         let (message, help) = match &load.kind {
-            LoadKind::Damper { damping, .. } if negative(bench, damping) => (
+            LoadKind::SpringDamper {
+                damping: Some(damping),
+                ..
+            } if negative(bench, damping) => (
                 format!("the damping of `{name}` is negative: it drives the motion"),
                 "the sign of a damper is built in; write a positive coefficient",
             ),
-            LoadKind::Spring { stiffness, .. } if negative(bench, stiffness) => (
+            LoadKind::SpringDamper {
+                spring: Some(spring),
+                ..
+            } if negative(bench, &spring.stiffness) => (
                 format!(
                     "the stiffness of `{name}` is negative: it pushes away from its rest position"
                 ),
@@ -40,8 +46,7 @@ pub(super) fn audit(bench: &mut Bench, told: &mut Audit) {
                     "reverse its sign, or use a load of kind `damper`",
                 )
             }
-            LoadKind::Damper { .. }
-            | LoadKind::Spring { .. }
+            LoadKind::SpringDamper { .. }
             | LoadKind::Gravity { .. }
             | LoadKind::Force { .. }
             | LoadKind::Torque { .. }

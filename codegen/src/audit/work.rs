@@ -109,7 +109,7 @@ fn reason(kind: &LoadKind) -> &'static str {
         LoadKind::Torque { .. } => {
             "its two bodies never rotate relative to each other about the axis of the torque"
         }
-        LoadKind::Spring { .. } | LoadKind::Damper { .. } => "its length or coordinate is constant",
+        LoadKind::SpringDamper { .. } => "its length or coordinate is constant",
         LoadKind::Generalized { .. } => {
             "its coordinate or velocity is constant, or the force is zero"
         }
@@ -123,9 +123,7 @@ fn help(kind: &LoadKind) -> &'static str {
         }
         LoadKind::Force { .. } => "check the components, the frame and the point of the force",
         LoadKind::Torque { .. } => "check the components, the frame and the body of the torque",
-        LoadKind::Spring { .. } | LoadKind::Damper { .. } => {
-            "connect points whose distance can change"
-        }
+        LoadKind::SpringDamper { .. } => "connect points whose distance can change",
         LoadKind::Generalized { .. } => "name a coordinate or a velocity that can change",
     }
 }

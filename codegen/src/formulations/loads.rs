@@ -1,6 +1,7 @@
 //! Applied loads in the ground frame: as forces with the velocities conjugate to them, and as potentials.
 
-use appell_spec::mechanism::{Connection, LoadKind};
+use appell_spec::expr::Expr as Spec;
+use appell_spec::mechanism::{Connection, LoadKind, Spring};
 
 use super::inertial::{Inertial, Lowered};
 use crate::mechanics::algebra::Algebra;
@@ -47,19 +48,17 @@ pub(super) fn efforts(
                     });
                 }
             }
-            LoadKind::Spring {
+            LoadKind::SpringDamper {
                 between,
-                stiffness,
-                relaxed,
-            } if which == Which::All => {
-                let k = inertial.lower(algebra, stiffness)?;
-                let relaxed = inertial.lower(algebra, relaxed)?;
-                let line = Line::new(algebra, inertial, between);
-                let extension = algebra.graph.sub(line.length, relaxed);
-                let tension = algebra.graph.mul(k, extension);
+                spring,
+                damping,
+            } => {
+                let spring = spring.as_ref().filter(|_| which == Which::All);
+                let line = Line::new(algebra, inertial, between)?;
+                let tension = line.tension(algebra, inertial, spring, damping.as_ref())?;
                 all.push(line.under(&mut algebra.graph, tension));
             }
-            LoadKind::Gravity { .. } | LoadKind::Spring { .. } => {}
+            LoadKind::Gravity { .. } => {}
             LoadKind::Force {
                 on,
                 body,
@@ -94,13 +93,6 @@ pub(super) fn efforts(
                     external: false,
                 });
             }
-            LoadKind::Damper { between, damping } => {
-                let c = inertial.lower(algebra, damping)?;
-                let line = Line::new(algebra, inertial, between);
-                let rate = algebra.graph.dot(line.direction, line.velocity);
-                let tension = algebra.graph.mul(c, rate);
-                all.push(line.under(&mut algebra.graph, tension));
-            }
             LoadKind::Generalized { velocity, force } => {
                 let force = inertial.lower(algebra, force)?;
                 let velocity = inertial.velocity_along(algebra, velocity)?;
@@ -127,22 +119,13 @@ pub(super) fn acting(
         LoadKind::Force { frame, vector, .. } | LoadKind::Torque { frame, vector, .. } => {
             return inertial.in_ground(algebra, *frame, vector);
         }
-        LoadKind::Spring {
+        LoadKind::SpringDamper {
             between,
-            stiffness,
-            relaxed,
+            spring,
+            damping,
         } => {
-            let k = inertial.lower(algebra, stiffness)?;
-            let relaxed = inertial.lower(algebra, relaxed)?;
-            let line = Line::new(algebra, inertial, between);
-            let extension = algebra.graph.sub(line.length, relaxed);
-            algebra.graph.mul(k, extension)
-        }
-        LoadKind::Damper { between, damping } => {
-            let c = inertial.lower(algebra, damping)?;
-            let line = Line::new(algebra, inertial, between);
-            let rate = algebra.graph.dot(line.direction, line.velocity);
-            algebra.graph.mul(c, rate)
+            let line = Line::new(algebra, inertial, between)?;
+            line.tension(algebra, inertial, spring.as_ref(), damping.as_ref())?
         }
         LoadKind::Generalized { force, .. } => inertial.lower(algebra, force)?,
     };
@@ -158,15 +141,19 @@ struct Line {
 }
 
 impl Line {
-    fn new(algebra: &mut Algebra, inertial: &Inertial<'_>, between: &Connection) -> Self {
-        let graph = &mut algebra.graph;
-        match *between {
-            Connection::Coordinate(q) => Self {
-                length: inertial.symbols.coordinates[q.index()],
-                direction: [Graph::ONE, Graph::ZERO, Graph::ZERO],
-                velocity: [inertial.rates[q.index()], Graph::ZERO, Graph::ZERO],
-            },
-            Connection::Points(a, b) => {
+    fn new(algebra: &mut Algebra, inertial: &Inertial<'_>, between: &Connection) -> Lowered<Self> {
+        Ok(match between {
+            Connection::Along(displacement) => {
+                let length = inertial.lower(algebra, displacement)?;
+                let velocity = inertial.time().of(algebra, length);
+                Self {
+                    length,
+                    direction: [Graph::ONE, Graph::ZERO, Graph::ZERO],
+                    velocity: [velocity, Graph::ZERO, Graph::ZERO],
+                }
+            }
+            &Connection::Points(a, b) => {
+                let graph = &mut algebra.graph;
                 let arm = graph.sub3(inertial.position(b), inertial.position(a));
                 let square = graph.dot(arm, arm);
                 let length = graph.sqrt(square);
@@ -179,7 +166,30 @@ impl Line {
                     velocity: graph.sub3(v_b, v_a),
                 }
             }
+        })
+    }
+
+    /// `k (length − relaxed) + c d(length)/dt`
+    fn tension(
+        &self,
+        algebra: &mut Algebra,
+        inertial: &Inertial<'_>,
+        spring: Option<&Spring>,
+        damping: Option<&Spec>,
+    ) -> Lowered<Expr> {
+        let mut tension = Vec::new();
+        if let Some(Spring { stiffness, relaxed }) = spring {
+            let k = inertial.lower(algebra, stiffness)?;
+            let relaxed = inertial.lower(algebra, relaxed)?;
+            let extension = algebra.graph.sub(self.length, relaxed);
+            tension.push(algebra.graph.mul(k, extension));
         }
+        if let Some(damping) = damping {
+            let c = inertial.lower(algebra, damping)?;
+            let rate = algebra.graph.dot(self.direction, self.velocity);
+            tension.push(algebra.graph.mul(c, rate));
+        }
+        Ok(algebra.graph.sum(&tension))
     }
 
     /// A tension opposes the growth of the length.
@@ -223,14 +233,14 @@ pub(super) fn potential(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lower
                     parts.push(algebra.graph.neg(energy));
                 }
             }
-            LoadKind::Spring {
+            LoadKind::SpringDamper {
                 between,
-                stiffness,
-                relaxed,
+                spring: Some(Spring { stiffness, relaxed }),
+                ..
             } => {
                 let k = inertial.lower(algebra, stiffness)?;
                 let relaxed = inertial.lower(algebra, relaxed)?;
-                let line = Line::new(algebra, inertial, between);
+                let line = Line::new(algebra, inertial, between)?;
                 let extension = algebra.graph.sub(line.length, relaxed);
                 let square = algebra.graph.square(extension);
                 let twice = algebra.graph.mul(k, square);
@@ -238,7 +248,7 @@ pub(super) fn potential(algebra: &mut Algebra, inertial: &Inertial<'_>) -> Lower
             }
             LoadKind::Force { .. }
             | LoadKind::Torque { .. }
-            | LoadKind::Damper { .. }
+            | LoadKind::SpringDamper { .. }
             | LoadKind::Generalized { .. } => {}
         }
     }

@@ -6,7 +6,7 @@
 
 use appell_spec::Code;
 use appell_spec::expr::Expr as Spec;
-use appell_spec::mechanism::{ConstraintKind, LoadKind, Mechanism};
+use appell_spec::mechanism::{ConstraintKind, Mechanism};
 
 use super::algebra::Algebra;
 use super::expressions::Lowering;
@@ -120,18 +120,8 @@ fn expressions(mechanism: &Mechanism) -> Vec<(Item, &Spec)> {
         all.extend(speed.rate.iter().map(|rate| (item, rate)));
     }
     for (i, load) in mechanism.loads.entries() {
-        let item = Item::Load(i);
-        match &load.kind {
-            LoadKind::Gravity { acceleration, .. } => all.push((item, acceleration)),
-            LoadKind::Force { vector, .. } | LoadKind::Torque { vector, .. } => {
-                all.extend(vector.iter().map(|c| (item, c)));
-            }
-            LoadKind::Spring {
-                stiffness, relaxed, ..
-            } => all.extend([(item, stiffness), (item, relaxed)]),
-            LoadKind::Damper { damping, .. } => all.push((item, damping)),
-            LoadKind::Generalized { force, .. } => all.push((item, force)),
-        }
+        let coefficients = load.kind.coefficients().into_iter();
+        all.extend(coefficients.map(|e| (Item::Load(i), e)));
     }
     for (i, output) in mechanism.outputs.entries() {
         all.push((Item::Output(i), &output.value));

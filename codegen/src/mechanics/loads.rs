@@ -3,7 +3,7 @@
 use appell_spec::Code;
 use appell_spec::expr::{Expr as Spec, Response};
 use appell_spec::mechanism::{
-    BodyId, Connection, FrameId, GROUND, LoadId, LoadKind, Mechanism, PointId,
+    BodyId, Connection, FrameId, GROUND, LoadId, LoadKind, Mechanism, PointId, Spring,
 };
 
 use super::algebra::Algebra;
@@ -13,6 +13,7 @@ use super::frames::FrameVector;
 use super::kinematics::Kinematics;
 use super::motions::motions;
 use super::symbols::Symbols;
+use super::time::TimeDerivative;
 use crate::symbolic::vector::Vec3;
 use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
 
@@ -249,7 +250,7 @@ pub fn settle(
 fn undefined(index: LoadId, kind: &LoadKind) -> Finding {
     let item = Item::Load(index);
     match kind.between() {
-        None | Some(Connection::Coordinate(_)) => division_by_zero(item),
+        None | Some(Connection::Along(_)) => division_by_zero(item),
         Some(Connection::Points(..)) => Finding {
             code: Code::VanishingLength,
             message: "the two points always coincide: the load has no direction".to_owned(),
@@ -342,19 +343,11 @@ impl Context<'_> {
                 }
                 Ok(working(algebra, torque, w))
             }
-            LoadKind::Spring {
+            LoadKind::SpringDamper {
                 between,
-                stiffness,
-                relaxed,
-            } => {
-                let k = self.lowering.lower(&mut algebra.graph, stiffness)?;
-                let relaxed = self.lowering.lower(&mut algebra.graph, relaxed)?;
-                self.spring(algebra, between, k, relaxed)
-            }
-            LoadKind::Damper { between, damping } => {
-                let c = self.part(algebra, 0, damping)?;
-                self.damper(algebra, between, c)
-            }
+                spring,
+                damping,
+            } => self.spring_damper(algebra, between, spring.as_ref(), damping.as_ref()),
             LoadKind::Generalized { velocity, force } => {
                 let force = self.part(algebra, 1, force)?;
                 let velocity = self.lowering.lower(&mut algebra.graph, velocity)?;
@@ -401,53 +394,58 @@ impl Context<'_> {
         })
     }
 
-    fn spring(
+    /// A tension that grows with the displacement and its rate; the potential is that of the spring.
+    fn spring_damper(
         &self,
         algebra: &mut Algebra,
         between: &Connection,
-        k: Expr,
-        relaxed: Expr,
+        spring: Option<&Spring>,
+        damping: Option<&Spec>,
     ) -> Lowered<AppliedLoad> {
         let (length, work) = self.extension(algebra, between)?;
-        let extension = algebra.graph.sub(length, relaxed);
-        let tension = algebra.graph.mul(k, extension);
-        let square = algebra.graph.square(extension);
-        let twice = algebra.graph.mul(k, square);
-        let potential = algebra.graph.scale(&Rational::new(1, 2), twice);
+        let (mut tension, mut potential) = (Vec::new(), None);
+        if let Some(Spring { stiffness, relaxed }) = spring {
+            let k = self.lowering.lower(&mut algebra.graph, stiffness)?;
+            let relaxed = self.lowering.lower(&mut algebra.graph, relaxed)?;
+            let extension = algebra.graph.sub(length, relaxed);
+            tension.push(algebra.graph.mul(k, extension));
+            let square = algebra.graph.square(extension);
+            let twice = algebra.graph.mul(k, square);
+            potential = Some(algebra.graph.scale(&Rational::new(1, 2), twice));
+        }
+        if let Some(damping) = damping {
+            // The last of its expressions.
+            let place = if spring.is_some() { 2 } else { 0 };
+            let c = self.part(algebra, place, damping)?;
+            let parts: Vec<Expr> = work
+                .iter()
+                .map(|w| algebra.graph.mul(w.force, w.velocity))
+                .collect();
+            let speed = algebra.graph.sum(&parts);
+            tension.push(algebra.graph.mul(c, speed));
+        }
+        let tension = algebra.graph.sum(&tension);
         Ok(AppliedLoad {
             work: resisting(algebra, tension, &work),
             acts: Acts::Scalar(tension),
-            potential: Some(potential),
+            potential,
             ..AppliedLoad::default()
         })
     }
 
-    fn damper(&self, algebra: &mut Algebra, between: &Connection, c: Expr) -> Lowered<AppliedLoad> {
-        let (_, work) = self.extension(algebra, between)?;
-        let parts: Vec<Expr> = work
-            .iter()
-            .map(|w| algebra.graph.mul(w.force, w.velocity))
-            .collect();
-        let speed = algebra.graph.sum(&parts);
-        let tension = algebra.graph.mul(c, speed);
-        Ok(AppliedLoad {
-            work: resisting(algebra, tension, &work),
-            acts: Acts::Scalar(tension),
-            ..AppliedLoad::default()
-        })
-    }
-
-    /// Length of a connection, and the force-velocity pairs whose power is the rate of the length.
+    /// Displacement of a connection, and the force-velocity pairs whose power is its rate.
     fn extension(&self, algebra: &mut Algebra, between: &Connection) -> Lowered<(Expr, Vec<Work>)> {
-        match *between {
-            Connection::Coordinate(q) => {
+        match between {
+            Connection::Along(displacement) => {
+                let displacement = self.lowering.lower(&mut algebra.graph, displacement)?;
+                let Lowering { symbols, rates } = self.lowering;
                 let unit = Work {
                     force: Graph::ONE,
-                    velocity: self.lowering.rates[q.index()],
+                    velocity: TimeDerivative { symbols, rates }.of(algebra, displacement),
                 };
-                Ok((self.lowering.symbols.coordinates[q.index()], vec![unit]))
+                Ok((displacement, vec![unit]))
             }
-            Connection::Points(a, b) => {
+            &Connection::Points(a, b) => {
                 let graph = &mut algebra.graph;
                 let d = self.kinematics.between(graph, self.mechanism, a, b, GROUND);
                 let d = self.kinematics.frames.simplest(

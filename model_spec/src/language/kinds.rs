@@ -230,7 +230,7 @@ pub(super) static LOADS: &[Kind] = &[
         keys: &[
             key(
                 "between",
-                Form::TwoPoints,
+                Form::Two(Target::Point),
                 Need::Way(0),
                 "The two points it connects.",
             ),
@@ -257,7 +257,7 @@ pub(super) static LOADS: &[Kind] = &[
         keys: &[
             key(
                 "between",
-                Form::TwoPoints,
+                Form::Two(Target::Point),
                 Need::Way(0),
                 "The two points it connects.",
             ),

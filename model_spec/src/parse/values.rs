@@ -59,9 +59,11 @@ impl Reader<'_> {
                 };
                 Some(ValueAst::Matrix(Box::new([a, b, c])))
             }
-            Form::TwoPoints => {
-                let names = self.elements::<2>(value, "the names of two points")?;
-                let [Some(a), Some(b)] = names.map(|v| self.named(v, "the name of a point")) else {
+            Form::Two(target) => {
+                let word = target.word();
+                let names = self.elements::<2>(value, &format!("the names of two {word}s"))?;
+                let one = format!("the name of a {word}");
+                let [Some(a), Some(b)] = names.map(|v| self.named(v, &one)) else {
                     return None;
                 };
                 Some(ValueAst::Pair([a, b]))

@@ -77,10 +77,7 @@ impl Resolver<'_> {
     ) -> Option<Inertia> {
         let about_normal = self.expression(moment, &INERTIA, Dim::Known(Dimension::INERTIA));
         let span = moment.span.clone();
-        let number = |value: i64| Expr {
-            kind: ExprKind::Number(num_rational::BigRational::from_integer(value.into())),
-            span: span.clone(),
-        };
+        let number = |value| Expr::integer(value, span.clone());
         let half = Expr {
             kind: ExprKind::Binary(
                 BinaryOp::Divide,
@@ -129,10 +126,7 @@ impl Resolver<'_> {
             self.symmetric(&rows);
             rows
         } else {
-            let zero = Expr {
-                kind: ExprKind::Number(num_rational::BigRational::from_integer(0.into())),
-                span: item.name.span.clone(),
-            };
+            let zero = Expr::integer(0, item.name.span.clone());
             let key = if item.components("diagonal").is_some() {
                 "diagonal"
             } else {

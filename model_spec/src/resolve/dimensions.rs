@@ -38,10 +38,7 @@ impl Typed {
     /// An invalid expression; expressions that contain it cause no further error.
     pub(super) fn poisoned(span: Span) -> Self {
         Self {
-            expr: Expr {
-                kind: ExprKind::Number(BigRational::from_integer(0.into())),
-                span,
-            },
+            expr: Expr::integer(0, span),
             dim: Dim::Unknown,
             degree: None,
             constant: None,

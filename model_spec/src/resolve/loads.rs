@@ -4,7 +4,7 @@ use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, ExprKind, Quantity, Span};
 use crate::language::{ItemKind, LoadWord};
-use crate::mechanism::{Axis, Body, Connection, CoordinateId, Load, LoadKind, ORIGIN};
+use crate::mechanism::{Axis, Body, Connection, CoordinateId, Load, LoadKind, ORIGIN, Spring};
 use crate::parse::zero;
 use crate::units::Dimension;
 
@@ -164,8 +164,18 @@ impl Resolver<'_> {
             let displacement = Some(Dimension::LENGTH).filter(|_| !both);
             return (Connection::Points(first, second), displacement);
         }
-        let (id, dimension) = self.coordinate_under(item);
-        (Connection::Coordinate(id), dimension)
+        let (coordinate, dimension) = self.coordinate_under(item);
+        let along = Self::quantity_under(item, Quantity::Coordinate(coordinate));
+        (Connection::Along(along), dimension)
+    }
+
+    /// A coordinate or its rate, at the position of the key `coordinate`.
+    fn quantity_under(item: &ItemAst, quantity: Quantity) -> Expr {
+        let span = item.text("coordinate").map(|name| name.span);
+        Expr {
+            kind: ExprKind::Quantity(quantity),
+            span: span.unwrap_or_else(|| item.name.span.clone()),
+        }
     }
 
     fn coordinate_under(&mut self, item: &ItemAst) -> (CoordinateId, Option<Dimension>) {
@@ -186,10 +196,13 @@ impl Resolver<'_> {
         let force = Dim::Known(Dimension::TORQUE).per(displacement);
         let stiffness = force.per(displacement);
         let relaxed = displacement.map_or(Dim::Unknown, Dim::Known);
-        let kind = LoadKind::Spring {
+        let kind = LoadKind::SpringDamper {
             between,
-            stiffness: self.expression_of(item, "stiffness", &STIFFNESS, stiffness),
-            relaxed: self.expression_of(item, "relaxed", &RELAXED, relaxed),
+            spring: Some(Spring {
+                stiffness: self.expression_of(item, "stiffness", &STIFFNESS, stiffness),
+                relaxed: self.expression_of(item, "relaxed", &RELAXED, relaxed),
+            }),
+            damping: None,
         };
         (kind, force.known())
     }
@@ -199,9 +212,10 @@ impl Resolver<'_> {
         let (between, displacement) = self.connection(item);
         let force = Dim::Known(Dimension::TORQUE).per(displacement);
         let damping = force.per(displacement).times(Some(Dimension::TIME));
-        let kind = LoadKind::Damper {
+        let kind = LoadKind::SpringDamper {
             between,
-            damping: self.expression_of(item, "damping", &DAMPING, damping),
+            spring: None,
+            damping: Some(self.expression_of(item, "damping", &DAMPING, damping)),
         };
         (kind, force.known())
     }
@@ -214,11 +228,7 @@ impl Resolver<'_> {
             (along.expr, along.dim.known())
         } else {
             let (coordinate, displacement) = self.coordinate_under(item);
-            let span = item.text("coordinate").map(|name| name.span);
-            let velocity = Expr {
-                kind: ExprKind::Quantity(Quantity::Rate(coordinate)),
-                span: span.unwrap_or_else(|| item.name.span.clone()),
-            };
+            let velocity = Self::quantity_under(item, Quantity::Rate(coordinate));
             (velocity, displacement.and_then(|own| own.rate().ok()))
         };
         let force = Dim::Known(Dimension::POWER).per(dimension);

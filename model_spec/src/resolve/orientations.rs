@@ -1,7 +1,5 @@
 //! Orientations by unit quaternions: the four coordinates of a frame, and the constraint that keeps their norm.
 
-use num_rational::BigRational;
-
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{BinaryOp, Expr, ExprKind, Quantity, Span};
@@ -95,7 +93,7 @@ fn norm(coordinates: &[CoordinateId], span: &Span) -> Expr {
         kind,
         span: span.clone(),
     };
-    let one = expr(ExprKind::Number(BigRational::from_integer(1.into())));
+    let one = Expr::integer(1, span.clone());
     let negative = expr(ExprKind::Negate(Box::new(one)));
     coordinates.iter().fold(negative, |sum, &id| {
         let q = Box::new(expr(ExprKind::Quantity(Quantity::Coordinate(id))));

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use crate::ast::{ItemAst, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
-use crate::expr::{Expr, ExprKind};
+use crate::expr::Expr;
 use crate::language::{Sense, Target};
 use crate::mechanism::{Axis, Frame, GROUND, Point, Turn};
 use crate::units::Dimension;
@@ -60,10 +60,7 @@ impl<'a> Resolver<'a> {
 
     pub(super) fn points(&mut self) -> Vec<Point> {
         let ordered = self.ordered("points", "from", Target::Point);
-        let nowhere = Expr {
-            kind: ExprKind::Number(num_rational::BigRational::from_integer(0.into())),
-            span: 0..0,
-        };
+        let nowhere = Expr::integer(0, 0..0);
         let mut points = vec![Point {
             name: "O".to_owned(),
             about: "origin of the ground".to_owned(),

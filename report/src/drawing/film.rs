@@ -283,8 +283,7 @@ fn applied(
             }
             // Without an arrow: torques, and forces shown by a line between two points.
             LoadKind::Torque { .. }
-            | LoadKind::Spring { .. }
-            | LoadKind::Damper { .. }
+            | LoadKind::SpringDamper { .. }
             | LoadKind::Generalized { .. } => {}
         }
     }

@@ -82,7 +82,8 @@ fn felt(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
     let loads = mechanism.loads.iter();
     loads
         .filter(|load| {
-            expressions(load)
+            load.kind
+                .coefficients()
                 .iter()
                 .any(|expr| mentions(expr, quantity))
         })
@@ -137,27 +138,25 @@ fn attack(mechanism: &Mechanism, load: &Load) -> Vec<PointId> {
         LoadKind::Torque {
             on, reaction_on, ..
         } => vec![motor(mechanism, *on, *reaction_on)],
-        LoadKind::Generalized { velocity, .. } => {
+        LoadKind::Generalized {
+            velocity: along, ..
+        }
+        | LoadKind::SpringDamper {
+            between: Connection::Along(along),
+            ..
+        } => {
             let mut points = Vec::new();
-            velocity.visit(&mut |quantity| points.extend(carried(mechanism, quantity)));
+            along.visit(&mut |quantity| points.extend(carried(mechanism, quantity)));
             points
         }
-        LoadKind::Spring {
-            between: Connection::Coordinate(coordinate),
-            ..
-        }
-        | LoadKind::Damper {
-            between: Connection::Coordinate(coordinate),
-            ..
-        } => moved(mechanism, *coordinate),
         kind => kind.points(),
     }
 }
 
-/// Points that move at a rate or a pseudo-velocity.
+/// Points that move with a coordinate or at a pseudo-velocity.
 fn carried(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
     match quantity {
-        Quantity::Rate(q) => moved(mechanism, q),
+        Quantity::Coordinate(q) | Quantity::Rate(q) => moved(mechanism, q),
         Quantity::PseudoVelocity(speed) => {
             let mut points = Vec::new();
             let definition = &mechanism.pseudo_velocities[speed].definition;
@@ -169,18 +168,6 @@ fn carried(mechanism: &Mechanism, quantity: Quantity) -> Vec<PointId> {
             points
         }
         _ => Vec::new(),
-    }
-}
-
-fn expressions(load: &Load) -> Vec<&Expr> {
-    match &load.kind {
-        LoadKind::Gravity { acceleration, .. } => vec![acceleration],
-        LoadKind::Force { vector, .. } | LoadKind::Torque { vector, .. } => vector.iter().collect(),
-        LoadKind::Spring {
-            stiffness, relaxed, ..
-        } => vec![stiffness, relaxed],
-        LoadKind::Damper { damping, .. } => vec![damping],
-        LoadKind::Generalized { force, .. } => vec![force],
     }
 }
 

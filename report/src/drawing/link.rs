@@ -43,20 +43,21 @@ pub(super) fn links(mechanism: &Mechanism) -> impl Iterator<Item = Link> {
         })
     };
     let connection = |load: &Load| {
-        let (kind, word, between) = match &load.kind {
-            LoadKind::Spring { between, .. } => (LinkKind::Spring, "spring", between),
-            LoadKind::Damper { between, .. } => (LinkKind::Damper, "damper", between),
-            LoadKind::Gravity { .. }
-            | LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::Generalized { .. } => return None,
-        };
-        let &Connection::Points(a, b) = between else {
+        let LoadKind::SpringDamper {
+            between: Connection::Points(a, b),
+            spring,
+            ..
+        } = &load.kind
+        else {
             return None;
+        };
+        let (kind, word) = match spring {
+            Some(_) => (LinkKind::Spring, "spring"),
+            None => (LinkKind::Damper, "damper"),
         };
         Some(Link {
             kind,
-            ends: [a, b],
+            ends: [*a, *b],
             about: format!("{word} {}", load.name),
         })
     };

@@ -2,13 +2,14 @@
 
 use appell_spec::expr::{Expr as Spec, ExprKind, Quantity};
 use appell_spec::mechanism::{
-    BodyId, Connection, CoordinateId, FrameId, GROUND, Load, LoadKind, PointId,
+    BodyId, Connection, CoordinateId, FrameId, GROUND, Load, LoadKind, PointId, Spring,
 };
 
 use super::super::writer::Writer;
 use super::super::{Letter, Math, Span};
 use super::phrases::{equality, listed, math, words};
 use super::placement::{from_to, lowered};
+use appell_codegen::mechanics::time::TimeDerivative;
 use appell_codegen::symbolic::{Expr, Graph};
 
 /// `F_drive = [0, u, 0] tilted at A, −F_drive at G; δP_drive = F_drive · (δv_A − δv_G)`
@@ -28,33 +29,11 @@ pub(super) fn statement(w: &mut Writer<'_>, load: &Load) -> Vec<Span> {
             frame,
             vector,
         } => torque(w, load, *on, *reaction_on, *frame, vector),
-        LoadKind::Spring {
-            between: Connection::Points(a, b),
-            stiffness,
-            relaxed,
-        } => spring(w, load, [*a, *b], stiffness, relaxed),
-        LoadKind::Damper {
-            between: Connection::Points(a, b),
+        LoadKind::SpringDamper {
+            between,
+            spring,
             damping,
-        } => damper(w, load, [*a, *b], damping),
-        LoadKind::Spring {
-            between: Connection::Coordinate(q),
-            stiffness,
-            relaxed,
-        } => {
-            let place = w.derivation.symbols.coordinates[q.index()];
-            let stretch = difference(w, place, relaxed);
-            let stiffness = factor(w, stiffness);
-            along(w, load, *q, negative(vec![stiffness, stretch]))
-        }
-        LoadKind::Damper {
-            between: Connection::Coordinate(q),
-            damping,
-        } => {
-            let rate = w.symbol(w.derivation.symbols.rates[q.index()]);
-            let damping = factor(w, damping);
-            along(w, load, *q, negative(vec![damping, rate]))
-        }
+        } => spring_damper(w, load, between, spring.as_ref(), damping.as_ref()),
         LoadKind::Generalized { velocity, force } => {
             let force = factor(w, force);
             match velocity.kind {
@@ -160,26 +139,62 @@ fn torque(
     (what, dot(letter, Math::sum(motion)))
 }
 
-/// A tension `k (|r_AB| − relaxed)` that pulls two points towards each other.
-fn spring(w: &mut Writer<'_>, load: &Load, ends: [PointId; 2], k: &Spec, relaxed: &Spec) -> Said {
-    let relaxed = lowered(w, relaxed);
-    let mut stretch = vec![(false, Math::Size(Box::new(between(w, ends))))];
-    if relaxed != Graph::ZERO {
-        stretch.push((true, w.set(relaxed)));
+/// A tension `k (s − relaxed) + c ṡ` against the growth of the displacement s, which is the distance of two points
+/// `|r_AB|` with the rate `r_AB/|r_AB| · (v_B − v_A)`, a coordinate, or an angle.
+fn spring_damper(
+    w: &mut Writer<'_>,
+    load: &Load,
+    displacement: &Connection,
+    spring: Option<&Spring>,
+    damping: Option<&Spec>,
+) -> Said {
+    match displacement {
+        &Connection::Points(a, b) => {
+            let ends = [a, b];
+            let mut tension = Vec::new();
+            if let Some(Spring { stiffness, relaxed }) = spring {
+                let relaxed = lowered(w, relaxed);
+                let mut stretch = vec![(false, Math::Size(Box::new(between(w, ends))))];
+                if relaxed != Graph::ZERO {
+                    stretch.push((true, w.set(relaxed)));
+                }
+                tension.push(Math::product(vec![
+                    factor(w, stiffness),
+                    Math::sum(stretch),
+                ]));
+            }
+            if let Some(damping) = damping {
+                let [v_a, v_b] =
+                    ends.map(|end| Math::Letter(Letter::bold("v").below(&w.point(end))));
+                let relative = Math::Sum(vec![(false, v_b), (true, v_a)]);
+                let rate = dot(direction(w, ends), relative);
+                tension.push(Math::product(vec![factor(w, damping), rate]));
+            }
+            let tension = Math::sum(tension.into_iter().map(|part| (false, part)).collect());
+            pulling(w, load, ends, tension)
+        }
+        Connection::Along(own) => {
+            let place = lowered(w, own);
+            let derivation = &mut *w.derivation;
+            let symbols = &derivation.symbols;
+            let rates = &symbols.rates;
+            let rate = TimeDerivative { symbols, rates }.of(&mut derivation.algebra, place);
+            let mut force = Vec::new();
+            if let Some(Spring { stiffness, relaxed }) = spring {
+                let stretch = difference(w, place, relaxed);
+                force.push((true, Math::product(vec![factor(w, stiffness), stretch])));
+            }
+            if let Some(damping) = damping {
+                let rate = w.set(rate);
+                force.push((true, Math::product(vec![factor(w, damping), rate])));
+            }
+            let force = Math::Sum(force);
+            match own.kind {
+                ExprKind::Quantity(Quantity::Coordinate(q)) => along(w, load, q, force),
+                _ => along_angle(w, load, place, rate, force),
+            }
+        }
     }
-    let tension = Math::product(vec![factor(w, k), Math::sum(stretch)]);
-    pulling(w, load, ends, tension)
-}
-
-/// A tension `c r_AB/|r_AB| · (v_B − v_A)`.
-fn damper(w: &mut Writer<'_>, load: &Load, ends: [PointId; 2], c: &Spec) -> Said {
-    let [v_a, v_b] = ends.map(|end| Math::Letter(Letter::bold("v").below(&w.point(end))));
-    let lengthening = dot(
-        direction(w, ends),
-        Math::Sum(vec![(false, v_b), (true, v_a)]),
-    );
-    let tension = Math::product(vec![factor(w, c), lengthening]);
-    pulling(w, load, ends, tension)
 }
 
 fn pulling(w: &Writer<'_>, load: &Load, ends: [PointId; 2], tension: Math) -> Said {
@@ -224,6 +239,18 @@ fn along_velocity(w: &mut Writer<'_>, load: &Load, velocity: &Spec, force: Math)
         math(velocity.clone()),
     ];
     (what, Math::Row(vec![letter, velocity]))
+}
+
+/// A torque along an angle between two frames.
+fn along_angle(w: &mut Writer<'_>, load: &Load, angle: Expr, rate: Expr, torque: Math) -> Said {
+    let letter = Math::Letter(Letter::plain("T").below(&load.name));
+    let [angle, rate] = [angle, rate].map(|expr| w.set(expr));
+    let what = vec![
+        equality(letter.clone(), torque),
+        words(" along the angle "),
+        math(angle),
+    ];
+    (what, Math::product(vec![letter, rate]))
 }
 
 /// `letter = [x, y, z] frame`
@@ -285,8 +312,4 @@ fn difference(w: &mut Writer<'_>, place: Expr, relaxed: &Spec) -> Math {
     let relaxed = lowered(w, relaxed);
     let stretch = w.graph().sub(place, relaxed);
     w.set(stretch)
-}
-
-fn negative(factors: Vec<Math>) -> Math {
-    Math::Sum(vec![(true, Math::product(factors))])
 }

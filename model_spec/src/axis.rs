@@ -12,6 +12,9 @@ pub enum Axis {
 }
 
 impl Axis {
+    /// Their letters in specs.
+    pub const LETTERS: [&str; 3] = ["x", "y", "z"];
+
     /// Its index among the components of a vector.
     pub const fn index(self) -> usize {
         match self {
@@ -19,5 +22,10 @@ impl Axis {
             Self::Y => 1,
             Self::Z => 2,
         }
+    }
+
+    /// Its letter in specs.
+    pub const fn letter(self) -> &'static str {
+        Self::LETTERS[self.index()]
     }
 }

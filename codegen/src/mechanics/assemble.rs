@@ -500,8 +500,8 @@ impl Derivation {
             .iter()
             .filter_map(|load| load.potential)
             .collect();
-        let others = self.loads.iter().filter(|load| load.potential.is_none());
-        let mut power: Vec<Expr> = others.map(|load| load.power(graph)).collect();
+        let loads = self.loads.iter();
+        let mut power: Vec<Expr> = loads.map(|l| l.power_without_potential(graph)).collect();
         power.push(prescribed);
         let about_power = if prescribed == Graph::ZERO {
             "Power of the loads without a potential, in W."

@@ -22,6 +22,25 @@ use crate::symbolic::{Expr, Graph, Rational, Substitution, SymbolId};
 struct Work {
     force: Expr,
     velocity: Expr,
+    /// Whether the potential of the load accounts for it.
+    is_conservative: bool,
+}
+
+impl Work {
+    const fn new(force: Expr, velocity: Expr) -> Self {
+        Self {
+            force,
+            velocity,
+            is_conservative: false,
+        }
+    }
+
+    const fn conservative(self) -> Self {
+        Self {
+            is_conservative: true,
+            ..self
+        }
+    }
 }
 
 /// A load as pairs of forces and conjugate velocities.
@@ -71,12 +90,12 @@ impl AppliedLoad {
 
     /// Power of the load.
     pub fn power(&self, graph: &mut Graph) -> Expr {
-        let parts: Vec<Expr> = self
-            .work
-            .iter()
-            .map(|w| graph.mul(w.force, w.velocity))
-            .collect();
-        graph.sum(&parts)
+        power(graph, self.work.iter())
+    }
+
+    /// Power of the part without a potential.
+    pub fn power_without_potential(&self, graph: &mut Graph) -> Expr {
+        power(graph, self.work.iter().filter(|w| !w.is_conservative))
     }
 }
 
@@ -352,7 +371,7 @@ impl Context<'_> {
                 let force = self.part(algebra, 1, force)?;
                 let velocity = self.lowering.lower(&mut algebra.graph, velocity)?;
                 Ok(AppliedLoad {
-                    work: vec![Work { force, velocity }],
+                    work: vec![Work::new(force, velocity)],
                     acts: Acts::Scalar(force),
                     ..AppliedLoad::default()
                 })
@@ -378,7 +397,7 @@ impl Context<'_> {
                 v.frame,
             );
             let force = algebra.graph.scale3(weight, direction);
-            work.extend(pairs(force, v.v));
+            work.extend(pairs(force, v.v).into_iter().map(Work::conservative));
             let position =
                 self.kinematics
                     .position(&mut algebra.graph, self.mechanism, body.centre);
@@ -402,13 +421,16 @@ impl Context<'_> {
         spring: Option<&Spring>,
         damping: Option<&Spec>,
     ) -> Lowered<AppliedLoad> {
-        let (length, work) = self.extension(algebra, between)?;
-        let (mut tension, mut potential) = (Vec::new(), None);
+        let (length, rate) = self.extension(algebra, between)?;
+        let (mut tensions, mut work, mut potential) = (Vec::new(), Vec::new(), None);
         if let Some(Spring { stiffness, relaxed }) = spring {
             let k = self.lowering.lower(&mut algebra.graph, stiffness)?;
             let relaxed = self.lowering.lower(&mut algebra.graph, relaxed)?;
             let extension = algebra.graph.sub(length, relaxed);
-            tension.push(algebra.graph.mul(k, extension));
+            let tension = algebra.graph.mul(k, extension);
+            tensions.push(tension);
+            let elastic = resisting(algebra, tension, &rate);
+            work.extend(elastic.into_iter().map(Work::conservative));
             let square = algebra.graph.square(extension);
             let twice = algebra.graph.mul(k, square);
             potential = Some(algebra.graph.scale(&Rational::new(1, 2), twice));
@@ -417,17 +439,14 @@ impl Context<'_> {
             // The last of its expressions.
             let place = if spring.is_some() { 2 } else { 0 };
             let c = self.part(algebra, place, damping)?;
-            let parts: Vec<Expr> = work
-                .iter()
-                .map(|w| algebra.graph.mul(w.force, w.velocity))
-                .collect();
-            let speed = algebra.graph.sum(&parts);
-            tension.push(algebra.graph.mul(c, speed));
+            let speed = power(&mut algebra.graph, rate.iter());
+            let tension = algebra.graph.mul(c, speed);
+            tensions.push(tension);
+            work.extend(resisting(algebra, tension, &rate));
         }
-        let tension = algebra.graph.sum(&tension);
         Ok(AppliedLoad {
-            work: resisting(algebra, tension, &work),
-            acts: Acts::Scalar(tension),
+            work,
+            acts: Acts::Scalar(algebra.graph.sum(&tensions)),
             potential,
             ..AppliedLoad::default()
         })
@@ -439,10 +458,8 @@ impl Context<'_> {
             Connection::Along(displacement) => {
                 let displacement = self.lowering.lower(&mut algebra.graph, displacement)?;
                 let Lowering { symbols, rates } = self.lowering;
-                let unit = Work {
-                    force: Graph::ONE,
-                    velocity: TimeDerivative { symbols, rates }.of(algebra, displacement),
-                };
+                let rate = TimeDerivative { symbols, rates }.of(algebra, displacement);
+                let unit = Work::new(Graph::ONE, rate);
                 Ok((displacement, vec![unit]))
             }
             &Connection::Points(a, b) => {
@@ -489,11 +506,16 @@ impl Context<'_> {
     }
 }
 
+fn power<'a>(graph: &mut Graph, work: impl Iterator<Item = &'a Work>) -> Expr {
+    let parts: Vec<Expr> = work.map(|w| graph.mul(w.force, w.velocity)).collect();
+    graph.sum(&parts)
+}
+
 fn pairs(force: Vec3, velocity: Vec3) -> Vec<Work> {
     force
         .into_iter()
         .zip(velocity)
-        .map(|(force, velocity)| Work { force, velocity })
+        .map(|(force, velocity)| Work::new(force, velocity))
         .collect()
 }
 
@@ -516,9 +538,6 @@ fn resisting(algebra: &mut Algebra, tension: Expr, extension: &[Work]) -> Vec<Wo
     let pull = algebra.graph.neg(tension);
     extension
         .iter()
-        .map(|w| Work {
-            force: algebra.graph.mul(pull, w.force),
-            velocity: w.velocity,
-        })
+        .map(|w| Work::new(algebra.graph.mul(pull, w.force), w.velocity))
         .collect()
 }

@@ -4,6 +4,7 @@ use num_rational::BigRational;
 use num_traits::{One, Signed, Zero};
 
 use crate::ast::{ItemAst, ValueAst};
+use crate::axis::Axis;
 use crate::diagnostic::{Code, Diagnostic};
 use crate::language::Sense;
 
@@ -11,7 +12,7 @@ use super::piece::Piece;
 use super::written::Written;
 
 /// The axes of a frame.
-pub(super) const AXES: [&str; 3] = ["x", "y", "z"];
+pub(super) const AXES: [&str; 3] = Axis::LETTERS;
 
 /// A turn of a frame: the word of its axis, as TOML, and the angle.
 pub(super) type Turn = (Piece, Written);

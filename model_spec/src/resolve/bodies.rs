@@ -157,7 +157,7 @@ impl Resolver<'_> {
     fn symmetric(&mut self, rows: &[[Expr; 3]; 3]) {
         for (i, j) in [(0, 1), (0, 2), (1, 2)] {
             if !same(&rows[i][j], &rows[j][i]) {
-                let axes = ["x", "y", "z"];
+                let axes = Axis::LETTERS;
                 self.tell(
                     Diagnostic::error(
                         Code::ConflictingKeys,

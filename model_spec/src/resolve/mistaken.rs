@@ -3,6 +3,7 @@
 
 use super::nominal::value;
 use super::resolver::Resolver;
+use crate::axis::Axis;
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{Expr, ExprKind, Quantity, Span};
 use crate::mechanism::{
@@ -207,7 +208,7 @@ fn axle(mechanism: &Mechanism, body: &Body, contact: PointId) -> Option<Diagnost
     if near(moments[first], moments[second]) || !(like_axle(first) || like_axle(second)) {
         return None;
     }
-    let name = |i: usize| ["x", "y", "z"][i];
+    let name = |i: usize| Axis::LETTERS[i];
     let odd = if like_axle(first) { second } else { first };
     Some(note(
         format!(

@@ -1,5 +1,6 @@
 //! Masses, inertias and friction at the nominal parameter values.
 
+use crate::axis::Axis;
 use crate::diagnostic::{Code, Diagnostic, Severity};
 use crate::expr::{Expr, Quantity};
 use crate::mechanism::{Body, Constraint, ConstraintKind, Inertia, Mechanism, Parameter};
@@ -101,10 +102,9 @@ impl Resolver<'_> {
 
 /// Why no mass distribution has such a tensor, and a hint on the probable mistake.
 fn impossible(inertia: &[[f64; 3]; 3]) -> (String, &'static str) {
-    let axes = ["x", "y", "z"];
     let moments = [inertia[0][0], inertia[1][1], inertia[2][2]];
     let total: f64 = moments.iter().sum();
-    for (axis, moment) in axes.iter().zip(moments) {
+    for (axis, moment) in Axis::LETTERS.iter().zip(moments) {
         if moment < 0.0 {
             let reason = format!(
                 "the moment about {axis} is negative, {} kg*m^2",

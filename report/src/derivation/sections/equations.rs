@@ -150,8 +150,7 @@ pub(super) fn energies(w: &mut Writer<'_>) -> Section {
     equations.push(Equation::new(energy, w.explicit(potential)).about(About::Loads));
     let mut power: Vec<Expr> = loads
         .iter()
-        .filter(|load| load.potential.is_none())
-        .map(|load| load.power(w.graph()))
+        .map(|load| load.power_without_potential(w.graph()))
         .collect();
     let accelerations = w.derivation.symbols.accelerations.clone();
     let prescribed = w.derivation.prescribed_power(&accelerations);

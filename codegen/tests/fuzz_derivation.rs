@@ -7,21 +7,19 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use appell_codegen::audit::{audit, reasons};
 use appell_codegen::emit::emit_functions;
 use appell_codegen::mechanics::{assemble, derive};
 use appell_codegen::program::FunctionKind;
 use appell_codegen::schedule::schedule;
-use appell_test_kit::{Random, budget, peak_memory, shipped};
+use appell_test_kit::{Random, ThreadTime, budget, peak_memory, shipped};
 
 /// Cases in an ordinary run and in a full one.
 const CASES: [usize; 2] = [150, 1500];
-/// A case takes milliseconds; the rest is room for a busy machine and a debug build.
+/// Processor time. A case takes milliseconds; the rest is room for a debug build.
 const SLOWEST: Duration = Duration::from_secs(4);
-/// How often a slow case may try again.
-const ATTEMPTS: usize = 4;
 /// Bound on the memory of the process, in MB.
 const MOST_MEMORY: u64 = 1000;
 /// Functions of the program, one per case.
@@ -231,7 +229,7 @@ fn exercise(text: &str, kind: FunctionKind, counts: &mut Counts) -> Duration {
         return Duration::ZERO;
     };
     counts.loaded += 1;
-    let start = Instant::now();
+    let start = ThreadTime::now();
     match derive(&checked.mechanism) {
         Ok(derivation) => {
             counts.derived += 1;
@@ -263,14 +261,8 @@ fn damaged_mechanisms_do_no_harm() {
         }
         let text = written(&spec);
         let kind = KINDS[dice.below(KINDS.len())];
-        let mut took = Duration::MAX;
-        for _ in 0..ATTEMPTS {
-            let run = catch_unwind(AssertUnwindSafe(|| exercise(&text, kind, &mut counts)));
-            took = took.min(run.unwrap_or_else(|_| panic!("case {case}, {kind:?}:\n{text}")));
-            if took < SLOWEST {
-                break;
-            }
-        }
+        let run = catch_unwind(AssertUnwindSafe(|| exercise(&text, kind, &mut counts)));
+        let took = run.unwrap_or_else(|_| panic!("case {case}, {kind:?}:\n{text}"));
         counts.slowest = counts.slowest.max(took);
         assert!(
             took < SLOWEST,

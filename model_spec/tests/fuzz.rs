@@ -6,7 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use appell_spec::edit::set_parameters;
 use appell_spec::occurrences::{Namespace, occurrences};
@@ -14,16 +14,14 @@ use appell_spec::outline::Outline;
 use appell_spec::parse::parse;
 use appell_spec::rename::rename;
 use appell_spec::{Report, load};
-use appell_test_kit::{Random, budget, peak_memory, shipped};
+use appell_test_kit::{Random, ThreadTime, budget, peak_memory, shipped};
 
 /// How many bytes are changed in all, in an ordinary run and in a full one.
 const MUTATED_BYTES: [usize; 2] = [300_000, 3_000_000];
-/// Far below a second, with room for a busy machine.
+/// Processor time.
 const SLOWEST: Duration = Duration::from_millis(500);
 /// Most memory of the whole test, in MB; the texts themselves have at most 2 MB.
 const MOST_MEMORY: u64 = 500;
-/// How often a slow text may try again: the machine may have been busy with something else.
-const ATTEMPTS: usize = 4;
 
 /// Bytes that mean something to TOML or to expressions.
 const TELLING: &[u8] = b"[]{}()=,.\"'\\\n#+-*/^<> 0e9_xtdu\xc3\xa9\xe2\x80\xae";
@@ -69,7 +67,7 @@ fn mutate(bytes: &mut Vec<u8>, others: &[Vec<u8>], dice: &mut Random) -> usize {
 
 /// Reads a text and shows what was found; tells how long the reading took.
 fn exercise(text: &str) -> Duration {
-    let start = Instant::now();
+    let start = ThreadTime::now();
     let outcome = load("fuzz.toml", text);
     let names = occurrences(text, &parse(text).0, &Outline::new(text));
     let took = start.elapsed();
@@ -90,17 +88,6 @@ fn exercise(text: &str) -> Duration {
 }
 
 /// How long a text takes to read, tried again while that is too long.
-fn duration(text: &str) -> Duration {
-    let mut shortest = exercise(text);
-    for _ in 1..ATTEMPTS {
-        if shortest < SLOWEST {
-            break;
-        }
-        shortest = shortest.min(exercise(text));
-    }
-    shortest
-}
-
 /// Tells what the texts took, and that it was not much.
 fn is_frugal(texts: usize, slowest: Duration) {
     let peak = peak_memory();
@@ -126,7 +113,7 @@ fn damaged_bytes_do_no_harm() {
             changed += mutate(&mut bytes, &specs, &mut dice);
         }
         let text = String::from_utf8_lossy(&bytes);
-        let took = duration(&text);
+        let took = exercise(&text);
         assert!(took < SLOWEST, "{took:?}:\n{text}");
         slowest = slowest.max(took);
         round += 1;
@@ -176,7 +163,7 @@ fn hostile_texts_are_refused_quickly() {
     let mut slowest = Duration::ZERO;
     for text in &texts {
         let start: String = text.chars().take(40).collect();
-        let took = duration(text);
+        let took = exercise(text);
         assert!(took < SLOWEST, "{took:?}: {start}");
         assert!(load("hostile.toml", text).is_err(), "{start}");
         slowest = slowest.max(took);

@@ -8,6 +8,9 @@
 
 use std::path::{Path, PathBuf};
 
+/// Processor time of the thread: what a text costs, however busy the machine is.
+pub use cpu_time::ThreadTime;
+
 /// Whether tests take their time: `APPELL_FULL=1`, as `.ci/full` sets it.
 ///
 /// Fuzzers then damage more texts, charts of the books are as fine as for readers, and recordings

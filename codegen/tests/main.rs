@@ -38,3 +38,4 @@ mod symbolic_forms;
 mod symbolic_identity;
 mod symbolic_laws;
 mod symbolic_print;
+mod torsional_spring;

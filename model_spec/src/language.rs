@@ -108,6 +108,7 @@ pub enum LoadWord {
     Torque,
     Spring,
     Damper,
+    TorsionalSpring,
     Generalized,
 }
 

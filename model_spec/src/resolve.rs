@@ -19,6 +19,7 @@ mod orientations;
 mod place;
 mod placement;
 mod quantities;
+mod relative_angle;
 mod resolver;
 
 use num_traits::ToPrimitive;
@@ -53,7 +54,7 @@ pub fn resolve(ast: &SpecAst, file: &str, text: &str) -> (Mechanism, Vec<Diagnos
     let bodies = resolver.bodies(&frames);
     let mut constraints = resolver.constraints(&bodies);
     constraints.extend(orientations::norms(&frames, &constraints));
-    let loads = resolver.loads(&bodies);
+    let loads = resolver.loads(&bodies, &frames);
     let outputs = resolver.outputs();
     let definitions = resolver.definitions(&coordinates);
     let mut mechanism = Mechanism {

@@ -277,6 +277,38 @@ pub(super) static LOADS: &[Kind] = &[
         ],
     },
     Kind {
+        word: "torsional_spring",
+        is: ItemKind::Load(LoadWord::TorsionalSpring),
+        about: "A torsional spring between two frames that turn relative to each other about one axis, and a damper in parallel.",
+        keys: &[
+            key(
+                "between",
+                Form::Two(Target::Frame),
+                Need::Always,
+                "The two frames; the angle is the sum of the turns from the first to the second.",
+            ),
+            key(
+                "stiffness",
+                Form::Expression,
+                Need::Always,
+                "Torque per angle.",
+            ),
+            key(
+                "relaxed",
+                Form::Expression,
+                Need::Optional,
+                "Angle without torque; 0 by default.",
+            ),
+            key(
+                "damping",
+                Form::Expression,
+                Need::Optional,
+                "Torque per angular velocity; none by default.",
+            ),
+            ABOUT,
+        ],
+    },
+    Kind {
         word: "generalized",
         is: ItemKind::Load(LoadWord::Generalized),
         about: "A generalised force: its power is `force * dot(coordinate)`, or `force * velocity`.",

@@ -1,10 +1,12 @@
 //! Forces, torques, springs and dampers.
 
-use crate::ast::{ItemAst, ValueAst};
+use crate::ast::{ItemAst, Spanned, ValueAst};
 use crate::diagnostic::{Code, Diagnostic};
 use crate::expr::{Expr, ExprKind, Quantity, Span};
 use crate::language::{ItemKind, LoadWord};
-use crate::mechanism::{Axis, Body, Connection, CoordinateId, Load, LoadKind, ORIGIN, Spring};
+use crate::mechanism::{
+    Axis, Body, Connection, CoordinateId, Frame, Load, LoadKind, ORIGIN, Spring,
+};
 use crate::parse::zero;
 use crate::units::Dimension;
 
@@ -20,11 +22,12 @@ const FORCE: Place = Place::force("a component of a force");
 const TORQUE: Place = Place::force("a component of a torque");
 const STIFFNESS: Place = Place::scheduled("the stiffness of a spring");
 const RELAXED: Place = Place::scheduled("the relaxed length");
+const ANGLE: Place = Place::scheduled("the relaxed angle");
 const DAMPING: Place = Place::force("the damping of a damper");
 const GENERALIZED: Place = Place::force("a generalised force");
 
 impl Resolver<'_> {
-    pub(super) fn loads(&mut self, bodies: &[Body]) -> Vec<Load> {
+    pub(super) fn loads(&mut self, bodies: &[Body], frames: &[Frame]) -> Vec<Load> {
         let ast = self.ast;
         let is_load = |item: &&ItemAst| matches!(item.kind.map(|k| k.is), Some(ItemKind::Load(_)));
         let items: Vec<&ItemAst> = ast.items("loads").iter().filter(is_load).collect();
@@ -35,14 +38,19 @@ impl Resolver<'_> {
         let mut read = vec![None; items.len()];
         for place in load_order::ordered(self, &items) {
             self.largest_size = 1;
-            read[place] = self.load(items[place], bodies);
+            read[place] = self.load(items[place], bodies, frames);
             self.acting[place] = read[place].as_ref().map(|(_, acting)| *acting);
         }
         read.into_iter().flatten().map(|(load, _)| load).collect()
     }
 
     /// A load, and the form of its force in expressions.
-    fn load(&mut self, item: &ItemAst, bodies: &[Body]) -> Option<(Load, Acting)> {
+    fn load(
+        &mut self,
+        item: &ItemAst,
+        bodies: &[Body],
+        frames: &[Frame],
+    ) -> Option<(Load, Acting)> {
         let Some(ItemKind::Load(word)) = item.kind.map(|kind| kind.is) else {
             return None;
         };
@@ -63,6 +71,10 @@ impl Resolver<'_> {
             LoadWord::Damper => {
                 let (kind, tension) = self.damper(item);
                 (kind, Shape::Scalar, tension)
+            }
+            LoadWord::TorsionalSpring => {
+                let torque = Some(Dimension::TORQUE);
+                (self.torsional_spring(item, frames), Shape::Scalar, torque)
             }
             LoadWord::Generalized => {
                 let (kind, force) = self.generalized(item);
@@ -152,15 +164,19 @@ impl Resolver<'_> {
         );
     }
 
+    fn two_ends(&mut self, a: &Spanned<String>, b: &Spanned<String>) {
+        if a.value == b.value {
+            self.connected_to_itself(&a.value, b.span.clone(), a.span.clone());
+        }
+    }
+
     /// The connection of a spring or damper, and the dimension of its displacement.
     fn connection(&mut self, item: &ItemAst) -> (Connection, Option<Dimension>) {
         let both = item.entry("between").is_some() && item.entry("coordinate").is_some();
         if let Some(ValueAst::Pair([a, b])) = item.entry("between").map(|e| &e.value) {
             let first = self.find(&a.value, &a.span).unwrap_or(ORIGIN);
             let second = self.find(&b.value, &b.span).unwrap_or(ORIGIN);
-            if a.value == b.value {
-                self.connected_to_itself(&a.value, b.span.clone(), a.span.clone());
-            }
+            self.two_ends(a, b);
             let displacement = Some(Dimension::LENGTH).filter(|_| !both);
             return (Connection::Points(first, second), displacement);
         }
@@ -218,6 +234,30 @@ impl Resolver<'_> {
             damping: Some(self.expression_of(item, "damping", &DAMPING, damping)),
         };
         (kind, force.known())
+    }
+
+    fn torsional_spring(&mut self, item: &ItemAst, frames: &[Frame]) -> LoadKind {
+        let angle = match item.entry("between").map(|entry| &entry.value) {
+            Some(ValueAst::Pair([a, b])) if a.value == b.value => {
+                self.two_ends(a, b);
+                Expr::integer(0, a.span.clone())
+            }
+            Some(ValueAst::Pair(ends)) => self.relative_angle(ends, frames),
+            _ => Expr::integer(0, item.name.span.clone()),
+        };
+        let torque = Dim::Known(Dimension::TORQUE);
+        let damping = item.entry("damping").is_some();
+        LoadKind::SpringDamper {
+            between: Connection::Along(angle),
+            spring: Some(Spring {
+                stiffness: self.expression_of(item, "stiffness", &STIFFNESS, torque),
+                relaxed: self.expression_of(item, "relaxed", &ANGLE, Dim::NONE),
+            }),
+            damping: damping.then(|| {
+                let damping = torque.times(Some(Dimension::TIME));
+                self.expression_of(item, "damping", &DAMPING, damping)
+            }),
+        }
     }
 
     /// A generalised force and its dimension.

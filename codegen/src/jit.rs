@@ -5,14 +5,13 @@
 //! tape without fusing or reordering arithmetic, and calls the elementary functions of the Rust standard
 //! library. Its results are bit-identical to those of the emitted Rust and of the interpreter.
 //!
-//! [`VectorFunction`] evaluates a tape at eight points at once, with bit-identical results.
+//! The crate `appell-vector` evaluates a tape at eight points at once, with bit-identical results.
 //!
 //! The stages: `check` verifies that a tape can be compiled, `translate` lowers it, `native` calls the
-//! machine code, `memory` owns it. `elementary` and `dense` are run-time routines of the code. `vector` has
-//! stages of its own.
+//! machine code, `memory` owns it. `elementary` and `dense` are run-time routines of the code.
 
-// Machine code is reached by pointers. Only `native`, `memory`, `elementary`, `dense`,
-// `vector::machine` and `vector::routines` use unsafe blocks; the interface of the module is safe.
+// Machine code is reached by pointers. Only `native`, `memory`, `elementary` and `dense` use unsafe
+// blocks; the interface of the module is safe.
 #![allow(unsafe_code)]
 
 mod check;
@@ -25,11 +24,9 @@ mod model;
 mod native;
 mod on_demand;
 mod translate;
-mod vector;
 
-pub use check::{MOST_OPERATIONS, MOST_ROWS, Sizes};
+pub use check::{Checked, MOST_OPERATIONS, MOST_ROWS, Sizes, check};
 pub use elementary::Elementary;
 pub use error::JitError;
 pub use model::JitModel;
 pub use native::NativeFunction;
-pub use vector::{Instructions, Target, VectorFunction};

@@ -9,17 +9,19 @@
 //! | `live.rs` | dead-code elimination; the order of the emitted text |
 //! | `interpret.rs`, `cost.rs` | interpreter, bounds over intervals; operation counts |
 //! | `without.rs` | partial evaluation for parameters that are zero |
-//! | `closed_loop.rs` | composition with a control law |
+//! | `unique.rs`, `closed_loop.rs` | common subexpressions; composition with a control law |
 
 mod closed_loop;
 mod cost;
 mod interpret;
 mod live;
+mod unique;
 mod without;
 
 pub use closed_loop::{Seen, closed_loop};
 pub use cost::OperationCount;
 pub use interpret::{enclose, enclose_along, interpret, interpret_weighted};
+pub use unique::Unique;
 
 use crate::symbolic::{Function, Rational, Relation};
 
@@ -126,23 +128,31 @@ impl Operation {
 
     /// Its operands, in order.
     pub fn operands(&self) -> Vec<Value> {
+        let mut operands = Vec::new();
+        self.for_each_operand(|operand| operands.push(operand));
+        operands
+    }
+
+    /// Visits its operands in order.
+    pub fn for_each_operand(&self, mut visit: impl FnMut(Value)) {
         match self {
-            Self::Argument(_) | Self::Constant(_) => Vec::new(),
-            Self::Negate(a) | Self::Function(_, a) | Self::SinCos(a) | Self::Part(a, _) => vec![*a],
-            Self::Binary(_, a, b) | Self::Atan2(a, b) | Self::Power(a, b) => vec![*a, *b],
+            Self::Argument(_) | Self::Constant(_) => {}
+            Self::Negate(a) | Self::Function(_, a) | Self::SinCos(a) | Self::Part(a, _) => {
+                visit(*a);
+            }
+            Self::Binary(_, a, b) | Self::Atan2(a, b) | Self::Power(a, b) => {
+                [*a, *b].into_iter().for_each(visit);
+            }
             Self::Choice {
-                compared: [a, b],
-                branches: [c, d],
-                ..
-            } => vec![*a, *b, *c, *d],
-            Self::Factorise(matrix) => matrix.clone(),
+                compared, branches, ..
+            } => compared.iter().chain(branches).copied().for_each(visit),
+            Self::Factorise(matrix) => matrix.iter().copied().for_each(visit),
             Self::Solve {
                 factorisation,
                 right,
             } => {
-                let mut operands = vec![*factorisation];
-                operands.extend(right);
-                operands
+                visit(*factorisation);
+                right.iter().copied().for_each(visit);
             }
         }
     }

@@ -23,10 +23,6 @@ mod jit_model;
 mod jit_random;
 #[cfg(feature = "jit")]
 mod jit_safety;
-#[cfg(feature = "jit")]
-mod jit_shipped;
-#[cfg(feature = "jit")]
-mod jit_vector;
 mod joints;
 #[cfg(feature = "jit")]
 mod responses;

@@ -8,6 +8,10 @@
 // Only inlined functions are compiled for the vector instructions of the processor.
 #![allow(clippy::inline_always)]
 
+mod blocks;
+
+pub use blocks::Blocks;
+
 /// Number of points of a block.
 pub const LANES: usize = 8;
 

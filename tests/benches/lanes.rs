@@ -9,9 +9,7 @@ use std::path::PathBuf;
 use std::time::Instant;
 
 use appell_codegen::compile;
-use appell_codegen::jit::{
-    Elementary, Instructions, JitModel, NativeFunction, Sizes, Target, VectorFunction,
-};
+use appell_codegen::jit::{Elementary, JitModel, NativeFunction, Sizes};
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::schedule;
 use appell_runtime::Simulation;
@@ -19,6 +17,7 @@ use appell_runtime::integrate::{NoObserver, Options};
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, Model};
 use appell_test_kit::Random;
+use appell_vector::{Instructions, Target, VectorFunction};
 use serde_json::{Value, json};
 
 /// The shipped mechanisms that are measured by default.

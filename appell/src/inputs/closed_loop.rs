@@ -1,7 +1,8 @@
 //! Equations of motion with their inputs substituted, for eight motions at once.
 
-use appell_codegen::jit::{Elementary, JitError, Sizes, Target, VectorFunction};
+use appell_codegen::jit::{Elementary, Sizes};
 use appell_codegen::tape::{Seen, Tape, closed_loop};
+use appell_vector::{Target, VectorError, VectorFunction};
 
 /// Target of a disturbance in the measurements of laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -36,7 +37,7 @@ impl ClosedLoop {
         sizes: Sizes,
         outside: Outside,
         seen: &[Onto],
-    ) -> Result<Self, JitError> {
+    ) -> Result<Self, VectorError> {
         let views = seen.iter().zip(outside.inputs..);
         let views: Vec<Seen> = views.map(|(onto, by)| onto.seen(by)).collect();
         let sizes = Sizes {

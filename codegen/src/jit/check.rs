@@ -17,7 +17,7 @@ const MOST_ARGUMENTS: usize = 1 << 24;
 /// A tape that can be translated: operands come before their users, parts directly after the operation that
 /// computes them, systems have consistent sizes, and the limits hold.
 #[derive(Debug)]
-pub(super) struct Checked<'a> {
+pub struct Checked<'a> {
     pub(super) tape: &'a Tape,
     /// Operations, without arguments, numbers and parts.
     pub(super) operations: usize,
@@ -25,6 +25,18 @@ pub(super) struct Checked<'a> {
     pub(super) rows: usize,
     /// The number of weights used, counted from the first.
     pub(super) weights: usize,
+}
+
+impl Checked<'_> {
+    /// The tape.
+    pub fn tape(&self) -> &Tape {
+        self.tape
+    }
+
+    /// The number of weights used, counted from the first.
+    pub fn weights(&self) -> usize {
+        self.weights
+    }
 }
 
 /// Lengths of the arguments of a model.
@@ -49,7 +61,7 @@ impl From<&ModelInfo> for Sizes {
 }
 
 /// Checks a tape of a model with arguments of these sizes.
-pub(super) fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
+pub fn check(tape: &Tape, sizes: Sizes) -> Result<Checked<'_>, JitError> {
     let mut checker = Checker {
         tape,
         sizes,

@@ -2,9 +2,9 @@
 //!
 //! Each has a fixed address and a C calling convention.
 
+use appell_runtime::lanes::Blocks;
 use appell_runtime::real::{Own, Standard};
 
-use super::vector::Blocks;
 use crate::symbolic::Function;
 
 /// The elementary functions called by machine code.

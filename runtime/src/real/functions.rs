@@ -1,5 +1,8 @@
 //! Elementary functions of lanes.
 
+// All functions must be inlined to be vectorised over lanes.
+#![allow(clippy::inline_always)]
+
 use super::Real;
 use crate::elementary;
 
@@ -33,12 +36,12 @@ pub struct Own;
 macro_rules! functions {
     ($choice:ident from $source:ident: $($name:ident($($x:ident),+)),+) => {
         impl Functions for $choice {
-            #[inline]
+            #[inline(always)]
             fn sin_cos(x: f64) -> (f64, f64) {
                 $source::sin_cos(x)
             }
             $(
-                #[inline]
+                #[inline(always)]
                 fn $name($($x: f64),+) -> f64 {
                     $source::$name($($x),+)
                 }

@@ -4,14 +4,14 @@ use std::collections::BTreeSet;
 
 /// Allocation of the blocks of the frame.
 #[derive(Debug)]
-pub(super) struct Slots {
+pub(crate) struct Slots {
     free: BTreeSet<u32>,
     len: u32,
 }
 
 impl Slots {
     /// The first blocks are permanently allocated.
-    pub(super) fn new(fixed: u32) -> Self {
+    pub(crate) fn new(fixed: u32) -> Self {
         Self {
             free: BTreeSet::new(),
             len: fixed,
@@ -19,7 +19,7 @@ impl Slots {
     }
 
     /// Allocates adjacent blocks at the lowest free position; returns the first.
-    pub(super) fn take(&mut self, count: u32) -> u32 {
+    pub(crate) fn take(&mut self, count: u32) -> u32 {
         let first = self.free_run(count).unwrap_or(self.len);
         for slot in first..first + count {
             self.free.remove(&slot);
@@ -45,12 +45,12 @@ impl Slots {
         None
     }
 
-    pub(super) fn release(&mut self, slot: u32) {
+    pub(crate) fn release(&mut self, slot: u32) {
         self.free.insert(slot);
     }
 
     /// Number of blocks ever allocated.
-    pub(super) fn len(&self) -> u32 {
+    pub(crate) fn len(&self) -> u32 {
         self.len
     }
 }

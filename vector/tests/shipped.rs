@@ -3,15 +3,14 @@
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
 use appell_codegen::compile;
-use appell_codegen::jit::{
-    Elementary, Instructions, NativeFunction, Sizes, Target, VectorFunction,
-};
+use appell_codegen::jit::{Elementary, NativeFunction, Sizes};
 use appell_codegen::program::{FunctionKind, Program};
 use appell_codegen::schedule::schedule;
 use appell_codegen::tape::{ResultArray, Tape};
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::{At, ModelInfo, Quantity};
 use appell_test_kit::{Random, shipped};
+use appell_vector::{Instructions, Target, VectorFunction};
 
 use crate::jit_support::{lane, same};
 

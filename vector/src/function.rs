@@ -1,13 +1,15 @@
 //! Compiled functions of eight points at once.
 
+// Machine code has the lengths that are checked here.
+#![allow(unsafe_code)]
+
+use appell_codegen::jit::{JitError, NativeFunction, Sizes, check};
+use appell_codegen::tape::{Tape, interpret_weighted};
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
 
-use super::super::check::{Checked, check};
-use super::super::native::NativeFunction;
-use super::super::{JitError, Sizes};
+use super::VectorError;
 use super::machine::{Machine, Target};
-use crate::tape::{Tape, interpret_weighted};
 
 /// One tape in machine code for blocks of eight points. The code lives as long as this value; several
 /// threads may call it at the same time.
@@ -33,19 +35,28 @@ enum How {
 
 impl VectorFunction {
     /// Compiles a tape of a model with arguments of these sizes, for this processor.
-    pub fn compile(tape: &Tape, sizes: Sizes) -> Result<Self, JitError> {
+    pub fn compile(tape: &Tape, sizes: Sizes) -> Result<Self, VectorError> {
         Self::compile_for(tape, sizes, Target::default())
     }
 
     /// [`Self::compile`] with the given instructions and elementary functions. If the processor lacks the
     /// instructions, or the code would be too long, points are evaluated individually.
-    pub fn compile_for(tape: &Tape, sizes: Sizes, target: Target) -> Result<Self, JitError> {
-        if let Some(vector) = Self::all_at_once(tape, sizes, target)? {
-            return Ok(vector);
-        }
-        let native = NativeFunction::compile_with(tape, sizes, target.elementary)?;
+    pub fn compile_for(tape: &Tape, sizes: Sizes, target: Target) -> Result<Self, VectorError> {
         let checked = check(tape, sizes)?;
-        Ok(Self::new(How::PlaceByPlace(native), &checked, sizes))
+        let how = match Machine::compile(&checked, target)? {
+            Some(machine) => How::Vector(machine),
+            None => How::PlaceByPlace(NativeFunction::compile_with(
+                tape,
+                sizes,
+                target.elementary,
+            )?),
+        };
+        Ok(Self {
+            how,
+            sizes,
+            weights: checked.weights(),
+            results: tape.lengths(),
+        })
     }
 
     /// [`Self::compile_for`] with the interpreter as fallback, with the functions of the standard library.
@@ -57,9 +68,11 @@ impl VectorFunction {
         tape: &Tape,
         sizes: Sizes,
         target: Target,
-    ) -> Result<Self, JitError> {
+    ) -> Result<Self, VectorError> {
         Self::compile_for(tape, sizes, target).or_else(|error| match error {
-            JitError::TooManyOperations { .. } | JitError::TooManyRows { .. } => Ok(Self {
+            VectorError::Tape(
+                JitError::TooManyOperations { .. } | JitError::TooManyRows { .. },
+            ) => Ok(Self {
                 how: How::Interpreted(tape.clone()),
                 sizes,
                 weights: 0,
@@ -67,22 +80,6 @@ impl VectorFunction {
             }),
             other => Err(other),
         })
-    }
-
-    /// [`Self::compile_for`], but `None` if points would be evaluated individually.
-    fn all_at_once(tape: &Tape, sizes: Sizes, target: Target) -> Result<Option<Self>, JitError> {
-        let checked = check(tape, sizes)?;
-        let machine = Machine::compile(&checked, target)?;
-        Ok(machine.map(|machine| Self::new(How::Vector(machine), &checked, sizes)))
-    }
-
-    fn new(how: How, checked: &Checked<'_>, sizes: Sizes) -> Self {
-        Self {
-            how,
-            sizes,
-            weights: checked.weights,
-            results: checked.tape.lengths(),
-        }
     }
 
     /// Whether all lanes are computed at once.

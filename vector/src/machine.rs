@@ -1,18 +1,17 @@
 //! Vector code in executable memory.
 
-use appell_runtime::lanes::AtLanes;
-use cranelift_jit::{JITBuilder, JITModule};
-use cranelift_module::{Module, ModuleError, default_libcall_names};
+// Machine code is reached by a pointer.
+#![allow(unsafe_code)]
 
-use super::super::JitError;
-use super::super::check::Checked;
-use super::super::elementary::Elementary;
-use super::super::host::{self, Use};
-use super::super::memory::Code;
-use super::assemble::assemble;
-use super::encode::Width;
-use super::lower::lower;
+use appell_codegen::jit::{Checked, Elementary};
+use appell_runtime::lanes::AtLanes;
+use memmap2::{Mmap, MmapMut};
+
+use super::VectorError;
+use super::assemble::MachineCode;
+use super::instruction_set::{AVX, AVX512, InstructionSet};
 use super::registers::allocate;
+use super::unroll::unrolled;
 
 /// Most blocks of a frame: with eight lanes this is half a mebibyte.
 const MOST_SLOTS: u32 = 8192;
@@ -53,6 +52,14 @@ impl Instructions {
             _ => false,
         }
     }
+
+    fn set(self) -> Option<InstructionSet> {
+        match self {
+            Self::Avx512 => Some(AVX512),
+            Self::Avx2 => Some(AVX),
+            Self::Scalar => None,
+        }
+    }
 }
 
 /// The target of vector code.
@@ -86,42 +93,35 @@ type Entry = unsafe extern "C" fn(
 
 /// One tape in vector code.
 #[derive(Debug)]
-pub(super) struct Machine {
+pub(crate) struct Machine {
     entry: Entry,
-    width: Width,
-    _code: Code,
+    lanes: usize,
+    /// Owner of the code.
+    _memory: Mmap,
 }
 
 impl Machine {
     /// Compiles a tape; `None` if this processor lacks the instructions, or if the code would be too long.
-    pub(super) fn compile(checked: &Checked<'_>, target: Target) -> Result<Option<Self>, JitError> {
-        let width = match target.instructions {
-            _ if !target.instructions.exist() => return Ok(None),
-            Instructions::Avx512 => Width::Zmm,
-            Instructions::Avx2 => Width::Ymm,
-            Instructions::Scalar => return Ok(None),
+    pub(crate) fn compile(
+        checked: &Checked<'_>,
+        target: Target,
+    ) -> Result<Option<Self>, VectorError> {
+        if !target.instructions.exist() {
+            return Ok(None);
+        }
+        let Some(code) = machine_code(checked, target)? else {
+            return Ok(None);
         };
-        let line = lower(checked);
-        if line.nodes.len() > MOST_VALUES {
-            return Ok(None);
-        }
-        let allocated = allocate(&line, width.registers());
-        if allocated.slots > MOST_SLOTS {
-            return Ok(None);
-        }
-        let bytes = assemble(&allocated, width, target.elementary);
-        let isa = host::target(0, Use::Lasting)?;
-        let mut module = JITModule::new(JITBuilder::with_isa(isa, default_libcall_names()));
-        let defined = define(&mut module, &bytes);
-        // From here on the memory is freed, also on errors.
-        let code = Code::new(module);
-        let entry = defined?;
+        let mut memory = MmapMut::map_anon(code.bytes.len())?;
+        memory.copy_from_slice(&code.bytes);
+        let memory = memory.make_exec()?;
+        let entry = memory.as_ptr().wrapping_add(code.entry);
         Ok(Some(Self {
             // SAFETY: the bytes are a function of this type, in the convention of the platform:
             // `Instructions::exist` holds for no other.
             entry: unsafe { std::mem::transmute::<*const u8, Entry>(entry) },
-            width,
-            _code: code,
+            lanes: code.lanes,
+            _memory: memory,
         }))
     }
 
@@ -132,7 +132,7 @@ impl Machine {
     /// Arguments and weights have the lengths that the tape was checked for, results those of
     /// the tape.
     #[inline]
-    pub(super) unsafe fn call<const N: usize>(
+    pub(crate) unsafe fn call<const N: usize>(
         &self,
         at: AtLanes<'_>,
         weights: &[[f64; 8]],
@@ -142,8 +142,7 @@ impl Machine {
         for (start, result) in starts.iter_mut().zip(results) {
             *start = result.as_mut_ptr().cast();
         }
-        let lanes = self.width.lanes();
-        for first in (0..8).step_by(lanes) {
+        for first in (0..8).step_by(self.lanes) {
             // The pointer of an empty array is never dereferenced.
             let part = |blocks: &[[f64; 8]]| blocks.as_ptr().cast::<f64>().wrapping_add(first);
             let mut results = starts;
@@ -169,11 +168,25 @@ impl Machine {
     }
 }
 
-/// Makes the bytes executable and returns their address.
-fn define(module: &mut JITModule, bytes: &[u8]) -> Result<*const u8, Box<ModuleError>> {
-    let signature = module.make_signature();
-    let id = module.declare_anonymous_function(&signature)?;
-    module.define_function_bytes(id, 64, bytes, &[])?;
-    module.finalize_definitions()?;
-    Ok(module.get_finalized_function(id))
+/// The machine code of a tape, also for instructions that this processor lacks. `None` without vector
+/// instructions, or if the code would be too long.
+///
+/// The function has the calling convention of System V and receives six addresses: of time, states, inputs,
+/// parameters and weights, which are arrays of blocks, and of a list of the addresses of the results.
+pub fn machine_code(
+    checked: &Checked<'_>,
+    target: Target,
+) -> Result<Option<MachineCode>, VectorError> {
+    let Some(set) = target.instructions.set() else {
+        return Ok(None);
+    };
+    let tape = unrolled(checked.tape());
+    if tape.operations.len() > MOST_VALUES {
+        return Ok(None);
+    }
+    let (assembler, slots) = allocate(&tape, set, target.elementary);
+    if slots > MOST_SLOTS {
+        return Ok(None);
+    }
+    Ok(Some(assembler.finish(slots)?))
 }

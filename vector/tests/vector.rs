@@ -5,12 +5,13 @@
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::thread;
 
-use appell_codegen::jit::{Elementary, Instructions, Sizes, Target, VectorFunction};
+use appell_codegen::jit::{Elementary, Sizes};
 use appell_codegen::symbolic::{Function, Relation};
 use appell_codegen::tape::{Argument, Arithmetic, Tape, interpret_weighted};
 use appell_runtime::elementary;
 use appell_runtime::lanes::{AtLanes, LANES};
 use appell_runtime::model::At;
+use appell_vector::{Instructions, Target, VectorFunction};
 
 use crate::jit_support::{
     Point, SIZES, Tree, add_result, agrees, agrees_in_lanes, around, binary, evaluated, function,

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use appell_papers::book::SIMULATED;
+use appell_papers::book::euc::findings;
 use appell_test_kit::{budget, is_full};
 use serde_json::Value;
 
@@ -147,12 +147,16 @@ fn the_book_of_the_electric_unicycle_says_what_holds_on_simulated_rides() {
             "{published}"
         );
     }
-    for (place, published, shows) in SIMULATED {
-        let expected = if *shows { "approximate" } else { "differs" };
+    for finding in findings().expect("the findings") {
+        let expected = if finding.shows {
+            "approximate"
+        } else {
+            "differs"
+        };
         assert_eq!(
-            agreement(place, published),
+            agreement(&finding.place, &finding.published),
             expected,
-            "{place}: {published}"
+            "{finding:?}"
         );
     }
     let rides = artefact.join("rides");

@@ -83,11 +83,7 @@ fn markup(text: &str) -> Option<usize> {
 }
 
 /// Parses an expression at the position `whole` of a document.
-pub(crate) fn expression_in(
-    document: &str,
-    text: &str,
-    whole: Span,
-) -> Result<ExprAst, Diagnostic> {
+pub fn expression_in(document: &str, text: &str, whole: Span) -> Result<ExprAst, Diagnostic> {
     expression::parse(&source::Source::new(document, text, whole))
 }
 

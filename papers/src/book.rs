@@ -1,35 +1,77 @@
 //! Papers recomputed: every numbered equation, table and figure, compared with the results of
 //! general commands.
 //!
-//! [`steering`] and [`euc`] make the books part by part, [`page`] writes one as HTML.
+//! [`steering`] and [`euc`] make the books part by part, [`page`] writes one as HTML. The texts of a
+//! part (`figure_7.toml`) stand next to its computation (`figure_7.rs`).
 
 mod claim;
+mod drawing;
+mod equations;
 pub mod euc;
 mod page;
+mod part;
 mod steady_motions;
 pub mod steering;
 
 use appell::Error;
+use appell_analysis::control::operating_point::MotionEquations;
+use appell_models::Shipped;
+use appell_runtime::model::ModelInfo;
 
-pub use claim::{Claim, Picture, Reproduction, SIMULATED, Section, Tally};
+pub use claim::{Claim, Picture, Reproduction, Section, Tally};
 pub use page::page;
+use part::Part;
+
+/// A result, or the reason why a computation failed.
+pub(crate) type Result<T> = std::result::Result<T, Error>;
+
+/// A shipped mechanism.
+pub(crate) fn shipped(name: &str) -> Result<&'static Shipped> {
+    Shipped::find(name).ok_or_else(|| failed(&format!("no shipped mechanism `{name}`")))
+}
+
+/// Index of a state.
+pub(crate) fn state(info: &ModelInfo, name: &str) -> Result<usize> {
+    let index = info.state_index(name);
+    index.ok_or_else(|| failed(&format!("the model has no state `{name}`")))
+}
+
+/// Index of a parameter.
+pub(crate) fn parameter(info: &ModelInfo, name: &str) -> Result<usize> {
+    let index = info.parameter_index(name);
+    index.ok_or_else(|| failed(&format!("the model has no parameter `{name}`")))
+}
+
+/// Rows of states in linearised equations.
+pub(crate) fn rows(equations: &MotionEquations, states: &[usize]) -> Result<Vec<usize>> {
+    let row = |state: &usize| {
+        let row = equations.states.iter().position(|kept| kept == state);
+        row.ok_or_else(|| failed("a state depends on others"))
+    };
+    states.iter().map(row).collect()
+}
 
 /// A computation that fails for this reason.
 pub(crate) fn failed(reason: &str) -> Error {
     Error::Computation(reason.to_owned().into())
 }
 
-/// A text with one passage replaced.
-pub(crate) fn replaced(text: &str, before: &str, with: &str) -> Result<String, Error> {
-    if !text.contains(before) {
-        return Err(failed(&format!(
-            "`{before}` does not occur in the text to change"
-        )));
-    }
-    Ok(text.replacen(before, with, 1))
-}
-
 /// A computation that fails with this error.
 pub(crate) fn computation(error: impl std::fmt::Display) -> Error {
     Error::Computation(error.to_string().into())
+}
+
+/// A text with passages replaced, one after another.
+pub(crate) fn edited<'a>(
+    text: &str,
+    edits: impl IntoIterator<Item = &'a (&'a str, &'a str)>,
+) -> Result<String> {
+    let mut edits = edits.into_iter();
+    edits.try_fold(text.to_owned(), |text, (before, with)| {
+        if !text.contains(before) {
+            let reason = format!("`{before}` does not occur in the text to change");
+            return Err(failed(&reason));
+        }
+        Ok(text.replacen(before, with, 1))
+    })
 }

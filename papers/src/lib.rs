@@ -5,9 +5,11 @@
 //! |---|---|
 //! | `formula.rs` | formulas as papers print them |
 //! | `paper.rs` | the derived equations under the names of the papers |
-//! | `steering.rs` | the equations of *Steering Control of an Autonomous Unicycle* |
-//! | `euc.rs` | the equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle* |
-//! | `errata.rs` | printed and correct formulas |
+//! | `equations.rs` | typed equations, compared with the derived ones |
+//! | `steering.rs`, `steering.toml` | the equations of *Steering Control of an Autonomous Unicycle* |
+//! | `gains.rs` | its tables II and III |
+//! | `euc.rs`, `euc.toml` | the equations of *Experimental Model Identification of the Longitudinal Dynamics of an Electric Unicycle* |
+//! | `errata.rs`, `errata.toml` | printed and correct formulas |
 //! | `book/` | both papers recomputed, compared with general commands |
 
 #![allow(
@@ -18,8 +20,10 @@
 
 #[warn(clippy::unwrap_used)]
 pub mod book;
+mod equations;
 pub mod errata;
 pub mod euc;
 pub mod formula;
+mod gains;
 pub mod paper;
 pub mod steering;

@@ -6,13 +6,12 @@ use std::sync::{LazyLock, Mutex, MutexGuard, PoisonError};
 use appell_codegen::linearisation::{Characteristic, Linearisation, SteadyMotion};
 use appell_codegen::mechanics::frames::FrameVector;
 use appell_codegen::mechanics::gibbs_appell::{acceleration_energy, along, kinetic_energy};
-use appell_codegen::mechanics::symbols::ids;
 use appell_codegen::mechanics::{self, Derivation};
-use appell_codegen::symbolic::vector::Vec3;
 use appell_codegen::symbolic::{Expr, Graph, Substitution, SymbolId, evaluate};
 use appell_models::Shipped;
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{FrameId, GROUND};
+use serde::Deserialize;
 
 use crate::formula::{Scope, formula};
 
@@ -28,44 +27,53 @@ pub struct Paper {
     derived: BTreeMap<String, Expr>,
 }
 
-macro_rules! shared {
-    ($(#[$doc:meta])* $name:ident, $make:expr) => {
-        $(#[$doc])*
-        pub fn $name() -> MutexGuard<'static, Paper> {
-            static SHARED: LazyLock<Mutex<Paper>> = LazyLock::new(|| Mutex::new($make));
-            // A test that failed while holding the lock has not changed the derivation.
-            SHARED.lock().unwrap_or_else(PoisonError::into_inner)
+/// A mechanism of the papers.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Subject {
+    /// The rolling wheel: steering paper, section II and appendix A.
+    Wheel,
+    /// The unicycle: steering paper, section III and appendices B and C.
+    Unicycle,
+    /// The EUC with three degrees of freedom: EUC paper, equations (6) to (10).
+    Euc3,
+    /// The EUC with two: EUC paper, equations (11) to (13).
+    Euc2,
+}
+
+impl Subject {
+    /// The shipped mechanism.
+    pub const fn mechanism(self) -> &'static str {
+        match self {
+            Self::Wheel => "rolling_wheel",
+            Self::Unicycle => "unicycle",
+            Self::Euc3 => "euc_3dof",
+            Self::Euc2 => "euc_2dof",
         }
-    };
+    }
+
+    /// Its derivation, derived once.
+    pub fn paper(self) -> MutexGuard<'static, Paper> {
+        static SHARED: [LazyLock<Mutex<Paper>>; 4] = [
+            LazyLock::new(|| Mutex::new(Paper::steering(Subject::Wheel.spec()))),
+            LazyLock::new(|| Mutex::new(Paper::steering(Subject::Unicycle.spec()))),
+            LazyLock::new(|| Mutex::new(Paper::euc(Subject::Euc3.spec()))),
+            LazyLock::new(|| Mutex::new(Paper::euc(Subject::Euc2.spec()))),
+        ];
+        // A test that failed while holding the lock has not changed the derivation.
+        let shared = SHARED[self as usize].lock();
+        shared.unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn spec(self) -> Mechanism {
+        let shipped = Shipped::find(self.mechanism()).unwrap();
+        let checked = appell_spec::load(shipped.file, shipped.spec).unwrap();
+        checked.mechanism
+    }
 }
 
-shared!(
-    /// Steering paper, section II and appendix A.
-    rolling_wheel,
-    Paper::steering(mechanism("rolling_wheel"))
-);
-shared!(
-    /// Steering paper, section III and appendices B and C.
-    unicycle,
-    Paper::steering(mechanism("unicycle"))
-);
-shared!(
-    /// EUC paper, equations (6) to (10).
-    euc_3dof,
-    Paper::euc(mechanism("euc_3dof"))
-);
-shared!(
-    /// EUC paper, equations (11) to (13).
-    euc_2dof,
-    Paper::euc(mechanism("euc_2dof"))
-);
-
-/// A shipped mechanism.
-fn mechanism(name: &str) -> Mechanism {
-    let shipped = Shipped::find(name).unwrap();
-    let checked = appell_spec::load(shipped.file, shipped.spec).unwrap();
-    checked.mechanism
-}
+/// Replacements of symbols by formulas, made one after another.
+pub type Replacements = [(String, String)];
 
 /// Name of a state, coordinate or parameter in the paper, and in the spec where it differs.
 const STEERING_NAMES: &[(&str, &str)] = &[
@@ -92,44 +100,37 @@ const EUC_NAMES: &[(&str, &str)] = &[
     ("Md", "M_d"),
     ("Mh", "M_h"),
 ];
-/// States of the linearisations in the steering paper.
-const WHEEL_STATES: &[&str] = &["w1", "w2", "w3", "th", "psi", "phi", "xG", "yG"];
-const UNICYCLE_STATES: &[&str] = &["w1", "w2", "w3", "th", "s", "r", "psi", "phi", "xG", "yG"];
+/// States of the linearisations in the steering paper; the wheel has no `s` and `r`.
+const STATES: [&str; 10] = ["w1", "w2", "w3", "th", "s", "r", "psi", "phi", "xG", "yG"];
+
+/// The name in the paper of a name in the spec.
+fn name_in<'a>(names: &[(&'a str, &str)], spec: &'a str) -> &'a str {
+    let known = names.iter().find(|(_, other)| *other == spec);
+    known.map_or(spec, |(name, _)| name)
+}
 
 impl Paper {
     /// The wheel or the unicycle of the steering paper.
     pub fn steering(mechanism: Mechanism) -> Self {
         let mut paper = Self::new(mechanism, STEERING_NAMES);
-        let speeds: &[&str] = if paper.scope.get("s").is_some() {
-            &["w1", "w2", "w3", "s"]
-        } else {
-            &["w1", "w2", "w3"]
-        };
-        paper.rename_accelerations(speeds, |speed| format!("{speed}d"));
+        paper.rename_accelerations(&["w1", "w2", "w3", "s"], |speed| format!("{speed}d"));
         for (index, coordinate) in paper.mechanism.coordinates.clone().iter().enumerate() {
-            let name = STEERING_NAMES
-                .iter()
-                .find(|(_, spec)| *spec == coordinate.label.name)
-                .map_or(coordinate.label.name.as_str(), |(paper, _)| paper);
+            let name = format!("{}d", name_in(STEERING_NAMES, &coordinate.label.name));
             let rate = paper.derivation.coordinate_rates[index];
-            paper.scope.define(&format!("{name}d"), rate);
-            paper.derive_as(&format!("{name}d"), rate);
+            paper.scope.define(&name, rate);
+            paper.derive_as(&name, rate);
         }
         paper.appell("b", "Pi");
         paper.energies();
         let tilted = paper.mechanism.frames.find(|f| f.name == "tilted").unwrap();
-        for (point, name) in [("G", "vG"), ("A", "vA")] {
-            if let Some(point) = paper.mechanism.points.find(|p| p.name == point) {
-                let v = paper.derivation.kinematics.velocity(point);
-                paper.vector(name, v, tilted);
-            }
-        }
-        for (point, name) in [("G", "zG"), ("A", "zA")] {
-            if let Some(point) = paper.mechanism.points.find(|p| p.name == point) {
+        for name in ["G", "A"] {
+            if let Some(point) = paper.mechanism.points.find(|p| p.name == name) {
+                let kinematics = &paper.derivation.kinematics;
                 let graph = &mut paper.derivation.algebra.graph;
-                let position =
-                    (paper.derivation.kinematics).position(graph, &paper.mechanism, point);
-                paper.derive_as(name, position[2]);
+                let position = kinematics.position(graph, &paper.mechanism, point);
+                let velocity = kinematics.velocity(point);
+                paper.derive_as(&format!("z{name}"), position[2]);
+                paper.vector(&format!("v{name}"), velocity, tilted);
             }
         }
         paper.rotation(tilted);
@@ -141,12 +142,7 @@ impl Paper {
     /// One of the two models of the EUC paper.
     pub fn euc(mechanism: Mechanism) -> Self {
         let mut paper = Self::new(mechanism, EUC_NAMES);
-        let speeds: &[&str] = if paper.scope.get("ga").is_some() {
-            &["dx", "dga", "dph"]
-        } else {
-            &["dx", "dph"]
-        };
-        paper.rename_accelerations(speeds, |speed| format!("d{speed}"));
+        paper.rename_accelerations(&["dx", "dga", "dph"], |speed| format!("d{speed}"));
         paper.appell("h", "Q");
         paper.energies();
         paper
@@ -168,11 +164,7 @@ impl Paper {
             let spec = graph
                 .symbol_name(graph.as_symbol(symbol).unwrap())
                 .to_owned();
-            let name = names
-                .iter()
-                .find(|(_, other)| *other == spec)
-                .map_or(spec.as_str(), |(name, _)| name);
-            scope.define(name, symbol);
+            scope.define(name_in(names, &spec), symbol);
         }
         Self {
             mechanism,
@@ -182,19 +174,22 @@ impl Paper {
         }
     }
 
-    /// Pseudo-accelerations as unknowns of formulas, and the derived expressions for them.
+    /// Pseudo-accelerations as unknowns of formulas, and the derived expressions for them; of the
+    /// speeds that the mechanism has.
     fn rename_accelerations(&mut self, speeds: &[&str], rename: impl Fn(&str) -> String) {
-        assert_eq!(speeds.len(), self.derivation.symbols.speeds.len());
-        for (index, speed) in speeds.iter().enumerate() {
-            assert_eq!(
-                self.scope.get(speed),
-                Some(self.derivation.symbols.speeds[index]),
-                "{speed}"
-            );
+        let speeds = speeds
+            .iter()
+            .filter_map(|name| Some((*name, self.scope.get(name)?)));
+        let speeds: Vec<(&str, Expr)> = speeds.collect();
+        let symbols = self.derivation.symbols.clone();
+        assert_eq!(speeds.len(), symbols.speeds.len());
+        for (index, (name, speed)) in speeds.into_iter().enumerate() {
+            assert_eq!(speed, symbols.speeds[index], "{name}");
+            let acceleration = rename(name);
             self.scope
-                .define(&rename(speed), self.derivation.symbols.accelerations[index]);
-            self.derive_as(&rename(speed), self.derivation.motion.accelerations[index]);
-            self.derive_as(speed, self.derivation.symbols.speeds[index]);
+                .define(&acceleration, symbols.accelerations[index]);
+            self.derive_as(&acceleration, self.derivation.motion.accelerations[index]);
+            self.derive_as(name, speed);
         }
     }
 
@@ -211,14 +206,11 @@ impl Paper {
             }
             let left = self.derivation.algebra.graph.sum(&parts);
             self.derive_as(&format!("left{}", i + 1), left);
-            let residual = self
-                .derivation
-                .algebra
-                .graph
-                .sub(left, self.derivation.forces[i]);
+            let right = self.derivation.forces[i];
+            let residual = self.derivation.algebra.graph.sub(left, right);
             self.derive_as(&format!("row{}", i + 1), residual);
             self.derive_as(&format!("{bias}{}", i + 1), gibbs.bias[i]);
-            self.derive_as(&format!("{force}{}", i + 1), self.derivation.forces[i]);
+            self.derive_as(&format!("{force}{}", i + 1), right);
         }
     }
 
@@ -226,28 +218,21 @@ impl Paper {
     /// V)/dt.
     fn energies(&mut self) {
         let d = &mut self.derivation;
-        let bodies = d.bodies.clone();
         let accelerations = d.symbols.accelerations.clone();
-        let parts: Vec<Expr> = bodies
-            .iter()
-            .map(|body| acceleration_energy(&mut d.algebra, body, &accelerations))
-            .collect();
-        let s = d.algebra.graph.sum(&parts);
-        let parts: Vec<Expr> = bodies
-            .iter()
-            .map(|body| kinetic_energy(&mut d.algebra, body))
-            .collect();
-        let kinetic = d.algebra.graph.sum(&parts);
-        let parts: Vec<Expr> = d.loads.iter().filter_map(|load| load.potential).collect();
-        let potential = d.algebra.graph.sum(&parts);
+        let sum = |d: &mut Derivation, parts: Vec<Expr>| d.algebra.graph.sum(&parts);
+        let bodies = d.bodies.clone();
+        let energy = |body| acceleration_energy(&mut d.algebra, body, &accelerations);
+        let parts = bodies.iter().map(energy).collect();
+        let s = sum(d, parts);
+        let energy = |body| kinetic_energy(&mut d.algebra, body);
+        let parts = bodies.iter().map(energy).collect();
+        let kinetic = sum(d, parts);
+        let parts = d.loads.iter().filter_map(|load| load.potential).collect();
+        let potential = sum(d, parts);
+        let loads = d.loads.iter().filter(|load| load.potential.is_none());
         let graph = &mut d.algebra.graph;
-        let parts: Vec<Expr> = d
-            .loads
-            .iter()
-            .filter(|load| load.potential.is_none())
-            .map(|load| load.power(graph))
-            .collect();
-        let power = d.algebra.graph.sum(&parts);
+        let parts = loads.map(|load| load.power(graph)).collect();
+        let power = sum(d, parts);
         let total = d.algebra.graph.add(kinetic, potential);
         let growth = energy_rate(d, total);
         for (name, value) in [
@@ -269,41 +254,25 @@ impl Paper {
     fn accelerations(&mut self, frame: FrameId) {
         let accelerations = self.derivation.symbols.accelerations.clone();
         for body in self.derivation.bodies.clone() {
-            let centre = &body.centre;
-            let graph = &mut self.derivation.algebra.graph;
-            let a = along(graph, centre.bias, &centre.partial, &accelerations);
             let name = if body.name == "wheel" { "aG" } else { "aA" };
-            self.vector(
-                name,
-                FrameVector {
-                    frame: centre.velocity.frame,
-                    v: a,
-                },
-                frame,
-            );
+            let centre = &body.centre;
+            let mut parts = vec![(name, centre.velocity, centre.bias, &centre.partial)];
             if let Some(rotation) = &body.rotation {
-                let graph = &mut self.derivation.algebra.graph;
-                let alpha = along(graph, rotation.bias, &rotation.partial, &accelerations);
-                self.vector(
-                    "alpha",
-                    FrameVector {
-                        frame: rotation.velocity.frame,
-                        v: alpha,
-                    },
-                    frame,
-                );
                 self.vector("omega", rotation.velocity, frame);
+                parts.push(("alpha", rotation.velocity, rotation.bias, &rotation.partial));
+            }
+            for (name, velocity, bias, partial) in parts {
+                let graph = &mut self.derivation.algebra.graph;
+                let v = along(graph, bias, partial, &accelerations);
+                self.vector(name, FrameVector { v, ..velocity }, frame);
             }
         }
     }
 
     fn vector(&mut self, name: &str, vector: FrameVector, frame: FrameId) {
         let graph = &mut self.derivation.algebra.graph;
-        let v: Vec3 = self
-            .derivation
-            .kinematics
-            .frames
-            .express(graph, vector, frame);
+        let frames = &self.derivation.kinematics.frames;
+        let v = frames.express(graph, vector, frame);
         for (axis, component) in v.into_iter().enumerate() {
             self.derive_as(&format!("{name}{}", axis + 1), component);
         }
@@ -341,21 +310,12 @@ impl Paper {
         let d = &mut self.derivation;
         let steady = SteadyMotion::new(&self.mechanism, d, &values).unwrap();
         let linear = Linearisation::about(d, steady).unwrap();
-        let states = if self.scope.get("s").is_some() {
-            UNICYCLE_STATES
-        } else {
-            WHEEL_STATES
+        let place = |name: &&str| {
+            let state = self.scope.get(name)?;
+            linear.states.iter().position(|&x| x == state)
         };
-        let places: Vec<usize> = states
-            .iter()
-            .map(|s| {
-                linear
-                    .states
-                    .iter()
-                    .position(|&x| Some(x) == self.scope.get(s))
-            })
-            .map(Option::unwrap)
-            .collect();
+        let places: Vec<usize> = STATES.iter().filter_map(place).collect();
+        let steady = [("steady_w1d", place(&"w1")), ("steady_sd", place(&"s"))];
         for (row, &i) in places.iter().enumerate() {
             for (column, &j) in places.iter().enumerate() {
                 self.derive_as(&format!("A{}{}", row + 1, column + 1), linear.a[i][j]);
@@ -364,9 +324,9 @@ impl Paper {
                 self.derive_as(&format!("B{}", row + 1), entry);
             }
         }
-        for (name, state) in [("steady_w1d", "w1"), ("steady_sd", "s")] {
-            if let Some(place) = states.iter().position(|&s| s == state) {
-                self.derive_as(name, linear.rates[places[place]]);
+        for (name, place) in steady {
+            if let Some(place) = place {
+                self.derive_as(name, linear.rates[place]);
             }
         }
         // det(λ − A) = λⁿ + c1 λⁿ⁻¹ + …
@@ -384,12 +344,7 @@ impl Paper {
 
     /// Replaces symbols, by their names in the paper, by formulas. Names that this mechanism lacks are left
     /// out: papers give the conditions of both of theirs together.
-    pub fn substitution(&mut self, replacements: &[(&str, &str)]) -> Substitution {
-        let scope = self.scope.clone();
-        self.substitution_in(&scope, replacements)
-    }
-
-    fn substitution_in(&mut self, scope: &Scope, replacements: &[(&str, &str)]) -> Substitution {
+    pub fn substitution(&mut self, scope: &Scope, replacements: &[(&str, &str)]) -> Substitution {
         let graph = &mut self.derivation.algebra.graph;
         let mut pairs: Vec<(SymbolId, Expr)> = Vec::new();
         for (name, text) in replacements {
@@ -409,11 +364,6 @@ impl Paper {
             .unwrap_or_else(|| panic!("nothing was derived as `{name}`"))
     }
 
-    /// Names of all derived quantities.
-    pub fn derived_names(&self) -> Vec<String> {
-        self.derived.keys().cloned().collect()
-    }
-
     /// The expression of a formula.
     pub fn formula(&mut self, text: &str) -> Expr {
         formula(&mut self.derivation.algebra.graph, &self.scope, text)
@@ -425,13 +375,7 @@ impl Paper {
         algebra.test.are_equal(&algebra.graph, a, b)
     }
 
-    /// Whether the derived quantity of a name equals the formula.
-    pub fn agrees(&mut self, name: &str, text: &str) -> bool {
-        let (derived, typed) = (self.derived(name), self.formula(text));
-        self.same(derived, typed)
-    }
-
-    /// Differences between lines `formula = formula` and the derivation after substitution of
+    /// Differences between lines `formula = formula` and the derivation after replacements of
     /// symbols; empty if every line holds. On the left, names are those of derived quantities; on
     /// the right, first those of symbols. A line `let name = formula` is an abbreviation for the
     /// lines after it.
@@ -439,7 +383,7 @@ impl Paper {
     /// # Panics
     ///
     /// If a line is not an equation, or nothing is compared.
-    pub fn differences(&mut self, lines: &str, at: &[(&str, &str)]) -> Vec<String> {
+    pub fn differences(&mut self, lines: &str, at: &Replacements) -> Vec<String> {
         let (mut scope, mut left_scope) = (self.scope.clone(), self.scope.clone());
         for (name, value) in &self.derived {
             left_scope.define(name, *value);
@@ -447,7 +391,9 @@ impl Paper {
                 scope.define(name, *value);
             }
         }
-        let mut at = self.substitution_in(&scope, at);
+        let replacement =
+            |(name, text): &(String, String)| self.substitution(&scope, &[(name, text)]);
+        let mut at: Vec<Substitution> = at.iter().map(replacement).collect();
         let (mut compared, mut differences) = (0, Vec::new());
         for line in lines.lines().map(str::trim).filter(|line| !line.is_empty()) {
             let (left, right) = line
@@ -461,7 +407,10 @@ impl Paper {
             }
             let graph = &mut self.derivation.algebra.graph;
             let derived = formula(graph, &left_scope, left);
-            let [derived, typed] = [derived, typed].map(|e| at.apply(graph, e).unwrap());
+            let [derived, typed] = [derived, typed].map(|side| {
+                at.iter_mut()
+                    .fold(side, |side, next| next.apply(graph, side).unwrap())
+            });
             compared += 1;
             if !self.same(derived, typed) {
                 differences.push(format!("{line}\n{}", self.difference(derived, typed)));
@@ -473,7 +422,7 @@ impl Paper {
 
     /// [`Paper::differences`] of entries of the linearisation; those of the same letter that are not
     /// listed must be zero.
-    pub fn matrix_differences(&mut self, lines: &str, at: &[(&str, &str)]) -> Vec<String> {
+    pub fn matrix_differences(&mut self, lines: &str, at: &Replacements) -> Vec<String> {
         let listed: Vec<&str> = lines
             .lines()
             .filter_map(|line| line.split_once('='))
@@ -486,8 +435,8 @@ impl Paper {
             is_entry && listed.iter().any(|other| other.starts_with(letter))
         };
         let mut all = lines.to_owned();
-        for name in self.derived_names() {
-            if entry(&name) && !listed.contains(&name.as_str()) {
+        for name in self.derived.keys() {
+            if entry(name) && !listed.contains(&name.as_str()) {
                 all.extend(["\n", name.as_str(), " = 0"]);
             }
         }
@@ -509,20 +458,6 @@ impl Paper {
     pub fn assert(&mut self, lines: &str) {
         let differences = self.differences(lines, &[]);
         assert!(differences.is_empty(), "{}", differences.join("\n"));
-    }
-
-    /// Asserts that the derived quantity vanishes after substitution of symbols.
-    pub fn assert_solves(&mut self, name: &str, replacements: &[(&str, &str)]) {
-        let mut substitution = self.substitution(replacements);
-        let derived = self.derived(name);
-        let value = substitution
-            .apply(&mut self.derivation.algebra.graph, derived)
-            .unwrap();
-        assert!(
-            self.same(value, Graph::ZERO),
-            "{name}\n{}",
-            self.difference(value, Graph::ZERO)
-        );
     }
 
     /// Values of two expressions at a point, for failure messages.
@@ -553,12 +488,4 @@ pub fn energy_rate(d: &mut Derivation, energy: Expr) -> Expr {
         }
     }
     d.algebra.graph.sum(&parts)
-}
-
-/// Symbols of the states, speeds first.
-pub fn states(d: &Derivation) -> Vec<SymbolId> {
-    ids(
-        &d.algebra.graph,
-        &[d.symbols.speeds.as_slice(), &d.symbols.coordinates].concat(),
-    )
 }

@@ -11,10 +11,11 @@
     reason = "whatever fails here fails a test, which is the point"
 )]
 
-pub use appell_papers::{errata, formula, paper, steering};
+pub use appell_papers::{errata, paper, steering};
 
 pub mod dual;
 pub mod engine;
+pub mod formula;
 pub mod formulations;
 pub mod modules;
 pub mod place;

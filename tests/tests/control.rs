@@ -91,7 +91,7 @@ fn placed_gains_are_the_exact_ones_of_the_reference() {
 
 #[test]
 fn tables_2_and_3_are_recomputed_and_one_gain_of_table_3_is_a_misprint() {
-    for column in &steering::GAINS {
+    for column in steering::GAINS.iter() {
         let outputs = &steering::OUTPUTS[..column.printed.len()];
         for (gain, printed) in placed(column.speed, outputs).iter().zip(column.mended()) {
             assert!((gain - printed).abs() < PRINTED_GAIN, "{gain}, {printed}");

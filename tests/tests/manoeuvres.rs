@@ -143,7 +143,7 @@ fn gains(text: &str, speed: f64) -> Vec<f64> {
 
 #[test]
 fn the_printed_gains_are_the_closed_forms_but_for_one() {
-    for column in &steering::GAINS {
+    for column in steering::GAINS.iter() {
         let lane = column.printed.len() == steering::OUTPUTS.len();
         let closed = gains(if lane { LANE } else { TURN }, column.speed);
         for (gain, printed) in closed.into_iter().zip(column.mended()) {

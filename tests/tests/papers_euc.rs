@@ -5,7 +5,7 @@
 
 use appell_codegen::symbolic::{Expr, Graph};
 use appell_papers::euc::EQUATIONS;
-use appell_tests::paper::{Paper, euc_2dof, euc_3dof};
+use appell_tests::paper::{Paper, Subject};
 
 /// Equations of the model with two degrees of freedom, (11), as residuals.
 const TWO_DOF_ROW_1: &str =
@@ -28,7 +28,8 @@ const TORQUE_2: &str = "R*m11/(R*m11 + k)*((m0*h0 - m*l0)*g*sin(ga) + m*g*h*sin(
 const TORQUE_23: &str = "(m0*h0 - m*l0)*g*sin(ga) + m*g*h*sin(ph) - k*ddx - (m22 + m23)*ddga - (m23 + m33)*ddph - h2 - h3";
 
 fn replaced(paper: &mut Paper, expr: Expr, replacements: &[(&str, &str)]) -> Expr {
-    let mut substitution = paper.substitution(replacements);
+    let scope = paper.scope.clone();
+    let mut substitution = paper.substitution(&scope, replacements);
     substitution
         .apply(&mut paper.derivation.algebra.graph, expr)
         .unwrap()
@@ -46,7 +47,7 @@ fn rows_2_and_3(paper: &mut Paper) -> Expr {
 
 #[test]
 fn every_equation_of_the_paper_is_the_derived_one() {
-    for equation in EQUATIONS {
+    for equation in EQUATIONS.iter() {
         let differences = equation.differences();
         assert!(
             differences.is_empty(),
@@ -59,13 +60,13 @@ fn every_equation_of_the_paper_is_the_derived_one() {
 
 #[test]
 fn a_wrong_formula_is_no_equation_of_the_paper() {
-    let wrong = euc_3dof().differences("m33 = J + m*h", &[]);
+    let wrong = Subject::Euc3.paper().differences("m33 = J + m*h", &[]);
     assert_eq!(wrong.len(), 1);
 }
 
 #[test]
 fn power_of_the_euc_with_two_degrees_of_freedom() {
-    euc_2dof().assert(
+    Subject::Euc2.paper().assert(
         "power = Md*(dx/R - dph)
          energy_rate = Md*(dx/R - dph)",
     );
@@ -73,7 +74,7 @@ fn power_of_the_euc_with_two_degrees_of_freedom() {
 
 #[test]
 fn driving_torque_from_rows_2_and_3_with_measured_forward_acceleration() {
-    let mut paper = euc_3dof();
+    let mut paper = Subject::Euc3.paper();
     with_entries(&mut paper);
     let rows = rows_2_and_3(&mut paper);
     let solved = replaced(&mut paper, rows, &[("Md", TORQUE_23)]);
@@ -82,7 +83,7 @@ fn driving_torque_from_rows_2_and_3_with_measured_forward_acceleration() {
 
 #[test]
 fn the_three_driving_torques_differ_by_one_identity() {
-    let mut paper = euc_3dof();
+    let mut paper = Subject::Euc3.paper();
     with_entries(&mut paper);
     let rel =
         format!("({TORQUE_1}) - ({TORQUE_2}) - (({TORQUE_1}) - ({TORQUE_23}))*R*m11/(R*m11 + k)");
@@ -92,7 +93,7 @@ fn the_three_driving_torques_differ_by_one_identity() {
 
 #[test]
 fn euc_paper_equation_12_the_model_of_three_degrees_of_freedom_becomes_that_of_two() {
-    let mut paper = euc_3dof();
+    let mut paper = Subject::Euc3.paper();
     let simpler = [("J0", "0"), ("h0", "0"), ("l0", "0")];
     // The second row leaves nothing but the balance of the two torques.
     let row = paper.derived("row2");
@@ -113,8 +114,8 @@ fn euc_paper_equation_12_the_model_of_three_degrees_of_freedom_becomes_that_of_t
 
 #[test]
 fn the_derivatives_of_the_acceleration_energy_are_the_left_sides_of_appell() {
-    for paper in [euc_2dof, euc_3dof] {
-        let mut paper = paper();
+    for subject in [Subject::Euc2, Subject::Euc3] {
+        let mut paper = subject.paper();
         for k in 1..=paper.derivation.symbols.speeds.len() {
             let (a, b) = (
                 paper.derived(&format!("dS{k}")),

@@ -1,12 +1,20 @@
 //! The equations of *Steering Control of an Autonomous Unicycle* (Vizi, Orosz, Takács, Stépán),
 //! corrected where `docs/errata.md` says so, are the derived ones: as functions, not at points. They
-//! are typed in `papers/src/steering/table.rs`.
+//! are typed in `papers/src/steering.toml`.
 
 #![allow(clippy::unwrap_used, reason = "what is missing fails the test")]
 
-use appell_tests::paper::{Paper, rolling_wheel, unicycle};
+use appell_tests::paper::Paper;
+use appell_tests::paper::Subject::{Unicycle, Wheel};
 use appell_tests::shipped;
 use appell_tests::steering::{EQUATIONS, Equation};
+
+fn equation(number: &str) -> &'static Equation {
+    let mut equations = EQUATIONS.iter();
+    equations
+        .find(|equation| equation.number == number)
+        .unwrap()
+}
 
 /// One test per equation, and the list of their numbers.
 macro_rules! equations {
@@ -15,7 +23,7 @@ macro_rules! equations {
         $(
             #[test]
             fn $name() {
-                let differences = Equation::find($number).unwrap().differences();
+                let differences = equation($number).differences();
                 assert!(differences.is_empty(), "{}", differences.join("\n"));
             }
         )*
@@ -74,17 +82,21 @@ equations! {
 
 #[test]
 fn every_equation_has_its_test() {
-    for equation in EQUATIONS {
-        assert!(TESTED.contains(&equation.number), "{}", equation.number);
+    for equation in EQUATIONS.iter() {
+        assert!(
+            TESTED.contains(&equation.number.as_str()),
+            "{}",
+            equation.number
+        );
     }
 }
 
 #[test]
 fn a_wrong_formula_is_told_with_both_values() {
-    let differences = rolling_wheel().differences("zG = R*sin(th)", &[]);
+    let differences = Wheel.paper().differences("zG = R*sin(th)", &[]);
     assert_eq!(differences.len(), 1);
     assert!(differences[0].contains("zG = R*sin(th)"), "{differences:?}");
-    let missing = rolling_wheel().matrix_differences("A41 = 1", &[]);
+    let missing = Wheel.paper().matrix_differences("A41 = 1", &[]);
     assert!(
         missing.iter().any(|line| line.starts_with("A62 = 0")),
         "{missing:?}"
@@ -108,7 +120,7 @@ fn linear_equations_under_conditions_are_those_of_the_special_motion() {
     ] {
         let mut paper = Paper::steering(shipped::mechanism(mechanism).clone());
         paper.linearise(conditions);
-        let entries = Equation::find(number).unwrap().claims[0].formulas.text();
+        let entries = equation(number).claims[0].formulas.text();
         let differences = paper.matrix_differences(entries, &[]);
         assert!(differences.is_empty(), "{}", differences.join("\n"));
         paper.assert("steady_w1d = 0");
@@ -126,7 +138,7 @@ fn a_wheel_with_any_axisymmetric_inertia_follows_the_general_equations() {
 
 #[test]
 fn the_lateral_acceleration_is_also_the_short_row_of_appell() {
-    let mut paper = unicycle();
+    let mut paper = Unicycle.paper();
     let before = paper.scope.clone();
     let solved = paper.derived("w1d");
     paper.scope.define("solved", solved);
@@ -136,7 +148,7 @@ fn the_lateral_acceleration_is_also_the_short_row_of_appell() {
 
 #[test]
 fn velocity_of_the_sliding_mass_in_the_tilted_frame() {
-    unicycle().assert(
+    Unicycle.paper().assert(
         "vA1 = R*w2 - r*w3
          vA2 = -R*w1 + s
          vA3 = r*w1",
@@ -145,12 +157,12 @@ fn velocity_of_the_sliding_mass_in_the_tilted_frame() {
 
 #[test]
 fn the_energy_of_the_unicycle_grows_by_the_power_of_the_actuator() {
-    unicycle().assert(
+    Unicycle.paper().assert(
         "V = (m + m0)*g*R*cos(th) + m0*g*r*sin(th)
          power = u*s
          energy_rate = u*s",
     );
-    rolling_wheel().assert(
+    Wheel.paper().assert(
         "V = m*g*R*cos(th)
          energy_rate = 0",
     );

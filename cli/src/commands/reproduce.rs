@@ -107,7 +107,7 @@ impl Reproduce {
             schema: "reproduced/1",
             paper: title,
             statements: tally.statements(),
-            tally,
+            tally: tally.clone(),
             errata: count(&|claim| claim.erratum.is_some()),
             unexpected: count(&|claim| !claim.as_expected),
             sections: &sections,

@@ -1,6 +1,8 @@
 //! Claims of a paper, compared with computed results.
 
-use serde::Serialize;
+use std::collections::BTreeMap;
+
+use serde::{Deserialize, Serialize};
 
 /// A part of the book.
 #[derive(Debug, Serialize)]
@@ -40,7 +42,7 @@ pub struct Claim {
     pub note: String,
     /// For an erratum: the kind of error.
     #[serde(skip_serializing_if = "Option::is_none")]
-    pub erratum: Option<&'static str>,
+    pub erratum: Option<String>,
     /// Whether the comparison gives its expected result (for an erratum: the corrected statement
     /// holds); `false` indicates a regression.
     pub as_expected: bool,
@@ -49,7 +51,7 @@ pub struct Claim {
 }
 
 /// Agreement of a statement with the computed result.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "snake_case")]
 pub enum Reproduction {
     /// The same function, by the identity test; or a number that agrees in every published digit,
@@ -74,227 +76,109 @@ impl Reproduction {
         Self::CannotBeChecked,
         Self::NotInPaper,
     ];
-
-    /// Its description.
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::Exact => "exact",
-            Self::Approximate => "approximate",
-            Self::Differs => "differs",
-            Self::CannotBeChecked => "cannot be checked",
-            Self::NotInPaper => "not in the paper",
-        }
-    }
 }
-
-/// Why statements about unpublished recordings cannot be checked.
-pub(super) const NOT_PUBLIC: &str = "the paper's recordings are not public";
 
 /// A statement before its comparison with a computed result.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Statement<'a> {
+#[derive(Debug, Clone, Default, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub(crate) struct Statement {
     /// Its place in the paper.
-    pub(crate) place: &'a str,
+    pub(crate) place: String,
     /// The statement, with corrections.
-    pub(crate) published: &'a str,
+    pub(crate) published: String,
     /// The command that reproduces the computed result.
-    pub(crate) command: &'a str,
+    #[serde(default)]
+    pub(crate) command: String,
+    /// The agreement if it holds; of a number exact, else approximate.
+    pub(crate) agreement: Option<Reproduction>,
+    /// Digits in which a number must agree.
+    pub(crate) digits: Option<u32>,
+    /// Basis of the agreement, or reason for its absence.
+    #[serde(default)]
+    pub(crate) note: String,
+    /// For an erratum: the kind of error.
+    pub(crate) erratum: Option<String>,
 }
 
-impl Statement<'_> {
-    /// It holds or not, within a tolerance or at the tested points.
+impl Statement {
+    /// It holds or not. An erratum differs, and statements that cannot be checked or are not in the
+    /// paper remain so.
     pub(crate) fn found(self, ours: impl Into<String>, holds: bool) -> Claim {
-        Claim {
-            place: self.place.to_owned(),
-            published: self.published.to_owned(),
-            ours: ours.into(),
-            agreement: if holds {
-                Reproduction::Approximate
-            } else {
-                Reproduction::Differs
-            },
-            note: String::new(),
-            erratum: None,
-            as_expected: holds,
-            command: self.command.to_owned(),
-        }
-    }
-
-    /// A number and its computed value, of which `needed` digits must agree.
-    pub(crate) fn number(self, [wanted, found]: [f64; 2], needed: u32) -> Claim {
-        let digits = digits(wanted, found);
-        let agree = if digits == 1 {
-            "digit agrees"
-        } else {
-            "digits agree"
+        let agreement = match self.agreement {
+            _ if self.erratum.is_some() => Reproduction::Differs,
+            Some(fixed @ (Reproduction::CannotBeChecked | Reproduction::NotInPaper)) => fixed,
+            _ if !holds => Reproduction::Differs,
+            Some(stated) => stated,
+            None if self.digits.is_some() => Reproduction::Exact,
+            None => Reproduction::Approximate,
         };
-        self.found(shown(found), digits >= needed)
-            .exactly()
-            .noted(format!("{digits} {agree}"))
-    }
-
-    /// A statement about unpublished recordings, tested on simulated ones. It is expected to show or not as
-    /// [`SIMULATED`] tells; where that tells nothing, either may be.
-    pub(crate) fn simulated(self, ours: impl Into<String>, shows: bool) -> Claim {
-        let mut known = SIMULATED.iter();
-        let known = known
-            .find(|(place, published, _)| *place == self.place && *published == self.published);
+        let note = match &self.erratum {
+            Some(kind) if self.note.is_empty() => format!("erratum: {kind}"),
+            _ => self.note,
+        };
         Claim {
-            as_expected: known.is_none_or(|(.., expected)| *expected == shows),
-            ..self.found(ours, shows)
+            place: self.place,
+            published: self.published,
+            ours: ours.into(),
+            agreement,
+            note,
+            erratum: self.erratum,
+            as_expected: holds,
+            command: self.command,
         }
-        .noted("on simulated rides")
-    }
-}
-
-impl Claim {
-    /// If it holds, it holds exactly.
-    #[must_use]
-    pub fn exactly(mut self) -> Self {
-        if self.agreement == Reproduction::Approximate {
-            self.agreement = Reproduction::Exact;
-        }
-        self
     }
 
-    /// If it holds, it holds within a tolerance.
-    #[must_use]
-    pub fn approximately(mut self) -> Self {
-        if self.agreement == Reproduction::Exact {
-            self.agreement = Reproduction::Approximate;
+    /// A number and its computed value.
+    pub(crate) fn number(mut self, [wanted, found]: [f64; 2]) -> Claim {
+        let agreeing = digits(wanted, found);
+        if self.erratum.is_none() {
+            let verb = if agreeing == 1 {
+                "digit agrees"
+            } else {
+                "digits agree"
+            };
+            self.note = format!("{agreeing} {verb}");
         }
-        self
-    }
-
-    /// With the basis of the agreement.
-    #[must_use]
-    pub fn noted(mut self, note: impl Into<String>) -> Self {
-        self.note = note.into();
-        self
-    }
-
-    /// An erratum of the paper: the two differ, whatever else agrees.
-    #[must_use]
-    pub fn erratum(self, kind: &'static str) -> Self {
-        Self {
-            agreement: Reproduction::Differs,
-            erratum: Some(kind),
-            ..self
-        }
-        .noted(format!("erratum: {kind}"))
-    }
-
-    /// Not comparable, for a reason.
-    #[must_use]
-    pub fn unchecked(self, why: &str) -> Self {
-        Self {
-            agreement: Reproduction::CannotBeChecked,
-            ..self
-        }
-        .noted(why)
-    }
-
-    /// An additional result.
-    #[must_use]
-    pub fn added(self) -> Self {
-        Self {
-            agreement: Reproduction::NotInPaper,
-            ..self
-        }
+        let holds = self.digits.is_some_and(|needed| agreeing >= needed);
+        self.found(shown(found), holds)
     }
 }
 
 /// Counts of statements by agreement.
-#[derive(Debug, Default, Clone, Copy, PartialEq, Eq, Serialize)]
-pub struct Tally {
-    /// The same function, or every published digit.
-    pub exact: usize,
-    /// Within a tolerance.
-    pub approximate: usize,
-    /// The results differ.
-    pub differs: usize,
-    /// Definitions, and numbers from recordings that are not public.
-    pub cannot_be_checked: usize,
-    /// Additional results.
-    pub not_in_paper: usize,
-}
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[serde(transparent)]
+pub struct Tally(BTreeMap<Reproduction, usize>);
 
 impl Tally {
     /// Of the parts of a book.
     pub fn of(sections: &[Section]) -> Self {
-        let mut tally = Self::default();
+        let mut counts = BTreeMap::from(Reproduction::ALL.map(|agreement| (agreement, 0)));
         for claim in sections.iter().flat_map(|section| &section.claims) {
-            *tally.count(claim.agreement) += 1;
+            *counts.entry(claim.agreement).or_default() += 1;
         }
-        tally
+        Self(counts)
     }
 
-    fn count(&mut self, agreement: Reproduction) -> &mut usize {
-        match agreement {
-            Reproduction::Exact => &mut self.exact,
-            Reproduction::Approximate => &mut self.approximate,
-            Reproduction::Differs => &mut self.differs,
-            Reproduction::CannotBeChecked => &mut self.cannot_be_checked,
-            Reproduction::NotInPaper => &mut self.not_in_paper,
-        }
+    fn count(&self, agreement: Reproduction) -> usize {
+        self.0.get(&agreement).copied().unwrap_or(0)
     }
 
     /// Statements of the paper, without additional results.
-    pub const fn statements(self) -> usize {
-        self.exact + self.approximate + self.differs + self.cannot_be_checked
+    pub fn statements(&self) -> usize {
+        self.0.values().sum::<usize>() - self.count(Reproduction::NotInPaper)
     }
 
     /// One line.
-    pub fn words(self) -> String {
+    pub fn words(&self) -> String {
+        let [exact, approximate, differ, unchecked, added] =
+            Reproduction::ALL.map(|agreement| self.count(agreement));
         format!(
-            "{} statements of the paper: {} exact, {} approximate, {} differ, {} cannot be checked; \
-             {} results beyond the paper",
+            "{} statements of the paper: {exact} exact, {approximate} approximate, {differ} differ, \
+             {unchecked} cannot be checked; {added} results beyond the paper",
             self.statements(),
-            self.exact,
-            self.approximate,
-            self.differs,
-            self.cannot_be_checked,
-            self.not_in_paper
         )
     }
 }
-
-/// Findings of the paper on the electric unicycle, by place and sentence, that show on the simulated rides or
-/// do not.
-pub const SIMULATED: &[(&str, &str, bool)] = &[
-    (
-        "figure 8",
-        "figure-eight has the largest error at the optimal h",
-        true,
-    ),
-    (
-        "figure 8",
-        "the curve of constant speed is flat: a large range of h gives similar torques",
-        true,
-    ),
-    (
-        "figure 8",
-        "the curve of figure-eight is flat: a large range of h gives similar torques",
-        true,
-    ),
-    ("height", "constant speed is not sensitive to h", true),
-    ("height", "figure-eight is not sensitive to h", true),
-    (
-        "figure 8",
-        "deceleration has the smallest error at the optimal h",
-        false,
-    ),
-    (
-        "figure 8, deceleration",
-        "3 DoF has the smaller error at its minimum",
-        false,
-    ),
-    (
-        "figure 8, deceleration",
-        "3 DoF identifies the larger h",
-        false,
-    ),
-];
 
 /// Leading digits in which two numbers agree: the most after which they differ by no more than half a unit
 /// of the last one, up to the fifteen that a number has.
@@ -341,19 +225,26 @@ mod tests {
 
     #[test]
     fn statements_are_counted_apart() {
-        let statement = Statement {
-            place: "",
-            published: "",
-            command: "",
+        let number = |mut statement: Statement, published, found| {
+            statement.digits = Some(3);
+            statement.number([published, found])
         };
-        let number = |published, found| statement.number([published, found], 3);
+        let plain = Statement::default;
+        let stated = |agreement| Statement {
+            agreement: Some(agreement),
+            ..plain()
+        };
+        let erratum = Statement {
+            erratum: Some("misprint".to_owned()),
+            ..plain()
+        };
         let claims = vec![
-            number(1.21, 1.213),
-            number(0.61, 0.77),
-            number(1.0, 1.001).approximately(),
-            number(1.0, 1.0).erratum("misprint"),
-            number(0.61, 0.77).unchecked(NOT_PUBLIC),
-            number(1.0, 1.0).added(),
+            number(plain(), 1.21, 1.213),
+            number(plain(), 0.61, 0.77),
+            number(stated(Reproduction::Approximate), 1.0, 1.001),
+            number(erratum, 1.0, 1.0),
+            number(stated(Reproduction::CannotBeChecked), 0.61, 0.77),
+            number(stated(Reproduction::NotInPaper), 1.0, 1.0),
         ];
         let section = Section {
             title: String::new(),

@@ -12,6 +12,7 @@
 //! | `torque.rs` | M_d,1 and M_d,2, and their difference over the height |
 //! | `figure_3.rs`, `figure_6.rs`, `figure_8.rs` | figures 3 and 4, 6 and 7, 8 |
 //! | `heights.rs` | the height with its interval |
+//! | `simulated.rs` | findings of the paper on the simulated rides |
 
 mod capture;
 mod equations;
@@ -24,6 +25,7 @@ mod random;
 mod recorded;
 mod rider;
 pub mod sample;
+mod simulated;
 mod tables;
 mod torque;
 
@@ -31,16 +33,15 @@ use std::path::Path;
 
 use laboratory::{Laboratory, Session};
 use rider::Manoeuvre;
+pub use simulated::{Finding, findings};
 
-use super::Section;
-use super::failed;
-use appell::Error;
+use super::{Result, Section, failed};
 
 /// A part of the book: its name for progress messages, and its function.
-type Part = (&'static str, fn(&Laboratory) -> Result<Section, Error>);
+type Part = (&'static str, fn(&Laboratory) -> Result<Section>);
 
 const PARTS: &[Part] = &[
-    ("equations", |_| Ok(equations::section())),
+    ("equations", equations::section),
     ("tables", tables::section),
     ("figures 3 and 4", figure_3::section),
     ("figures 6 and 7", figure_6::section),
@@ -50,10 +51,7 @@ const PARTS: &[Part] = &[
 
 /// The book part by part; `making` is called with the current part and the progress. The rides are
 /// written to a folder, as recordings.
-pub fn book(
-    rides: &Path,
-    mut making: impl FnMut(&str, usize, usize),
-) -> Result<Vec<Section>, Error> {
+pub fn book(rides: &Path, mut making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>> {
     let all = PARTS.len() + 1;
     making("rides", 0, all);
     let laboratory = Laboratory::new()?;
@@ -66,11 +64,9 @@ pub fn book(
 }
 
 impl Laboratory {
-    fn session(&self, manoeuvre: Manoeuvre) -> Result<&Session, Error> {
-        let found = self
-            .sessions
-            .iter()
-            .find(|session| session.manoeuvre == manoeuvre);
+    fn session(&self, manoeuvre: Manoeuvre) -> Result<&Session> {
+        let mut sessions = self.sessions.iter();
+        let found = sessions.find(|session| session.manoeuvre == manoeuvre);
         found.ok_or_else(|| failed("the manoeuvre was not ridden"))
     }
 }

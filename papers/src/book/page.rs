@@ -26,8 +26,9 @@ pub fn page(title: &str, sections: &[Section]) -> String {
             p { (Tally::of(sections).words()) "." }
             dl {
                 @for agreement in Reproduction::ALL {
-                    dt class=(class(agreement)) { (agreement.words()) }
-                    dd { (meaning(agreement)) }
+                    @let [name, class, meaning] = legend(agreement);
+                    dt class=(class) { (name) }
+                    dd { (meaning) }
                 }
             }
             nav {
@@ -78,35 +79,38 @@ fn part(number: usize, section: &Section) -> Markup {
     }
 }
 
-/// Its colour.
-const fn class(agreement: Reproduction) -> &'static str {
+/// Name, colour and meaning.
+const fn legend(agreement: Reproduction) -> [&'static str; 3] {
     match agreement {
-        Reproduction::Exact => "exact",
-        Reproduction::Approximate => "approximate",
-        Reproduction::Differs => "differs",
-        Reproduction::CannotBeChecked => "unchecked",
-        Reproduction::NotInPaper => "added",
-    }
-}
-
-const fn meaning(agreement: Reproduction) -> &'static str {
-    match agreement {
-        Reproduction::Exact => {
+        Reproduction::Exact => [
+            "exact",
+            "exact",
             "the same function, by the identity test; a number in every published digit, beside a formula \
-             in ten at least"
-        }
-        Reproduction::Approximate => "within a tolerance, or at every point that was tried",
-        Reproduction::Differs => "something else is found; both are shown",
-        Reproduction::CannotBeChecked => {
-            "a definition, or it rests on recordings that are not public"
-        }
-        Reproduction::NotInPaper => "a result of ours",
+             in ten at least",
+        ],
+        Reproduction::Approximate => [
+            "approximate",
+            "approximate",
+            "within a tolerance, or at every point that was tried",
+        ],
+        Reproduction::Differs => [
+            "differs",
+            "differs",
+            "something else is found; both are shown",
+        ],
+        Reproduction::CannotBeChecked => [
+            "cannot be checked",
+            "unchecked",
+            "a definition, or it rests on recordings that are not public",
+        ],
+        Reproduction::NotInPaper => ["not in the paper", "added", "a result of ours"],
     }
 }
 
 fn row(claim: &Claim) -> Markup {
+    let [agreement, class, _] = legend(claim.agreement);
     html! {
-        tr class=(class(claim.agreement)) {
+        tr class=(class) {
             td { (claim.place) }
             td { (lines(&claim.published)) }
             td {
@@ -114,7 +118,7 @@ fn row(claim: &Claim) -> Markup {
                 code class="command" { (claim.command) }
             }
             td {
-                (claim.agreement.words())
+                (agreement)
                 @if !claim.note.is_empty() {
                     (BREAK) small { (claim.note) }
                 }

@@ -19,32 +19,27 @@ mod manoeuvres;
 mod numbers;
 mod tables;
 
-use appell::Error;
-
-use super::Section;
+use super::{Result, Section};
 
 /// A part of the book: its name for progress messages, and its function of the number of grid
 /// points along each axis.
-type Part = (&'static str, fn(usize) -> Result<Section, Error>);
+type Part = (&'static str, fn(usize) -> Result<Section>);
 
 const PARTS: &[Part] = &[
-    ("equations", |_| equations::section()),
-    ("critical values", |_| numbers::section()),
-    ("tables", |_| tables::section()),
+    ("equations", equations::section),
+    ("critical values", numbers::section),
+    ("tables", tables::section),
     ("figure 3", figure_3::section),
     ("figure 5", figure_5::section),
     ("figure 6", figure_6::section),
-    ("figure 7", |_| figure_7::section()),
-    ("figure 8", |_| figure_8::section()),
-    ("results beyond the paper", |_| additional::section()),
+    ("figure 7", figure_7::section),
+    ("figure 8", figure_8::section),
+    ("results beyond the paper", additional::section),
 ];
 
 /// The book part by part, with charts of `grid` points along each axis; `making` is called with the
 /// current part and the progress.
-pub fn book(
-    grid: usize,
-    mut making: impl FnMut(&str, usize, usize),
-) -> Result<Vec<Section>, Error> {
+pub fn book(grid: usize, mut making: impl FnMut(&str, usize, usize)) -> Result<Vec<Section>> {
     let part = |(number, (name, make)): (usize, &Part)| {
         making(name, number, PARTS.len());
         make(grid)

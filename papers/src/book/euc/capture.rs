@@ -4,8 +4,7 @@ use appell_recordings::motion_capture::{Axes, Capture, Skeleton, Track, Vector};
 use appell_runtime::Trajectory;
 
 use super::random::Random;
-use crate::book::failed;
-use appell::Error;
+use crate::book::{Result, failed};
 
 /// Accuracies of the paper, taken as standard deviations: m and rad.
 const POSITION: f64 = 2e-4;
@@ -49,7 +48,7 @@ pub(super) struct Captured {
 }
 
 impl Captured {
-    pub(super) fn new(skeleton: &Skeleton) -> Result<Self, Error> {
+    pub(super) fn new(skeleton: &Skeleton) -> Result<Self> {
         let place = |name: &String| {
             let joint = JOINTS.iter().find(|(own, _)| own == name);
             joint.map_or([0.0; 3], |(_, place)| *place)
@@ -78,19 +77,14 @@ impl Captured {
         let mut centre = [0.0; 3];
         for segment in &rider.segments {
             let [from, to] = segment.ends.each_ref().map(|ends| {
-                let mut middle = [0.0; 3];
-                for &end in ends {
-                    let joint = self.joints[self.skeleton.points[end].body];
-                    for k in 0..3 {
-                        middle[k] += joint[k] / ends.len() as f64;
-                    }
-                }
-                middle
+                let joints = ends.iter().map(|&end| self.skeleton.points[end].body);
+                joints.fold([0.0; 3], |middle, body| {
+                    moved(middle, self.joints[body].map(|k| k / ends.len() as f64))
+                })
             });
-            for k in 0..3 {
-                let place = from[k] + segment.centre * (to[k] - from[k]);
-                centre[k] += segment.mass / rider.mass * place;
-            }
+            let place = [0, 1, 2].map(|k| from[k] + segment.centre * (to[k] - from[k]));
+            let share = segment.mass / rider.mass;
+            centre = moved(centre, place.map(|k| share * k));
         }
         centre
     }

@@ -5,17 +5,16 @@ use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
 use appell_estimate::HALF_WIDTH_95;
 use appell_estimate::inverse::{Consistency, Found, Record, Relations, Sought, Track};
-use appell_models::Shipped;
 use appell_recordings::motion_capture::{Capture, Ride};
-use appell_report::figure::{Figure, Panel, Series};
+use appell_report::figure::Figure;
 use appell_runtime::model::Model;
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DMatrix;
 
 use super::laboratory::{Laboratory, PERFECT, REAL, Session};
 use super::rider::Manoeuvre;
-use crate::book::claim::{Picture, Section, Statement};
-use crate::book::{computation, failed};
-use appell::Error;
+use super::simulated::simulated;
+use crate::book::drawing::{figure, line, panel};
+use crate::book::{Part, Result, Section, computation, failed, parameter, shipped};
 
 /// Heights of the profiles, relative to the estimate.
 const PROFILE: [f64; 9] = [0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5];
@@ -30,30 +29,19 @@ struct Estimate {
     profile: Vec<f64>,
 }
 
-pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
-    let shipped = Shipped::find("euc_3dof");
-    let shipped = shipped.ok_or_else(|| failed("the planar model is not shipped"))?;
+pub(super) fn section(laboratory: &Laboratory) -> Result<Section> {
+    let shipped = shipped("euc_3dof")?;
     let program = appell_codegen::compile(shipped.file, shipped.spec, &FunctionKind::ALL)?;
     let model = JitModel::new(&program).map_err(computation)?;
-    let command = "appell motion SKELETON ride.csv; appell inverse euc_3dof --data recording --free h --bias phi";
-    let mut claims = Vec::new();
+    let mut part = Part::read(include_str!("heights.toml"))?;
+    part.set("height", format!("{:.4}", laboratory.height));
     let mut estimates = Vec::new();
     for session in &laboratory.sessions {
-        let name = session.manoeuvre.name();
-        let place = format!("height, {name}");
-        let real = find(&model, laboratory, session)?;
-        claims.push(
-            Statement {
-                place: &place,
-                published: "nothing: one number without an interval",
-                command,
-            }
-            .found(
-                interval(&real.found, laboratory.height),
-                real.found.values[0].is_finite(),
-            )
-            .added(),
-        );
+        part.set("manoeuvre", session.manoeuvre.name());
+        let estimate = find(&model, laboratory, session)?;
+        let found = &estimate.found;
+        let ours = interval(found, laboratory.height);
+        part.found("interval", ours, found.values[0].is_finite())?;
         if session.manoeuvre != Manoeuvre::FigureEight {
             let perfect = laboratory.seen(session, PERFECT);
             let perfect = consistency(&model, laboratory, &perfect, false)?;
@@ -62,56 +50,37 @@ pub(super) fn section(laboratory: &Laboratory) -> Result<Section, Error> {
                 "without noise and marker offsets h is off by {:.2} mm: what the plane does not see of the ride",
                 1e3 * off
             );
-            let claim = Statement {
-                place: &place,
-                published: "nothing",
-                command,
-            }
-            .found(ours, off.abs() < STRAIGHT);
-            claims.push(claim.added());
+            part.found("perfect", ours, off.abs() < STRAIGHT)?;
         }
-        estimates.push(real);
+        estimates.push(estimate);
     }
+    sensitivity(&mut part, &estimates)?;
+    part.picture("profiles", profiles(&estimates, laboratory).to_svg())?;
+    Ok(part.section())
+}
+
+/// Manoeuvres that say little about the height.
+fn sensitivity(part: &mut Part, estimates: &[Estimate]) -> Result<()> {
     let deviation = |manoeuvre: Manoeuvre| {
         let mut estimates = estimates.iter();
-        let estimate = estimates.find(|estimate: &&Estimate| estimate.manoeuvre == manoeuvre);
+        let estimate = estimates.find(|estimate| estimate.manoeuvre == manoeuvre);
         estimate.map_or(f64::NAN, |estimate| spread(&estimate.found))
     };
-    let [straight, speeding, braking, eight] = Manoeuvre::ALL.map(deviation);
-    let ours = format!(
-        "standard deviations of h: constant speed {:.1} mm, acceleration {:.1} mm, deceleration {:.1} mm, figure-eight \
-         {:.1} mm",
-        1e3 * straight,
-        1e3 * speeding,
-        1e3 * braking,
-        1e3 * eight
-    );
-    for (manoeuvre, deviation) in [("constant speed", straight), ("figure-eight", eight)] {
-        claims.push(
-            Statement {
-                place: "height",
-                published: &format!("{manoeuvre} is not sensitive to h"),
-                command,
-            }
-            .simulated(&ours, deviation > speeding.max(braking)),
-        );
+    let deviations = Manoeuvre::ALL.map(deviation);
+    let [straight, speeding, braking, eight] = deviations;
+    let list = Manoeuvre::ALL.iter().zip(deviations);
+    let list = list.map(|(manoeuvre, std)| format!("{} {:.1} mm", manoeuvre.name(), 1e3 * std));
+    let list = list.collect::<Vec<_>>().join(", ");
+    let ours = format!("standard deviations of h: {list}");
+    for (manoeuvre, deviation) in [
+        (Manoeuvre::ConstantSpeed, straight),
+        (Manoeuvre::FigureEight, eight),
+    ] {
+        part.set("manoeuvre", manoeuvre.name());
+        let insensitive = deviation > speeding.max(braking);
+        simulated(part, "not_sensitive", &ours, insensitive)?;
     }
-    Ok(Section {
-        title: "What the rides tell of the height".to_owned(),
-        about: format!(
-            "The three equations of the plane leave one relation over whatever the two torques were; it is M_d,1 = \
-             M_d,2. Here it is weighed by the noise with all its correlations, and the rider's angle, seen from the \
-             pedals, may show a constant too much. The true height is {:.4} m.",
-            laboratory.height
-        ),
-        claims,
-        pictures: vec![Picture {
-            svg: figure(&estimates, laboratory).to_svg(),
-            caption: "How much less likely other heights are: twice the inconsistency above its minimum. An interval of \
-                      95 % ends where the line crosses 3.84 if the model holds."
-                .to_owned(),
-        }],
-    })
+    Ok(())
 }
 
 /// The larger of the two standard deviations of h, from the noise and robust.
@@ -132,12 +101,17 @@ fn interval(found: &Found, truth: f64) -> String {
     )
 }
 
-fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result<Estimate, Error> {
+/// Heights of the profile.
+fn heights(found: &Found) -> Vec<f64> {
+    PROFILE.iter().map(|part| part * found.values[0]).collect()
+}
+
+fn find(model: &dyn Model, laboratory: &Laboratory, session: &Session) -> Result<Estimate> {
     let captures = laboratory.seen(session, REAL);
     let consistency = consistency(model, laboratory, &captures, true)?;
     let found = consistency.find().map_err(computation)?;
-    let heights: Vec<f64> = PROFILE.iter().map(|part| part * found.values[0]).collect();
-    let profile = consistency.profile(0, &heights).map_err(computation)?;
+    let profile = consistency.profile(0, &heights(&found));
+    let profile = profile.map_err(computation)?;
     Ok(Estimate {
         manoeuvre: session.manoeuvre,
         profile,
@@ -151,7 +125,7 @@ fn consistency<'a>(
     laboratory: &Laboratory,
     captures: &[Capture],
     biased: bool,
-) -> Result<Consistency<'a>, Error> {
+) -> Result<Consistency<'a>> {
     let records: Vec<Record> = (captures.iter())
         .map(|capture| record(laboratory, capture))
         .collect();
@@ -161,8 +135,7 @@ fn consistency<'a>(
     let mut motions = track.stretches.iter().flat_map(|stretch| &stretch.motions);
     let first = motions.next().ok_or_else(|| failed("no motion"))?;
     let relations = Relations::new(model, &[0, 1, 2], first, &p).map_err(computation)?;
-    let h = info.parameter_index("h").ok_or_else(|| failed("no `h`"))?;
-    let mut sought = vec![Sought::Parameter(h)];
+    let mut sought = vec![Sought::Parameter(parameter(info, "h")?)];
     if biased {
         sought.push(Sought::Bias(2));
     }
@@ -172,36 +145,21 @@ fn consistency<'a>(
 /// x, γ and ϕ of a ride.
 fn record(laboratory: &Laboratory, capture: &Capture) -> Record {
     let ride = Ride::of(&laboratory.skeleton, capture);
-    let columns: Vec<DVector<f64>> = (ride.channels.iter())
-        .map(|channel| DVector::from_column_slice(channel))
-        .collect();
+    let channels = &ride.channels;
+    let values = DMatrix::from_fn(ride.times.len(), channels.len(), |row, k| channels[k][row]);
     Record {
         times: ride.times,
-        values: DMatrix::from_columns(&columns),
+        values,
     }
 }
 
-fn figure(estimates: &[Estimate], laboratory: &Laboratory) -> Figure {
-    let panel = |estimate: &Estimate| Panel {
-        unit: String::new(),
-        series: vec![Series {
-            label: estimate.manoeuvre.name().to_owned(),
-            x: PROFILE
-                .iter()
-                .map(|part| part * estimate.found.values[0])
-                .collect(),
-            y: estimate
-                .profile
-                .iter()
-                .map(|cost| 2.0 * (cost - estimate.found.cost))
-                .collect(),
-        }],
-    };
-    Figure {
-        title: format!("Heights beside the true one of {:.3} m", laboratory.height),
-        x_label: "h [m]".to_owned(),
-        panels: estimates.iter().map(panel).collect(),
-        marks: Vec::new(),
-        equal_axes: false,
-    }
+fn profiles(estimates: &[Estimate], laboratory: &Laboratory) -> Figure {
+    let panels = estimates.iter().map(|estimate| {
+        let cost = |cost: &f64| 2.0 * (cost - estimate.found.cost);
+        let costs = estimate.profile.iter().map(cost).collect();
+        let name = estimate.manoeuvre.name();
+        panel("", vec![line(name, heights(&estimate.found), costs)])
+    });
+    let title = format!("Heights beside the true one of {:.3} m", laboratory.height);
+    figure(&title, "h [m]", panels.collect())
 }

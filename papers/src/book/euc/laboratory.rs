@@ -6,13 +6,12 @@ use appell_runtime::Trajectory;
 use super::capture::{Captured, Imperfection};
 use super::random::Random;
 use super::rider::{Manoeuvre, Rider};
-use crate::book::{computation, failed, replaced};
-use appell::Error;
+use crate::book::{Result, computation, edited, failed, parameter};
 
 /// The skeleton file of the examples.
 pub(super) const SKELETON: &str = include_str!("../../../euc/skeleton.toml");
 /// The rider's angle about the pedals, as in the skeleton, and about the wheel centre, as in (3).
-const SEEN_FROM: [&str; 2] = ["lean = [\"A\", \"G\"] }", "lean = [\"C\", \"G\"] }"];
+const SEEN_FROM: (&str, &str) = ("lean = [\"A\", \"G\"] }", "lean = [\"C\", \"G\"] }");
 
 /// The stated noise and marker offsets.
 pub(super) const REAL: Imperfection = Imperfection {
@@ -46,13 +45,14 @@ pub(super) struct View {
 }
 
 impl View {
-    fn of(skeleton: &Skeleton, captures: &[Capture]) -> Result<Self, Error> {
+    fn of(skeleton: &Skeleton, captures: &[Capture]) -> Result<Self> {
         let ride = |capture| Ride::of(skeleton, capture);
         let rides: Vec<Ride> = captures.iter().map(ride).collect();
         let filter = filter(&rides).map_err(computation)?;
-        let smoothed = rides.iter().map(|ride| Smoothed::of(ride, filter));
+        let smoothed = |ride| Smoothed::of(ride, filter).map_err(computation);
+        let smoothed = rides.iter().map(smoothed);
         Ok(Self {
-            smoothed: smoothed.collect::<Result<_, _>>().map_err(computation)?,
+            smoothed: smoothed.collect::<Result<_>>()?,
             window: filter.count(),
             rides,
         })
@@ -70,10 +70,9 @@ pub(super) struct Laboratory {
 }
 
 impl Laboratory {
-    pub(super) fn new() -> Result<Self, Error> {
+    pub(super) fn new() -> Result<Self> {
         let skeleton = Skeleton::parse("docs/examples/euc/skeleton.toml", SKELETON)?;
-        let [pedals, centre] = SEEN_FROM;
-        let text = replaced(SKELETON, pedals, centre)?;
+        let text = edited(SKELETON, [&SEEN_FROM])?;
         let by_3 = Skeleton::parse("docs/examples/euc/skeleton.toml", &text)?;
         let captured = Captured::new(&skeleton)?;
         let height = captured.height();
@@ -81,7 +80,7 @@ impl Laboratory {
         let session = |&manoeuvre: &Manoeuvre| {
             let runs = 0..manoeuvre.runs();
             let motions = runs.map(|run| rider.ride(manoeuvre, run));
-            let motions: Vec<Trajectory> = motions.collect::<Result<_, _>>()?;
+            let motions: Vec<Trajectory> = motions.collect::<Result<_>>()?;
             let captures = seen(&captured, manoeuvre, &motions, REAL);
             Ok(Session {
                 manoeuvre,
@@ -93,19 +92,18 @@ impl Laboratory {
         let sessions = Manoeuvre::ALL.iter().map(session);
         Ok(Self {
             height,
-            sessions: sessions.collect::<Result<_, Error>>()?,
+            sessions: sessions.collect::<Result<_>>()?,
             rider: captured,
             skeleton,
         })
     }
 
     /// Value and unit of a parameter of the simulated spatial model.
-    pub(super) fn stated(&self, name: &str) -> Result<(f64, String), Error> {
+    pub(super) fn stated(&self, name: &str) -> Result<(f64, String)> {
         let mut motions = self.sessions.iter().flat_map(|session| &session.motions);
         let motion = motions.next().ok_or_else(|| failed("nothing was ridden"))?;
         let info = motion.info();
-        let index = info.parameter_index(name);
-        let index = index.ok_or_else(|| failed(&format!("the model has no `{name}`")))?;
+        let index = parameter(info, name)?;
         let unit = info.parameters[index].unit.to_string();
         Ok((motion.parameters()[index], unit))
     }

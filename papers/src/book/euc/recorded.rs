@@ -4,13 +4,10 @@
 use std::fmt::Write as _;
 use std::path::Path;
 
-use appell_models::Shipped;
-
 use super::laboratory::{Laboratory, Session};
 use super::random::Random;
-use super::rider::{RATE, TWIST};
-use crate::book::{failed, replaced};
-use appell::Error;
+use super::rider::{RATE, SPATIAL, TWIST};
+use crate::book::{Result, edited, shipped};
 use appell::files;
 
 /// Frames between rows.
@@ -33,53 +30,32 @@ const TOLERANCES: [(&str, f64); 4] = [("m", 0.5), ("m_0", 0.1), ("J", 0.5), ("h"
 const WAY_NOISE: f64 = 1e-3;
 const ANGLE_NOISE: f64 = 2e-3;
 
-/// Kind of a column.
-#[derive(Clone, Copy)]
-enum Kind {
-    Way,
-    Angle,
-    Torque,
-    /// An angle or torque that the planar model does not have.
-    Beside,
-    Unknown,
-}
-
-/// Columns with their units.
-const COLUMNS: [(&str, Kind, &str); 10] = [
-    ("x", Kind::Way, "m"),
-    ("gamma", Kind::Angle, "rad"),
-    ("phi", Kind::Angle, "rad"),
-    ("M_d", Kind::Torque, "N*m"),
-    ("M_h", Kind::Torque, "N*m"),
-    ("psi", Kind::Beside, "rad"),
-    ("theta", Kind::Beside, "rad"),
-    ("beta", Kind::Beside, "rad"),
-    ("M_r", Kind::Unknown, "N*m"),
-    ("M_z", Kind::Unknown, "N*m"),
+/// Columns: name, key of its role in the planar model, noise, and unit. Torques have none.
+const COLUMNS: [(&str, &str, Option<f64>, &str); 10] = [
+    ("x", "measures", Some(WAY_NOISE), "m"),
+    ("gamma", "measures", Some(ANGLE_NOISE), "rad"),
+    ("phi", "measures", Some(ANGLE_NOISE), "rad"),
+    ("M_d", "input", None, "N*m"),
+    ("M_h", "input", None, "N*m"),
+    ("psi", "", Some(ANGLE_NOISE), "rad"),
+    ("theta", "", Some(ANGLE_NOISE), "rad"),
+    ("beta", "", Some(ANGLE_NOISE), "rad"),
+    ("M_r", "", None, "N*m"),
+    ("M_z", "", None, "N*m"),
 ];
 
 /// Writes all rides, a folder for each manoeuvre, and the spatial model as `spatial.toml`.
-pub(super) fn write(laboratory: &Laboratory, folder: &Path) -> Result<(), Error> {
+pub(super) fn write(laboratory: &Laboratory, folder: &Path) -> Result<()> {
     files::make_folder(folder)?;
-    files::write(&folder.join("spatial.toml"), &spatial()?)?;
+    // The spatial model that can be compared with the planar one.
+    let spatial = edited(shipped(SPATIAL)?.spec, TWIST.iter().chain(&WAY))?;
+    files::write(&folder.join("spatial.toml"), &spatial)?;
     let mut sessions = laboratory.sessions.iter();
     sessions.try_for_each(|session| data_set(laboratory, session, folder))
 }
 
-/// The spatial model that can be compared with the planar one.
-fn spatial() -> Result<String, Error> {
-    let shipped = Shipped::find("euc_spatial");
-    let shipped = shipped.ok_or_else(|| failed("the spatial model is not shipped"))?;
-    let edits = TWIST.iter().chain(&WAY);
-    edits
-        .copied()
-        .try_fold(shipped.spec.to_owned(), |text, (before, with)| {
-            replaced(&text, before, with)
-        })
-}
-
 /// Writes the rides of a manoeuvre; the last ones are held out.
-fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result<(), Error> {
+fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result<()> {
     let name = session.manoeuvre.name();
     let folder = folder.join(name.replace([' ', '-'], "_"));
     files::make_folder(&folder)?;
@@ -102,11 +78,10 @@ fn data_set(laboratory: &Laboratory, session: &Session, folder: &Path) -> Result
         );
     }
     text.push_str("\n[channels]\n");
-    for (name, kind, unit) in COLUMNS {
-        let role = match kind {
-            Kind::Way | Kind::Angle => format!("measures = {name:?}, "),
-            Kind::Torque => format!("input = {name:?}, "),
-            Kind::Beside | Kind::Unknown => String::new(),
+    for (name, key, _, unit) in COLUMNS {
+        let role = match key {
+            "" => String::new(),
+            key => format!("{key} = {name:?}, "),
         };
         let _ = writeln!(text, "{name} = {{ {role}unit = {unit:?} }}");
     }
@@ -119,24 +94,19 @@ fn table(session: &Session, number: usize) -> String {
     let motion = &session.motions[number];
     let mut random = Random::of(&format!("recording {} {number}", session.manoeuvre.name()));
     let column = |name: &str| motion.column(name).unwrap_or_default();
-    let truth = COLUMNS.map(|(name, _, _)| match name {
+    let truth = COLUMNS.map(|(name, ..)| match name {
         "x" => way(&column("v")),
         name => column(name),
     });
-    let mut text = String::from("t");
-    for (name, _, _) in COLUMNS {
-        let _ = write!(text, ",{name}");
-    }
-    text.push('\n');
+    let mut text = format!("t,{}\n", COLUMNS.map(|(name, ..)| name).join(","));
     let rows = session.manoeuvre.steady_from()..motion.len() - EVERY;
     for row in rows.step_by(EVERY) {
         // Writing to a string cannot fail.
         let _ = write!(text, "{:.6}", motion.times()[row]);
-        for ((_, kind, _), values) in COLUMNS.iter().zip(&truth) {
-            let value = match kind {
-                Kind::Torque | Kind::Unknown => mean(&values[row..=row + EVERY]),
-                Kind::Way => values[row] + WAY_NOISE * random.normal(),
-                Kind::Angle | Kind::Beside => values[row] + ANGLE_NOISE * random.normal(),
+        for ((_, _, noise, _), values) in COLUMNS.iter().zip(&truth) {
+            let value = match noise {
+                None => mean(&values[row..=row + EVERY]),
+                Some(noise) => values[row] + noise * random.normal(),
             };
             let _ = write!(text, ",{value:.6}");
         }

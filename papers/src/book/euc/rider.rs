@@ -7,7 +7,6 @@ use appell_analysis::control::operating_point::OperatingPoint;
 use appell_analysis::control::reduction::reduce;
 use appell_codegen::jit::JitModel;
 use appell_codegen::program::FunctionKind;
-use appell_models::Shipped;
 use appell_runtime::integrate::Options;
 use appell_runtime::model::Model;
 use appell_runtime::simulate::Sampling;
@@ -15,13 +14,12 @@ use appell_runtime::{Simulation, Trajectory};
 use nalgebra::{DMatrix, DVector};
 
 use super::random::Random;
-use crate::book::{computation, failed, replaced};
-use appell::Error;
+use crate::book::{Result, computation, edited, parameter, rows, shipped, state};
 
 /// Frames a second of the capture.
 pub(super) const RATE: f64 = 120.0;
 /// The spatial model of the gallery.
-const SPATIAL: &str = "euc_spatial";
+pub(super) const SPATIAL: &str = "euc_spatial";
 /// Twist torque of the contact patch: a thin wheel with point contact has none, but a rider who
 /// twists the upper body uses it.
 pub(super) const TWIST: [(&str, &str); 2] = [
@@ -154,51 +152,31 @@ pub(super) struct Rider {
 }
 
 impl Rider {
-    pub(super) fn new(height: f64) -> Result<Self, Error> {
-        let shipped = Shipped::find(SPATIAL);
-        let shipped = shipped.ok_or_else(|| failed("the spatial model is not shipped"))?;
-        let edits = TWIST.iter();
-        let text = edits
-            .copied()
-            .try_fold(shipped.spec.to_owned(), |text, (before, with)| {
-                replaced(&text, before, with)
-            })?;
+    pub(super) fn new(height: f64) -> Result<Self> {
+        let shipped = shipped(SPATIAL)?;
+        let text = edited(shipped.spec, &TWIST)?;
         let program = appell_codegen::compile(shipped.file, &text, &FunctionKind::STANDARD)?;
         let model = JitModel::new(&program).map_err(computation)?;
         let mut parameters = model.info().default_parameters();
-        if let Some(h) = model.info().parameter_index("h") {
-            parameters[h] = height;
-        }
+        parameters[parameter(model.info(), "h")?] = height;
         Ok(Self { model, parameters })
     }
 
     /// A ride; runs of even number go backwards.
-    pub(super) fn ride(&self, manoeuvre: Manoeuvre, run: usize) -> Result<Trajectory, Error> {
+    pub(super) fn ride(&self, manoeuvre: Manoeuvre, run: usize) -> Result<Trajectory> {
         let info = self.model.info();
         let mut random = Random::of(&format!("{} {run}", manoeuvre.name()));
-        let state = |name: &str| {
-            let index = info.state_index(name);
-            index.ok_or_else(|| failed(&format!("the model has no `{name}`")))
-        };
-        let states: Vec<usize> =
-            (FELT.iter().map(|(name, _)| state(name))).collect::<Result<_, _>>()?;
+        let states = FELT.iter().map(|(name, _)| state(info, name));
+        let states: Vec<usize> = states.collect::<Result<_>>()?;
         let back = if run % 2 == 1 { PI } else { 0.0 };
         let heading = manoeuvre.heading() + back;
         let gain = self.gain(&states, manoeuvre.speed(2.0))?;
-        let sways: Vec<[f64; 4]> = FREQUENCIES
-            .iter()
-            .enumerate()
-            .map(|(k, frequency)| {
-                let part = 1.0 / (k + 1) as f64;
-                let w = frequency * random.between(0.8, 1.2);
-                [
-                    w,
-                    part * SWAY[0],
-                    part * SWAY[1],
-                    random.between(0.0, 2.0 * PI),
-                ]
-            })
-            .collect();
+        let sway = |(k, frequency): (usize, &f64)| {
+            let [ankles, hips] = SWAY.map(|amplitude| 1.0 / (k + 1) as f64 * amplitude);
+            let w = frequency * random.between(0.8, 1.2);
+            [w, ankles, hips, random.between(0.0, 2.0 * PI)]
+        };
+        let sways: Vec<[f64; 4]> = FREQUENCIES.iter().enumerate().map(sway).collect();
         let gravity = 9.81;
         let law = move |t: f64, x: &[f64], u: &mut [f64]| {
             let [angle, rate, change] = manoeuvre.turn(t);
@@ -222,8 +200,8 @@ impl Rider {
             }
         };
         let mut initial_state = info.initial_state();
-        initial_state[state("v")?] = manoeuvre.speed(0.0);
-        initial_state[state("psi")?] = heading;
+        initial_state[state(info, "v")?] = manoeuvre.speed(0.0);
+        initial_state[state(info, "psi")?] = heading;
         let motion = Simulation {
             parameters: self.parameters.clone(),
             initial_state,
@@ -237,23 +215,15 @@ impl Rider {
     }
 
     /// Linear-quadratic feedback about straight rolling.
-    fn gain(&self, states: &[usize], speed: f64) -> Result<DMatrix<f64>, Error> {
+    fn gain(&self, states: &[usize], speed: f64) -> Result<DMatrix<f64>> {
         let mut point = OperatingPoint::new(&self.model);
         point.p.clone_from(&self.parameters);
         point.x[states[0]] = speed;
-        if let Some(h) = self.model.info().state_index("chi") {
-            point.x[h] = 0.0;
-        }
+        point.x[state(self.model.info(), "chi")?] = 0.0;
         let inputs: Vec<usize> = (0..EFFORT.len()).collect();
         let equations = point.equations(&inputs).map_err(computation)?;
-        let places = states.iter().map(|state| {
-            let place = equations.states.iter().position(|kept| kept == state);
-            place.ok_or_else(|| failed("a state depends on others"))
-        });
-        let places: Vec<usize> = places.collect::<Result<_, _>>()?;
-        let system = reduce(&equations.system, &places)
-            .map_err(computation)?
-            .system;
+        let reduced = reduce(&equations.system, &rows(&equations, states)?);
+        let system = reduced.map_err(computation)?.system;
         let q = weights(&FELT.map(|(_, weight)| weight));
         let regulator = lqr::continuous(&system, &q, &weights(&EFFORT)).map_err(computation)?;
         Ok(regulator.gain)

@@ -9,7 +9,8 @@ use super::capture::{Captured, Imperfection};
 use super::laboratory::SKELETON;
 use super::random::Random;
 use super::rider::{Manoeuvre, Rider};
-use appell::{Error, sample};
+use crate::book::Result;
+use appell::sample;
 
 /// Number of rides.
 const RIDES: usize = 2;
@@ -29,7 +30,7 @@ pub struct Written {
 
 /// Writes a folder with a skeleton file and decelerations of a simulated rider, captured with 0.2 mm and 0.5°
 /// of noise. They are the same every time.
-pub fn capture(folder: &Path) -> Result<Written, Error> {
+pub fn capture(folder: &Path) -> Result<Written> {
     let skeleton = Skeleton::parse("skeleton.toml", SKELETON)?;
     let captured = Captured::new(&skeleton)?;
     let rider = Rider::new(captured.height())?;

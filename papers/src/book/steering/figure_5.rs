@@ -1,21 +1,19 @@
 //! Figure 5: all steady motions of the unicycle.
 
-use appell_analysis::{Cell, Chart, Point};
-use appell_report::figure::{Curve, Map, Series, Stroke};
+use appell_analysis::{Cell, Chart};
+use appell_report::figure::{Curve, Map, Stroke};
 
-use crate::book::claim::{Claim, Picture, Section, Statement, digits};
-use crate::book::computation;
-use crate::book::steady_motions::{
-    GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, cell_point, shown,
-};
-use appell::Error;
+use crate::book::claim::digits;
+use crate::book::drawing::line;
+use crate::book::steady_motions::{GRAVITY, Mechanism, RADIUS, SLIDER_MASS, WHEEL_MASS, shown};
+use crate::book::{Part, Result, Section};
 
 /// Largest tilt that is drawn, in degrees.
 const TILT_DEG: f64 = 60.0;
 /// Largest yaw rate that is drawn, in rad/s.
 const YAW: f64 = 10.0;
-const COMMAND: &str =
-    "appell stability unicycle --chart theta=-60deg..60deg,psi_dot=-10..10 --require 'z_A>=0'";
+/// Axes of the map.
+const AXES: [&str; 2] = ["theta", "psi_dot"];
 
 /// Kinds of cells: the feasible motions by the place of the mass, and the others. They are indices
 /// of colours.
@@ -31,27 +29,31 @@ const KINDS: [&str; 6] = [
     "",
     "mass above the centre",
 ];
-/// Axes of the map.
-const AXES: [&str; 2] = ["theta", "psi_dot"];
 
 /// The map, and the statements about it.
-pub(super) fn section(grid: usize) -> Result<Section, Error> {
+pub(super) fn section(grid: usize) -> Result<Section> {
     let unicycle = Mechanism::shipped("unicycle")?;
-    let tilt = TILT_DEG.to_radians();
-    let axes = [
-        ("theta", [-tilt, tilt], grid),
-        ("psi_dot", [-YAW, YAW], grid),
-    ];
-    let chart = unicycle.chart(&[], axes, &[("z_A", 0.0)])?;
+    let chart = turning_motions(unicycle, grid, &[], &[("z_A", 0.0)])?;
     let cells = kinds(unicycle, &chart)?;
-    let mut claims = Vec::new();
-    upright_turning(&mut claims, unicycle)?;
-    straight_rolling(&mut claims, unicycle)?;
-    tilted_spinning(&mut claims, unicycle)?;
-    areas(&mut claims, &cells);
-    claims.push(turning(unicycle, &chart)?);
-    let caption = "Turning motions by tilt and yaw rate. Blue: feasible, the mass below (light) or above (dark) \
-                   the wheel centre; grey: it would be at or below the ground. The paper leaves that area white.";
+    let mut part = Part::read(include_str!("figure_5.toml"))?;
+    upright_turning(&mut part, unicycle)?;
+    straight_rolling(&mut part, unicycle)?;
+    tilted_spinning(&mut part, unicycle)?;
+    for (key, kind) in [
+        ("mass_below", MASS_BELOW),
+        ("mass_above", MASS_ABOVE),
+        ("infeasible", INFEASIBLE),
+    ] {
+        let count = cells.iter().filter(|cell| **cell == Some(kind)).count();
+        let ours = format!("{count} of {} grid points", cells.len());
+        part.found(key, ours, count > 0)?;
+    }
+    let worst = farthest_from_41(unicycle, &chart, SLIDER_MASS)?;
+    let found = chart.cells.iter().flatten().count();
+    let ours = format!("{found} motions, each within {worst:.0e} of (41)");
+    let holds = worst < 1e-6 && found * 100 > chart.cells.len() * 98;
+    part.found("turning", ours, holds)?;
+
     let mut curves = special_motions(unicycle)?;
     curves.extend(edges(&chart));
     let map = Map {
@@ -63,15 +65,34 @@ pub(super) fn section(grid: usize) -> Result<Section, Error> {
         cells,
         curves,
     };
-    Ok(Section {
-        title: "Figure 5: steady motions of the unicycle".to_owned(),
-        about: "Without force on the mass, with the numbers of table I.".to_owned(),
-        claims,
-        pictures: vec![Picture {
-            svg: map.to_svg(),
-            caption: caption.to_owned(),
-        }],
-    })
+    part.picture("map", map.to_svg())?;
+    Ok(part.section())
+}
+
+/// The chart over tilt and yaw rate.
+pub(super) fn turning_motions(
+    mechanism: Mechanism,
+    grid: usize,
+    given: &[(&str, f64)],
+    least: &[(&str, f64)],
+) -> Result<Chart> {
+    let tilt = TILT_DEG.to_radians();
+    let axes = [
+        ("theta", [-tilt, tilt], grid),
+        ("psi_dot", [-YAW, YAW], grid),
+    ];
+    mechanism.chart(given, axes, least)
+}
+
+/// The largest distance of the mass from (41) in a chart.
+pub(super) fn farthest_from_41(unicycle: Mechanism, chart: &Chart, mass: f64) -> Result<f64> {
+    let mut worst: f64 = 0.0;
+    for cell in chart.cells.iter().flatten() {
+        let [tilt, yaw, r] = unicycle.cell_values(["theta", "psi_dot", "r"], chart, cell)?;
+        let wanted = place_of_mass(mass, tilt, yaw);
+        worst = worst.max((r - wanted).abs() / wanted.abs().max(1.0));
+    }
+    Ok(worst)
 }
 
 /// Yaw rate of non-tilted turning, (44).
@@ -80,7 +101,7 @@ fn upright_rate() -> f64 {
 }
 
 /// Spinning, tilted spinning, straight rolling and non-tilted turning.
-fn special_motions(unicycle: Mechanism) -> Result<Vec<Curve>, Error> {
+fn special_motions(unicycle: Mechanism) -> Result<Vec<Curve>> {
     let mut tilted = Vec::new();
     for sign in [-1.0, 1.0] {
         let range = [sign * 0.5, sign * YAW];
@@ -90,53 +111,35 @@ fn special_motions(unicycle: Mechanism) -> Result<Vec<Curve>, Error> {
     if let Some(first) = tilted.first_mut() {
         "tilted spinning".clone_into(&mut first.line.label);
     }
-    let curve = |label, tilt, yaw, stroke| Curve {
-        line: series(label, tilt, yaw),
+    let upright = |label, yaw: &[f64], stroke| Curve {
+        line: line(label, vec![0.0; yaw.len()], yaw.to_vec()),
         stroke,
     };
-    let spinning = curve("spinning", vec![0.0; 2], vec![-YAW, YAW], Stroke::Solid);
-    let rolling = curve("straight rolling", vec![0.0], vec![0.0], Stroke::Squares);
     let rate = upright_rate();
-    let turning = curve(
-        "non-tilted turning",
-        vec![0.0; 2],
-        vec![-rate, rate],
-        Stroke::Discs,
-    );
-    let mut curves = vec![spinning];
+    let mut curves = vec![upright("spinning", &[-YAW, YAW], Stroke::Solid)];
     curves.extend(tilted);
-    curves.extend([rolling, turning]);
+    curves.push(upright("straight rolling", &[0.0], Stroke::Squares));
+    curves.push(upright("non-tilted turning", &[-rate, rate], Stroke::Discs));
     Ok(curves)
 }
 
 /// The edges of the areas.
 fn edges(chart: &Chart) -> impl Iterator<Item = Curve> {
-    let [tilt, yaw] = AXES.map(|name| shown(name).scale);
-    chart.edges.iter().map(move |edge| Curve {
-        line: series(
-            "",
-            edge.points.iter().map(|at| at[0] * tilt).collect(),
-            edge.points.iter().map(|at| at[1] * yaw).collect(),
-        ),
-        stroke: Stroke::Thin,
+    let scales = AXES.map(|name| shown(name).scale);
+    chart.edges.iter().map(move |edge| {
+        let [x, y] = [0, 1].map(|k| edge.points.iter().map(|at| at[k] * scales[k]).collect());
+        Curve {
+            line: line("", x, y),
+            stroke: Stroke::Thin,
+        }
     })
 }
 
-fn series(label: &str, x: Vec<f64>, y: Vec<f64>) -> Series {
-    Series {
-        label: label.to_owned(),
-        x,
-        y,
-    }
-}
-
 /// The kind of each cell of a chart; `None` without a motion.
-fn kinds(unicycle: Mechanism, chart: &Chart) -> Result<Vec<Option<usize>>, Error> {
-    let base = Point::initial(unicycle.0);
-    let kind = |cell: &Cell| -> Result<usize, Error> {
-        let point = cell_point(chart, &cell.unknowns, &base);
-        let [mass, tilt] = ["z_A", "theta"].map(|name| unicycle.value(name, &point));
-        let (mass, centre) = (mass?, RADIUS * tilt?.cos());
+fn kinds(unicycle: Mechanism, chart: &Chart) -> Result<Vec<Option<usize>>> {
+    let kind = |cell: &Cell| -> Result<usize> {
+        let [mass, tilt] = unicycle.cell_values(["z_A", "theta"], chart, cell)?;
+        let centre = RADIUS * tilt.cos();
         Ok(if mass <= 0.0 {
             INFEASIBLE
         } else if mass < centre {
@@ -150,73 +153,50 @@ fn kinds(unicycle: Mechanism, chart: &Chart) -> Result<Vec<Option<usize>>, Error
 }
 
 /// (44): turning without tilt.
-fn upright_turning(claims: &mut Vec<Claim>, unicycle: Mechanism) -> Result<(), Error> {
-    let command = "appell steady unicycle --fix theta=0 --fix r=0.1";
-    let problem = unicycle.problem(&[("theta", 0.0), ("r", 0.1)])?;
-    let motions = problem.solve_isolated(60).map_err(computation)?;
-    let value = |name: &str| -> Result<Vec<f64>, Error> {
-        motions
-            .iter()
-            .map(|motion| unicycle.value(name, &motion.point))
-            .collect()
-    };
-    let (yaw, pitch) = (value("psi_dot")?, value("phi_dot")?);
+fn upright_turning(part: &mut Part, unicycle: Mechanism) -> Result<()> {
+    let motions = unicycle.isolated(&[("theta", 0.0), ("r", 0.1)])?;
+    let (mut yaw, mut pitch) = (Vec::new(), Vec::new());
+    for motion in &motions {
+        let values = unicycle.values(["psi_dot", "phi_dot"], motion)?;
+        yaw.push(values[0]);
+        pitch.push(values[1]);
+    }
     let rate = upright_rate();
     let agree = yaw.iter().map(|yaw| digits(rate, yaw.abs()));
     let agree = agree.min().unwrap_or(0);
-    let statement = Statement {
-        place: "figure 5, (44)",
-        published: "non-tilted turning at ψ̇₁,₂ = ±√(2 m₀ g/(3 m R)) only, black dots",
-        command,
-    };
     let ours = format!("{yaw:?} rad/s, in {agree} digits");
-    claims.push(statement.found(ours, agree >= 10 && yaw.len() == 2));
+    part.found("upright_turning", ours, agree >= 10 && yaw.len() == 2)?;
 
     let pairs = yaw.iter().zip(&pitch);
     let agree = pairs.map(|(yaw, pitch)| digits(yaw * 0.1 / RADIUS, *pitch));
     let agree = agree.min().unwrap_or(0);
-    let statement = Statement {
-        place: "(44)",
-        published: "there φ̇ = ψ̇ r/R, here for r = 0.1 m",
-        command,
-    };
     let ours = format!("{pitch:?} rad/s, in {agree} digits");
-    claims.push(statement.found(ours, agree >= 10));
-    Ok(())
+    part.found("pitch_rate", ours, agree >= 10)
 }
 
 /// (43): straight rolling.
-fn straight_rolling(claims: &mut Vec<Claim>, unicycle: Mechanism) -> Result<(), Error> {
-    let problem = unicycle.problem(&[("psi_dot", 0.0), ("speed", 2.0)])?;
-    let motions = problem.solve_isolated(60).map_err(computation)?;
-    let vanishes = |name: &str| {
-        motions
-            .iter()
-            .all(|m| unicycle.value(name, &m.point).is_ok_and(|v| v.abs() < 1e-9))
-    };
-    let statement = Statement {
-        place: "figure 5, (43)",
-        published: "straight rolling: ϑ = 0, r = 0, any pitch rate, black square",
-        command: "appell steady unicycle --fix psi_dot=0 --fix speed=2",
-    };
+fn straight_rolling(part: &mut Part, unicycle: Mechanism) -> Result<()> {
+    let motions = unicycle.isolated(&[("psi_dot", 0.0), ("speed", 2.0)])?;
+    let mut holds = motions.len() == 1;
+    for motion in &motions {
+        let values = unicycle.values(["theta", "r"], motion)?;
+        holds &= values.iter().all(|value| value.abs() < 1e-9);
+    }
     let ours = format!(
         "{} motion at ψ̇ = 0 and 2 m/s, upright and with the mass in the middle",
         motions.len()
     );
-    let holds = motions.len() == 1 && vanishes("theta") && vanishes("r");
-    claims.push(statement.found(ours, holds));
-    Ok(())
+    part.found("straight_rolling", ours, holds)
 }
 
 /// (46): spinning on the spot, along the tilted branch.
-fn tilted_spinning(claims: &mut Vec<Claim>, unicycle: Mechanism) -> Result<(), Error> {
+fn tilted_spinning(part: &mut Part, unicycle: Mechanism) -> Result<()> {
     /// Below it in rad, a point is on the upright branch.
     const UPRIGHT: f64 = 0.01;
     let branches = unicycle.branches(&[("phi_dot", 0.0)], "psi_dot", [0.5, YAW])?;
     let (mut agree, mut tilted, mut upright, mut above) = (15, 0, 0, true);
     for at in branches.iter().flat_map(|branch| &branch.points) {
-        let [tilt, r] = ["theta", "r"].map(|name| unicycle.value(name, &at.point));
-        let (tilt, r) = (tilt?, r?);
+        let [tilt, r] = unicycle.values(["theta", "r"], &at.point)?;
         if tilt.abs() < UPRIGHT {
             upright += 1;
             continue;
@@ -225,73 +205,11 @@ fn tilted_spinning(claims: &mut Vec<Claim>, unicycle: Mechanism) -> Result<(), E
         above &= r * tilt > 0.0;
         tilted += 1;
     }
-    let command = "appell steady unicycle --fix phi_dot=0 --along psi_dot=0.5..10";
-    let statement = Statement {
-        place: "figure 5, dashed and solid",
-        published: "tilted spinning lies on the curves (46), dashed lines; upright spinning on ϑ = 0",
-        command,
-    };
     let ours = format!("{tilted} tilted points in {agree} digits, {upright} upright ones");
-    claims.push(statement.found(ours, agree >= 9 && tilted > 20 && upright > 20));
-    let statement = Statement {
-        place: "figure 5, (46)",
-        published: "on the dashed lines the mass is above the centre",
-        command,
-    };
+    let holds = agree >= 9 && tilted > 20 && upright > 20;
+    part.found("tilted_spinning", ours, holds)?;
     let ours = format!("r ϑ > 0 at all {tilted} points: {above}");
-    claims.push(statement.found(ours, above && tilted > 0));
-    Ok(())
-}
-
-/// The coloured areas.
-fn areas(claims: &mut Vec<Claim>, cells: &[Option<usize>]) {
-    for (kind, place, published) in [
-        (
-            MASS_BELOW,
-            "figure 5, light blue",
-            "feasible motions with the mass below the wheel centre, 0 < z_A < z_G",
-        ),
-        (
-            MASS_ABOVE,
-            "figure 5, light purple",
-            "feasible motions with the mass above the wheel centre, z_A > z_G",
-        ),
-        (
-            INFEASIBLE,
-            "figure 5, white",
-            "motions that are not feasible, z_A ≤ 0",
-        ),
-    ] {
-        let count = cells.iter().filter(|cell| **cell == Some(kind)).count();
-        let statement = Statement {
-            place,
-            published,
-            command: COMMAND,
-        };
-        let ours = format!("{count} of {} grid points", cells.len());
-        claims.push(statement.found(ours, count > 0));
-    }
-}
-
-/// Every motion against (41).
-fn turning(unicycle: Mechanism, chart: &Chart) -> Result<Claim, Error> {
-    let base = Point::initial(unicycle.0);
-    let mut worst: f64 = 0.0;
-    for cell in chart.cells.iter().flatten() {
-        let point = cell_point(chart, &cell.unknowns, &base);
-        let [tilt, yaw, r] = ["theta", "psi_dot", "r"].map(|name| unicycle.value(name, &point));
-        let wanted = place_of_mass(SLIDER_MASS, tilt?, yaw?);
-        worst = worst.max((r? - wanted).abs() / wanted.abs().max(1.0));
-    }
-    let found = chart.cells.iter().flatten().count();
-    let statement = Statement {
-        place: "figure 5, (41)",
-        published: "every tilt and yaw rate has one turning motion, with r by (41)",
-        command: COMMAND,
-    };
-    let ours = format!("{found} motions, each within {worst:.0e} of (41)");
-    let holds = worst < 1e-6 && found * 100 > chart.cells.len() * 98;
-    Ok(statement.found(ours, holds))
+    part.found("above_in_spinning", ours, above && tilted > 0)
 }
 
 /// (46): place of the mass in tilted spinning, with the numbers of table I.
@@ -302,7 +220,7 @@ pub(super) fn place_in_spinning(tilt: f64) -> f64 {
 }
 
 /// (41) with the numbers of table I except for the sliding mass.
-pub(super) fn place_of_mass(m0: f64, tilt: f64, yaw: f64) -> f64 {
+fn place_of_mass(m0: f64, tilt: f64, yaw: f64) -> f64 {
     let (s, c, m) = (tilt.sin(), tilt.cos(), WHEEL_MASS);
     m * RADIUS * (yaw * yaw * RADIUS * c + 2.0 * GRAVITY) * s * c
         / (6.0 * yaw * yaw * m * RADIUS * c.powi(3) - 4.0 * m0 * GRAVITY)

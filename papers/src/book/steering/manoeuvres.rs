@@ -1,7 +1,6 @@
 //! The closed loops of the paper on the nonlinear unicycle.
 
-use std::fmt::Write as _;
-
+use crate::book::{Result, failed};
 use crate::steering::OUTPUTS;
 use appell_runtime::integrate::Options;
 use appell_runtime::simulate::{Sampling, SimulationError};
@@ -9,8 +8,6 @@ use appell_runtime::trajectory::Extras;
 use appell_runtime::{Simulation, Trajectory};
 
 use super::tables::placed;
-use crate::book::{computation, failed};
-use appell::Error;
 use appell::engine::Equations;
 use appell::inputs::controller::Plan;
 use appell::inputs::feedback;
@@ -38,6 +35,14 @@ impl Path {
         }
     }
 
+    /// The same as printed: it jumps.
+    pub(super) fn printed_lane(width: f64) -> Self {
+        Self {
+            amplitude: width,
+            ..Self::lane(width)
+        }
+    }
+
     /// A right turn by 90°, as corrected: (71).
     pub(super) const TURN: Self = Self {
         turn: true,
@@ -46,7 +51,7 @@ impl Path {
     };
 
     /// The desired value.
-    pub(super) fn at(self, t: f64) -> f64 {
+    fn at(self, t: f64) -> f64 {
         if t < 2.0 {
             0.0
         } else if t < 7.0 {
@@ -54,6 +59,11 @@ impl Path {
         } else {
             self.end
         }
+    }
+
+    /// The desired values at the times of a motion.
+    pub(super) fn along(self, motion: &Trajectory) -> Vec<f64> {
+        motion.times().iter().map(|t| self.at(*t)).collect()
     }
 
     /// Its jump at 7 s.
@@ -88,7 +98,7 @@ impl Run {
     }
 
     /// Ten seconds, recorded every `interval` seconds; shorter if the motion ends early.
-    pub(super) fn motion(self, interval: f64) -> Result<(Trajectory, Option<String>), Error> {
+    pub(super) fn motion(self, interval: f64) -> Result<(Trajectory, Option<String>)> {
         let source = Source::find("unicycle")?;
         let equations = Equations::at_hand(&source)?;
         let mut setup = Setup::new(&source.file, &source.text, equations.model().info())?;
@@ -112,37 +122,32 @@ impl Run {
         };
         match simulation.run() {
             Ok(motion) => Ok((motion, None)),
-            Err(error @ SimulationError::Integration { .. }) => {
+            Err(error) => {
                 let reason = error.to_string();
-                let SimulationError::Integration { trajectory, .. } = error else {
-                    return Err(failed(&reason));
-                };
-                Ok((*trajectory, Some(reason)))
+                match error {
+                    SimulationError::Integration { trajectory, .. } => {
+                        Ok((*trajectory, Some(reason)))
+                    }
+                    _ => Err(failed(&reason)),
+                }
             }
-            Err(error) => Err(computation(error)),
         }
     }
 
     /// The law as a file for `simulate --feedback`.
-    fn law(self) -> Result<String, Error> {
+    fn law(self) -> Result<String> {
         let outputs = self.path.outputs();
         let gains = placed(self.gains_at, outputs)?;
         let gains: Vec<String> = gains.iter().map(|gain| format!("{gain:?}")).collect();
         let followed = outputs.last().copied().unwrap_or_default();
         let Path { amplitude, end, .. } = self.path;
-        let mut text = format!(
+        Ok(format!(
             "mechanism = \"unicycle\"\ninput = \"u\"\nstates = {outputs:?}\ngains = [{}]\n\
-             switching_times_s = [2, 7]\n",
-            gains.join(", ")
-        );
-        // Writing to a string cannot fail.
-        let _ = writeln!(
-            text,
-            "[desired]\n{followed} = \"if(t < 2, 0, if(t < 7, {amplitude:?}*(cos(pi*(t - 2)/5) - 1), \
-             {end:?}))\"\n[initial]\nomega_2 = \"{:?}[m/s]/R\"",
+             switching_times_s = [2, 7]\n[desired]\n{followed} = \"if(t < 2, 0, if(t < 7, \
+             {amplitude:?}*(cos(pi*(t - 2)/5) - 1), {end:?}))\"\n[initial]\nomega_2 = \"{:?}[m/s]/R\"\n",
+            gains.join(", "),
             self.speed
-        );
-        Ok(text)
+        ))
     }
 }
 

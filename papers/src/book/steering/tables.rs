@@ -1,15 +1,14 @@
 //! Tables I, II and III: parameters, and gains that place all poles at −8 1/s.
 
-use crate::steering::{GAINS, Gains, MISPRINT, OUTPUTS};
+use crate::book::{Part, Result, Section, computation, rows, state};
+use crate::steering::{GAINS, MISPRINT, OUTPUTS};
 use appell_analysis::control::operating_point::{MotionEquations, OperatingPoint};
 use appell_analysis::control::reduction::{Subsystem, reduce};
 use appell_analysis::control::robust_placement;
 use nalgebra::{Complex, DMatrix};
 
-use crate::book::claim::{Claim, Section, Statement, shown};
+use crate::book::claim::shown;
 use crate::book::steady_motions::{Mechanism, RADIUS};
-use crate::book::{computation, failed};
-use appell::Error;
 
 /// Real part of all poles in 1/s.
 pub(super) const POLE: f64 = -8.0;
@@ -23,135 +22,74 @@ const LETTERS: [(&str, &str); 6] = [
     ("P_y", "N/m"),
 ];
 
-/// Table I: letter in the spec, value.
+/// Table I: letter in the spec, unit, value.
 const PARAMETERS: [(&str, &str, f64); 4] = [
-    ("m", "kg", 10.0),
-    ("m0", "kg", 5.0),
-    ("R", "m", 0.3),
-    ("g", "m/s²", 9.81),
+    ("m", " kg", 10.0),
+    ("m0", " kg", 5.0),
+    ("R", " m", 0.3),
+    ("g", " m/s²", 9.81),
 ];
 
 /// The linearised unicycle in straight rolling at a speed in m/s, and indices of the outputs among
 /// its states.
-pub(super) fn straight(
-    speed: f64,
-    outputs: &[&str],
-) -> Result<(MotionEquations, Vec<usize>), Error> {
+pub(super) fn straight(speed: f64, outputs: &[&str]) -> Result<(MotionEquations, Vec<usize>)> {
     let unicycle = Mechanism::shipped("unicycle")?;
     let info = unicycle.0.info();
-    let index = |name: &str| {
-        let state = info.state_index(name);
-        state.ok_or_else(|| failed(&format!("no state `{name}`")))
-    };
     let mut point = OperatingPoint::new(unicycle.0);
     point.x.fill(0.0);
-    point.x[index("omega_2")?] = speed / RADIUS;
+    point.x[state(info, "omega_2")?] = speed / RADIUS;
     let equations = point.equations(&[0]).map_err(computation)?;
-    let row = |name: &&str| {
-        let state = index(name)?;
-        let row = equations.states.iter().position(|s| *s == state);
-        row.ok_or_else(|| failed(&format!("`{name}` is no state of the equations")))
-    };
-    let outputs: Vec<usize> = outputs.iter().map(row).collect::<Result<_, _>>()?;
+    let outputs = outputs.iter().map(|name| state(info, name));
+    let outputs = rows(&equations, &outputs.collect::<Result<Vec<_>>>()?)?;
     Ok((equations, outputs))
 }
 
 /// The equations of the outputs about it.
-pub(super) fn steered(speed: f64, outputs: &[&str]) -> Result<Subsystem, Error> {
+pub(super) fn steered(speed: f64, outputs: &[&str]) -> Result<Subsystem> {
     let (equations, outputs) = straight(speed, outputs)?;
     reduce(&equations.system, &outputs).map_err(computation)
 }
 
 /// Gains that place all poles of the outputs.
-pub(super) fn placed(speed: f64, outputs: &[&str]) -> Result<DMatrix<f64>, Error> {
+pub(super) fn placed(speed: f64, outputs: &[&str]) -> Result<DMatrix<f64>> {
     let poles = vec![Complex::from(POLE); outputs.len()];
     let placed = robust_placement::place(&steered(speed, outputs)?.system, &poles);
     Ok(placed.map_err(computation)?.gain)
 }
 
 /// The tables.
-pub(super) fn section() -> Result<Section, Error> {
-    let mut claims = Vec::new();
-    let unicycle = Mechanism::shipped("unicycle")?;
-    let info = unicycle.0.info();
-    for (name, unit, value) in PARAMETERS {
-        let index = info.parameter_index(name);
-        let ours = index.map_or(f64::NAN, |index| info.parameters[index].value);
-        let published = format!("{name} = {value} {unit}");
-        claims.push(
-            Statement {
-                place: "table I",
-                published: &published,
-                command: "appell check unicycle",
-            }
-            .number([value, ours], 15),
-        );
-    }
-    for Gains {
-        table,
-        speed,
-        printed,
-    } in GAINS
-    {
-        let outputs = &OUTPUTS[..printed.len()];
-        let gains = placed(speed, outputs)?;
-        let command = format!(
-            "appell control unicycle --at 'omega_2={speed}[m/s]/R' --outputs {} --poles {POLE}",
-            outputs.join(",")
-        );
-        for ((printed, gain), (letter, unit)) in printed.iter().zip(gains.iter()).zip(LETTERS) {
-            claims.push(entry(
-                table,
-                speed,
-                [letter, unit, printed],
-                *gain,
-                &command,
-            ));
+pub(super) fn section(_: usize) -> Result<Section> {
+    let mut part = Part::read(include_str!("tables.toml"))?;
+    let info = Mechanism::shipped("unicycle")?.0.info();
+    part.parameters(info, &PARAMETERS)?;
+    for column in GAINS.iter() {
+        let outputs = &OUTPUTS[..column.printed.len()];
+        part.set("table", &column.table);
+        part.set("speed", column.speed);
+        part.set("outputs", outputs.join(","));
+        let gains = placed(column.speed, outputs)?;
+        let rows = column.printed.iter().zip(gains.iter()).zip(LETTERS);
+        for ((printed, gain), (letter, unit)) in rows {
+            part.set("gain", format!("{letter} = {printed} {unit}"));
+            entry(&mut part, printed, *gain)?;
         }
     }
-    Ok(Section {
-        title: "Tables".to_owned(),
-        about: "Gains by pole placement on the outputs of the linearised unicycle: derived equations, \
-                the subsystem that the outputs form, one input. A printed gain has two decimals; it \
-                is reproduced where ours rounds to it."
-            .to_owned(),
-        claims,
-        pictures: Vec::new(),
-    })
+    Ok(part.section())
 }
 
 /// One gain and the printed one, to which it must round.
-fn entry(
-    table: &str,
-    speed: f64,
-    [letter, unit, printed]: [&str; 3],
-    gain: f64,
-    command: &str,
-) -> Claim {
-    let decimals = printed
-        .split_once('.')
-        .map_or(0, |(_, decimals)| decimals.len());
-    let rounds = format!("{gain:.decimals$}") == printed;
-    let place = format!("{table}, {speed} m/s");
-    let published = format!("{letter} = {printed} {unit}");
-    let claim = Statement {
-        place: &place,
-        published: &published,
-        command,
-    }
-    .found(shown(gain), rounds);
+fn entry(part: &mut Part, printed: &str, gain: f64) -> Result<()> {
     let [misprint, right] = MISPRINT;
     if printed == misprint {
         // 5 R² m p⁵/(8 φ̇ g)
-        let as_expected = format!("{gain:.2}") == right;
-        let claim = claim.erratum("misprint, two digits swapped");
-        return Claim {
-            as_expected,
-            ..claim
-        };
+        return part.found("misprint", shown(gain), format!("{gain:.2}") == right);
     }
-    let digits = printed.chars().filter(char::is_ascii_digit).count();
-    claim
-        .exactly()
-        .noted(format!("beside all {digits} printed digits"))
+    let decimals = printed.split_once('.');
+    let decimals = decimals.map_or(0, |(_, decimals)| decimals.len());
+    let rounds = format!("{gain:.decimals$}") == printed;
+    part.set(
+        "digits",
+        printed.chars().filter(char::is_ascii_digit).count(),
+    );
+    part.found("gain", shown(gain), rounds)
 }

@@ -4,12 +4,12 @@ mod figure;
 mod page;
 
 use std::fmt::Write as _;
-use std::ops::Range;
 
 use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
 use appell_recordings::{Channel, DataSet};
 
 use crate::recording;
+use crate::tables::Part;
 use crate::text::{horizon, number, short, table};
 
 pub use figure::figure;
@@ -32,31 +32,6 @@ const FAIR: f64 = 10.0;
 /// Posterior standard deviation, in units of the prior one, above which a direction is undetermined.
 const UNKNOWN: f64 = 100.0;
 
-/// A table with its heading.
-struct Part {
-    heading: String,
-    /// The first one holds the names of the columns.
-    rows: Vec<Vec<String>>,
-    /// Columns with right-aligned numbers.
-    numbers: Range<usize>,
-    /// Whether the numbers are correlations, which the page colours.
-    is_heat: bool,
-    /// A note below the table; may be empty.
-    note: String,
-}
-
-impl Part {
-    fn new<const N: usize>(heading: &str, columns: [&str; N], numbers: Range<usize>) -> Self {
-        Self {
-            heading: heading.to_owned(),
-            rows: vec![columns.map(str::to_owned).to_vec()],
-            numbers,
-            is_heat: false,
-            note: String::new(),
-        }
-    }
-}
-
 /// The report as text tables.
 pub fn text(set: &DataSet, answer: &Answer) -> String {
     let mut text = recording::text(set);
@@ -67,8 +42,8 @@ pub fn text(set: &DataSet, answer: &Answer) -> String {
     for part in parts(set, answer) {
         let rows = table(&part.rows, part.numbers);
         let _ = write!(text, "\n{}\n\n{rows}", part.heading);
-        if !part.note.is_empty() {
-            let _ = writeln!(text, "\n{}", part.note);
+        for note in &part.notes {
+            let _ = writeln!(text, "\n{note}");
         }
     }
     if answer.held_out.is_empty() {
@@ -132,15 +107,10 @@ fn parameters(answer: &Answer) -> Part {
             remark(estimate).to_owned(),
         ]);
     }
-    if is_bent(answer) {
-        BENT.clone_into(&mut part.note);
-    }
+    let is_bent = |(error, _): &(&HeldOut, String)| error.fitted > WORSE * error.nominal;
+    let bent = ahead(answer).filter(is_bent);
+    part.notes.extend(bent.map(|_| BENT.to_owned()));
     part
-}
-
-/// Whether the fitted model predicts worse than the nominal one on held-out runs.
-fn is_bent(answer: &Answer) -> bool {
-    ahead(answer).is_some_and(|(error, _)| error.fitted > WORSE * error.nominal)
 }
 
 fn remark(estimate: &Estimate) -> &'static str {
@@ -170,6 +140,11 @@ fn repeatability(answer: &Answer) -> Part {
         let lowest = values.clone().fold(f64::INFINITY, f64::min);
         let highest = values.fold(f64::NEG_INFINITY, f64::max);
         let relative = one.spread / estimate.wider_std();
+        let remark = if one.differs {
+            "differs from run to run"
+        } else {
+            ""
+        };
         part.rows.push(vec![
             one.name.clone(),
             in_unit(estimate, lowest),
@@ -177,19 +152,14 @@ fn repeatability(answer: &Answer) -> Part {
             in_unit(estimate, one.spread),
             number(relative),
             estimate.quantity.unit.to_string(),
-            if one.differs {
-                "differs from run to run"
-            } else {
-                ""
-            }
-            .to_owned(),
+            remark.to_owned(),
         ]);
     }
-    "The spread is a standard deviation between the runs, beyond that of the single values. An interval holds for \
+    let note = "The spread is a standard deviation between the runs, beyond that of the single values. An interval holds for \
      the value that all runs share; another run may have one that differs by the spread. A parameter differs from run \
      to run where values as far apart would be found in less than 5 % of such tables if all runs shared one (Q test, \
-     Bonferroni)."
-        .clone_into(&mut part.note);
+     Bonferroni).";
+    part.notes.push(note.to_owned());
     part
 }
 
@@ -198,10 +168,9 @@ fn correlation(answer: &Answer) -> Part {
     let names: Vec<String> = (answer.parameters.iter())
         .map(|estimate| estimate.quantity.name.to_string())
         .collect();
-    let mut part = Part::new("Correlation of the parameter errors", [], 1..1);
-    part.numbers = 1..1 + names.len();
+    let numbers = 1..1 + names.len();
+    let mut part = Part::new("Correlation of the parameter errors", [""], numbers);
     part.is_heat = true;
-    part.rows[0].push(String::new());
     part.rows[0].extend(names.clone());
     for (name, row) in names.into_iter().zip(answer.correlation.row_iter()) {
         // Avoids a negative zero.
@@ -260,28 +229,29 @@ fn levels(set: &DataSet, answer: &Answer) -> Part {
     let heading = "Measurement noise and process noise (standard deviations)";
     let columns = ["level", "of", "nominal model", "fitted model", "unit"];
     let mut part = Part::new(heading, columns, 2..4);
-    for (what, levels) in [
-        ("measurement noise", &answer.noise),
-        ("process noise", &answer.disturbances),
-    ] {
-        for level in levels {
-            let channel = if what == "measurement noise" {
-                channel(set, &level.name)
-            } else {
-                None
-            };
-            let shown = |value| {
-                let value = channel.map_or(value, |channel| channel.unit.from_si(value));
-                format!("{value:.3e}")
-            };
-            part.rows.push(vec![
-                what.to_owned(),
-                level.name.clone(),
-                shown(level.nominal),
-                shown(level.fitted),
-                channel.map_or_else(|| "SI".to_owned(), |channel| channel.unit.text.clone()),
-            ]);
-        }
+    let noise = answer
+        .noise
+        .iter()
+        .map(|level| ("measurement noise", level));
+    let process = answer
+        .disturbances
+        .iter()
+        .map(|level| ("process noise", level));
+    for (what, level) in noise.chain(process) {
+        let channel = channel(set, &level.name).filter(|_| what == "measurement noise");
+        let shown = |value| {
+            let value = channel.map_or(value, |channel| channel.unit.from_si(value));
+            format!("{value:.3e}")
+        };
+        part.rows.push(vec![
+            what.to_owned(),
+            level.name.clone(),
+            shown(level.nominal),
+            shown(level.fitted),
+            channel
+                .map_or("SI", |channel| &channel.unit.text)
+                .to_owned(),
+        ]);
     }
     part
 }
@@ -362,7 +332,7 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
             size(error.fitted),
         ]);
     }
-    part.note = verdict(answer).unwrap_or_default();
+    part.notes.extend(verdict(answer));
     part
 }
 

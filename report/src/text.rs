@@ -2,25 +2,17 @@
 
 /// Rows with columns as wide as needed; the columns from `numbers` on are right-aligned.
 pub fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> String {
-    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let width = |column: usize| {
-        rows.iter()
-            .filter_map(|row| row.get(column))
-            .map(|cell| cell.chars().count())
-            .max()
-            .unwrap_or(0)
-    };
-    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let length = |cell: &str| cell.chars().count();
+    let widths = widths(rows, length);
     let mut text = String::new();
     for row in rows {
         let mut line = String::new();
         for (column, cell) in row.iter().enumerate() {
-            let padding = " ".repeat(widths[column] - cell.chars().count());
-            let right = numbers.contains(&column);
-            let (before, after) = if right {
-                (padding.as_str(), "")
+            let padding = " ".repeat(widths[column] - length(cell));
+            let [before, after] = if numbers.contains(&column) {
+                [padding.as_str(), ""]
             } else {
-                ("", padding.as_str())
+                ["", padding.as_str()]
             };
             line.extend(["  ", before, cell, after]);
         }
@@ -28,6 +20,16 @@ pub fn table(rows: &[Vec<String>], numbers: std::ops::Range<usize>) -> String {
         text.push('\n');
     }
     text
+}
+
+/// Widths of the columns of some rows.
+pub(crate) fn widths(rows: &[Vec<String>], width: impl Fn(&str) -> usize) -> Vec<usize> {
+    let columns = rows.iter().map(Vec::len).max().unwrap_or(0);
+    let widest = |column: usize| {
+        let cells = rows.iter().filter_map(|row| row.get(column));
+        cells.map(|cell| width(cell)).max().unwrap_or(0)
+    };
+    (0..columns).map(widest).collect()
 }
 
 /// A number with its unit; the unit 1 is omitted.

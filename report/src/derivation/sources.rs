@@ -23,22 +23,15 @@ pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivatio
         mechanism,
         derivation,
     };
-    let blocks = || page.sections.iter().flat_map(|section| &section.blocks);
-    let equations = blocks().filter_map(|block| match block {
+    let own: Vec<Own> = page.equations().map(|e| sources.of(e)).collect();
+    let closed = closed(&own).into_iter();
+    let blocks = (page.sections.iter_mut()).flat_map(|section| &mut section.blocks);
+    let equations = blocks.filter_map(|block| match block {
         PageBlock::Equations(equations) => Some(equations),
         _ => None,
     });
-    let own: Vec<Own> = equations.flatten().map(|e| sources.of(e)).collect();
-    let mut closed = closed(&own).into_iter();
-    for section in &mut page.sections {
-        for block in &mut section.blocks {
-            let PageBlock::Equations(equations) = block else {
-                continue;
-            };
-            for (equation, lines) in equations.iter_mut().zip(&mut closed) {
-                equation.lines = lines.into_iter().collect();
-            }
-        }
+    for (equation, lines) in equations.flatten().zip(closed) {
+        equation.lines = lines.into_iter().collect();
     }
 }
 
@@ -46,18 +39,17 @@ pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivatio
 fn letters(mechanism: &Mechanism) -> FxHashMap<Letter, usize> {
     let parameters = mechanism.parameters.iter().map(|p| &p.label);
     let inputs = mechanism.inputs.iter().map(|u| &u.label);
-    let fixed = parameters.chain(inputs);
     let moving = (mechanism.coordinates.iter().map(|q| &q.label))
         .chain(mechanism.pseudo_velocities.iter().map(|w| &w.label))
         .chain(mechanism.signals.iter().map(|s| &s.label));
+    let all = parameters.chain(inputs).map(|label| (label, 0));
     let mut letters = FxHashMap::default();
-    for label in fixed {
-        letters.insert(Letter::of(&label.name), label.line);
-    }
-    for label in moving {
-        let letter = Letter::of(&label.name);
-        letters.insert(letter.clone().dot(), label.line);
-        letters.insert(letter.clone().dot().dot(), label.line);
+    for (label, dots) in all.chain(moving.map(|label| (label, 2))) {
+        let mut letter = Letter::of(&label.name);
+        for _ in 0..dots {
+            letters.insert(letter.clone(), label.line);
+            letter = letter.dot();
+        }
         letters.insert(letter, label.line);
     }
     letters
@@ -84,8 +76,11 @@ struct Sources<'a> {
 impl Sources<'_> {
     fn of(&self, equation: &Equation) -> Own {
         let mut letters = FxHashSet::default();
-        gather(&equation.left, &mut letters);
-        gather(&equation.right, &mut letters);
+        for side in [&equation.left, &equation.right] {
+            side.clone().for_each_letter(&mut |letter| {
+                letters.insert(letter.clone());
+            });
+        }
         let mut lines = BTreeSet::new();
         if let Some(about) = equation.about {
             self.subject(about, &mut lines);
@@ -121,10 +116,8 @@ impl Sources<'_> {
             About::Inertia(i, j) => {
                 self.bodies_where(|moves| moves[i] && moves[j], lines);
                 let gibbs = &self.derivation.gibbs;
-                self.symbols_in(
-                    &[gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]],
-                    lines,
-                );
+                let parts = [gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]];
+                self.symbols_in(&parts, lines);
             }
             About::Force(i) => {
                 self.loads_where(|enters| enters[i], lines);
@@ -163,13 +156,12 @@ impl Sources<'_> {
             .chain((mechanism.coordinates.iter().map(|q| q.label.line)).zip(&symbols.coordinates))
             .chain((mechanism.pseudo_velocities.iter().map(|w| w.label.line)).zip(&symbols.speeds))
             .chain((mechanism.inputs.iter().map(|u| u.label.line)).zip(&symbols.inputs));
-        let symbols =
-            quantities.filter_map(|(line, &symbol)| Some((line, graph.as_symbol(symbol)?)));
-        for (line, symbol) in symbols {
-            if all.iter().any(|&expr| graph.mentions(expr, &[symbol])) {
-                lines.insert(line);
-            }
-        }
+        let occurs = |&symbol: &Expr| {
+            let id = graph.as_symbol(symbol);
+            id.is_some_and(|id| all.iter().any(|&expr| graph.mentions(expr, &[id])))
+        };
+        let occurring = quantities.filter(|(_, symbol)| occurs(symbol));
+        lines.extend(occurring.map(|(line, _)| line));
     }
 
     fn bodies_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
@@ -254,49 +246,4 @@ fn closed(own: &[Own]) -> Vec<BTreeSet<usize>> {
         lines
     };
     (0..own.len()).map(all).collect()
-}
-
-/// All letters of a formula.
-fn gather(math: &Math, letters: &mut FxHashSet<Letter>) {
-    let mut all = |parts: &[Math]| {
-        for part in parts {
-            gather(part, letters);
-        }
-    };
-    match math {
-        Math::Letter(letter) => {
-            letters.insert(letter.clone());
-        }
-        Math::Integer(_) | Math::Ratio(..) | Math::Words(_) | Math::Sign(_) => {}
-        Math::Row(parts)
-        | Math::Vector {
-            components: parts, ..
-        } => all(parts),
-        Math::Sum(terms) => {
-            for (_, term) in terms {
-                gather(term, letters);
-            }
-        }
-        Math::Fraction(a, b) | Math::Power(a, b) => {
-            gather(a, letters);
-            gather(b, letters);
-        }
-        Math::Call(_, _, inner) | Math::Root(inner) | Math::Size(inner) | Math::Brackets(inner) => {
-            gather(inner, letters);
-        }
-        Math::Matrix(rows) => {
-            for row in rows {
-                all(row);
-            }
-        }
-        Math::Cases {
-            value,
-            condition,
-            otherwise,
-        } => {
-            for part in [value, condition, otherwise] {
-                gather(part, letters);
-            }
-        }
-    }
 }

@@ -64,18 +64,7 @@ const LEGEND_POINT: [f64; 2] = [26.0, 38.0];
 const LEGEND_MASS: [f64; 2] = [206.0, 220.0];
 
 /// Added to the style of the figures.
-const DRAWING_STYLE: &str = "\
-path{fill:none;stroke-linecap:round;stroke-linejoin:round}.axis{stroke-width:2}
-.link{stroke:#555;stroke-width:3}.way{stroke:#999;stroke-dasharray:2 5}.spring{stroke:#cc79a7;stroke-width:2}
-.wheel{stroke:#222;stroke-width:2;fill:#56b4e9;fill-opacity:.16}.body{stroke:#999;fill:#e69f00;fill-opacity:.14}
-.point{fill:#fff;stroke:#222;stroke-width:1.4}.mass{fill:#222}.arrow{stroke:#222;stroke-width:2}
-.angle{stroke:#cc79a7;stroke-width:1.6}.angle-name{fill:#a0457a}.from{stroke:#999;stroke-width:1;stroke-dasharray:3 3}
-.halo{paint-order:stroke;stroke:#fff;stroke-width:3px}.name{font-weight:600}.small{font-size:11px}.soft{fill:#666}
-@media(prefers-color-scheme:dark){
-.link{stroke:#b5b5b5}.wheel,.point,.arrow{stroke:#e6e6e6}.point{fill:#16181c}.mass{fill:#e6e6e6}
-.angle-name{fill:#e29cc4}.halo{stroke:#16181c}.soft{fill:#a5a5a5}
-}
-";
+const DRAWING_STYLE: &str = include_str!("sheet.css");
 
 /// Mapping from metres to pixels.
 struct Sheet<'a> {

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use super::area::{SAMPLE, entry};
 use super::axis::{Axis, number};
-use super::map::{FILLS, LEGEND, element};
+use super::map::{FILLS, LEGEND, Sample, element};
 use super::{HEADER_HEIGHT, LEFT, STYLE, TITLE_HEIGHT, WIDTH};
 use crate::svg::{self, Document, Element, text};
 
@@ -49,8 +50,7 @@ const SIZE: f64 = 150.0;
 const TURN: [f64; 2] = [0.529_919_264_233_204_9, 0.848_048_096_156_426];
 const DIP: [f64; 2] = [0.422_618_261_740_699_44, 0.906_307_787_036_649_9];
 /// Surfaces are opaque; their mesh shows their form.
-const SOLID: &str = ".piece path{stroke:#222;stroke-width:.35;stroke-linejoin:round;fill-opacity:.85}\
-@media(prefers-color-scheme:dark){.piece path{stroke:#111}}\n";
+const SOLID: &str = include_str!("surface.css");
 
 /// A projected point with its depth.
 fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
@@ -74,27 +74,21 @@ impl Surface {
         let height = TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT;
         let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS, SOLID]);
         svg.put(&svg::title([LEFT, 22.0], WIDTH - 2.0 * LEFT, &self.title));
-        let named = self
-            .kinds
-            .iter()
-            .enumerate()
-            .filter(|(_, name)| !name.is_empty());
+        let place = |entry: usize| {
+            let x = LEFT + LEGEND * entry as f64;
+            [x, TITLE_HEIGHT + HEADER_HEIGHT - 9.0]
+        };
+        let kinds = self.kinds.iter().enumerate();
+        let named = kinds.filter(|(_, name)| !name.is_empty());
         for (i, (kind, name)) in named.enumerate() {
-            let (x, y) = (LEFT + LEGEND * i as f64, TITLE_HEIGHT + HEADER_HEIGHT - 9.0);
-            svg.put(&element(
-                kind,
-                &format!("M{x:.1} {:.1}h16v10h-16z", y - 9.0),
-            ));
-            svg.put(&text([x + 23.0, y]).text(name));
+            let [x, y] = place(i);
+            let sample = Sample::Kind(kind).at([x, y - 4.0]);
+            entry(&mut svg, &sample, [x + SAMPLE, y], name);
         }
         for (i, path) in self.paths.iter().enumerate() {
-            let place = self.kinds.len() + i;
-            let (x, y) = (
-                LEFT + LEGEND * place as f64,
-                TITLE_HEIGHT + HEADER_HEIGHT - 13.0,
-            );
-            svg.put(&line(i, &format!("M{x:.1} {y:.1}h16")));
-            svg.put(&text([x + 23.0, y + 4.0]).text(&path.label));
+            let [x, y] = place(self.kinds.len() + i);
+            let sample = line(i, &format!("M{x:.1} {:.1}h16", y - 4.0));
+            entry(&mut svg, &sample, [x + SAMPLE, y], &path.label);
         }
         self.walls(&mut svg);
         svg.put(&Element::new("g").with("class", "piece").open());

@@ -5,7 +5,7 @@ use maud::{Markup, html};
 
 use super::elements::{code, figure, table};
 use super::numbers::{percent, share};
-use crate::figure::{Layer, Look, Plot, Series};
+use crate::figure::{Layer, Look, Plot};
 use crate::text::short;
 
 /// Standard deviations to both sides of the band.
@@ -92,15 +92,6 @@ fn curve(law: &Law) -> String {
             .map(|[_, force, std]| force + deviations * std)
             .collect()
     };
-    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
-        series: Series {
-            label: label.to_owned(),
-            x: x.clone(),
-            y,
-        },
-        look,
-        colour,
-    };
     let force = match &law.factor {
         Some(factor) => format!("force over {factor}"),
         None => "force".to_owned(),
@@ -112,8 +103,8 @@ fn curve(law: &Law) -> String {
         ],
         height: 260.0,
         layers: vec![
-            layer("95 % band", at(-BAND), Look::Band(at(BAND)), 2),
-            layer("measured law", at(0.0), Look::Line, 0),
+            Layer::new("95 % band", Look::Band(at(BAND)), 2, &x, at(-BAND)),
+            Layer::new("measured law", Look::Line, 0, &x, at(0.0)),
         ],
     };
     plot.to_svg()

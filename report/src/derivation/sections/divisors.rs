@@ -1,8 +1,7 @@
 //! Divisors of the generalised velocities that can vanish outside the declared ranges.
 
 use super::super::units::range;
-use super::super::writer::Writer;
-use super::super::{Block, Letter, Math, Span};
+use super::super::{Block, Letter, Math, Span, Writer};
 use super::phrases::{listed, math, words};
 use appell_codegen::mechanics::parameter_ranges;
 use appell_codegen::symbolic::{Expr, Intervals, Node};

@@ -1,9 +1,7 @@
 //! The linear equations about a steady motion, and their characteristic polynomial.
 
-use super::super::display::Equation;
-use super::super::writer::Writer;
-use super::super::{Block, Letter, Math, Section, Span};
-use super::phrases::{headed, listed, math, sentence, with, words};
+use super::super::{Block, Equation, Letter, Math, Section, Span, Writer};
+use super::phrases::{formula, headed, listed, math, sentence, with, words};
 use appell_codegen::linearisation::{Characteristic, Linearisation};
 use appell_codegen::symbolic::{Expr, Graph};
 
@@ -111,12 +109,10 @@ pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
 
 /// `δẋ = A δx + B δu`, with definitions of x and u.
 fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
-    let bold = |name: &str| Math::Letter(Letter::bold(name));
-    let small = |name: &str| Math::Letter(Letter::bold(name).before('δ'));
     let rate = Math::Letter(Letter::bold("x").dot().before('δ'));
-    let mut right = vec![(false, Math::Row(vec![bold("A"), small("x")]))];
+    let mut right = vec![(false, formula("*A δ*x"))];
     if !linear.inputs.is_empty() {
-        right.push((false, Math::Row(vec![bold("B"), small("u")])));
+        right.push((false, formula("*B δ*u")));
     }
     let equation = Math::Row(vec![rate, Math::Sign("="), Math::sum(right)]);
     let mut text = vec![

@@ -1,7 +1,6 @@
 //! Symbolic elimination, for blocks of the mass matrix whose explicit form is unreadable.
 
-use super::super::display::Equation;
-use super::super::{About, Letter, Math};
+use super::super::{About, Equation, Letter, Math};
 use super::energy::numbered;
 use appell_codegen::mechanics::motion::Block;
 
@@ -33,16 +32,12 @@ impl Elimination {
                 let couplings = order.iter().enumerate().map(row).collect();
                 Self { order, couplings }
             }
-            Block::Factorized(block) => Self {
-                order: block.speeds.clone(),
-                couplings: (0..block.speeds.len())
-                    .map(|row| {
-                        (0..row)
-                            .filter(|&column| block.couples(row, column))
-                            .collect()
-                    })
-                    .collect(),
-            },
+            Block::Factorized(block) => {
+                let order = block.speeds.clone();
+                let row = |row| (0..row).filter(|&c| block.couples(row, c)).collect();
+                let couplings = (0..order.len()).map(row).collect();
+                Self { order, couplings }
+            }
         }
     }
 
@@ -117,12 +112,8 @@ fn entry(name: &str, i: usize, j: usize) -> Math {
     } else {
         (i + 1, j + 1)
     };
-    let place = if i.max(j) > 9 {
-        format!("{i},{j}")
-    } else {
-        format!("{i}{j}")
-    };
-    Math::Letter(Letter::plain(name).below(&place))
+    let comma = if i.max(j) > 9 { "," } else { "" };
+    Math::Letter(Letter::plain(name).below(&format!("{i}{comma}{j}")))
 }
 
 /// `Π - b`

@@ -12,7 +12,6 @@ use std::fmt::Write as _;
 use appell_ensemble::rows::Column;
 use appell_ensemble::summary::Summary;
 
-use crate::text::table;
 use parts::{parts, sentences};
 
 /// A study with its statistics.
@@ -37,7 +36,7 @@ pub fn text(about: &About<'_>) -> String {
     }
     for part in parts(about) {
         let _ = writeln!(text, "\n{}", part.heading);
-        text += &table(&part.rows, part.numbers);
+        text += &part.text();
         for note in &part.notes {
             let _ = writeln!(text, "  {note}");
         }

@@ -9,8 +9,8 @@ use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
 use appell_recordings::{Channel, DataSet};
 
 use crate::recording;
-use crate::tables::Part;
-use crate::text::{horizon, number, short, table};
+use crate::tables::Table;
+use crate::text::{horizon, number, short};
 
 pub use figure::figure;
 pub use page::page;
@@ -40,7 +40,7 @@ pub fn text(set: &DataSet, answer: &Answer) -> String {
         let _ = writeln!(text, "\n{warning}");
     }
     for part in parts(set, answer) {
-        let rows = table(&part.rows, part.numbers);
+        let rows = part.text();
         let _ = write!(text, "\n{}\n\n{rows}", part.heading);
         for note in &part.notes {
             let _ = writeln!(text, "\n{note}");
@@ -54,40 +54,28 @@ pub fn text(set: &DataSet, answer: &Answer) -> String {
     text
 }
 
-fn parts(set: &DataSet, answer: &Answer) -> Vec<Part> {
-    let mut parts = vec![parameters(answer)];
-    if answer.parameters.len() > 1 {
-        parts.push(correlation(answer));
-    }
-    if !answer.repeatability.is_empty() {
-        parts.push(repeatability(answer));
-    }
-    parts.extend([combinations(answer), levels(set, answer), residuals(answer)]);
-    if !answer.courses.is_empty() {
-        parts.push(courses(answer));
-    }
-    if !answer.held_out.is_empty() {
-        parts.push(held_out(set, answer));
-    }
-    parts
+fn parts(set: &DataSet, answer: &Answer) -> Vec<Table> {
+    let has_several = answer.parameters.len() > 1;
+    let parts = [
+        Some(parameters(answer)),
+        has_several.then(|| correlation(answer)),
+        Some(repeatability(answer)).filter(Table::has_rows),
+        Some(combinations(answer)),
+        Some(levels(set, answer)),
+        Some(residuals(answer)),
+        Some(courses(answer)).filter(Table::has_rows),
+        Some(held_out(set, answer)).filter(Table::has_rows),
+    ];
+    parts.into_iter().flatten().collect()
 }
 
 fn in_unit(estimate: &Estimate, value: f64) -> String {
     number(value / estimate.quantity.scale)
 }
 
-fn parameters(answer: &Answer) -> Part {
-    let columns = [
-        "parameter",
-        "nominal",
-        "tolerance",
-        "found",
-        "from",
-        "to",
-        "unit",
-        "",
-    ];
-    let mut part = Part::new("95 % intervals", columns, 1..6);
+fn parameters(answer: &Answer) -> Table {
+    let columns = "parameter | nominal | tolerance | found | from | to | unit | ";
+    let mut part = Table::new("95 % intervals", columns, 1..6);
     for estimate in &answer.parameters {
         let ends = estimate.interval95().map(|end| in_unit(estimate, end));
         let [low, high] = if estimate.at_limit {
@@ -124,17 +112,9 @@ fn remark(estimate: &Estimate) -> &'static str {
 }
 
 /// Values of the single runs, and their spread.
-fn repeatability(answer: &Answer) -> Part {
-    let columns = [
-        "parameter",
-        "lowest",
-        "highest",
-        "spread",
-        "relative to its interval",
-        "unit",
-        "",
-    ];
-    let mut part = Part::new("Repeatability from run to run", columns, 1..5);
+fn repeatability(answer: &Answer) -> Table {
+    let columns = "parameter | lowest | highest | spread | relative to its interval | unit | ";
+    let mut part = Table::new("Repeatability from run to run", columns, 1..5);
     for (one, estimate) in answer.repeatability.iter().zip(&answer.parameters) {
         let values = one.runs.iter().map(|(_, [value, _])| *value);
         let lowest = values.clone().fold(f64::INFINITY, f64::min);
@@ -164,40 +144,37 @@ fn repeatability(answer: &Answer) -> Part {
 }
 
 /// Correlation matrix of the parameter errors.
-fn correlation(answer: &Answer) -> Part {
-    let names: Vec<String> = (answer.parameters.iter())
-        .map(|estimate| estimate.quantity.name.to_string())
-        .collect();
+fn correlation(answer: &Answer) -> Table {
+    let names = answer
+        .parameters
+        .iter()
+        .map(|one| one.quantity.name.to_string());
+    let names: Vec<String> = names.collect();
     let numbers = 1..1 + names.len();
-    let mut part = Part::new("Correlation of the parameter errors", [""], numbers);
+    let mut part = Table::new("Correlation of the parameter errors", "", numbers);
     part.is_heat = true;
     part.rows[0].extend(names.clone());
     for (name, row) in names.into_iter().zip(answer.correlation.row_iter()) {
         // Avoids a negative zero.
-        let cells = row
+        let rounded = row
             .iter()
-            .map(|value| format!("{:.2}", (100.0 * value).round() / 100.0 + 0.0));
+            .map(|value| (100.0 * value).round() / 100.0 + 0.0);
+        let cells = rounded.map(|value| format!("{value:.2}"));
         part.rows.push([name].into_iter().chain(cells).collect());
     }
     part
 }
 
 /// Parameter directions, with the posterior standard deviation relative to the prior.
-fn combinations(answer: &Answer) -> Part {
-    let known = answer
-        .combinations
-        .iter()
-        .filter(|known| known.deviation < 1.0);
+fn combinations(answer: &Answer) -> Table {
+    let all = answer.combinations.iter();
+    let known = all.filter(|known| known.deviation < 1.0).count();
     let heading = format!(
-        "The data improve on prior knowledge in {} of {} parameter directions",
-        known.count(),
+        "The data improve on prior knowledge in {known} of {} parameter directions",
         answer.combinations.len()
     );
-    let columns = [
-        "posterior / prior std",
-        "direction, in units of the prior std",
-    ];
-    let mut part = Part::new(&heading, columns, 0..1);
+    let columns = "posterior / prior std | direction, in units of the prior std";
+    let mut part = Table::new(&heading, columns, 0..1);
     for combination in &answer.combinations {
         let known_to = if combination.deviation < UNKNOWN {
             number(combination.deviation)
@@ -225,32 +202,30 @@ fn sum(answer: &Answer, combination: &Known) -> String {
     text
 }
 
-fn levels(set: &DataSet, answer: &Answer) -> Part {
+fn levels(set: &DataSet, answer: &Answer) -> Table {
     let heading = "Measurement noise and process noise (standard deviations)";
-    let columns = ["level", "of", "nominal model", "fitted model", "unit"];
-    let mut part = Part::new(heading, columns, 2..4);
-    let noise = answer
-        .noise
-        .iter()
-        .map(|level| ("measurement noise", level));
-    let process = answer
-        .disturbances
-        .iter()
-        .map(|level| ("process noise", level));
-    for (what, level) in noise.chain(process) {
-        let channel = channel(set, &level.name).filter(|_| what == "measurement noise");
+    let columns = "level | of | nominal model | fitted model | unit";
+    let mut part = Table::new(heading, columns, 2..4);
+    let noise = answer.noise.iter().map(|level| (level, true));
+    let process = answer.disturbances.iter().map(|level| (level, false));
+    for (level, is_measured) in noise.chain(process) {
+        let channel = channel(set, &level.name).filter(|_| is_measured);
+        let what = if is_measured {
+            "measurement"
+        } else {
+            "process"
+        };
+        let unit = channel.map_or("SI", |channel| &channel.unit.text);
         let shown = |value| {
             let value = channel.map_or(value, |channel| channel.unit.from_si(value));
             format!("{value:.3e}")
         };
         part.rows.push(vec![
-            what.to_owned(),
+            format!("{what} noise"),
             level.name.clone(),
             shown(level.nominal),
             shown(level.fitted),
-            channel
-                .map_or("SI", |channel| &channel.unit.text)
-                .to_owned(),
+            unit.to_owned(),
         ]);
     }
     part
@@ -261,10 +236,10 @@ fn channel<'s>(set: &'s DataSet, column: &str) -> Option<&'s Channel> {
 }
 
 /// Whiteness of the innovations.
-fn residuals(answer: &Answer) -> Part {
+fn residuals(answer: &Answer) -> Table {
     let heading = "One-step residuals on the training runs";
-    let columns = ["channel", "lag-1 autocorrelation", "white-noise bound", ""];
-    let mut part = Part::new(heading, columns, 1..3);
+    let columns = "channel | lag-1 autocorrelation | white-noise bound | ";
+    let mut part = Table::new(heading, columns, 1..3);
     for (column, consistency) in &answer.whiteness {
         let remark = if consistency.is_white() {
             ""
@@ -282,9 +257,9 @@ fn residuals(answer: &Answer) -> Part {
 }
 
 /// Values of drifting parameters at the start and end of each run.
-fn courses(answer: &Answer) -> Part {
-    let columns = ["parameter", "run", "at start", "at end", "std", "unit"];
-    let mut part = Part::new("Drifting parameters, smoothed over each run", columns, 2..5);
+fn courses(answer: &Answer) -> Table {
+    let columns = "parameter | run | at start | at end | std | unit";
+    let mut part = Table::new("Drifting parameters, smoothed over each run", columns, 2..5);
     for course in &answer.courses {
         let shown = |value: Option<&f64>| {
             value.map_or_else(String::new, |value| number(course.quantity.to_unit(*value)))
@@ -302,18 +277,11 @@ fn courses(answer: &Answer) -> Part {
 }
 
 /// Prediction errors in the units of the channels, and relative to the measurement noise.
-fn held_out(set: &DataSet, answer: &Answer) -> Part {
-    let columns = [
-        "ahead",
-        "channel",
-        "unit",
-        "nominal model",
-        "fitted model",
-        "nominal / noise",
-        "fitted / noise",
-    ];
+fn held_out(set: &DataSet, answer: &Answer) -> Table {
+    let columns =
+        "ahead | channel | unit | nominal model | fitted model | nominal / noise | fitted / noise";
     let heading = "RMS prediction errors on held-out runs";
-    let mut part = Part::new(heading, columns, 3..7);
+    let mut part = Table::new(heading, columns, 3..7);
     for error in &answer.held_out {
         let column = error.column.as_deref();
         let noise = column.and_then(|name| answer.noise.iter().find(|level| level.name == name));
@@ -371,18 +339,16 @@ fn ahead(answer: &Answer) -> Option<(&HeldOut, String)> {
 fn verdict(answer: &Answer) -> Option<String> {
     let (error, times) = ahead(answer)?;
     let when = horizon(error.horizon);
-    if error.fitted <= GOOD {
-        Some(format!(
-            "The fitted model predicts the held-out runs to within the noise ({times} times it, {when} ahead)."
-        ))
-    } else if error.fitted <= FAIR {
-        Some(format!(
-            "The fitted model predicts the held-out runs to {times} times the noise, {when} ahead: disturbances may \
-             explain that, or a small effect is missing."
-        ))
-    } else {
-        None
-    }
+    let size = match error.fitted {
+        size if size <= GOOD => format!("within the noise ({times} times it, {when} ahead)"),
+        size if size <= FAIR => format!(
+            "{times} times the noise, {when} ahead: disturbances may explain that, or a small effect is missing"
+        ),
+        _ => return None,
+    };
+    Some(format!(
+        "The fitted model predicts the held-out runs to {size}."
+    ))
 }
 
 /// Size of a prediction error; a prediction that overflowed has diverged.

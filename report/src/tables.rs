@@ -4,8 +4,10 @@ use std::ops::Range;
 
 use maud::{Markup, html};
 
+use crate::text::table;
+
 /// A table with its heading and notes.
-pub(crate) struct Part {
+pub(crate) struct Table {
     /// Its heading.
     pub(crate) heading: String,
     /// Its rows, the first one with the names of the columns.
@@ -18,20 +20,27 @@ pub(crate) struct Part {
     pub(crate) notes: Vec<String>,
 }
 
-impl Part {
-    /// A table without rows.
-    pub(crate) fn new<const N: usize>(
-        heading: &str,
-        columns: [&str; N],
-        numbers: Range<usize>,
-    ) -> Self {
+impl Table {
+    /// A table without rows; `|` separates the names of its columns.
+    pub(crate) fn new(heading: &str, columns: &str, numbers: Range<usize>) -> Self {
+        let columns = columns.split('|').map(|name| name.trim().to_owned());
         Self {
             heading: heading.to_owned(),
-            rows: vec![columns.map(str::to_owned).to_vec()],
+            rows: vec![columns.collect()],
             numbers,
             is_heat: false,
             notes: Vec::new(),
         }
+    }
+
+    /// Whether there is more than the names of the columns.
+    pub(crate) fn has_rows(&self) -> bool {
+        self.rows.len() > 1
+    }
+
+    /// The table alone as text.
+    pub(crate) fn text(&self) -> String {
+        table(&self.rows, self.numbers.clone())
     }
 
     /// Heading, table and notes of a page.

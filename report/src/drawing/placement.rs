@@ -46,11 +46,9 @@ impl Placement {
         kinematics: &Kinematics,
     ) -> Outcome<Self> {
         let graph = &mut algebra.graph;
-        let points = mechanism
-            .points
-            .ids()
-            .map(|point| kinematics.position(graph, mechanism, point))
-            .collect();
+        let points = mechanism.points.ids();
+        let points = points.map(|point| kinematics.position(graph, mechanism, point));
+        let points = points.collect();
         let axes = |frame| {
             IDENTITY.map(|v| {
                 let axis = FrameVector { frame, v };
@@ -64,10 +62,8 @@ impl Placement {
         };
         let mut turns = List::default();
         for (id, frame) in mechanism.frames.entries() {
-            let angles = frame
-                .turns
-                .iter()
-                .map(|turn| lowering.lower(graph, &turn.angle));
+            let angles = frame.turns.iter();
+            let angles = angles.map(|turn| lowering.lower(graph, &turn.angle));
             let angles = angles.collect::<Result<Vec<_>, _>>();
             turns.push(angles.map_err(|_| vec![division_by_zero(Item::Frame(id))])?);
         }
@@ -75,17 +71,15 @@ impl Placement {
         for (index, body) in mechanism.bodies.entries() {
             let divides = |_| vec![division_by_zero(Item::Body(index))];
             let mass = lowering.lower(graph, &body.mass).map_err(divides)?;
-            let inertia = match &body.inertia {
-                Some(inertia) => {
-                    let mut matrix = [[Graph::ZERO; 3]; 3];
-                    for (to, row) in matrix.iter_mut().zip(&inertia.matrix) {
-                        *to = lowering.lower_all(graph, row).map_err(divides)?;
-                    }
-                    Some((inertia.frame, matrix))
+            let mut lowered = None;
+            if let Some(inertia) = &body.inertia {
+                let mut matrix = [[Graph::ZERO; 3]; 3];
+                for (to, row) in matrix.iter_mut().zip(&inertia.matrix) {
+                    *to = lowering.lower_all(graph, row).map_err(divides)?;
                 }
-                None => None,
-            };
-            bodies.push((mass, inertia));
+                lowered = Some((inertia.frame, matrix));
+            }
+            bodies.push((mass, lowered));
         }
         Ok(Self {
             points,

@@ -58,12 +58,12 @@ impl Scene {
         let state = InitialState::new(&graph, mechanism, &symbols);
         let mut values = state.values().to_vec();
         if let Some(moment) = moment {
-            let arguments = &program.arguments;
-            let states = arguments.states.iter().zip(&moment.states);
-            for (symbol, value) in states.chain(arguments.parameters.iter().zip(&moment.parameters))
-            {
-                values[index(*symbol)] = *value;
-            }
+            set(&mut values, &program.arguments.states, &moment.states);
+            set(
+                &mut values,
+                &program.arguments.parameters,
+                &moment.parameters,
+            );
         }
         let consistent = close(program, &mut values);
         let scene = Self::at(&placement, &graph, &values, flat_across);
@@ -104,11 +104,15 @@ fn close(program: Program, values: &mut [f64]) -> bool {
         .map(|symbols| -> Vec<f64> { symbols.iter().map(|s| values[index(*s)]).collect() });
     let closed = positions.restore(&model, 0.0, &mut x, &u, &p, Moving::Dependent);
     if closed.is_ok() {
-        for (symbol, value) in arguments.states.iter().zip(x) {
-            values[index(*symbol)] = value;
-        }
+        set(values, &arguments.states, &x);
     }
     closed.is_ok()
+}
+
+fn set(values: &mut [f64], symbols: &[SymbolId], numbers: &[f64]) {
+    for (symbol, number) in symbols.iter().zip(numbers) {
+        values[index(*symbol)] = *number;
+    }
 }
 
 fn index(symbol: SymbolId) -> usize {

@@ -6,7 +6,7 @@ use appell_ensemble::statistics::moments::Moments;
 use appell_ensemble::summary::Number;
 
 use super::About;
-use crate::tables::Part;
+use crate::tables::Table;
 use crate::text::short;
 
 /// Name and unit of a column.
@@ -36,29 +36,26 @@ pub(super) fn sentences(about: &About<'_>) -> Vec<String> {
     } else {
         format!("{} cases ({how})", summary.cases)
     }];
-    let early: u64 = summary.early.iter().map(|(_, count)| count).sum();
-    if early > 0 {
-        let reasons = summary
-            .early
-            .iter()
-            .map(|(reason, count)| format!("{reason} ({count})"));
-        told.push(format!(
-            "{early} ended early: {}",
-            reasons.collect::<Vec<_>>().join("; ")
-        ));
+    let early = summary.early.iter();
+    let count: u64 = early.clone().map(|(_, count)| count).sum();
+    if count > 0 {
+        let reasons: Vec<String> = early
+            .map(|(reason, count)| format!("{reason} ({count})"))
+            .collect();
+        told.push(format!("{count} ended early: {}", reasons.join("; ")));
     }
     told
 }
 
 /// The tables, those with rows.
-pub(super) fn parts(about: &About<'_>) -> Vec<Part> {
+pub(super) fn parts(about: &About<'_>) -> Vec<Table> {
     let mut parts = vec![
         factors(about),
         numbers(about),
         events(about),
         sensitivity(about),
     ];
-    parts.retain(|part| part.rows.len() > 1);
+    parts.retain(Table::has_rows);
     parts
 }
 
@@ -84,9 +81,9 @@ fn row(column: &Column, number: &Number) -> Vec<String> {
     ]
 }
 
-fn factors(about: &About<'_>) -> Part {
-    let columns = ["", "mean", "deviation", "5 %", "median", "95 %"];
-    let mut part = Part::new("Factors", columns, 1..6);
+fn factors(about: &About<'_>) -> Table {
+    let columns = " | mean | deviation | 5 % | median | 95 %";
+    let mut part = Table::new("Factors", columns, 1..6);
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
         match &column.role {
@@ -98,24 +95,15 @@ fn factors(about: &About<'_>) -> Part {
             _ => {}
         }
     }
-    if part.rows.len() == 1 && !part.notes.is_empty() {
+    if !part.has_rows() && !part.notes.is_empty() {
         part.rows.push(vec!["files".to_owned()]);
     }
     part
 }
 
-fn numbers(about: &About<'_>) -> Part {
-    let columns = [
-        "",
-        "mean",
-        "deviation",
-        "5 %",
-        "median",
-        "95 %",
-        "mean ±",
-        "missing",
-    ];
-    let mut part = Part::new("Kept quantities", columns, 1..8);
+fn numbers(about: &About<'_>) -> Table {
+    let columns = " | mean | deviation | 5 % | median | 95 % | mean ± | missing";
+    let mut part = Table::new("Kept quantities", columns, 1..8);
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
         let Moments { count, missing, .. } = number.moments;
@@ -143,16 +131,9 @@ fn numbers(about: &About<'_>) -> Part {
     part
 }
 
-fn events(about: &About<'_>) -> Part {
-    let columns = [
-        "",
-        "cases",
-        "of",
-        "probability",
-        "95 % interval",
-        "median time [s]",
-    ];
-    let mut part = Part::new("What happened", columns, 1..6);
+fn events(about: &About<'_>) -> Table {
+    let columns = " | cases | of | probability | 95 % interval | median time [s]";
+    let mut part = Table::new("What happened", columns, 1..6);
     for event in &about.summary.events {
         let when = about.summary.number(event.column + 1);
         let median = when.and_then(|when| when.quantiles.get(2));
@@ -175,9 +156,9 @@ fn events(about: &About<'_>) -> Part {
     part
 }
 
-fn sensitivity(about: &About<'_>) -> Part {
-    let columns = ["", "factor", "first order", "95 %", "total", "95 %"];
-    let mut part = Part::new("Sensitivity (parts of the variance)", columns, 1..6);
+fn sensitivity(about: &About<'_>) -> Table {
+    let columns = " | factor | first order | 95 % | total | 95 %";
+    let mut part = Table::new("Sensitivity (parts of the variance)", columns, 1..6);
     for effects in &about.summary.effects {
         for (factor, indices) in effects.indices.iter().flatten().enumerate() {
             let name = match factor {

@@ -57,11 +57,8 @@ fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let [sideways, depth] = [TURN[1] * x - TURN[0] * y, TURN[0] * x + TURN[1] * y];
     let upwards = DIP[1] * z + DIP[0] * depth;
     let near = DIP[0] * z - DIP[1] * depth;
-    let middle = [WIDTH / 2.0, TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT / 2.0];
-    (
-        [middle[0] + SIZE * sideways, middle[1] - SIZE * upwards],
-        near,
-    )
+    let [across, down] = [WIDTH / 2.0, TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT / 2.0];
+    ([across + SIZE * sideways, down - SIZE * upwards], near)
 }
 
 fn line(index: usize, line: &str) -> String {
@@ -105,10 +102,12 @@ impl Surface {
 
     /// A point in the box, each quantity between −1 and 1.
     fn inside(&self, values: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k: usize| {
-            let [from, to] = self.ranges[k];
-            2.0 * (values[k] - from) / (to - from) - 1.0
-        })
+        [0, 1, 2].map(|k: usize| self.part(k, values[k]))
+    }
+
+    fn part(&self, k: usize, value: f64) -> f64 {
+        let [from, to] = self.ranges[k];
+        2.0 * (value - from) / (to - from) - 1.0
     }
 
     /// A projected path; unknown points interrupt it.
@@ -129,25 +128,18 @@ impl Surface {
 
     /// The pieces, the farthest first.
     fn pieces(&self) -> Vec<(usize, String)> {
-        let mut pieces: Vec<(f64, usize, String)> = Vec::new();
-        for patch in &self.patches {
+        let piece = |patch: &Patch| {
             let corners = patch.corners.map(|corner| self.inside(corner));
-            if corners
-                .iter()
-                .flatten()
-                .any(|part| part.is_nan() || part.abs() > 1.0)
-            {
-                continue;
-            }
-            let near = corners.iter().map(|corner| seen(*corner).1).sum();
-            let path = svg::polyline(corners.map(|corner| seen(corner).0));
-            pieces.push((near, patch.kind, path + "z"));
-        }
+            let mut parts = corners.iter().flatten();
+            let is_inside = parts.all(|part| part.abs() <= 1.0);
+            let near: f64 = corners.iter().map(|corner| seen(*corner).1).sum();
+            let path = svg::polyline(corners.map(|corner| seen(corner).0)) + "z";
+            is_inside.then_some((near, (patch.kind, path)))
+        };
+        let mut pieces: Vec<(f64, (usize, String))> =
+            self.patches.iter().filter_map(piece).collect();
         pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
-        pieces
-            .into_iter()
-            .map(|(_, kind, path)| (kind, path))
-            .collect()
+        pieces.into_iter().map(|(_, piece)| piece).collect()
     }
 
     /// The floor and the two walls behind, with the lines of the ticks.
@@ -158,12 +150,8 @@ impl Surface {
             let _ = write!(grid, "M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}");
         };
         for (k, other, third) in [(0, 1, 2), (1, 0, 2), (2, 0, 1)] {
-            for tick in self
-                .ticks(k)
-                .into_iter()
-                .map(|(part, _)| part)
-                .chain([-1.0, 1.0])
-            {
+            let ticks = self.ticks(k).into_iter().map(|(part, _)| part);
+            for tick in ticks.chain([-1.0, 1.0]) {
                 for (along, still) in [(other, third), (third, other)] {
                     // The faces behind: the far ends of the first two, the floor of the last.
                     let behind = |axis: usize| if axis == 2 { -1.0 } else { 1.0 };
@@ -210,13 +198,9 @@ impl Surface {
         /// Approximate number of ticks.
         const COUNT: u32 = 5;
         let axis = Axis::tight(self.ranges[k].into_iter());
-        let [from, to] = self.ranges[k];
         let ticks = axis.ticks(COUNT).into_iter();
         ticks
-            .map(|tick| {
-                let part = 2.0 * (tick - from) / (to - from) - 1.0;
-                (part, number(tick, axis.step(COUNT)))
-            })
+            .map(|tick| (self.part(k, tick), number(tick, axis.step(COUNT))))
             .collect()
     }
 }

@@ -12,13 +12,12 @@ pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
     if divisors.is_empty() {
         return None;
     }
-    let mut conditions = Vec::new();
-    for &divisor in &divisors {
+    let conditions = divisors.iter().map(|&divisor| {
         let condition = [w.set(divisor), Math::Sign("≠"), Math::zero()];
-        conditions.push(vec![math(Math::Row(condition.into()))]);
-    }
+        vec![math(Math::Row(condition.into()))]
+    });
     let mut what = vec![words("They are valid where ")];
-    what.extend(listed(conditions));
+    what.extend(listed(conditions.collect()));
     let declared = declared(w, &divisors);
     if !declared.is_empty() {
         what.push(words("; the spec declares "));

@@ -3,6 +3,7 @@
 use appell_spec::mechanism::Label;
 
 use super::super::{About, Block, Equation, Letter, Math, Row, Section, Span, Table, Writer};
+use crate::text::capitalised;
 
 /// A section with a heading of words.
 pub(super) fn headed(heading: &str, blocks: Vec<Block>) -> Section {
@@ -102,13 +103,6 @@ pub(super) fn with(w: &mut Writer<'_>, lead: &str, equations: Vec<Equation>) -> 
 /// The components of a vector, about something.
 pub(super) fn about(vector: Vec<Equation>, what: About) -> impl Iterator<Item = Equation> {
     vector.into_iter().map(move |equation| equation.about(what))
-}
-
-/// With a capital letter at the start of a sentence.
-pub(crate) fn capitalised(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
 }
 
 /// Description of an item and its line in the spec: `The wheel rolls (line 48 of the spec)`.

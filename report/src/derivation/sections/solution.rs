@@ -81,7 +81,7 @@ impl Elimination {
             let coupling = entry("L", k, p);
             let value = Math::fraction(Math::sum(terms), numbered("D", p));
             equations.push(Equation::new(coupling.clone(), value).about(About::Inertia(k, p)));
-            let change = Math::product(vec![square(coupling.clone()), numbered("D", p)]);
+            let change = Math::product(vec![raised(coupling.clone(), 2), numbered("D", p)]);
             pivot.push((true, change));
             reduced.push((true, Math::product(vec![coupling, numbered("z", p)])));
         }
@@ -121,6 +121,6 @@ fn force_less_bias(k: usize) -> Math {
     Math::Sum(vec![(false, numbered("Π", k)), (true, numbered("b", k))])
 }
 
-fn square(base: Math) -> Math {
-    Math::Power(Box::new(base), Box::new(Math::integer(2)))
+pub(super) fn raised(base: Math, exponent: usize) -> Math {
+    Math::Power(Box::new(base), Box::new(Math::integer(exponent)))
 }

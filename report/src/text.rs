@@ -42,31 +42,28 @@ pub fn with_unit(number: &str, unit: &str) -> String {
 
 /// A number with six significant digits; a very small or large one has an exponent and four.
 pub fn number(value: f64) -> String {
-    if value == 0.0 {
-        return "0".to_owned();
-    }
-    if !(1e-4..1e6).contains(&value.abs()) {
+    if !(1e-4..1e6).contains(&value.abs()) && value != 0.0 {
         return format!("{value:.3e}");
     }
-    let decimals = usize::try_from(5 - exponent(value)).unwrap_or(0);
-    format!("{value:.decimals$}")
+    significant(value, 6)
 }
 
 /// A number with three significant digits; a very small or large one has an exponent and two.
 pub fn short(value: f64) -> String {
+    match value {
+        value if value.is_nan() => "unknown".to_owned(),
+        f64::INFINITY => "∞".to_owned(),
+        f64::NEG_INFINITY => "−∞".to_owned(),
+        value if !(1e-3..1e5).contains(&value.abs()) && value != 0.0 => format!("{value:.1e}"),
+        value => significant(value, 3),
+    }
+}
+
+fn significant(value: f64, digits: i32) -> String {
     if value == 0.0 {
         return "0".to_owned();
     }
-    if value.is_nan() {
-        return "unknown".to_owned();
-    }
-    if value.is_infinite() {
-        return if value > 0.0 { "∞" } else { "−∞" }.to_owned();
-    }
-    if !(1e-3..1e5).contains(&value.abs()) {
-        return format!("{value:.1e}");
-    }
-    let decimals = usize::try_from(2 - exponent(value)).unwrap_or(0);
+    let decimals = usize::try_from(digits - 1 - exponent(value)).unwrap_or(0);
     format!("{value:.decimals$}")
 }
 

@@ -4,12 +4,14 @@
 //! them.
 
 use std::collections::BTreeSet;
+use std::iter::successors;
 
 use appell_codegen::mechanics::motion::Block;
+use appell_codegen::mechanics::row::Row;
 use appell_codegen::mechanics::{Derivation, contributions};
 use appell_codegen::symbolic::print::{Letter, Math};
 use appell_codegen::symbolic::{Expr, Graph};
-use appell_spec::mechanism::{BodyId, CoordinateId, FrameId, LoadId, Mechanism, PointId};
+use appell_spec::mechanism::Mechanism;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{About, Block as PageBlock, Equation, Page};
@@ -104,23 +106,60 @@ impl Sources<'_> {
     }
 
     fn subject(&self, about: About, lines: &mut BTreeSet<usize>) {
+        let mechanism = self.mechanism;
         match about {
-            About::Body(body) => self.body(body, lines),
-            About::Point(point) => self.point(point, lines),
-            About::Frame(frame) => self.frame(frame, lines),
-            About::Constraint(constraint) => {
-                lines.insert(self.mechanism.constraints[constraint].line);
+            About::Body(body) => {
+                let body = &mechanism.bodies[body];
+                lines.insert(body.line);
+                self.subject(About::Point(body.centre), lines);
+                if let Some(frame) = body.frame {
+                    self.subject(About::Frame(frame), lines);
+                }
             }
-            About::Rate(coordinate) => self.rate(coordinate, lines),
-            About::Load(load) => self.load(load, lines),
+            // A point with its chain of reference points, a frame with its chain of parent frames.
+            About::Point(point) => {
+                for point in successors(Some(point), |&point| mechanism.points[point].from) {
+                    let point = &mechanism.points[point];
+                    lines.insert(point.line);
+                    self.subject(About::Frame(point.frame), lines);
+                }
+            }
+            About::Frame(frame) => {
+                let frames = successors(Some(frame), |&frame| mechanism.frames[frame].parent);
+                lines.extend(frames.map(|frame| mechanism.frames[frame].line));
+            }
+            About::Constraint(constraint) => {
+                lines.insert(mechanism.constraints[constraint].line);
+            }
+            About::Rate(coordinate) => {
+                lines.insert(mechanism.coordinates[coordinate].label.line);
+                let rows = self.derivation.constraints.rows.iter();
+                let restricts = |row: &&Row| row.coefficients[coordinate.index()] != Graph::ZERO;
+                for row in rows.filter(|row| row.is_active()).filter(restricts) {
+                    self.subject(About::Constraint(row.constraint), lines);
+                }
+            }
+            About::Load(load) => {
+                let load = &mechanism.loads[load];
+                lines.insert(load.line);
+                for point in load.kind.points() {
+                    self.subject(About::Point(point), lines);
+                }
+            }
             About::Inertia(i, j) => {
-                self.bodies_where(|moves| moves[i] && moves[j], lines);
+                let bodies = mechanism.bodies.ids().zip(&self.bodies);
+                for (body, _) in bodies.filter(|(_, moves)| moves[i] && moves[j]) {
+                    self.subject(About::Body(body), lines);
+                }
                 let gibbs = &self.derivation.gibbs;
                 let parts = [gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]];
                 self.symbols_in(&parts, lines);
             }
             About::Force(i) => {
-                self.loads_where(|enters| enters[i], lines);
+                let loads = mechanism.loads.ids().zip(&self.loads);
+                for (load, _) in loads.filter(|(_, enters)| enters[i]) {
+                    self.subject(About::Load(load), lines);
+                }
                 self.symbols_in(&[self.derivation.forces[i]], lines);
             }
             About::Motion(i) => {
@@ -129,8 +168,16 @@ impl Sources<'_> {
                     self.subject(About::Force(j), lines);
                 }
             }
-            About::Bodies => self.bodies_where(|_| true, lines),
-            About::Loads => self.loads_where(|_| true, lines),
+            About::Bodies => {
+                for body in mechanism.bodies.ids() {
+                    self.subject(About::Body(body), lines);
+                }
+            }
+            About::Loads => {
+                for load in mechanism.loads.ids() {
+                    self.subject(About::Load(load), lines);
+                }
+            }
         }
     }
 
@@ -162,69 +209,6 @@ impl Sources<'_> {
         };
         let occurring = quantities.filter(|(_, symbol)| occurs(symbol));
         lines.extend(occurring.map(|(line, _)| line));
-    }
-
-    fn bodies_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
-        for (body, moves) in self.mechanism.bodies.ids().zip(&self.bodies) {
-            if wanted(moves) {
-                self.body(body, lines);
-            }
-        }
-    }
-
-    fn loads_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
-        for (load, enters) in self.mechanism.loads.ids().zip(&self.loads) {
-            if wanted(enters) {
-                self.load(load, lines);
-            }
-        }
-    }
-
-    fn body(&self, body: BodyId, lines: &mut BTreeSet<usize>) {
-        let body = &self.mechanism.bodies[body];
-        lines.insert(body.line);
-        self.point(body.centre, lines);
-        if let Some(frame) = body.frame {
-            self.frame(frame, lines);
-        }
-    }
-
-    fn load(&self, load: LoadId, lines: &mut BTreeSet<usize>) {
-        let load = &self.mechanism.loads[load];
-        lines.insert(load.line);
-        for point in load.kind.points() {
-            self.point(point, lines);
-        }
-    }
-
-    /// A point with its chain of reference points.
-    fn point(&self, point: PointId, lines: &mut BTreeSet<usize>) {
-        let mut next = Some(point);
-        while let Some(point) = next {
-            let point = &self.mechanism.points[point];
-            lines.insert(point.line);
-            self.frame(point.frame, lines);
-            next = point.from;
-        }
-    }
-
-    /// A frame with its chain of parent frames.
-    fn frame(&self, frame: FrameId, lines: &mut BTreeSet<usize>) {
-        let mut next = Some(frame);
-        while let Some(frame) = next {
-            let frame = &self.mechanism.frames[frame];
-            lines.insert(frame.line);
-            next = frame.parent;
-        }
-    }
-
-    fn rate(&self, coordinate: CoordinateId, lines: &mut BTreeSet<usize>) {
-        lines.insert(self.mechanism.coordinates[coordinate].label.line);
-        let rows = self.derivation.constraints.rows.iter();
-        let restricts = |coefficients: &[Expr]| coefficients[coordinate.index()] != Graph::ZERO;
-        for row in rows.filter(|row| row.is_active() && restricts(&row.coefficients)) {
-            lines.insert(self.mechanism.constraints[row.constraint].line);
-        }
     }
 }
 

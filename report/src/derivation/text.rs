@@ -111,8 +111,10 @@ fn table(out: &mut String, table: &Table) {
             lines[0].replace_range(..indent, &head);
         }
         let right = WIDTH.saturating_sub(columns(&lines[0]));
-        lines[0] += &format!("{:>right$}", row.line);
-        lines.iter().for_each(|text| line(out, text));
+        lines[0] = format!("{}{:>right$}", lines[0], row.line);
+        for text in &lines {
+            line(out, text);
+        }
     }
 }
 

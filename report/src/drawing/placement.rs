@@ -22,7 +22,7 @@ pub(super) struct Placement {
     /// By frame: its three axes.
     frames: List<FrameId, [Vec3; 3]>,
     /// By frame: the angles of its turns.
-    turns: List<FrameId, Vec<Expr>>,
+    pub(super) turns: List<FrameId, Vec<Expr>>,
     /// By body: mass and, of rigid bodies, inertia.
     bodies: List<BodyId, (Expr, Option<Tensor>)>,
 }
@@ -108,22 +108,6 @@ impl Placement {
     /// Three axes a frame.
     pub(super) fn frame_exprs(&self) -> &[Expr] {
         self.frames.as_flattened().as_flattened()
-    }
-
-    /// Values by point; `None` where the position is not finite.
-    pub(super) fn points_at(&self, graph: &Graph, values: &[f64]) -> List<PointId, Option<Vector>> {
-        points(&evaluate(graph, values, self.point_exprs()))
-    }
-
-    /// Values by frame; `None` where an angle is not finite.
-    pub(super) fn frames_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Option<Matrix>> {
-        frames(&evaluate(graph, values, self.frame_exprs()))
-    }
-
-    /// Values by frame: the angles of its turns.
-    pub(super) fn turns_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Vec<f64>> {
-        let angles = self.turns.iter();
-        angles.map(|turns| evaluate(graph, values, turns)).collect()
     }
 
     /// Values by body: mass and inertia, with these axes of frames.

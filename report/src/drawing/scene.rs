@@ -3,7 +3,7 @@
 use appell_runtime::positions::{Moving, Positions};
 use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
 
-use super::placement::{Inertia, Placement};
+use super::placement::{Inertia, Placement, frames, points};
 use super::space::{Matrix, Vector};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::mechanics::Derivation;
@@ -11,7 +11,7 @@ use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::initial::InitialState;
 use appell_codegen::program::{FunctionKind, Program};
-use appell_codegen::symbolic::{Graph, SymbolId};
+use appell_codegen::symbolic::{Expr, Graph, SymbolId, evaluate};
 
 /// Values that replace those of the spec, in SI.
 pub struct Moment {
@@ -80,10 +80,11 @@ impl Scene {
         values: &[f64],
         flat_across: Option<usize>,
     ) -> Self {
-        let frames = placement.frames_at(graph, values);
+        let of = |exprs: &[Expr]| evaluate(graph, values, exprs);
+        let frames = frames(&of(placement.frame_exprs()));
         Self {
-            points: placement.points_at(graph, values),
-            turns: placement.turns_at(graph, values),
+            points: points(&of(placement.point_exprs())),
+            turns: placement.turns.iter().map(|turns| of(turns)).collect(),
             bodies: placement.bodies_at(graph, values, &frames),
             frames,
             flat_across,

@@ -138,17 +138,16 @@ impl Map {
         for (j, row) in self.cells.chunks(columns.max(1)).enumerate() {
             let [top, bottom] = reach([j, j + 1], rows, !down);
             let mut i = 0;
-            while i < row.len() {
-                let same = row[i..].iter().take_while(|cell| **cell == Some(kind));
-                let run = same.count();
-                if run > 0 {
-                    let [from, to] = reach([i, i + run], columns, left);
+            for run in row.chunk_by(PartialEq::eq) {
+                let end = i + run.len();
+                if run[0] == Some(kind) {
+                    let [from, to] = reach([i, end], columns, left);
                     let [x, width] = [LEFT + INNER * from, INNER * (to - from)];
                     let [y, high] = [area.top + area.height * top, area.height * (bottom - top)];
                     // Writing to a string cannot fail.
                     let _ = write!(path, "M{x:.1} {y:.2}h{width:.1}v{high:.2}h-{width:.1}z");
                 }
-                i += run.max(1);
+                i = end;
             }
         }
         path

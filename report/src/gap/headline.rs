@@ -1,5 +1,7 @@
 //! The first lines of a report: the cause, its size, what to change, the error before and after.
 
+use std::fmt::Write as _;
+
 use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Share, Value};
 
 use super::law::written;
@@ -193,7 +195,8 @@ fn error(report: &Report, far: &HowFar) -> String {
     let mut text = format!("{what}: {before} -> {after} times the noise (floor {floor})");
     if is_determined(far.closed, far.closed_ci95) {
         let closed = share(far.closed, far.closed_ci95);
-        text += &format!("; {closed} of the gap closes");
+        // Writing to a string cannot fail.
+        let _ = write!(text, "; {closed} of the gap closes");
     } else {
         text += "; these runs do not determine how much of the gap closes";
     }
@@ -202,7 +205,7 @@ fn error(report: &Report, far: &HowFar) -> String {
     let has_more = budget.any(|part| part.is_effect() || part.is_law());
     if let Some(refit) = refitted(&far.budget).filter(|_| has_more) {
         let closed = percent(refit.closed);
-        text += &format!(", {closed} by re-fitted parameters alone");
+        let _ = write!(text, ", {closed} by re-fitted parameters alone");
     }
     if far.is_worse {
         text += "; worse than with re-fitted parameters alone";

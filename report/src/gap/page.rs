@@ -86,17 +86,15 @@ fn codes(names: &[String]) -> Markup {
 fn worth(far: &HowFar) -> Option<&'static str> {
     let is_slight =
         far.budget.iter().any(Share::is_effect) && far.with_effect > (1.0 - MATTERS) * far.refitted;
-    let note = match is_determined(far.closed, far.closed_ci95) {
-        _ if far.is_worse => {
-            "Predictions become worse with it: the fit does not generalise to the held-out runs."
-        }
-        true if far.closed_ci95[0] <= 0.0 => {
-            "The interval of what closes includes zero: these runs leave it open whether anything does."
-        }
-        true if is_slight => {
-            "Beyond re-fitted parameters, predictions of the held-out runs hardly improve."
-        }
-        _ => return None,
+    let is_determined = is_determined(far.closed, far.closed_ci95);
+    let note = if far.is_worse {
+        "Predictions become worse with it: the fit does not generalise to the held-out runs."
+    } else if is_determined && far.closed_ci95[0] <= 0.0 {
+        "The interval of what closes includes zero: these runs leave it open whether anything does."
+    } else if is_determined && is_slight {
+        "Beyond re-fitted parameters, predictions of the held-out runs hardly improve."
+    } else {
+        return None;
     };
     Some(note)
 }

@@ -1,5 +1,7 @@
 //! The statements of a gap report.
 
+use std::fmt::Write as _;
+
 use appell_gap::diagnose::{Change, GapVerdict, HowFar, Hypothesis, Left, Report, Share};
 
 use super::numbers::{bounded, measured, part_of_all, percent};
@@ -27,10 +29,15 @@ pub fn sentence(report: &Report) -> String {
     text.extend(leading(report).map(values));
     text += ")";
     if !same.is_empty() {
-        text += &format!("; {} would be the same in every motion", same.join(", "));
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "; {} would be the same in every motion",
+            same.join(", ")
+        );
     }
     if !rivals.is_empty() {
-        text += &format!("; {} cannot be ruled out", rivals.join(", "));
+        let _ = write!(text, "; {} cannot be ruled out", rivals.join(", "));
     }
     text
 }
@@ -282,9 +289,9 @@ fn shares(report: &Report) -> Option<String> {
     };
     for part in budget {
         if part.is_law() && part.is_material {
-            text += &format!("; a measured law {}", percent(part.closed));
+            let _ = write!(text, "; a measured law {}", percent(part.closed));
         } else if part.is_rest() {
-            text += &format!("; {} stays", part_of_all(part.closed));
+            let _ = write!(text, "; {} stays", part_of_all(part.closed));
         }
     }
     text.extend(report.how_far.as_ref().and_then(far_from_floor));
@@ -326,7 +333,7 @@ pub fn before_sentence(change: &Change) -> String {
     let differing: Vec<&str> = differing.map(|own| own.name.as_str()).collect();
     let mut text = format!("{had}, {count} parameters fitted");
     if !differing.is_empty() {
-        text += &format!("; {} differ from run to run", differing.join(", "));
+        let _ = write!(text, "; {} differ from run to run", differing.join(", "));
     }
     text
 }

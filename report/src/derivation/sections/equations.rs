@@ -47,7 +47,9 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
 pub(super) fn motion(w: &mut Writer<'_>) -> Section {
     let speeds = 0..w.derivation.symbols.speeds.len();
     let letters: Vec<Letter> = speeds.map(|k| w.speed(k).dot()).collect();
-    letters.iter().for_each(|letter| w.define(letter.clone()));
+    for letter in &letters {
+        w.define(letter.clone());
+    }
     let acceleration = |k: usize| Math::Letter(letters[k].clone());
     let mut equations = Vec::new();
     let mut large = Vec::new();

@@ -30,11 +30,10 @@ pub use latex::{formulas, latex};
 pub use sources::locate;
 pub use text::text;
 
-pub use appell_codegen::symbolic::print::{Letter, Math};
-pub use display::Equation;
-
 use appell_codegen::linearisation::Linearisation;
 use appell_codegen::mechanics::{Derivation, derive_in_letters, finding};
+pub use appell_codegen::symbolic::print::{Letter, Math};
+pub use display::Equation;
 use writer::Writer;
 
 /// Writes the derivation of a mechanism, up to a stage.
@@ -54,12 +53,9 @@ pub fn page(
     if length <= LONGEST_TO_READ || !has_quotients {
         return Ok(as_derived);
     }
-    let in_letters = derive_in_letters(mechanism).ok().and_then(|mut other| {
-        let is_solved = other.dependent.system.by_division;
-        page_of(mechanism, &mut other, stage)
-            .ok()
-            .filter(|_| is_solved)
-    });
+    let in_letters = derive_in_letters(mechanism).ok();
+    let solved = in_letters.filter(|other| other.dependent.system.by_division);
+    let in_letters = solved.and_then(|mut other| page_of(mechanism, &mut other, stage).ok());
     let shorter = in_letters.filter(|page| 3 * page.length() < 2 * length);
     Ok(shorter.unwrap_or(as_derived))
 }

@@ -1,18 +1,31 @@
 //! The statistics of a study, as text and as a page with figures.
 
-mod about;
 mod figures;
 mod page;
 mod parts;
 
-pub use about::About;
 pub use figures::{Named, figures};
 pub use page::page;
-pub use parts::{Part, parts, sentences};
 
 use std::fmt::Write as _;
 
-use crate::text::table;
+use appell_ensemble::rows::Column;
+use appell_ensemble::summary::Summary;
+
+use parts::{parts, sentences};
+
+/// A study with its statistics.
+#[derive(Debug, Clone, Copy)]
+pub struct About<'a> {
+    /// Its title.
+    pub title: &'a str,
+    /// The study file.
+    pub study: &'a str,
+    /// The columns of the rows.
+    pub columns: &'a [Column],
+    /// Their statistics.
+    pub summary: &'a Summary,
+}
 
 /// The statistics as text.
 pub fn text(about: &About<'_>) -> String {
@@ -23,7 +36,7 @@ pub fn text(about: &About<'_>) -> String {
     }
     for part in parts(about) {
         let _ = writeln!(text, "\n{}", part.heading);
-        text += &table(&part.rows, 1..part.rows.first().map_or(1, Vec::len));
+        text += &part.text();
         for note in &part.notes {
             let _ = writeln!(text, "  {note}");
         }

@@ -4,9 +4,9 @@
 //! text depends on the data alone. Colours are those of Okabe and Ito, which are distinguishable
 //! with any colour vision; the figure follows the reader's light or dark scheme.
 
+mod area;
 mod axis;
 mod branches;
-mod eigenvalues;
 mod histogram;
 mod inputs;
 mod map;
@@ -15,10 +15,12 @@ mod scatter;
 mod surface;
 mod tornado;
 
+use appell_gap::identify::HALF_WIDTH_95;
 use appell_runtime::model::Quantity;
 use appell_runtime::simulate::Breach;
 use appell_runtime::trajectory::Trajectory;
-use axis::{Axis, number};
+use area::{Area, INNER, SAMPLE, entry, scale};
+use axis::Axis;
 pub use histogram::Histogram;
 pub use map::{Curve, Map, Stroke};
 pub use plot::{Layer, Look, Plot};
@@ -26,8 +28,7 @@ pub use scatter::Scatter;
 pub use surface::{Patch, Path, Surface};
 pub use tornado::{Lever, Tornado};
 
-use crate::svg::{Document, Element, path, text, title};
-use std::fmt::Write as _;
+use crate::svg::{Document, path, title};
 
 /// A line.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,6 +39,17 @@ pub struct Series {
     pub x: Vec<f64>,
     /// Vertical positions; a number that is not finite interrupts the line.
     pub y: Vec<f64>,
+}
+
+impl Series {
+    /// A line with a name.
+    pub fn new(label: impl Into<String>, x: &[f64], y: Vec<f64>) -> Self {
+        Self {
+            label: label.into(),
+            x: x.to_vec(),
+            y,
+        }
+    }
 }
 
 /// Lines over a common pair of axes.
@@ -90,29 +102,27 @@ const CHARACTER: f64 = 6.6;
 const COLOURS: usize = 6;
 
 /// Style of paper, grid, frame, text and lines (`c0` to `c5`), for any drawing that accompanies the figures.
-pub const STYLE: &str = "\
-.paper{fill:#fff}.grid{stroke:#e3e3e3}.frame{stroke:#777;fill:none}
-text{fill:#222;font:12px system-ui,sans-serif}.title{font-size:15px;font-weight:600}
-.c0{stroke:#0072b2}.c1{stroke:#d55e00}.c2{stroke:#009e73}.c3{stroke:#cc79a7}.c4{stroke:#e69f00}.c5{stroke:#56b4e9}
-.line{fill:none;stroke-width:1.6;stroke-linejoin:round}.dashed{stroke-dasharray:7 4}
-@media(prefers-color-scheme:dark){
-.paper{fill:#16181c}.grid{stroke:#30343b}.frame{stroke:#8a8f98}text{fill:#e6e6e6}
-.c0{stroke:#56b4e9}.c1{stroke:#e69f00}.c2{stroke:#009e73}.c3{stroke:#cc79a7}.c4{stroke:#f0e442}.c5{stroke:#d55e00}
-}
-";
+pub const STYLE: &str = include_str!("figure/style.css");
 
 impl Figure {
+    /// Panels over time.
+    pub(crate) fn over_t(title: String, panels: Vec<Panel>) -> Self {
+        Self {
+            title,
+            x_label: "t [s]".to_owned(),
+            panels,
+            marks: Vec::new(),
+            equal_axes: false,
+        }
+    }
+
     /// Columns of a trajectory over time, one panel per list of names, with a mark at each limit
     /// that the motion passes. Names that the trajectory does not have, and panels without lines,
     /// are omitted.
     pub fn over_time(trajectory: &Trajectory, panels: &[Vec<&str>]) -> Self {
         let series = |name: &&str| {
             let y = trajectory.column_in_unit(name)?;
-            Some(Series {
-                label: (*name).to_string(),
-                x: trajectory.times().to_vec(),
-                y,
-            })
+            Some(Series::new(*name, trajectory.times(), y))
         };
         let panel = |names: &Vec<&str>| {
             let column = names
@@ -128,12 +138,10 @@ impl Figure {
             x: breach.t,
             about: breach.describe(trajectory.info()),
         };
+        let title = trajectory.info().title.to_string();
         Self {
-            title: trajectory.info().title.to_string(),
-            x_label: "t [s]".to_string(),
-            panels: panels.iter().filter_map(panel).collect(),
             marks: trajectory.breaches.iter().map(mark).collect(),
-            equal_axes: false,
+            ..Self::over_t(title, panels.iter().filter_map(panel).collect())
         }
     }
 
@@ -176,11 +184,8 @@ impl Figure {
             let index = trajectory.column_index(name)?;
             Some(trajectory.columns()[index].unit.to_string())
         };
-        let series = Series {
-            label: y.to_string(),
-            x: trajectory.column_in_unit(x)?,
-            y: trajectory.column_in_unit(y)?,
-        };
+        let across = trajectory.column_in_unit(x)?;
+        let series = Series::new(y, &across, trajectory.column_in_unit(y)?);
         Some(Self {
             title: trajectory.info().title.to_string(),
             x_label: format!("{x} [{}]", unit(x)?),
@@ -195,30 +200,22 @@ impl Figure {
 
     /// The figure as an SVG document.
     pub fn to_svg(&self) -> String {
-        let width = WIDTH - LEFT - RIGHT;
-        let x_values = || {
-            self.panels
-                .iter()
-                .flat_map(|p| &p.series)
-                .flat_map(|s| &s.x)
-                .copied()
-        };
+        let lines = || self.panels.iter().flat_map(|panel| &panel.series);
+        let x_values = lines().flat_map(|series| &series.x).copied();
         let mut x_axis = if self.equal_axes {
-            Axis::padded(x_values())
+            Axis::padded(x_values)
         } else {
-            Axis::tight(x_values())
+            Axis::tight(x_values)
         };
-        let mut y_axes: Vec<Axis> = self
-            .panels
-            .iter()
+        let mut y_axes: Vec<Axis> = (self.panels.iter())
             .map(|panel| Axis::padded(panel.series.iter().flat_map(|s| &s.y).copied()))
             .collect();
         let mut panel_height = PANEL_HEIGHT;
         if let (true, Some(y_axis)) = (self.equal_axes, y_axes.first_mut()) {
             let [low, high] = EQUAL_HEIGHT;
-            panel_height = (width * y_axis.span() / x_axis.span()).clamp(low, high);
-            let unit_length = (width / x_axis.span()).min(panel_height / y_axis.span());
-            x_axis.widen_to(width / unit_length);
+            panel_height = (INNER * y_axis.span() / x_axis.span()).clamp(low, high);
+            let unit_length = (INNER / x_axis.span()).min(panel_height / y_axis.span());
+            x_axis.widen_to(INNER / unit_length);
             y_axis.widen_to(panel_height / unit_length);
         }
         let head = if self.title.is_empty() {
@@ -227,34 +224,29 @@ impl Figure {
             TITLE_HEIGHT
         };
         let pitch = HEADER_HEIGHT + panel_height;
-        let height = head + self.panels.len() as f64 * pitch + FOOTER_HEIGHT;
+        let bottom = head + self.panels.len() as f64 * pitch;
 
-        let mut svg = Document::new([WIDTH, height], &[STYLE]);
+        let mut svg = Document::new([WIDTH, bottom + FOOTER_HEIGHT], &[STYLE]);
         if !self.title.is_empty() {
-            svg.put(&title([LEFT, 22.0], WIDTH - LEFT - RIGHT, &self.title));
+            svg.put(&title([LEFT, 22.0], INNER, &self.title));
         }
-        for (i, (panel, y_axis)) in self.panels.iter().zip(&y_axes).enumerate() {
+        for (i, (panel, y_axis)) in self.panels.iter().zip(y_axes).enumerate() {
             let area = Area {
                 top: head + i as f64 * pitch + HEADER_HEIGHT,
-                width,
                 height: panel_height,
+                x_axis,
+                y_axis,
             };
-            area.grid(&mut svg, &x_axis, y_axis);
+            area.grid(&mut svg);
             for mark in &self.marks {
-                area.mark(&mut svg, mark, &x_axis);
+                area.mark(&mut svg, mark);
             }
             panel.legend(&mut svg, area.top - 9.0);
             for (k, series) in panel.series.iter().enumerate() {
-                let line = area.line(series, &x_axis, y_axis);
-                svg.put(&path(&style(k), &line).empty());
+                svg.put(&path(&style(k), &area.line(series)).empty());
             }
         }
-        let all_panels = Area {
-            top: head,
-            width,
-            height: self.panels.len() as f64 * pitch,
-        };
-        all_panels.name_x(&mut svg, &x_axis, &self.x_label);
+        scale(&mut svg, &x_axis, bottom, &self.x_label);
         svg.finish()
     }
 }
@@ -281,129 +273,42 @@ fn largest(values: &[f64]) -> f64 {
 }
 
 impl Panel {
+    /// A value with its 95 % band, as three lines: the first name is that of the value.
+    pub(crate) fn with_band(
+        names: [&str; 3],
+        quantity: &Quantity,
+        times: &[f64],
+        values: &[f64],
+        deviations: &[f64],
+    ) -> Self {
+        let line = |(name, sign): (&str, f64)| {
+            let shifted = |(value, std): (&f64, &f64)| value + sign * HALF_WIDTH_95 * std;
+            let y = values.iter().zip(deviations).map(shifted);
+            Series::new(
+                name,
+                times,
+                y.map(|value| quantity.to_unit(value)).collect(),
+            )
+        };
+        Self {
+            unit: quantity.unit.to_string(),
+            series: names.into_iter().zip([0.0, -1.0, 1.0]).map(line).collect(),
+        }
+    }
+
     /// Samples of the lines with their names. The unit stands in the text of the last name, so
     /// that the space between them does not depend on the reader's font.
     fn legend(&self, svg: &mut Document, y: f64) {
         let mut x = LEFT;
         for (k, series) in self.series.iter().enumerate() {
-            let sample = format!("M{x:.1} {:.1}h18", y - 4.0);
-            svg.put(&path(&style(k), &sample).empty());
+            let sample = path(&style(k), &format!("M{x:.1} {:.1}h18", y - 4.0));
             let label = if k + 1 == self.series.len() && !self.unit.is_empty() {
                 &format!("{} [{}]", series.label, self.unit)
             } else {
                 &series.label
             };
-            svg.put(&text([x + 23.0, y]).text(label));
-            x += 23.0 + CHARACTER * series.label.chars().count() as f64 + 16.0;
+            x = entry(svg, &sample.empty(), [x + SAMPLE, y], label);
         }
-    }
-}
-
-/// Position of a panel.
-struct Area {
-    top: f64,
-    width: f64,
-    height: f64,
-}
-
-impl Area {
-    /// Numbers and the label below.
-    fn name_x(&self, svg: &mut Document, axis: &Axis, label: &str) {
-        let bottom = self.top + self.height;
-        for tick in axis.ticks(8) {
-            let x = LEFT + self.width * axis.part(tick);
-            let label = number(tick, axis.step(8));
-            svg.put(&centred([x, bottom + 16.0], &label));
-        }
-        let x = LEFT + self.width / 2.0;
-        svg.put(&centred([x, bottom + 35.0], label));
-    }
-
-    fn grid(&self, svg: &mut Document, x_axis: &Axis, y_axis: &Axis) {
-        let mut grid = String::new();
-        for tick in x_axis.ticks(8) {
-            let x = LEFT + self.width * x_axis.part(tick);
-            // Writing to a string cannot fail.
-            let _ = write!(grid, "M{x:.1} {:.1}v{:.1}", self.top, self.height);
-        }
-        let count = if self.height > PANEL_HEIGHT { 8 } else { 5 };
-        for tick in y_axis.ticks(count) {
-            let y = self.top + self.height * (1.0 - y_axis.part(tick));
-            let _ = write!(grid, "M{LEFT:.1} {y:.1}h{:.1}", self.width);
-            let label = number(tick, y_axis.step(count));
-            let tick_label = text([LEFT - 7.0, y + 4.0]).with("text-anchor", "end");
-            svg.put(&tick_label.text(&label));
-        }
-        svg.put(&path("grid", &grid).empty());
-        let frame = Element::new("rect").with("class", "frame").with("x", LEFT);
-        let lengths = [
-            ("y", self.top),
-            ("width", self.width),
-            ("height", self.height),
-        ];
-        svg.put(&frame.lengths(lengths).empty());
-    }
-
-    fn mark(&self, svg: &mut Document, mark: &Mark, x_axis: &Axis) {
-        let part = x_axis.part(mark.x);
-        if !(0.0..=1.0).contains(&part) {
-            return;
-        }
-        let line = format!(
-            "M{:.1} {:.1}v{:.1}",
-            LEFT + self.width * part,
-            self.top,
-            self.height
-        );
-        svg.put(&path("frame dashed", &line).titled(&mark.about));
-    }
-
-    /// The path of the line without invisible points: a point is drawn if it or its successor is
-    /// more than a third of a pixel from the last one drawn.
-    fn line(&self, series: &Series, x_axis: &Axis, y_axis: &Axis) -> String {
-        const VISIBLE: f64 = 1.0 / 3.0;
-        let place = |(x, y): (&f64, &f64)| {
-            (x.is_finite() && y.is_finite()).then(|| {
-                let right = LEFT + self.width * x_axis.part(*x);
-                let down = self.top + self.height * (1.0 - y_axis.part(*y));
-                [right, down]
-            })
-        };
-        let far = |a: [f64; 2], b: [f64; 2]| {
-            (a[0] - b[0]).abs() > VISIBLE || (a[1] - b[1]).abs() > VISIBLE
-        };
-        let mut path = String::new();
-        let mut drawn: Option<[f64; 2]> = None;
-        let mut skipped: Option<[f64; 2]> = None;
-        let mut draw = |command: char, [x, y]: [f64; 2]| {
-            let _ = write!(path, "{command}{x:.1} {y:.1}");
-        };
-        for point in series.x.iter().zip(&series.y).map(place) {
-            match (point, drawn) {
-                (None, _) => {
-                    if let Some(last) = skipped.take() {
-                        draw('L', last);
-                    }
-                    drawn = None;
-                }
-                (Some(point), None) => {
-                    draw('M', point);
-                    drawn = Some(point);
-                }
-                (Some(point), Some(last)) if far(point, last) => {
-                    if let Some(before) = skipped.take() {
-                        draw('L', before);
-                    }
-                    draw('L', point);
-                    drawn = Some(point);
-                }
-                (Some(point), Some(_)) => skipped = Some(point),
-            }
-        }
-        if let Some(last) = skipped {
-            draw('L', last);
-        }
-        path
     }
 }
 
@@ -415,9 +320,4 @@ fn style(series: usize) -> String {
         ""
     };
     format!("line c{}{dashes}", series % COLOURS)
-}
-
-/// A text centred at a point.
-fn centred(place: [f64; 2], content: &str) -> String {
-    text(place).with("text-anchor", "middle").text(content)
 }

@@ -21,10 +21,10 @@ use appell_runtime::Trajectory;
 use appell_runtime::model::Model;
 use appell_spec::Mechanism;
 use maud::{PreEscaped, html};
-use serde_json::Value;
 
 pub use crate::drawing::film::FilmMaker;
 use crate::page_shell::PageShell;
+pub use data::data;
 
 const STYLE: &str = include_str!("film/style.css");
 /// Shows the picture and the time only; the embedding page shows the rest.
@@ -65,16 +65,6 @@ pub fn page(
     // The text of a spec is escaped: without `<` in the data it cannot end the element.
     let data = data.to_string().replace('<', "\\u003c");
     Ok(around(&mechanism.title, STYLE, &data))
-}
-
-/// The data of a motion for a [`live_page`].
-pub fn data(
-    maker: &FilmMaker,
-    model: &dyn Model,
-    motion: &Trajectory,
-    ending: Option<&str>,
-) -> Value {
-    data::json(maker, model, motion, ending)
 }
 
 /// The page without a motion, for a frame in another page that sends it the [`data`] of several motions of one

@@ -4,13 +4,13 @@ mod figure;
 mod page;
 
 use std::fmt::Write as _;
-use std::ops::Range;
 
 use appell_gap::identify::{AHEAD, Answer, Estimate, HeldOut, Known};
 use appell_recordings::{Channel, DataSet};
 
 use crate::recording;
-use crate::text::{horizon, number, short, table};
+use crate::tables::Table;
+use crate::text::{horizon, number, short};
 
 pub use figure::figure;
 pub use page::page;
@@ -32,31 +32,6 @@ const FAIR: f64 = 10.0;
 /// Posterior standard deviation, in units of the prior one, above which a direction is undetermined.
 const UNKNOWN: f64 = 100.0;
 
-/// A table with its heading.
-struct Part {
-    heading: String,
-    /// The first one holds the names of the columns.
-    rows: Vec<Vec<String>>,
-    /// Columns with right-aligned numbers.
-    numbers: Range<usize>,
-    /// Whether the numbers are correlations, which the page colours.
-    is_heat: bool,
-    /// A note below the table; may be empty.
-    note: String,
-}
-
-impl Part {
-    fn new<const N: usize>(heading: &str, columns: [&str; N], numbers: Range<usize>) -> Self {
-        Self {
-            heading: heading.to_owned(),
-            rows: vec![columns.map(str::to_owned).to_vec()],
-            numbers,
-            is_heat: false,
-            note: String::new(),
-        }
-    }
-}
-
 /// The report as text tables.
 pub fn text(set: &DataSet, answer: &Answer) -> String {
     let mut text = recording::text(set);
@@ -65,10 +40,10 @@ pub fn text(set: &DataSet, answer: &Answer) -> String {
         let _ = writeln!(text, "\n{warning}");
     }
     for part in parts(set, answer) {
-        let rows = table(&part.rows, part.numbers);
+        let rows = part.text();
         let _ = write!(text, "\n{}\n\n{rows}", part.heading);
-        if !part.note.is_empty() {
-            let _ = writeln!(text, "\n{}", part.note);
+        for note in &part.notes {
+            let _ = writeln!(text, "\n{note}");
         }
     }
     if answer.held_out.is_empty() {
@@ -79,40 +54,28 @@ pub fn text(set: &DataSet, answer: &Answer) -> String {
     text
 }
 
-fn parts(set: &DataSet, answer: &Answer) -> Vec<Part> {
-    let mut parts = vec![parameters(answer)];
-    if answer.parameters.len() > 1 {
-        parts.push(correlation(answer));
-    }
-    if !answer.repeatability.is_empty() {
-        parts.push(repeatability(answer));
-    }
-    parts.extend([combinations(answer), levels(set, answer), residuals(answer)]);
-    if !answer.courses.is_empty() {
-        parts.push(courses(answer));
-    }
-    if !answer.held_out.is_empty() {
-        parts.push(held_out(set, answer));
-    }
-    parts
+fn parts(set: &DataSet, answer: &Answer) -> Vec<Table> {
+    let has_several = answer.parameters.len() > 1;
+    let parts = [
+        Some(parameters(answer)),
+        has_several.then(|| correlation(answer)),
+        Some(repeatability(answer)).filter(Table::has_rows),
+        Some(combinations(answer)),
+        Some(levels(set, answer)),
+        Some(residuals(answer)),
+        Some(courses(answer)).filter(Table::has_rows),
+        Some(held_out(set, answer)).filter(Table::has_rows),
+    ];
+    parts.into_iter().flatten().collect()
 }
 
 fn in_unit(estimate: &Estimate, value: f64) -> String {
     number(value / estimate.quantity.scale)
 }
 
-fn parameters(answer: &Answer) -> Part {
-    let columns = [
-        "parameter",
-        "nominal",
-        "tolerance",
-        "found",
-        "from",
-        "to",
-        "unit",
-        "",
-    ];
-    let mut part = Part::new("95 % intervals", columns, 1..6);
+fn parameters(answer: &Answer) -> Table {
+    let columns = "parameter | nominal | tolerance | found | from | to | unit | ";
+    let mut part = Table::new("95 % intervals", columns, 1..6);
     for estimate in &answer.parameters {
         let ends = estimate.interval95().map(|end| in_unit(estimate, end));
         let [low, high] = if estimate.at_limit {
@@ -132,15 +95,10 @@ fn parameters(answer: &Answer) -> Part {
             remark(estimate).to_owned(),
         ]);
     }
-    if is_bent(answer) {
-        BENT.clone_into(&mut part.note);
-    }
+    let is_bent = |(error, _): &(&HeldOut, String)| error.fitted > WORSE * error.nominal;
+    let bent = ahead(answer).filter(is_bent);
+    part.notes.extend(bent.map(|_| BENT.to_owned()));
     part
-}
-
-/// Whether the fitted model predicts worse than the nominal one on held-out runs.
-fn is_bent(answer: &Answer) -> bool {
-    ahead(answer).is_some_and(|(error, _)| error.fitted > WORSE * error.nominal)
 }
 
 fn remark(estimate: &Estimate) -> &'static str {
@@ -154,22 +112,19 @@ fn remark(estimate: &Estimate) -> &'static str {
 }
 
 /// Values of the single runs, and their spread.
-fn repeatability(answer: &Answer) -> Part {
-    let columns = [
-        "parameter",
-        "lowest",
-        "highest",
-        "spread",
-        "relative to its interval",
-        "unit",
-        "",
-    ];
-    let mut part = Part::new("Repeatability from run to run", columns, 1..5);
+fn repeatability(answer: &Answer) -> Table {
+    let columns = "parameter | lowest | highest | spread | relative to its interval | unit | ";
+    let mut part = Table::new("Repeatability from run to run", columns, 1..5);
     for (one, estimate) in answer.repeatability.iter().zip(&answer.parameters) {
         let values = one.runs.iter().map(|(_, [value, _])| *value);
         let lowest = values.clone().fold(f64::INFINITY, f64::min);
         let highest = values.fold(f64::NEG_INFINITY, f64::max);
         let relative = one.spread / estimate.wider_std();
+        let remark = if one.differs {
+            "differs from run to run"
+        } else {
+            ""
+        };
         part.rows.push(vec![
             one.name.clone(),
             in_unit(estimate, lowest),
@@ -177,58 +132,49 @@ fn repeatability(answer: &Answer) -> Part {
             in_unit(estimate, one.spread),
             number(relative),
             estimate.quantity.unit.to_string(),
-            if one.differs {
-                "differs from run to run"
-            } else {
-                ""
-            }
-            .to_owned(),
+            remark.to_owned(),
         ]);
     }
-    "The spread is a standard deviation between the runs, beyond that of the single values. An interval holds for \
+    let note = "The spread is a standard deviation between the runs, beyond that of the single values. An interval holds for \
      the value that all runs share; another run may have one that differs by the spread. A parameter differs from run \
      to run where values as far apart would be found in less than 5 % of such tables if all runs shared one (Q test, \
-     Bonferroni)."
-        .clone_into(&mut part.note);
+     Bonferroni).";
+    part.notes.push(note.to_owned());
     part
 }
 
 /// Correlation matrix of the parameter errors.
-fn correlation(answer: &Answer) -> Part {
-    let names: Vec<String> = (answer.parameters.iter())
-        .map(|estimate| estimate.quantity.name.to_string())
-        .collect();
-    let mut part = Part::new("Correlation of the parameter errors", [], 1..1);
-    part.numbers = 1..1 + names.len();
+fn correlation(answer: &Answer) -> Table {
+    let names = answer
+        .parameters
+        .iter()
+        .map(|one| one.quantity.name.to_string());
+    let names: Vec<String> = names.collect();
+    let numbers = 1..1 + names.len();
+    let mut part = Table::new("Correlation of the parameter errors", "", numbers);
     part.is_heat = true;
-    part.rows[0].push(String::new());
     part.rows[0].extend(names.clone());
     for (name, row) in names.into_iter().zip(answer.correlation.row_iter()) {
         // Avoids a negative zero.
-        let cells = row
+        let rounded = row
             .iter()
-            .map(|value| format!("{:.2}", (100.0 * value).round() / 100.0 + 0.0));
+            .map(|value| (100.0 * value).round() / 100.0 + 0.0);
+        let cells = rounded.map(|value| format!("{value:.2}"));
         part.rows.push([name].into_iter().chain(cells).collect());
     }
     part
 }
 
 /// Parameter directions, with the posterior standard deviation relative to the prior.
-fn combinations(answer: &Answer) -> Part {
-    let known = answer
-        .combinations
-        .iter()
-        .filter(|known| known.deviation < 1.0);
+fn combinations(answer: &Answer) -> Table {
+    let all = answer.combinations.iter();
+    let known = all.filter(|known| known.deviation < 1.0).count();
     let heading = format!(
-        "The data improve on prior knowledge in {} of {} parameter directions",
-        known.count(),
+        "The data improve on prior knowledge in {known} of {} parameter directions",
         answer.combinations.len()
     );
-    let columns = [
-        "posterior / prior std",
-        "direction, in units of the prior std",
-    ];
-    let mut part = Part::new(&heading, columns, 0..1);
+    let columns = "posterior / prior std | direction, in units of the prior std";
+    let mut part = Table::new(&heading, columns, 0..1);
     for combination in &answer.combinations {
         let known_to = if combination.deviation < UNKNOWN {
             number(combination.deviation)
@@ -256,32 +202,31 @@ fn sum(answer: &Answer, combination: &Known) -> String {
     text
 }
 
-fn levels(set: &DataSet, answer: &Answer) -> Part {
+fn levels(set: &DataSet, answer: &Answer) -> Table {
     let heading = "Measurement noise and process noise (standard deviations)";
-    let columns = ["level", "of", "nominal model", "fitted model", "unit"];
-    let mut part = Part::new(heading, columns, 2..4);
-    for (what, levels) in [
-        ("measurement noise", &answer.noise),
-        ("process noise", &answer.disturbances),
-    ] {
-        for level in levels {
-            let channel = if what == "measurement noise" {
-                channel(set, &level.name)
-            } else {
-                None
-            };
-            let shown = |value| {
-                let value = channel.map_or(value, |channel| channel.unit.from_si(value));
-                format!("{value:.3e}")
-            };
-            part.rows.push(vec![
-                what.to_owned(),
-                level.name.clone(),
-                shown(level.nominal),
-                shown(level.fitted),
-                channel.map_or_else(|| "SI".to_owned(), |channel| channel.unit.text.clone()),
-            ]);
-        }
+    let columns = "level | of | nominal model | fitted model | unit";
+    let mut part = Table::new(heading, columns, 2..4);
+    let noise = answer.noise.iter().map(|level| (level, true));
+    let process = answer.disturbances.iter().map(|level| (level, false));
+    for (level, is_measured) in noise.chain(process) {
+        let channel = channel(set, &level.name).filter(|_| is_measured);
+        let what = if is_measured {
+            "measurement"
+        } else {
+            "process"
+        };
+        let unit = channel.map_or("SI", |channel| &channel.unit.text);
+        let shown = |value| {
+            let value = channel.map_or(value, |channel| channel.unit.from_si(value));
+            format!("{value:.3e}")
+        };
+        part.rows.push(vec![
+            format!("{what} noise"),
+            level.name.clone(),
+            shown(level.nominal),
+            shown(level.fitted),
+            unit.to_owned(),
+        ]);
     }
     part
 }
@@ -291,10 +236,10 @@ fn channel<'s>(set: &'s DataSet, column: &str) -> Option<&'s Channel> {
 }
 
 /// Whiteness of the innovations.
-fn residuals(answer: &Answer) -> Part {
+fn residuals(answer: &Answer) -> Table {
     let heading = "One-step residuals on the training runs";
-    let columns = ["channel", "lag-1 autocorrelation", "white-noise bound", ""];
-    let mut part = Part::new(heading, columns, 1..3);
+    let columns = "channel | lag-1 autocorrelation | white-noise bound | ";
+    let mut part = Table::new(heading, columns, 1..3);
     for (column, consistency) in &answer.whiteness {
         let remark = if consistency.is_white() {
             ""
@@ -312,9 +257,9 @@ fn residuals(answer: &Answer) -> Part {
 }
 
 /// Values of drifting parameters at the start and end of each run.
-fn courses(answer: &Answer) -> Part {
-    let columns = ["parameter", "run", "at start", "at end", "std", "unit"];
-    let mut part = Part::new("Drifting parameters, smoothed over each run", columns, 2..5);
+fn courses(answer: &Answer) -> Table {
+    let columns = "parameter | run | at start | at end | std | unit";
+    let mut part = Table::new("Drifting parameters, smoothed over each run", columns, 2..5);
     for course in &answer.courses {
         let shown = |value: Option<&f64>| {
             value.map_or_else(String::new, |value| number(course.quantity.to_unit(*value)))
@@ -332,18 +277,11 @@ fn courses(answer: &Answer) -> Part {
 }
 
 /// Prediction errors in the units of the channels, and relative to the measurement noise.
-fn held_out(set: &DataSet, answer: &Answer) -> Part {
-    let columns = [
-        "ahead",
-        "channel",
-        "unit",
-        "nominal model",
-        "fitted model",
-        "nominal / noise",
-        "fitted / noise",
-    ];
+fn held_out(set: &DataSet, answer: &Answer) -> Table {
+    let columns =
+        "ahead | channel | unit | nominal model | fitted model | nominal / noise | fitted / noise";
     let heading = "RMS prediction errors on held-out runs";
-    let mut part = Part::new(heading, columns, 3..7);
+    let mut part = Table::new(heading, columns, 3..7);
     for error in &answer.held_out {
         let column = error.column.as_deref();
         let noise = column.and_then(|name| answer.noise.iter().find(|level| level.name == name));
@@ -362,7 +300,7 @@ fn held_out(set: &DataSet, answer: &Answer) -> Part {
             size(error.fitted),
         ]);
     }
-    part.note = verdict(answer).unwrap_or_default();
+    part.notes.extend(verdict(answer));
     part
 }
 
@@ -401,18 +339,16 @@ fn ahead(answer: &Answer) -> Option<(&HeldOut, String)> {
 fn verdict(answer: &Answer) -> Option<String> {
     let (error, times) = ahead(answer)?;
     let when = horizon(error.horizon);
-    if error.fitted <= GOOD {
-        Some(format!(
-            "The fitted model predicts the held-out runs to within the noise ({times} times it, {when} ahead)."
-        ))
-    } else if error.fitted <= FAIR {
-        Some(format!(
-            "The fitted model predicts the held-out runs to {times} times the noise, {when} ahead: disturbances may \
-             explain that, or a small effect is missing."
-        ))
-    } else {
-        None
-    }
+    let size = match error.fitted {
+        size if size <= GOOD => format!("within the noise ({times} times it, {when} ahead)"),
+        size if size <= FAIR => format!(
+            "{times} times the noise, {when} ahead: disturbances may explain that, or a small effect is missing"
+        ),
+        _ => return None,
+    };
+    Some(format!(
+        "The fitted model predicts the held-out runs to {size}."
+    ))
 }
 
 /// Size of a prediction error; a prediction that overflowed has diverged.

@@ -20,4 +20,5 @@ pub mod identification;
 pub mod page_shell;
 pub mod recording;
 pub mod svg;
+mod tables;
 pub mod text;

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use appell_recordings::{DataSet, Finding, Part, Role, Run};
 use appell_spec::Severity;
 
-use crate::text::{number, table};
+use crate::tables::Table;
+use crate::text::number;
 
 /// The summary as text tables, in the units of the files.
 pub fn text(set: &DataSet) -> String {
@@ -28,10 +29,10 @@ pub fn text(set: &DataSet) -> String {
 }
 
 fn runs(set: &DataSet) -> String {
-    let heading = ["run", "for", "rows", "seconds", "step in ms", "gaps"];
-    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    let columns = "run | for | rows | seconds | step in ms | gaps";
+    let mut table = Table::new("", columns, 2..6);
     for run in &set.runs {
-        rows.push(vec![
+        table.rows.push(vec![
             run.name.clone(),
             part(run).to_owned(),
             run.times.len().to_string(),
@@ -40,7 +41,7 @@ fn runs(set: &DataSet) -> String {
             run.sampling.gaps.len().to_string(),
         ]);
     }
-    table(&rows, 2..6)
+    table.text()
 }
 
 /// Role of a run.
@@ -52,10 +53,8 @@ pub fn part(run: &Run) -> &'static str {
 }
 
 fn channels(set: &DataSet) -> String {
-    let heading = [
-        "channel", "holds", "unit", "noise", "stated", "step", "from",
-    ];
-    let mut rows = vec![heading.map(str::to_owned).to_vec()];
+    let columns = "channel | holds | unit | noise | stated | step | from";
+    let mut table = Table::new("", columns, 3..6);
     for channel in &set.channels {
         let shown = |value: Option<f64>| {
             let value = value.map(|value| channel.unit.from_si(value));
@@ -63,12 +62,11 @@ fn channels(set: &DataSet) -> String {
         };
         let label = channel.role.label(&set.mechanism);
         let name = label.map_or("", |label| label.name.as_str());
+        let what = format!("{} {name}", role(channel.role));
         let noise = channel.noise;
-        rows.push(vec![
+        table.rows.push(vec![
             channel.column.clone(),
-            format!("{} {name}", role(channel.role))
-                .trim_end()
-                .to_owned(),
+            what.trim_end().to_owned(),
             channel.unit.text.clone(),
             shown(noise.map(|noise| noise.std)),
             shown(channel.stated_noise),
@@ -76,7 +74,7 @@ fn channels(set: &DataSet) -> String {
             noise.map_or("", |noise| noise.source.word()).to_owned(),
         ]);
     }
-    table(&rows, 3..6)
+    table.text()
 }
 
 /// Quantity of a channel.

@@ -177,25 +177,3 @@ impl Document {
         self.0 + "</svg>\n"
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_long_title_is_smaller_and_a_longer_one_is_cut() {
-        let shown = |letters: usize| title([0.0, 0.0], 720.0, &"a".repeat(letters));
-        assert!(!shown(50).contains("style"));
-        let smaller = shown(90);
-        assert!(
-            smaller.contains("font-size:1") && !smaller.contains('…'),
-            "{smaller}"
-        );
-        let cut = shown(500);
-        assert!(
-            cut.contains("font-size:10.0px") && cut.contains("…</text>"),
-            "{cut}"
-        );
-        assert!(cut.contains(&format!("<title>{}</title>", "a".repeat(500))));
-    }
-}

@@ -1,6 +1,7 @@
 //! Plots as SVG.
 
 use appell_report::figure::{Figure, Layer, Look, Mark, Panel, Plot, Series};
+use appell_report::svg::title;
 
 fn series(label: &str, count: u32, y: impl Fn(f64) -> f64) -> Series {
     let x: Vec<f64> = (0..=count)
@@ -212,4 +213,21 @@ fn a_plot_has_points_a_band_and_a_legend_of_what_is_named() {
     for text in ["noise", "data", "t [s]", "x [m]"] {
         assert!(svg.contains(&format!(">{text}</text>")), "{text} in {svg}");
     }
+}
+
+#[test]
+fn a_long_title_is_smaller_and_a_longer_one_is_cut() {
+    let shown = |letters: usize| title([0.0, 0.0], 720.0, &"a".repeat(letters));
+    assert!(!shown(50).contains("style"));
+    let smaller = shown(90);
+    assert!(
+        smaller.contains("font-size:1") && !smaller.contains('…'),
+        "{smaller}"
+    );
+    let cut = shown(500);
+    assert!(
+        cut.contains("font-size:10.0px") && cut.contains("…</text>"),
+        "{cut}"
+    );
+    assert!(cut.contains(&format!("<title>{}</title>", "a".repeat(500))));
 }

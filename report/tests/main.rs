@@ -5,3 +5,4 @@ mod headline;
 mod linearisation;
 mod page;
 mod support;
+mod text;

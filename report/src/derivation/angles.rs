@@ -2,6 +2,7 @@
 
 use rustc_hash::FxHashMap;
 
+use super::collect::{Term, terms};
 use appell_codegen::symbolic::{Expr, Function, Graph, Node, Rational};
 
 /// A product of two sines or cosines of different angles, and its cofactor.
@@ -13,21 +14,16 @@ struct Pair {
 
 /// An expanded sum with pairs of products combined into functions of one angle.
 pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
-    let Node::Sum(terms) = graph.node(expr) else {
+    let terms = terms(graph, expr);
+    if terms.len() == 1 {
         return expr;
-    };
-    let terms: Vec<(Rational, Expr)> = terms
-        .iter()
-        .map(|t| (t.coefficient.clone(), t.expr))
-        .collect();
+    }
     let mut used = vec![false; terms.len()];
-    let mut sum: Vec<(Rational, Expr)> = Vec::new();
+    let mut sum: Vec<Term> = Vec::new();
     // Terms without a partner so far, by cofactor and angles.
     let mut waiting: FxHashMap<(Expr, Expr, Expr), Vec<usize>> = FxHashMap::default();
-    let pairs: Vec<Vec<Pair>> = terms
-        .iter()
-        .map(|&(_, term)| pairs_of(graph, term))
-        .collect();
+    let pairs = terms.iter().map(|&(_, term)| pairs_of(graph, term));
+    let pairs: Vec<Vec<Pair>> = pairs.collect();
     for (k, candidates) in pairs.iter().enumerate() {
         for pair in candidates {
             let key = (pair.rest, pair.turns[0].1, pair.turns[1].1);
@@ -40,11 +36,8 @@ pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
                     .iter()
                     .find(|p| (p.rest, p.turns[0].1, p.turns[1].1) == key);
                 let together = other.and_then(|other| {
-                    let (coefficients, turns) = (
-                        [&terms[partner].0, &terms[k].0],
-                        [&other.turns, &pair.turns],
-                    );
-                    compound(graph, coefficients, turns)
+                    let coefficients = [&terms[partner].0, &terms[k].0];
+                    compound(graph, coefficients, [&other.turns, &pair.turns])
                 });
                 if let Some((coefficient, function)) = together {
                     used[k] = true;
@@ -59,13 +52,8 @@ pub(super) fn with_compound_angles(graph: &mut Graph, expr: Expr) -> Expr {
     if sum.is_empty() {
         return expr;
     }
-    sum.extend(
-        terms
-            .into_iter()
-            .zip(used)
-            .filter(|(_, used)| !used)
-            .map(|(term, _)| term),
-    );
+    let others = terms.into_iter().zip(used).filter(|(_, used)| !used);
+    sum.extend(others.map(|(term, _)| term));
     graph.linear_combination(&sum)
 }
 

@@ -4,7 +4,7 @@
 
 use super::Math;
 use super::angles::with_compound_angles;
-use super::collect::{Monomial, collect, collect_turns};
+use super::collect::{Monomial, Term, collect, collect_turns, terms};
 use super::writer::Writer;
 use appell_codegen::symbolic::print::assemble;
 use appell_codegen::symbolic::{Expr, Factor, Graph, Node, Rational};
@@ -40,15 +40,9 @@ impl Writer<'_> {
         let readable = self.readable(expr);
         let graph = self.graph();
         // Quotients by sums are kept; the rest is expanded and ordered.
-        let terms: Vec<(Rational, Expr)> = match graph.node(readable) {
-            Node::Sum(terms) => terms
-                .iter()
-                .map(|t| (t.coefficient.clone(), t.expr))
-                .collect(),
-            _ => vec![(Rational::ONE, readable)],
-        };
-        let (quotients, plain): (Vec<_>, Vec<_>) =
-            terms.into_iter().partition(|(_, e)| is_quotient(graph, *e));
+        let (quotients, plain): (Vec<Term>, Vec<Term>) = terms(graph, readable)
+            .into_iter()
+            .partition(|(_, e)| is_quotient(graph, *e));
         let mut parts = Vec::new();
         if !plain.is_empty() {
             let rest = graph.linear_combination(&plain);
@@ -105,24 +99,19 @@ impl Writer<'_> {
         let is_sum = |f: &Factor| f.exponent == 1 && matches!(graph.node(f.base), Node::Sum(_));
         let with_keys =
             |f: &Factor| is_sum(f) && keys.iter().any(|list| occurs(graph, f.base, list));
-        let Some(place) = factors
-            .iter()
-            .position(with_keys)
-            .or_else(|| factors.iter().position(is_sum))
-        else {
+        let place = factors.iter().position(with_keys);
+        let Some(place) = place.or_else(|| factors.iter().position(is_sum)) else {
             return self.set(expr);
         };
         let mut sum = factors[place].base;
         let holds_keys = keys.iter().any(|list| occurs(self.graph(), sum, list));
         let (mut above, mut below) = (Vec::new(), Vec::new());
-        for (k, factor) in factors.iter().enumerate() {
-            if k != place {
-                let power = self.graph().pow(factor.base, factor.exponent.abs());
-                if factor.exponent > 0 {
-                    above.push(power);
-                } else {
-                    below.push(power);
-                }
+        for (_, factor) in factors.iter().enumerate().filter(|(k, _)| *k != place) {
+            let power = self.graph().pow(factor.base, factor.exponent.abs());
+            if factor.exponent > 0 {
+                above.push(power);
+            } else {
+                below.push(power);
             }
         }
         let above = self.graph().product(&above);
@@ -156,16 +145,14 @@ impl Writer<'_> {
         below: Expr,
         last: bool,
     ) -> Math {
-        let above = if above == Graph::ONE {
-            Vec::new()
-        } else {
-            vec![self.set(above)]
+        let mut factors = |product: Expr| {
+            let product = Some(product).filter(|&product| product != Graph::ONE);
+            product
+                .map(|product| self.set(product))
+                .into_iter()
+                .collect()
         };
-        let below = if below == Graph::ONE {
-            Vec::new()
-        } else {
-            vec![self.set(below)]
-        };
+        let (above, below): (Vec<Math>, Vec<Math>) = (factors(above), factors(below));
         let width = sum.width();
         if below.is_empty() || width <= LONGEST_NUMERATOR {
             // A factor of constants goes before the letters, a sum of motions behind them.
@@ -189,17 +176,12 @@ impl Writer<'_> {
         let mut terms = Vec::with_capacity(groups.len());
         for (monomial, coefficient) in groups {
             let graph = self.graph();
-            let powers: Vec<Expr> = monomial
-                .iter()
+            let powers = monomial.iter();
+            let powers: Vec<Expr> = powers
                 .map(|&(key, exponent)| graph.pow(keys[key], exponent))
                 .collect();
             let power = graph.product(&powers);
-            let minus = leads_with_minus(graph, coefficient);
-            let coefficient = if minus {
-                graph.neg(coefficient)
-            } else {
-                coefficient
-            };
+            let (minus, coefficient) = without_sign(graph, coefficient);
             let several = matches!(graph.node(coefficient), Node::Sum(t) if t.len() > 1);
             let math = if several {
                 let factor = self.present(coefficient, rest);
@@ -209,13 +191,8 @@ impl Writer<'_> {
                 self.set(term)
             };
             // A leading sign of the formula is the sign of the term.
-            terms.push(match math {
-                Math::Sum(mut single) if single.len() == 1 => {
-                    let (inner, math) = single.remove(0);
-                    (minus != inner, math)
-                }
-                math => (minus, math),
-            });
+            let (inner, math) = signed(math);
+            terms.push((minus != inner, math));
         }
         plus_first(terms)
     }
@@ -226,15 +203,12 @@ impl Writer<'_> {
             return factor;
         }
         let power = self.set(power);
-        match factor {
-            Math::Sum(mut single) if single.len() == 1 => {
-                let (minus, factor) = single.remove(0);
-                Math::Sum(vec![(
-                    minus,
-                    functions_last(Math::product(vec![factor, power])),
-                )])
-            }
-            factor => functions_last(Math::product(vec![factor, power])),
+        let (minus, factor) = signed(factor);
+        let product = functions_last(Math::product(vec![factor, power]));
+        if minus {
+            Math::Sum(vec![(true, product)])
+        } else {
+            product
         }
     }
 
@@ -251,12 +225,7 @@ impl Writer<'_> {
             let mut terms = Vec::with_capacity(groups.len());
             for (power, coefficient) in groups {
                 let graph = self.graph();
-                let minus = leads_with_minus(graph, coefficient);
-                let coefficient = if minus {
-                    graph.neg(coefficient)
-                } else {
-                    coefficient
-                };
+                let (minus, coefficient) = without_sign(graph, coefficient);
                 let coefficient = graph.take_out_common_factors(coefficient);
                 let term = graph.mul(coefficient, power);
                 terms.push((minus, self.set(term)));
@@ -297,12 +266,25 @@ fn has_both_signs(graph: &Graph, sum: Expr) -> bool {
     negative > 0 && negative < terms.len()
 }
 
-/// Whether every term is negative.
-fn leads_with_minus(graph: &Graph, expr: Expr) -> bool {
-    match graph.node(expr) {
+/// Whether every term is negative, and the expression or its opposite.
+fn without_sign(graph: &mut Graph, expr: Expr) -> (bool, Expr) {
+    let is_negative = match graph.node(expr) {
         Node::Number(n) => n.is_negative(),
         Node::Sum(terms) => terms.iter().all(|t| t.coefficient.is_negative()),
         _ => false,
+    };
+    if is_negative {
+        (true, graph.neg(expr))
+    } else {
+        (false, expr)
+    }
+}
+
+/// The sign of a formula that is a single term, and the term.
+pub(super) fn signed(math: Math) -> (bool, Math) {
+    match math {
+        Math::Sum(mut single) if single.len() == 1 => single.remove(0),
+        math => (false, math),
     }
 }
 

@@ -31,17 +31,20 @@ pub struct Page {
 }
 
 impl Page {
-    /// Characters of its displayed formulas.
-    pub(super) fn length(&self) -> usize {
+    /// Its displayed equations.
+    pub(super) fn equations(&self) -> impl Iterator<Item = &Equation> {
         let blocks = self.sections.iter().flat_map(|section| &section.blocks);
         let equations = blocks.filter_map(|block| match block {
             Block::Equations(equations) => Some(equations),
             _ => None,
         });
-        let lengths = equations
-            .flatten()
-            .map(|e| e.left.width() + e.right.width());
-        lengths.sum()
+        equations.flatten()
+    }
+
+    /// Characters of its displayed formulas.
+    pub(super) fn length(&self) -> usize {
+        let width = |e: &Equation| e.left.width() + e.right.width();
+        self.equations().map(width).sum()
     }
 }
 

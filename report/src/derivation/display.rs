@@ -41,6 +41,8 @@ impl Equation {
 pub(super) enum Piece<'a> {
     /// A part that is not broken.
     Whole(&'a Math),
+    /// Between two factors of a line.
+    Times,
     /// Plus or minus before a term; the first term of a sum has one only if it is subtracted.
     Sign { minus: bool, first: bool },
     /// The equality sign behind a left-hand side that is itself broken.
@@ -61,7 +63,7 @@ pub(super) struct Display<'a> {
 }
 
 /// A left-hand side wider than this is not aligned with those of other equations.
-pub(super) const WIDEST_LEFT: usize = 16;
+const WIDEST_LEFT: usize = 16;
 
 impl Equation {
     /// The equation in lines of about `width` characters; `left_width` is the width of the
@@ -93,12 +95,8 @@ const CONTINUED: usize = 4;
 
 /// Width of the aligned left-hand sides of a list.
 pub(super) fn left_width(equations: &[Equation]) -> usize {
-    equations
-        .iter()
-        .map(|e| e.left.width())
-        .filter(|&w| w <= WIDEST_LEFT)
-        .max()
-        .unwrap_or(0)
+    let widths = equations.iter().map(|e| e.left.width());
+    widths.filter(|&w| w <= WIDEST_LEFT).max().unwrap_or(0)
 }
 
 /// Lines of pieces, broken before signs so that the first and the others fit their widths where possible. A sign outside of
@@ -122,23 +120,29 @@ fn broken<'a>(pieces: &[(Piece<'a>, usize)], first: usize, others: usize) -> Vec
             used += sizes[end];
             end += 1;
         }
-        let stop = if end == pieces.len() && used <= width {
-            end
-        } else {
+        let mut stop = pieces.len();
+        if end < stop || used > width {
             let full = places.iter().filter(|&&(_, _, used)| 2 * used >= width);
             let best = full.min_by_key(|&&(place, depth, _)| (depth, std::cmp::Reverse(place)));
-            best.or(places.last())
-                .map_or(pieces.len(), |&(place, _, _)| place)
-        };
-        lines.push(
-            pieces[start..stop]
-                .iter()
-                .map(|(piece, _)| *piece)
-                .collect(),
-        );
+            stop = best.or(places.last()).map_or(stop, |&(place, _, _)| place);
+        }
+        lines.push(with_times(&pieces[start..stop]));
         start = stop;
     }
     lines
+}
+
+/// The pieces of a line, factors apart.
+fn with_times<'a>(pieces: &[(Piece<'a>, usize)]) -> Vec<Piece<'a>> {
+    let mut line = Vec::with_capacity(pieces.len());
+    for &(piece, _) in pieces {
+        let is_factor = matches!(piece, Piece::Whole(_) | Piece::Open);
+        if is_factor && matches!(line.last(), Some(Piece::Whole(_) | Piece::Close)) {
+            line.push(Piece::Times);
+        }
+        line.push(piece);
+    }
+    line
 }
 
 fn size(piece: &Piece<'_>) -> usize {
@@ -146,22 +150,17 @@ fn size(piece: &Piece<'_>) -> usize {
         Piece::Whole(math) => math.width() + 1,
         Piece::Sign { .. } | Piece::Equals => 2,
         Piece::Open | Piece::Close => 1,
+        Piece::Times => 0,
     }
 }
 
 fn flatten<'a>(math: &'a Math, depth: usize, pieces: &mut Vec<(Piece<'a>, usize)>) {
     match math {
         Math::Sum(terms) => {
-            for (index, (minus, term)) in terms.iter().enumerate() {
+            for (index, &(minus, ref term)) in terms.iter().enumerate() {
                 let first = index == 0;
-                if !first || *minus {
-                    pieces.push((
-                        Piece::Sign {
-                            minus: *minus,
-                            first,
-                        },
-                        depth,
-                    ));
+                if !first || minus {
+                    pieces.push((Piece::Sign { minus, first }, depth));
                 }
                 flatten(term, depth, pieces);
             }

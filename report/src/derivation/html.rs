@@ -63,8 +63,8 @@ enum Use {
 
 /// The attribute `data-lines`, where equations can be selected.
 fn located(purpose: Use, lines: &[usize]) -> Option<String> {
-    let lines = || lines.iter().map(usize::to_string).collect::<Vec<_>>();
-    (purpose == Use::Choosing && !lines().is_empty()).then(|| lines().join(" "))
+    let numbers: Vec<String> = lines.iter().map(usize::to_string).collect();
+    (purpose == Use::Choosing && !lines.is_empty()).then(|| numbers.join(" "))
 }
 
 fn shown(block: &Block, purpose: Use) -> Markup {
@@ -80,33 +80,32 @@ fn formula(math: &Math) -> PreEscaped<String> {
     PreEscaped(mathml(math))
 }
 
+/// The punctuation after a formula stays on its line.
 fn spans(spans: &[Span]) -> Markup {
-    let mut out = Vec::with_capacity(spans.len());
-    let mut spans = spans.iter().peekable();
-    // The full stop after a formula stays on its line.
-    let mut stopped = false;
-    while let Some(span) = spans.next() {
-        out.push(match span {
-            Span::Text(text) => {
-                let rest = &text[usize::from(stopped)..];
-                stopped = false;
-                markup! { (one_line(rest)) }
-            }
-            Span::Math(math) => {
-                let stop = match spans.peek() {
-                    Some(Span::Text(text)) => text.chars().next().filter(|c| ".,;:".contains(*c)),
-                    _ => None,
-                };
-                stopped = stop.is_some();
-                let formula = markup! { math { (formula(math)) } };
-                match stop {
-                    Some(stop) => markup! { span class="stopped" { (formula) (stop) } },
-                    None => formula,
+    let stop = |k: usize| match &spans[k..] {
+        [Span::Math(_), Span::Text(text), ..] => text.chars().next().filter(|&c| is_stop(c)),
+        _ => None,
+    };
+    markup! {
+        @for (k, span) in spans.iter().enumerate() {
+            @match span {
+                Span::Text(text) => {
+                    @let is_stopped = k > 0 && stop(k - 1).is_some();
+                    (one_line(&text[usize::from(is_stopped)..]))
+                }
+                Span::Math(math) => {
+                    @match stop(k) {
+                        Some(stop) => { span class="stopped" { math { (formula(math)) } (stop) } }
+                        None => { math { (formula(math)) } }
+                    }
                 }
             }
-        });
+        }
     }
-    markup! { @for part in out { (part) } }
+}
+
+const fn is_stop(letter: char) -> bool {
+    matches!(letter, '.' | ',' | ';' | ':')
 }
 
 fn table(table: &Table, purpose: Use) -> Markup {
@@ -181,46 +180,31 @@ fn equations(equations: &[Equation], purpose: Use) -> Markup {
 }
 
 fn row(left: Option<&Math>, is_first: bool, line: &[Piece<'_>], lines: Option<&str>) -> Markup {
-    let right = markup! { mrow { (PreEscaped(pieces(line))) } };
-    match (left, is_first) {
-        (Some(left), true) => markup! {
-            mtr class="first" data-lines=[lines] {
-                mtd class="left" { (formula(left)) }
-                mtd class="sign" { mo { "=" } }
-                mtd class="right" { (right) }
+    markup! {
+        mtr class=[is_first.then_some("first")] data-lines=[lines] {
+            @match left {
+                Some(left) if is_first => {
+                    mtd class="left" { (formula(left)) }
+                    mtd class="sign" { mo { "=" } }
+                }
+                Some(_) => { mtd {} mtd {} }
+                None => {}
             }
-        },
-        (Some(_), false) => markup! {
-            mtr data-lines=[lines] { mtd {} mtd {} mtd class="right more" { (right) } }
-        },
-        (None, true) => markup! {
-            mtr class="first" data-lines=[lines] { mtd columnspan="3" class="right" { (right) } }
-        },
-        (None, false) => markup! {
-            mtr data-lines=[lines] { mtd columnspan="3" class="right more" { (right) } }
-        },
+            mtd columnspan=[left.is_none().then_some("3")] class=(if is_first { "right" } else { "right more" }) {
+                mrow { @for piece in line { (PreEscaped(shown_piece(piece))) } }
+            }
+        }
     }
 }
 
-/// One line of a broken equation.
-fn pieces(pieces: &[Piece<'_>]) -> String {
-    let mut out = String::new();
-    let mut after_whole = false;
-    for piece in pieces {
-        match piece {
-            Piece::Whole(math) => {
-                out.push_str(if after_whole { TIMES } else { "" });
-                out.push_str(&mathml(math));
-            }
-            Piece::Sign { minus, first } => out.push_str(sign(*minus, *first)),
-            Piece::Equals => out.push_str("<mo>=</mo>"),
-            Piece::Open => {
-                out.push_str(if after_whole { TIMES } else { "" });
-                out.push_str("<mo stretchy=\"false\">(</mo>");
-            }
-            Piece::Close => out.push_str("<mo stretchy=\"false\">)</mo>"),
-        }
-        after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
-    }
-    out
+fn shown_piece(piece: &Piece<'_>) -> String {
+    let shown = match piece {
+        Piece::Whole(math) => return mathml(math),
+        Piece::Times => TIMES,
+        Piece::Sign { minus, first } => sign(*minus, *first),
+        Piece::Equals => "<mo>=</mo>",
+        Piece::Open => "<mo stretchy=\"false\">(</mo>",
+        Piece::Close => "<mo stretchy=\"false\">)</mo>",
+    };
+    shown.to_owned()
 }

@@ -11,143 +11,91 @@ const WIDTH: usize = 88;
 
 /// The preamble. `\other` shows a character if the engine supports Unicode, and its number
 /// otherwise.
-const PREAMBLE: &str = r"\documentclass[10pt,a4paper,fleqn]{article}
-\usepackage{iftex}
-\ifPDFTeX
-  \usepackage[T1]{fontenc}
-  \usepackage{lmodern}
-  \newcommand{\other}[2]{[U+#2]}
-\else
-  \newcommand{\other}[2]{\symbol{#1}}
-\fi
-\usepackage[margin=18mm]{geometry}
-\usepackage{amsmath}
-\usepackage{tabularx}
-\setlength{\parindent}{0pt}
-\setlength{\parskip}{3pt}
-\setlength{\mathindent}{2em}
-\setcounter{MaxMatrixCols}{64}
-\allowdisplaybreaks
-\raggedbottom
-\sloppy
-\newcommand{\quantities}[1]{\par\smallskip\textbf{#1}\par}
-\makeatletter
-\renewcommand{\section}{\@startsection{section}{1}{0pt}{8pt plus 2pt}{3pt}{\large\bfseries}}
-\makeatother
-\AtBeginDocument{%
-  \setlength{\abovedisplayskip}{3pt plus 1pt}%
-  \setlength{\belowdisplayskip}{3pt plus 1pt}%
-}
-";
+const PREAMBLE: &str = include_str!("preamble.tex");
 
 /// The page as a LaTeX document.
 pub fn latex(page: &Page) -> String {
-    let mut out = String::from(PREAMBLE);
-    let _ = write!(
-        out,
-        "\\begin{{document}}\n\n{{\\LARGE\\bfseries {}\\par}}\n",
-        escaped(&page.title)
-    );
+    let title = escaped(&page.title);
+    let mut out = format!("{PREAMBLE}\\begin{{document}}\n\n{{\\LARGE\\bfseries {title}\\par}}\n");
     if let Some(source) = &page.source {
-        let _ = write!(
-            out,
-            "\\smallskip\n{{\\small Source: {}\\par}}\n",
-            escaped(source)
-        );
+        let source = escaped(source);
+        // Writing to a string cannot fail.
+        let _ = writeln!(out, "\\smallskip\n{{\\small Source: {source}\\par}}");
     }
     for section in &page.sections {
-        let _ = write!(out, "\n\\section{{{}}}\n", spans(&section.heading));
-        for (k, block) in section.blocks.iter().enumerate() {
+        let _ = writeln!(out, "\n\\section{{{}}}", spans(&section.heading));
+        let mut is_sentence = false;
+        for block in &section.blocks {
             // A display belongs to the paragraph before it.
-            let follows = k > 0 && matches!(section.blocks[k - 1], Block::Sentence(_));
-            if !(follows && matches!(block, Block::Equations(_) | Block::Chain(_))) {
+            if !(is_sentence && matches!(block, Block::Equations(_) | Block::Chain(_))) {
                 out.push('\n');
             }
-            match block {
-                Block::Sentence(sentence) => out.push_str(&spans(sentence)),
-                Block::Table(t) => table(&mut out, t),
-                Block::Chain(c) => chain(&mut out, c),
-                Block::Equations(all) => equations(&mut out, all),
-            }
+            is_sentence = matches!(block, Block::Sentence(_));
+            out += &match block {
+                Block::Sentence(sentence) => spans(sentence),
+                Block::Table(all) => table(all),
+                Block::Chain(all) => chain(all),
+                Block::Equations(all) => equations(all),
+            };
             out.push('\n');
         }
     }
-    out.push_str("\n\\end{document}\n");
-    out
+    out + "\n\\end{document}\n"
 }
 
 /// The equations of the page alone, for a page that sets formulas itself.
 pub fn formulas(page: &Page) -> String {
-    let mut out = String::new();
-    for block in page.sections.iter().flat_map(|section| &section.blocks) {
-        if let Block::Equations(all) = block {
-            equations(&mut out, all);
-            out.push('\n');
-        }
-    }
-    out
+    let blocks = page.sections.iter().flat_map(|section| &section.blocks);
+    let formulas = blocks.filter_map(|block| match block {
+        Block::Equations(all) => Some(equations(all) + "\n"),
+        _ => None,
+    });
+    formulas.collect()
 }
 
 fn spans(spans: &[Span]) -> String {
-    spans
-        .iter()
-        .map(|span| match span {
-            Span::Text(text) => escaped(text),
-            Span::Math(math) => format!("${}$", formula(math)),
-        })
-        .collect()
+    let shown = spans.iter().map(|span| match span {
+        Span::Text(text) => escaped(text),
+        Span::Math(math) => format!("${}$", formula(math)),
+    });
+    shown.collect()
 }
 
-fn table(out: &mut String, table: &Table) {
-    let columns = table
-        .rows
-        .iter()
-        .map(|row| row.cells.len())
-        .max()
-        .unwrap_or(1);
+fn table(table: &Table) -> String {
+    let mut out = String::new();
     if !table.title.is_empty() {
         let _ = writeln!(out, "\\quantities{{{}}}", escaped(&table.title));
     }
+    let columns = table.rows.iter().map(|row| row.cells.len()).max();
     // The last column takes the remaining width, followed by the lines of the spec.
-    let firsts = "l".repeat(columns.saturating_sub(1));
+    let firsts = "l".repeat(columns.unwrap_or(1).saturating_sub(1));
     let _ = writeln!(
         out,
         "\\begin{{tabularx}}{{\\textwidth}}{{{firsts}>{{\\raggedright\\arraybackslash}}Xr}}"
     );
     for row in &table.rows {
         let cells: Vec<String> = row.cells.iter().map(|cell| spans(cell)).collect();
-        let _ = writeln!(
-            out,
-            "{} & \\footnotesize {} \\\\",
-            cells.join(" & "),
-            row.line
-        );
+        let (cells, line) = (cells.join(" & "), row.line);
+        let _ = writeln!(out, "{cells} & \\footnotesize {line} \\\\");
     }
-    out.push_str("\\end{tabularx}\\par");
+    out + "\\end{tabularx}\\par"
 }
 
-fn chain(out: &mut String, chain: &Chain) {
-    let _ = write!(out, "\\[ \\text{{{}}}", escaped(&chain.start));
+fn chain(chain: &Chain) -> String {
+    let mut out = format!("\\[ \\text{{{}}}", escaped(&chain.start));
     for (label, to) in &chain.links {
-        let label: String = label
-            .iter()
-            .map(|span| match span {
-                Span::Text(text) => format!("\\text{{{}}}", escaped(text)),
-                Span::Math(math) => formula(math),
-            })
-            .collect();
-        let _ = write!(
-            out,
-            " \\xrightarrow{{\\;{label}\\;}} \\text{{{}}}",
-            escaped(to)
-        );
+        let label = label.iter().map(|span| match span {
+            Span::Text(text) => format!("\\text{{{}}}", escaped(text)),
+            Span::Math(math) => formula(math),
+        });
+        let (label, to) = (label.collect::<String>(), escaped(to));
+        let _ = write!(out, " \\xrightarrow{{\\;{label}\\;}} \\text{{{to}}}");
     }
-    out.push_str(" \\]");
+    out + " \\]"
 }
 
-fn equations(out: &mut String, equations: &[Equation]) {
+fn equations(equations: &[Equation]) -> String {
     let left_width = left_width(equations);
-    out.push_str("\\begin{align*}\n");
     let mut rows = Vec::new();
     for equation in equations {
         let display = equation.display(WIDTH, left_width);
@@ -161,40 +109,43 @@ fn equations(out: &mut String, equations: &[Equation]) {
             });
         }
     }
-    let _ = write!(out, "{}\n\\end{{align*}}", rows.join(" \\\\\n"));
+    let rows = rows.join(" \\\\\n");
+    format!("\\begin{{align*}}\n{rows}\n\\end{{align*}}")
 }
 
 fn pieces(pieces: &[Piece<'_>]) -> String {
     // A bracket is as tall as its content; lines may break between the two.
-    let tall = pieces
-        .iter()
-        .any(|piece| matches!(piece, Piece::Whole(math) if math.has_fraction()));
-    let (open, close) = if tall {
-        ("\\Bigl(", "\\Bigr)")
+    let is_tall = |piece: &Piece<'_>| matches!(piece, Piece::Whole(math) if math.has_fraction());
+    let [open, close] = if pieces.iter().any(is_tall) {
+        ["\\Bigl(", "\\Bigr)"]
     } else {
-        ("\\bigl(", "\\bigr)")
+        ["\\bigl(", "\\bigr)"]
     };
-    let mut out = String::new();
-    let mut after_whole = false;
-    for piece in pieces {
-        match piece {
-            Piece::Whole(math) => {
-                if after_whole {
-                    out.push_str("\\, ");
+    let shown = |piece: &Piece<'_>| {
+        let shown = match *piece {
+            Piece::Whole(math) => return formula(math),
+            Piece::Times => "\\, ",
+            Piece::Sign { minus, first: true } => {
+                if minus {
+                    "-"
+                } else {
+                    ""
                 }
-                out.push_str(&formula(math));
             }
-            Piece::Sign { minus, first: true } => out.push_str(if *minus { "-" } else { "" }),
             // An empty group makes a sign at the start of a line a sign between two terms.
-            Piece::Sign { minus, .. } => out.push_str(if *minus { " {}- " } else { " {}+ " }),
-            Piece::Equals => out.push_str(" {}= "),
-            Piece::Open => {
-                out.push_str(if after_whole { "\\, " } else { "" });
-                out.push_str(open);
+            Piece::Sign { minus, .. } => {
+                if minus {
+                    " {}- "
+                } else {
+                    " {}+ "
+                }
             }
-            Piece::Close => out.push_str(close),
-        }
-        after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
-    }
-    out.trim_start().to_owned()
+            Piece::Equals => " {}= ",
+            Piece::Open => open,
+            Piece::Close => close,
+        };
+        shown.to_owned()
+    };
+    let line: String = pieces.iter().map(shown).collect();
+    line.trim_start().to_owned()
 }

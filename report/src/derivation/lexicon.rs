@@ -46,21 +46,13 @@ impl Lexicon {
         for (&expr, p) in s.parameters.iter().zip(&mechanism.parameters) {
             letter(expr, Letter::of(&p.label.name), Rank::Constant);
         }
-        for ((&expr, &rate), q) in s
-            .coordinates
-            .iter()
-            .zip(&s.rates)
-            .zip(&mechanism.coordinates)
-        {
+        let coordinates = s.coordinates.iter().zip(&s.rates);
+        for ((&expr, &rate), q) in coordinates.zip(&mechanism.coordinates) {
             letter(expr, Letter::of(&q.label.name), Rank::Position);
             letter(rate, Letter::of(&q.label.name).dot(), Rank::Velocity);
         }
-        for ((&expr, &change), w) in s
-            .speeds
-            .iter()
-            .zip(&s.accelerations)
-            .zip(&mechanism.pseudo_velocities)
-        {
+        let speeds = s.speeds.iter().zip(&s.accelerations);
+        for ((&expr, &change), w) in speeds.zip(&mechanism.pseudo_velocities) {
             letter(expr, Letter::of(&w.label.name), Rank::Velocity);
             letter(change, Letter::of(&w.label.name).dot(), Rank::Acceleration);
         }
@@ -102,53 +94,42 @@ impl Lexicon {
     }
 
     fn name_intermediates(&mut self, mechanism: &Mechanism) {
+        let mut name = |name: String, letter: Letter| {
+            self.named.insert(name, letter);
+        };
+        let bias = |base: &str| Letter::plain(base).above("0");
         for axis in AXES {
             for point in &mechanism.points {
-                let letter = Letter::plain("a").above("0").below(&point.name).below(axis);
-                self.named
-                    .insert(format!("a0_{}_{axis}", point.name), letter);
+                let letter = bias("a").below(&point.name).below(axis);
+                name(format!("a0_{}_{axis}", point.name), letter);
             }
             for frame in &mechanism.frames {
                 let letter = Letter::plain("Ω").below(&frame.name).below(axis);
-                self.named
-                    .insert(format!("w_{}_{axis}", frame.name), letter);
+                name(format!("w_{}_{axis}", frame.name), letter);
             }
             for body in &mechanism.bodies {
-                let letter = Letter::plain("h")
-                    .dot()
-                    .above("0")
-                    .below(&body.name)
-                    .below(axis);
-                self.named
-                    .insert(format!("h0_{}_{axis}", body.name), letter);
+                let letter = bias("h").dot().below(&body.name).below(axis);
+                name(format!("h0_{}_{axis}", body.name), letter);
             }
         }
         for body in &mechanism.bodies {
-            self.named.insert(
-                format!("s_{}", body.name),
-                Letter::plain("S").below(&body.name),
-            );
+            let letter = Letter::plain("S").below(&body.name);
+            name(format!("s_{}", body.name), letter);
         }
         for q in &mechanism.coordinates {
-            self.named.insert(
-                format!("{}_dot", q.label.name),
-                Letter::of(&q.label.name).dot(),
-            );
+            let q = &q.label.name;
+            name(format!("{q}_dot"), Letter::of(q).dot());
         }
         for (i, w) in mechanism.pseudo_velocities.iter().enumerate() {
             let (name, number) = (&w.label.name, (i + 1).to_string());
             self.keep(format!("{name}_dot"), Letter::of(name).dot());
             self.keep(format!("pivot_{name}"), Letter::plain("D").below(&number));
             for (j, other) in mechanism.pseudo_velocities.iter().enumerate() {
-                let entry = format!("{number},{}", j + 1);
-                self.keep(
-                    format!("l_{name}_{}", other.label.name),
-                    Letter::plain("L").below(&entry),
-                );
-                self.keep(
-                    format!("m_{name}_{}", other.label.name),
-                    Letter::plain("N").below(&entry),
-                );
+                let (other, place) = (&other.label.name, format!("{number},{}", j + 1));
+                for (prefix, base) in [("l", "L"), ("m", "N")] {
+                    let letter = Letter::plain(base).below(&place);
+                    self.keep(format!("{prefix}_{name}_{other}"), letter);
+                }
             }
         }
     }

@@ -4,12 +4,14 @@
 //! them.
 
 use std::collections::BTreeSet;
+use std::iter::successors;
 
 use appell_codegen::mechanics::motion::Block;
+use appell_codegen::mechanics::row::Row;
 use appell_codegen::mechanics::{Derivation, contributions};
 use appell_codegen::symbolic::print::{Letter, Math};
 use appell_codegen::symbolic::{Expr, Graph};
-use appell_spec::mechanism::{BodyId, CoordinateId, FrameId, LoadId, Mechanism, PointId};
+use appell_spec::mechanism::Mechanism;
 use rustc_hash::{FxHashMap, FxHashSet};
 
 use super::{About, Block as PageBlock, Equation, Page};
@@ -23,22 +25,15 @@ pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivatio
         mechanism,
         derivation,
     };
-    let blocks = || page.sections.iter().flat_map(|section| &section.blocks);
-    let equations = blocks().filter_map(|block| match block {
+    let own: Vec<Own> = page.equations().map(|e| sources.of(e)).collect();
+    let closed = closed(&own).into_iter();
+    let blocks = (page.sections.iter_mut()).flat_map(|section| &mut section.blocks);
+    let equations = blocks.filter_map(|block| match block {
         PageBlock::Equations(equations) => Some(equations),
         _ => None,
     });
-    let own: Vec<Own> = equations.flatten().map(|e| sources.of(e)).collect();
-    let mut closed = closed(&own).into_iter();
-    for section in &mut page.sections {
-        for block in &mut section.blocks {
-            let PageBlock::Equations(equations) = block else {
-                continue;
-            };
-            for (equation, lines) in equations.iter_mut().zip(&mut closed) {
-                equation.lines = lines.into_iter().collect();
-            }
-        }
+    for (equation, lines) in equations.flatten().zip(closed) {
+        equation.lines = lines.into_iter().collect();
     }
 }
 
@@ -46,18 +41,17 @@ pub fn locate(page: &mut Page, mechanism: &Mechanism, derivation: &mut Derivatio
 fn letters(mechanism: &Mechanism) -> FxHashMap<Letter, usize> {
     let parameters = mechanism.parameters.iter().map(|p| &p.label);
     let inputs = mechanism.inputs.iter().map(|u| &u.label);
-    let fixed = parameters.chain(inputs);
     let moving = (mechanism.coordinates.iter().map(|q| &q.label))
         .chain(mechanism.pseudo_velocities.iter().map(|w| &w.label))
         .chain(mechanism.signals.iter().map(|s| &s.label));
+    let all = parameters.chain(inputs).map(|label| (label, 0));
     let mut letters = FxHashMap::default();
-    for label in fixed {
-        letters.insert(Letter::of(&label.name), label.line);
-    }
-    for label in moving {
-        let letter = Letter::of(&label.name);
-        letters.insert(letter.clone().dot(), label.line);
-        letters.insert(letter.clone().dot().dot(), label.line);
+    for (label, dots) in all.chain(moving.map(|label| (label, 2))) {
+        let mut letter = Letter::of(&label.name);
+        for _ in 0..dots {
+            letters.insert(letter.clone(), label.line);
+            letter = letter.dot();
+        }
         letters.insert(letter, label.line);
     }
     letters
@@ -84,8 +78,11 @@ struct Sources<'a> {
 impl Sources<'_> {
     fn of(&self, equation: &Equation) -> Own {
         let mut letters = FxHashSet::default();
-        gather(&equation.left, &mut letters);
-        gather(&equation.right, &mut letters);
+        for side in [&equation.left, &equation.right] {
+            side.clone().for_each_letter(&mut |letter| {
+                letters.insert(letter.clone());
+            });
+        }
         let mut lines = BTreeSet::new();
         if let Some(about) = equation.about {
             self.subject(about, &mut lines);
@@ -109,25 +106,60 @@ impl Sources<'_> {
     }
 
     fn subject(&self, about: About, lines: &mut BTreeSet<usize>) {
+        let mechanism = self.mechanism;
         match about {
-            About::Body(body) => self.body(body, lines),
-            About::Point(point) => self.point(point, lines),
-            About::Frame(frame) => self.frame(frame, lines),
-            About::Constraint(constraint) => {
-                lines.insert(self.mechanism.constraints[constraint].line);
+            About::Body(body) => {
+                let body = &mechanism.bodies[body];
+                lines.insert(body.line);
+                self.subject(About::Point(body.centre), lines);
+                if let Some(frame) = body.frame {
+                    self.subject(About::Frame(frame), lines);
+                }
             }
-            About::Rate(coordinate) => self.rate(coordinate, lines),
-            About::Load(load) => self.load(load, lines),
+            // A point with its chain of reference points, a frame with its chain of parent frames.
+            About::Point(point) => {
+                for point in successors(Some(point), |&point| mechanism.points[point].from) {
+                    let point = &mechanism.points[point];
+                    lines.insert(point.line);
+                    self.subject(About::Frame(point.frame), lines);
+                }
+            }
+            About::Frame(frame) => {
+                let frames = successors(Some(frame), |&frame| mechanism.frames[frame].parent);
+                lines.extend(frames.map(|frame| mechanism.frames[frame].line));
+            }
+            About::Constraint(constraint) => {
+                lines.insert(mechanism.constraints[constraint].line);
+            }
+            About::Rate(coordinate) => {
+                lines.insert(mechanism.coordinates[coordinate].label.line);
+                let rows = self.derivation.constraints.rows.iter();
+                let restricts = |row: &&Row| row.coefficients[coordinate.index()] != Graph::ZERO;
+                for row in rows.filter(|row| row.is_active()).filter(restricts) {
+                    self.subject(About::Constraint(row.constraint), lines);
+                }
+            }
+            About::Load(load) => {
+                let load = &mechanism.loads[load];
+                lines.insert(load.line);
+                for point in load.kind.points() {
+                    self.subject(About::Point(point), lines);
+                }
+            }
             About::Inertia(i, j) => {
-                self.bodies_where(|moves| moves[i] && moves[j], lines);
+                let bodies = mechanism.bodies.ids().zip(&self.bodies);
+                for (body, _) in bodies.filter(|(_, moves)| moves[i] && moves[j]) {
+                    self.subject(About::Body(body), lines);
+                }
                 let gibbs = &self.derivation.gibbs;
-                self.symbols_in(
-                    &[gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]],
-                    lines,
-                );
+                let parts = [gibbs.mass_matrix[i][j], gibbs.bias[i], gibbs.bias[j]];
+                self.symbols_in(&parts, lines);
             }
             About::Force(i) => {
-                self.loads_where(|enters| enters[i], lines);
+                let loads = mechanism.loads.ids().zip(&self.loads);
+                for (load, _) in loads.filter(|(_, enters)| enters[i]) {
+                    self.subject(About::Load(load), lines);
+                }
                 self.symbols_in(&[self.derivation.forces[i]], lines);
             }
             About::Motion(i) => {
@@ -136,8 +168,16 @@ impl Sources<'_> {
                     self.subject(About::Force(j), lines);
                 }
             }
-            About::Bodies => self.bodies_where(|_| true, lines),
-            About::Loads => self.loads_where(|_| true, lines),
+            About::Bodies => {
+                for body in mechanism.bodies.ids() {
+                    self.subject(About::Body(body), lines);
+                }
+            }
+            About::Loads => {
+                for load in mechanism.loads.ids() {
+                    self.subject(About::Load(load), lines);
+                }
+            }
         }
     }
 
@@ -163,76 +203,12 @@ impl Sources<'_> {
             .chain((mechanism.coordinates.iter().map(|q| q.label.line)).zip(&symbols.coordinates))
             .chain((mechanism.pseudo_velocities.iter().map(|w| w.label.line)).zip(&symbols.speeds))
             .chain((mechanism.inputs.iter().map(|u| u.label.line)).zip(&symbols.inputs));
-        let symbols =
-            quantities.filter_map(|(line, &symbol)| Some((line, graph.as_symbol(symbol)?)));
-        for (line, symbol) in symbols {
-            if all.iter().any(|&expr| graph.mentions(expr, &[symbol])) {
-                lines.insert(line);
-            }
-        }
-    }
-
-    fn bodies_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
-        for (body, moves) in self.mechanism.bodies.ids().zip(&self.bodies) {
-            if wanted(moves) {
-                self.body(body, lines);
-            }
-        }
-    }
-
-    fn loads_where(&self, wanted: impl Fn(&[bool]) -> bool, lines: &mut BTreeSet<usize>) {
-        for (load, enters) in self.mechanism.loads.ids().zip(&self.loads) {
-            if wanted(enters) {
-                self.load(load, lines);
-            }
-        }
-    }
-
-    fn body(&self, body: BodyId, lines: &mut BTreeSet<usize>) {
-        let body = &self.mechanism.bodies[body];
-        lines.insert(body.line);
-        self.point(body.centre, lines);
-        if let Some(frame) = body.frame {
-            self.frame(frame, lines);
-        }
-    }
-
-    fn load(&self, load: LoadId, lines: &mut BTreeSet<usize>) {
-        let load = &self.mechanism.loads[load];
-        lines.insert(load.line);
-        for point in load.kind.points() {
-            self.point(point, lines);
-        }
-    }
-
-    /// A point with its chain of reference points.
-    fn point(&self, point: PointId, lines: &mut BTreeSet<usize>) {
-        let mut next = Some(point);
-        while let Some(point) = next {
-            let point = &self.mechanism.points[point];
-            lines.insert(point.line);
-            self.frame(point.frame, lines);
-            next = point.from;
-        }
-    }
-
-    /// A frame with its chain of parent frames.
-    fn frame(&self, frame: FrameId, lines: &mut BTreeSet<usize>) {
-        let mut next = Some(frame);
-        while let Some(frame) = next {
-            let frame = &self.mechanism.frames[frame];
-            lines.insert(frame.line);
-            next = frame.parent;
-        }
-    }
-
-    fn rate(&self, coordinate: CoordinateId, lines: &mut BTreeSet<usize>) {
-        lines.insert(self.mechanism.coordinates[coordinate].label.line);
-        let rows = self.derivation.constraints.rows.iter();
-        let restricts = |coefficients: &[Expr]| coefficients[coordinate.index()] != Graph::ZERO;
-        for row in rows.filter(|row| row.is_active() && restricts(&row.coefficients)) {
-            lines.insert(self.mechanism.constraints[row.constraint].line);
-        }
+        let occurs = |&symbol: &Expr| {
+            let id = graph.as_symbol(symbol);
+            id.is_some_and(|id| all.iter().any(|&expr| graph.mentions(expr, &[id])))
+        };
+        let occurring = quantities.filter(|(_, symbol)| occurs(symbol));
+        lines.extend(occurring.map(|(line, _)| line));
     }
 }
 
@@ -254,49 +230,4 @@ fn closed(own: &[Own]) -> Vec<BTreeSet<usize>> {
         lines
     };
     (0..own.len()).map(all).collect()
-}
-
-/// All letters of a formula.
-fn gather(math: &Math, letters: &mut FxHashSet<Letter>) {
-    let mut all = |parts: &[Math]| {
-        for part in parts {
-            gather(part, letters);
-        }
-    };
-    match math {
-        Math::Letter(letter) => {
-            letters.insert(letter.clone());
-        }
-        Math::Integer(_) | Math::Ratio(..) | Math::Words(_) | Math::Sign(_) => {}
-        Math::Row(parts)
-        | Math::Vector {
-            components: parts, ..
-        } => all(parts),
-        Math::Sum(terms) => {
-            for (_, term) in terms {
-                gather(term, letters);
-            }
-        }
-        Math::Fraction(a, b) | Math::Power(a, b) => {
-            gather(a, letters);
-            gather(b, letters);
-        }
-        Math::Call(_, _, inner) | Math::Root(inner) | Math::Size(inner) | Math::Brackets(inner) => {
-            gather(inner, letters);
-        }
-        Math::Matrix(rows) => {
-            for row in rows {
-                all(row);
-            }
-        }
-        Math::Cases {
-            value,
-            condition,
-            otherwise,
-        } => {
-            for part in [value, condition, otherwise] {
-                gather(part, letters);
-            }
-        }
-    }
 }

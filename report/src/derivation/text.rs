@@ -2,7 +2,8 @@
 
 use super::display::{Equation, Piece, left_width};
 use super::text_box::TextBox;
-use super::{Block, Chain, Math, Page, Span, Table};
+use super::{Block, Chain, Math, Page, Row, Span, Table};
+use crate::text::widths;
 use appell_codegen::symbolic::print::columns;
 use appell_codegen::symbolic::print::text as inline;
 use appell_spec::foreign::one_line;
@@ -48,33 +49,28 @@ fn line(out: &mut String, text: &str) {
 }
 
 fn spans(spans: &[Span]) -> String {
-    spans
-        .iter()
-        .map(|span| match span {
-            Span::Text(text) => one_line(text),
-            Span::Math(math) => inline(math),
-        })
-        .collect()
+    let shown = spans.iter().map(|span| match span {
+        Span::Text(text) => one_line(text),
+        Span::Math(math) => inline(math),
+    });
+    shown.collect()
 }
 
 /// Words in lines of at most `width` columns, where no word is longer.
 fn wrapped(text: &str, width: usize) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    let mut used = 0;
+    let mut lines = Vec::new();
+    let mut current = String::new();
     for word in text.split(' ').filter(|word| !word.is_empty()) {
-        if used > 0 && used + 1 + columns(word) > width {
-            lines.push(String::new());
-            used = 0;
-        }
-        if let Some(current) = lines.last_mut() {
-            if used > 0 {
+        if !current.is_empty() {
+            if columns(&current) + 1 + columns(word) > width {
+                lines.push(std::mem::take(&mut current));
+            } else {
                 current.push(' ');
-                used += 1;
             }
-            current.push_str(word);
-            used += columns(word);
         }
+        current.push_str(word);
     }
+    lines.push(current);
     lines
 }
 
@@ -87,21 +83,9 @@ fn paragraph(out: &mut String, text: &str) {
 /// Columns as wide as their cells need; the last one wraps.
 fn table(out: &mut String, table: &Table) {
     const GAP: usize = 3;
-    let rows: Vec<Vec<String>> = table
-        .rows
-        .iter()
-        .map(|row| row.cells.iter().map(|cell| spans(cell)).collect())
-        .collect();
-    let count = rows.iter().map(Vec::len).max().unwrap_or(0);
-    let widths: Vec<usize> = (0..count)
-        .map(|k| {
-            rows.iter()
-                .filter_map(|row| row.get(k))
-                .map(|cell| columns(cell))
-                .max()
-                .unwrap_or(0)
-        })
-        .collect();
+    let cells = |row: &Row| row.cells.iter().map(|cell| spans(cell)).collect();
+    let rows: Vec<Vec<String>> = table.rows.iter().map(cells).collect();
+    let widths = widths(&rows, columns);
     if !table.title.is_empty() {
         line(out, &format!("  {}", one_line(&table.title)));
     }
@@ -116,28 +100,30 @@ fn table(out: &mut String, table: &Table) {
         }
         let indent = columns(&head);
         let free = WIDTH.saturating_sub(indent + MARGIN);
+        let mut lines;
         if free < WIDTH / 5 {
             // Without room after the other cells the last one continues below.
-            let mut heads = broken(head.trim_end()).into_iter();
-            let text = heads.next().unwrap_or_default();
-            let right = WIDTH.saturating_sub(columns(&text));
-            line(out, &format!("{text}{:>right$}", row.line));
-            heads.for_each(|part| line(out, &part));
-            for part in wrapped(last, WIDTH - 3 * INDENT - MARGIN) {
-                line(out, &format!("{}{part}", " ".repeat(3 * INDENT)));
-            }
-            continue;
+            lines = broken(head.trim_end());
+            let below = wrapped(last, WIDTH - 3 * INDENT - MARGIN);
+            lines.extend(indented(below, 3 * INDENT));
+        } else {
+            lines = indented(wrapped(last, free.max(WIDTH / 4)), indent);
+            lines[0].replace_range(..indent, &head);
         }
-        for (k, part) in wrapped(last, free.max(WIDTH / 4)).iter().enumerate() {
-            if k > 0 {
-                line(out, &format!("{}{part}", " ".repeat(indent)));
-                continue;
-            }
-            let text = format!("{head}{part}");
-            let right = WIDTH.saturating_sub(columns(&text));
-            line(out, &format!("{text}{:>right$}", row.line));
+        let right = WIDTH.saturating_sub(columns(&lines[0]));
+        lines[0] = format!("{}{:>right$}", lines[0], row.line);
+        for text in &lines {
+            line(out, text);
         }
     }
+}
+
+fn indented(lines: Vec<String>, columns: usize) -> Vec<String> {
+    let indent = " ".repeat(columns);
+    lines
+        .into_iter()
+        .map(|text| format!("{indent}{text}"))
+        .collect()
 }
 
 /// A row as wide as a page, broken into several lines left of the margin.
@@ -145,16 +131,18 @@ fn broken(text: &str) -> Vec<String> {
     if columns(text) + MARGIN <= WIDTH {
         return vec![text.to_owned()];
     }
-    let parts = wrapped(text, WIDTH - 2 * INDENT - MARGIN).into_iter();
-    let indented =
-        |(k, part): (usize, String)| format!("{}{part}", " ".repeat(INDENT * (1 + k.min(1))));
-    parts.enumerate().map(indented).collect()
+    let mut lines = indented(wrapped(text, WIDTH - 2 * INDENT - MARGIN), 2 * INDENT);
+    lines[0].replace_range(..INDENT, "");
+    lines
 }
 
 fn chain(out: &mut String, chain: &Chain) {
     let mut current = format!("{}{}", " ".repeat(INDENT), one_line(&chain.start));
     for (label, to) in &chain.links {
-        let link = format!(" ──{}─▶ {}", arrow_label(&spans(label)), one_line(to));
+        let link = match spans(label).as_str() {
+            "" => format!(" ────▶ {}", one_line(to)),
+            label => format!(" ── {label} ──▶ {}", one_line(to)),
+        };
         if columns(&current) + columns(&link) > WIDTH {
             line(out, &current);
             current = " ".repeat(2 * INDENT);
@@ -164,41 +152,27 @@ fn chain(out: &mut String, chain: &Chain) {
     line(out, &current);
 }
 
-fn arrow_label(label: &str) -> String {
-    if label.is_empty() {
-        "─".to_owned()
-    } else {
-        format!(" {label} ─")
-    }
-}
-
 /// Equations below each other, aligned at their equality signs.
 fn equations(out: &mut String, equations: &[Equation]) {
     let left_width = left_width(equations);
     let mut after_tall = false;
     for (index, equation) in equations.iter().enumerate() {
         let display = equation.display(WIDTH - INDENT, left_width);
-        let (head, indent) = match display.left {
+        let space = |width: usize| TextBox::line(&" ".repeat(width));
+        let (head, indent) = match display.left.map(boxed) {
             Some(left) => {
-                let left = boxed(left);
-                let pad = " ".repeat(INDENT + left_width.saturating_sub(left.width()));
-                let head = TextBox::line(&pad)
-                    .beside(&left)
-                    .beside(&TextBox::line(" = "));
+                let pad = space(INDENT + left_width.saturating_sub(left.width()));
+                let head = pad.beside(&left).beside(&TextBox::line(" = "));
                 let indent = head.width();
                 (head, indent)
             }
-            None => (TextBox::line(&" ".repeat(INDENT)), 2 * INDENT),
+            None => (space(INDENT), 2 * INDENT),
         };
-        let mut whole: Vec<TextBox> = Vec::new();
-        for (k, pieces) in display.lines.iter().enumerate() {
-            let start = if k == 0 {
-                head.clone()
-            } else {
-                TextBox::line(&" ".repeat(indent))
-            };
-            whole.push(start.beside(&pieces_box(pieces)));
-        }
+        let starts = std::iter::once(head).chain(std::iter::repeat_with(|| space(indent)));
+        let lines = display.lines.iter().zip(starts);
+        let whole: Vec<TextBox> = lines
+            .map(|(pieces, start)| start.beside(&pieces_box(pieces)))
+            .collect();
         // Blank lines around blocks taller than a line.
         let tall = whole.len() > 1 || whole.iter().any(|p| p.height() > 1);
         if index > 0 && (tall || after_tall) {
@@ -212,48 +186,44 @@ fn equations(out: &mut String, equations: &[Equation]) {
 }
 
 fn pieces_box(pieces: &[Piece<'_>]) -> TextBox {
-    let mut boxed = TextBox::line("");
-    let (mut after_whole, mut after_minus) = (false, false);
+    let mut line = TextBox::line("");
+    let mut is_after_minus = false;
     for piece in pieces {
-        let space = if boxed.width() == 0 { "" } else { " " };
-        let next = match piece {
+        let space = if line.width() == 0 { "" } else { " " };
+        let next = match *piece {
             Piece::Whole(math) => {
-                let next = self::boxed(math);
+                let next = boxed(math);
                 // A minus must not run into the bar of a quotient.
-                let runs_in = after_whole || (next.height() > 1 && after_minus);
-                let gap = if runs_in { " " } else { "" };
-                TextBox::line(gap).beside(&next)
+                let runs_in = next.height() > 1 && is_after_minus;
+                TextBox::line(if runs_in { " " } else { "" }).beside(&next)
             }
-            Piece::Sign { minus, first: true } => TextBox::line(if *minus { "−" } else { "" }),
+            Piece::Times => TextBox::line(" "),
+            Piece::Sign { minus, first: true } => TextBox::line(if minus { "−" } else { "" }),
             Piece::Sign { minus, .. } => {
-                TextBox::line(&format!("{space}{} ", if *minus { "−" } else { "+" }))
+                TextBox::line(&format!("{space}{} ", if minus { "−" } else { "+" }))
             }
             Piece::Equals => TextBox::line(&format!("{space}= ")),
-            Piece::Open => TextBox::line(if after_whole { " (" } else { "(" }),
+            Piece::Open => TextBox::line("("),
             Piece::Close => TextBox::line(")"),
         };
-        after_whole = matches!(piece, Piece::Whole(_) | Piece::Close);
-        after_minus = matches!(
+        is_after_minus = matches!(
             piece,
             Piece::Sign {
                 minus: true,
                 first: true
             }
         );
-        boxed = boxed.beside(&next);
+        line = line.beside(&next);
     }
-    boxed
+    line
 }
 
 /// A formula that may take several lines: matrices, columns and quotients of sums do.
 fn boxed(math: &Math) -> TextBox {
     match math {
         Math::Matrix(rows) => {
-            let cells: Vec<Vec<String>> = rows
-                .iter()
-                .map(|row| row.iter().map(inline).collect())
-                .collect();
-            TextBox::bracketed(&cells)
+            let cells = |row: &Vec<Math>| row.iter().map(inline).collect();
+            TextBox::bracketed(&rows.iter().map(cells).collect::<Vec<_>>())
         }
         Math::Vector {
             components,
@@ -271,15 +241,9 @@ fn boxed(math: &Math) -> TextBox {
             TextBox::quotient(&inline(above), &inline(below))
         }
         Math::Row(factors) => {
-            factors
-                .iter()
-                .enumerate()
-                .fold(TextBox::line(""), |boxed, (k, factor)| {
-                    let gap = if k == 0 { "" } else { " " };
-                    boxed
-                        .beside(&TextBox::line(gap))
-                        .beside(&self::boxed(factor))
-                })
+            let boxes = factors.iter().map(boxed);
+            let beside = |left: TextBox, right| left.beside(&TextBox::line(" ")).beside(&right);
+            boxes.reduce(beside).unwrap_or_else(|| TextBox::line(""))
         }
         other => TextBox::line(&inline(other)),
     }

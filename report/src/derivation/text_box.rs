@@ -1,6 +1,7 @@
 //! Boxes of characters, the elements of a text page: lines of equal width, one of which is the
 //! baseline.
 
+use crate::text::widths;
 use appell_codegen::symbolic::print::columns;
 
 /// A rectangle of characters.
@@ -22,11 +23,8 @@ impl TextBox {
 
     /// Columns.
     pub(super) fn width(&self) -> usize {
-        self.lines
-            .iter()
-            .map(|line| columns(line))
-            .max()
-            .unwrap_or(0)
+        let widths = self.lines.iter().map(|line| columns(line));
+        widths.max().unwrap_or(0)
     }
 
     /// Lines.
@@ -59,36 +57,20 @@ impl TextBox {
 
     /// Cells in square brackets, columns aligned to the left.
     pub(super) fn bracketed(cells: &[Vec<String>]) -> Self {
-        let count = cells.iter().map(Vec::len).max().unwrap_or(0);
-        let widths: Vec<usize> = (0..count)
-            .map(|k| {
-                cells
-                    .iter()
-                    .filter_map(|row| row.get(k))
-                    .map(|cell| columns(cell))
-                    .max()
-                    .unwrap_or(0)
-            })
-            .collect();
+        let widths = widths(cells, columns);
         let last = cells.len().saturating_sub(1);
-        let lines: Vec<String> = cells
-            .iter()
-            .enumerate()
-            .map(|(i, row)| {
-                let (open, close) = match i {
-                    _ if last == 0 => ("[", "]"),
-                    0 => ("⎡", "⎤"),
-                    _ if i == last => ("⎣", "⎦"),
-                    _ => ("⎢", "⎥"),
-                };
-                let row: Vec<String> = row
-                    .iter()
-                    .zip(&widths)
-                    .map(|(cell, &width)| padded(cell, width))
-                    .collect();
-                format!("{open} {} {close}", row.join("   "))
-            })
-            .collect();
+        let line = |(i, row): (usize, &Vec<String>)| {
+            let [open, close] = match i {
+                _ if last == 0 => ["[", "]"],
+                0 => ["⎡", "⎤"],
+                _ if i == last => ["⎣", "⎦"],
+                _ => ["⎢", "⎥"],
+            };
+            let cells = row.iter().zip(&widths);
+            let cells: Vec<String> = cells.map(|(cell, &width)| padded(cell, width)).collect();
+            format!("{open} {} {close}", cells.join("   "))
+        };
+        let lines = cells.iter().enumerate().map(line).collect();
         Self {
             base: last / 2,
             lines,
@@ -98,12 +80,11 @@ impl TextBox {
     /// A quotient with a bar.
     pub(super) fn quotient(above: &str, below: &str) -> Self {
         let width = columns(above).max(columns(below));
-        let lines = vec![
-            centred(above, width),
-            "─".repeat(width),
-            centred(below, width),
-        ];
-        Self { lines, base: 1 }
+        let [above, below] = [above, below].map(|text| centred(text, width));
+        Self {
+            lines: vec![above, "─".repeat(width), below],
+            base: 1,
+        }
     }
 
     /// Writes behind the last line.
@@ -120,9 +101,6 @@ fn padded(text: &str, width: usize) -> String {
 
 fn centred(text: &str, width: usize) -> String {
     let free = width.saturating_sub(columns(text));
-    format!(
-        "{}{text}{}",
-        " ".repeat(free / 2),
-        " ".repeat(free - free / 2)
-    )
+    let before = " ".repeat(free / 2);
+    padded(&format!("{before}{text}"), width)
 }

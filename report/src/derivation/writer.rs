@@ -3,11 +3,8 @@
 use appell_spec::mechanism::{FrameId, Mechanism, PointId};
 use rustc_hash::FxHashSet;
 
-use super::Letter;
-use super::Math;
-use super::display::Equation;
 use super::lexicon::{AXES, Lexicon};
-use super::{Block, Span};
+use super::{Block, Equation, Letter, Math, Span};
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::symbolic::dissolve::Dissolved;
 use appell_codegen::symbolic::print::Setter;
@@ -111,15 +108,12 @@ impl<'a> Writer<'a> {
             let right = Math::vector(components, frame);
             return vec![Equation::new(Math::Letter(letter), right)];
         }
-        components
-            .into_iter()
-            .zip(AXES)
-            .map(|(component, axis)| {
-                let mut left = letter.clone().below(&format!("{axis} in {frame}"));
-                left.bold = false;
-                Equation::new(Math::Letter(left), component)
-            })
-            .collect()
+        let component = |(component, axis): (Math, &str)| {
+            let mut left = letter.clone().below(&format!("{axis} in {frame}"));
+            left.bold = false;
+            Equation::new(Math::Letter(left), component)
+        };
+        components.into_iter().zip(AXES).map(component).collect()
     }
 
     /// Letters of parts and of unknowns.
@@ -135,11 +129,7 @@ impl<'a> Writer<'a> {
     /// Definitions of the names used since the last call, each before its first use.
     pub(super) fn definitions(&mut self) -> Vec<Block> {
         let mut equations = Vec::new();
-        let mut stack: Vec<(Expr, Option<Vec<Equation>>)> = std::mem::take(&mut self.wanted)
-            .into_iter()
-            .rev()
-            .map(|e| (e, None))
-            .collect();
+        let mut stack: Vec<(Expr, Option<Vec<Equation>>)> = self.take_wanted().collect();
         while let Some((expr, written)) = stack.pop() {
             if let Some(written) = written {
                 equations.extend(written);
@@ -152,8 +142,7 @@ impl<'a> Writer<'a> {
             self.define_all_unknowns(expr);
             let written = self.definition(expr);
             stack.push((expr, Some(written)));
-            let more = std::mem::take(&mut self.wanted);
-            stack.extend(more.into_iter().rev().map(|e| (e, None)));
+            stack.extend(self.take_wanted());
         }
         if equations.is_empty() {
             return Vec::new();
@@ -164,17 +153,20 @@ impl<'a> Writer<'a> {
         ]
     }
 
+    /// The names used since the last call without their definitions, the first one last.
+    fn take_wanted<T>(&mut self) -> impl Iterator<Item = (Expr, Option<T>)> + use<T> {
+        let wanted = std::mem::take(&mut self.wanted);
+        wanted.into_iter().rev().map(|expr| (expr, None))
+    }
+
     /// One display defines all unknowns of a linear system.
     fn define_all_unknowns(&mut self, expr: Expr) {
         let Node::Solution { system, .. } = *self.graph().node(expr) else {
             return;
         };
-        let mut letter = self.letter(expr);
-        for row in 1..=self.graph().system(system).right.len() {
-            letter.below.pop();
-            letter.below.push(row.to_string());
-            self.defined.insert(letter.clone());
-        }
+        let letter = self.letter(expr);
+        let count = self.graph().system(system).right.len();
+        self.defined.extend(unknowns(letter, count));
     }
 
     /// The equations that define a name; for a linear system, all its unknowns.
@@ -196,8 +188,8 @@ impl<'a> Writer<'a> {
     fn system(&mut self, system: u32, unknown: Letter) -> Vec<Equation> {
         let System { matrix, right } = self.graph().system(system).clone();
         let wanted = self.wanted.len();
-        let rows: Vec<Vec<Math>> = matrix
-            .chunks(right.len())
+        let rows = matrix.chunks(right.len());
+        let rows: Vec<Vec<Math>> = rows
             .map(|row| row.iter().map(|&e| self.set(e)).collect())
             .collect();
         let components: Vec<Math> = right.iter().map(|&r| self.explicit(r)).collect();
@@ -207,12 +199,7 @@ impl<'a> Writer<'a> {
             self.wanted.truncate(wanted);
             return self.equation_by_equation(&matrix, &right);
         }
-        let mut unknown = unknown;
-        let unknowns = (1..=right.len()).map(|row| {
-            unknown.below.pop();
-            unknown.below.push(row.to_string());
-            Math::Letter(unknown.clone())
-        });
+        let unknowns = unknowns(unknown, right.len()).map(Math::Letter);
         let column = |components| Math::Vector {
             components,
             frame: None,
@@ -242,8 +229,14 @@ impl<'a> Writer<'a> {
     /// A part with a letter, written out.
     fn set_whole(&mut self, expr: Expr) -> Math {
         let set = self.setter.set(&self.derivation.algebra.graph, expr);
-        self.wanted
-            .extend(set.wants.into_iter().filter(|&e| e != expr));
+        let others = set.wants.into_iter().filter(|&e| e != expr);
+        self.wanted.extend(others);
         set.math
     }
+}
+
+/// The letters of all unknowns of a linear system, from that of one.
+fn unknowns(mut letter: Letter, count: usize) -> impl Iterator<Item = Letter> {
+    letter.below.pop();
+    (1..=count).map(move |row| letter.clone().below(&row.to_string()))
 }

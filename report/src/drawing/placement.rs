@@ -22,7 +22,7 @@ pub(super) struct Placement {
     /// By frame: its three axes.
     frames: List<FrameId, [Vec3; 3]>,
     /// By frame: the angles of its turns.
-    turns: List<FrameId, Vec<Expr>>,
+    pub(super) turns: List<FrameId, Vec<Expr>>,
     /// By body: mass and, of rigid bodies, inertia.
     bodies: List<BodyId, (Expr, Option<Tensor>)>,
 }
@@ -46,11 +46,9 @@ impl Placement {
         kinematics: &Kinematics,
     ) -> Outcome<Self> {
         let graph = &mut algebra.graph;
-        let points = mechanism
-            .points
-            .ids()
-            .map(|point| kinematics.position(graph, mechanism, point))
-            .collect();
+        let points = mechanism.points.ids();
+        let points = points.map(|point| kinematics.position(graph, mechanism, point));
+        let points = points.collect();
         let axes = |frame| {
             IDENTITY.map(|v| {
                 let axis = FrameVector { frame, v };
@@ -64,10 +62,8 @@ impl Placement {
         };
         let mut turns = List::default();
         for (id, frame) in mechanism.frames.entries() {
-            let angles = frame
-                .turns
-                .iter()
-                .map(|turn| lowering.lower(graph, &turn.angle));
+            let angles = frame.turns.iter();
+            let angles = angles.map(|turn| lowering.lower(graph, &turn.angle));
             let angles = angles.collect::<Result<Vec<_>, _>>();
             turns.push(angles.map_err(|_| vec![division_by_zero(Item::Frame(id))])?);
         }
@@ -75,17 +71,15 @@ impl Placement {
         for (index, body) in mechanism.bodies.entries() {
             let divides = |_| vec![division_by_zero(Item::Body(index))];
             let mass = lowering.lower(graph, &body.mass).map_err(divides)?;
-            let inertia = match &body.inertia {
-                Some(inertia) => {
-                    let mut matrix = [[Graph::ZERO; 3]; 3];
-                    for (to, row) in matrix.iter_mut().zip(&inertia.matrix) {
-                        *to = lowering.lower_all(graph, row).map_err(divides)?;
-                    }
-                    Some((inertia.frame, matrix))
+            let mut lowered = None;
+            if let Some(inertia) = &body.inertia {
+                let mut matrix = [[Graph::ZERO; 3]; 3];
+                for (to, row) in matrix.iter_mut().zip(&inertia.matrix) {
+                    *to = lowering.lower_all(graph, row).map_err(divides)?;
                 }
-                None => None,
-            };
-            bodies.push((mass, inertia));
+                lowered = Some((inertia.frame, matrix));
+            }
+            bodies.push((mass, lowered));
         }
         Ok(Self {
             points,
@@ -114,22 +108,6 @@ impl Placement {
     /// Three axes a frame.
     pub(super) fn frame_exprs(&self) -> &[Expr] {
         self.frames.as_flattened().as_flattened()
-    }
-
-    /// Values by point; `None` where the position is not finite.
-    pub(super) fn points_at(&self, graph: &Graph, values: &[f64]) -> List<PointId, Option<Vector>> {
-        points(&evaluate(graph, values, self.point_exprs()))
-    }
-
-    /// Values by frame; `None` where an angle is not finite.
-    pub(super) fn frames_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Option<Matrix>> {
-        frames(&evaluate(graph, values, self.frame_exprs()))
-    }
-
-    /// Values by frame: the angles of its turns.
-    pub(super) fn turns_at(&self, graph: &Graph, values: &[f64]) -> List<FrameId, Vec<f64>> {
-        let angles = self.turns.iter();
-        angles.map(|turns| evaluate(graph, values, turns)).collect()
     }
 
     /// Values by body: mass and inertia, with these axes of frames.

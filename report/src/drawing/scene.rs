@@ -3,7 +3,7 @@
 use appell_runtime::positions::{Moving, Positions};
 use appell_spec::mechanism::{BodyId, FrameId, List, Mechanism, PointId};
 
-use super::placement::{Inertia, Placement};
+use super::placement::{Inertia, Placement, frames, points};
 use super::space::{Matrix, Vector};
 use appell_codegen::interpreted::InterpretedModel;
 use appell_codegen::mechanics::Derivation;
@@ -11,7 +11,7 @@ use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::initial::InitialState;
 use appell_codegen::program::{FunctionKind, Program};
-use appell_codegen::symbolic::{Graph, SymbolId};
+use appell_codegen::symbolic::{Expr, Graph, SymbolId, evaluate};
 
 /// Values that replace those of the spec, in SI.
 pub struct Moment {
@@ -58,12 +58,12 @@ impl Scene {
         let state = InitialState::new(&graph, mechanism, &symbols);
         let mut values = state.values().to_vec();
         if let Some(moment) = moment {
-            let arguments = &program.arguments;
-            let states = arguments.states.iter().zip(&moment.states);
-            for (symbol, value) in states.chain(arguments.parameters.iter().zip(&moment.parameters))
-            {
-                values[index(*symbol)] = *value;
-            }
+            set(&mut values, &program.arguments.states, &moment.states);
+            set(
+                &mut values,
+                &program.arguments.parameters,
+                &moment.parameters,
+            );
         }
         let consistent = close(program, &mut values);
         let scene = Self::at(&placement, &graph, &values, flat_across);
@@ -80,10 +80,11 @@ impl Scene {
         values: &[f64],
         flat_across: Option<usize>,
     ) -> Self {
-        let frames = placement.frames_at(graph, values);
+        let of = |exprs: &[Expr]| evaluate(graph, values, exprs);
+        let frames = frames(&of(placement.frame_exprs()));
         Self {
-            points: placement.points_at(graph, values),
-            turns: placement.turns_at(graph, values),
+            points: points(&of(placement.point_exprs())),
+            turns: placement.turns.iter().map(|turns| of(turns)).collect(),
             bodies: placement.bodies_at(graph, values, &frames),
             frames,
             flat_across,
@@ -104,11 +105,15 @@ fn close(program: Program, values: &mut [f64]) -> bool {
         .map(|symbols| -> Vec<f64> { symbols.iter().map(|s| values[index(*s)]).collect() });
     let closed = positions.restore(&model, 0.0, &mut x, &u, &p, Moving::Dependent);
     if closed.is_ok() {
-        for (symbol, value) in arguments.states.iter().zip(x) {
-            values[index(*symbol)] = value;
-        }
+        set(values, &arguments.states, &x);
     }
     closed.is_ok()
+}
+
+fn set(values: &mut [f64], symbols: &[SymbolId], numbers: &[f64]) {
+    for (symbol, number) in symbols.iter().zip(numbers) {
+        values[index(*symbol)] = *number;
+    }
 }
 
 fn index(symbol: SymbolId) -> usize {

@@ -2,12 +2,12 @@
 
 use std::f64::consts::TAU;
 
-use appell_spec::mechanism::{BodyId, Mechanism};
+use appell_spec::mechanism::{Body, BodyId, Mechanism};
 
 use super::link::{self, Link, LinkKind};
 use super::scene::Scene;
 use super::solids::{Solid, ball, solids};
-use super::space::{Matrix, Vector, add, between, cross, dot, length, scaled};
+use super::space::{Matrix, Vector, add, between, cross, dot, length, scaled, spans};
 use super::view::View;
 
 /// Corners of a round line.
@@ -73,11 +73,10 @@ fn circle(hub: Vector, axis: Vector, radius: Vector) -> Vec<Vector> {
 fn outline(centre: Vector, square: &Matrix, view: &View) -> Option<Vec<Vector>> {
     let width = between(view.right, square, view.right).sqrt();
     let shear = between(view.right, square, view.up) / width;
-    let height = (between(view.up, square, view.up) - shear * shear)
-        .max(0.0)
-        .sqrt();
-    (width > 0.0)
-        .then(|| round(|cos, sin| view.beside(centre, width * cos, shear * cos + height * sin)))
+    let rest = between(view.up, square, view.up) - shear * shear;
+    let height = rest.max(0.0).sqrt();
+    let place = |cos, sin| view.beside(centre, width * cos, shear * cos + height * sin);
+    (width > 0.0).then(|| round(place))
 }
 
 fn round(place: impl Fn(f64, f64) -> Vector) -> Vec<Vector> {
@@ -105,25 +104,19 @@ pub(super) fn axes(mechanism: &Mechanism, scene: &Scene) -> Vec<Axes> {
     for (id, frame) in mechanism.frames.entries() {
         let mut bodies = mechanism.bodies.iter();
         let own = bodies.find(|body| body.frame == Some(id));
-        if own.is_some_and(|body| !body.has_place()) {
-            continue;
-        }
-        let place = link::seat(mechanism, id);
+        let place = link::seat(mechanism, id).filter(|_| own.is_none_or(Body::has_place));
         let at = place.and_then(|point| scene.points[point]);
         let (Some(at), Some(directions)) = (at, scene.frames[id]) else {
             continue;
         };
         let alike = |other: &&mut Axes| {
-            let turned = directions.iter().zip(other.directions);
+            let mut turned = directions.iter().zip(other.directions);
             length(add(other.at, -1.0, at)) == 0.0
-                && turned
-                    .into_iter()
-                    .all(|(a, b)| length(add(*a, -1.0, b)) < EQUAL)
+                && turned.all(|(a, b)| length(add(*a, -1.0, b)) < EQUAL)
         };
         match drawn.iter_mut().find(alike) {
             Some(other) => {
-                other.names.push_str(" = ");
-                other.names.push_str(&frame.name);
+                other.names.extend([" = ", &frame.name]);
             }
             None => drawn.push(Axes {
                 at,
@@ -138,10 +131,9 @@ pub(super) fn axes(mechanism: &Mechanism, scene: &Scene) -> Vec<Axes> {
 /// Squares of the ground below the drawing; a line if seen from the side.
 pub(super) fn ground(view: &View, places: &[Vector], step: f64) -> Vec<Stroke> {
     let spans = view.floor.map(|direction| {
-        let along = || places.iter().map(|place| dot(*place, direction) / step);
-        let low = along().fold(0.0, f64::min).floor() - 1.0;
-        let high = along().fold(0.0, f64::max).ceil() + 1.0;
-        [low, high]
+        let along = places.iter().map(|place| [dot(*place, direction) / step]);
+        let [[low, high]] = spans(along.chain([[0.0]]));
+        [low.floor() - 1.0, high.ceil() + 1.0]
     });
     let mut lines = Vec::new();
     for (k, [low, high]) in spans.into_iter().enumerate() {

@@ -10,7 +10,7 @@ use super::arcs::{self, Arc};
 use super::home::home;
 use super::scene::Scene;
 use super::shapes::{self, Axes, Stroke};
-use super::space::{Vector, add, dot};
+use super::space::{Vector, add, dot, spans};
 use super::view::View;
 
 const WIDTH: f64 = 760.0;
@@ -64,18 +64,7 @@ const LEGEND_POINT: [f64; 2] = [26.0, 38.0];
 const LEGEND_MASS: [f64; 2] = [206.0, 220.0];
 
 /// Added to the style of the figures.
-const DRAWING_STYLE: &str = "\
-path{fill:none;stroke-linecap:round;stroke-linejoin:round}.axis{stroke-width:2}
-.link{stroke:#555;stroke-width:3}.way{stroke:#999;stroke-dasharray:2 5}.spring{stroke:#cc79a7;stroke-width:2}
-.wheel{stroke:#222;stroke-width:2;fill:#56b4e9;fill-opacity:.16}.body{stroke:#999;fill:#e69f00;fill-opacity:.14}
-.point{fill:#fff;stroke:#222;stroke-width:1.4}.mass{fill:#222}.arrow{stroke:#222;stroke-width:2}
-.angle{stroke:#cc79a7;stroke-width:1.6}.angle-name{fill:#a0457a}.from{stroke:#999;stroke-width:1;stroke-dasharray:3 3}
-.halo{paint-order:stroke;stroke:#fff;stroke-width:3px}.name{font-weight:600}.small{font-size:11px}.soft{fill:#666}
-@media(prefers-color-scheme:dark){
-.link{stroke:#b5b5b5}.wheel,.point,.arrow{stroke:#e6e6e6}.point{fill:#16181c}.mass{fill:#e6e6e6}
-.angle-name{fill:#e29cc4}.halo{stroke:#16181c}.soft{fill:#a5a5a5}
-}
-";
+const DRAWING_STYLE: &str = include_str!("sheet.css");
 
 /// Mapping from metres to pixels.
 struct Sheet<'a> {
@@ -95,56 +84,43 @@ pub(super) fn svg(mechanism: &Mechanism, scene: &Scene, marked: &[&str], given: 
     let mut strokes = shapes::links(mechanism, scene);
     let points = || scene.points.iter().flatten().copied();
     let frame_size = size(points());
-    strokes.extend(
-        shapes::bodies(mechanism, scene, view)
-            .into_iter()
-            .filter(|body| {
-                // A hint that would hide the rest is none.
-                let all = size(body.corners.iter().copied());
-                body.class == "wheel" || frame_size == 0.0 || all <= 2.0 * frame_size
-            }),
-    );
+    let bodies = shapes::bodies(mechanism, scene, view).into_iter();
+    strokes.extend(bodies.filter(|body| {
+        // A hint that would hide the rest is none.
+        let all = size(body.corners.iter().copied());
+        body.class == "wheel" || frame_size == 0.0 || all <= 2.0 * frame_size
+    }));
     let drawn = |strokes: &[Stroke]| -> Vec<Vector> {
         let corners = strokes.iter().flat_map(|stroke| stroke.corners.clone());
         corners.chain(points()).collect()
     };
     let places = drawn(&strokes);
-    let extent = Some(size(places.iter().copied()))
-        .filter(|&extent| extent > SMALLEST)
-        .unwrap_or(1.0);
+    let extent = Some(size(places.iter().copied())).filter(|&extent| extent > SMALLEST);
+    let extent = extent.unwrap_or(1.0);
     let step = round_number(extent / SQUARES);
     let axes = shapes::axes(mechanism, scene);
     let ground = shapes::ground(view, &places, step);
 
     let tips = axes.iter().flat_map(|axes| tips(axes, extent));
     let corners = drawn(&ground).into_iter().chain(places).chain(tips);
-    let [[left, right], [low, high]] = bounds(view, corners);
+    let [[left, right], [low, high]] = spans(corners.map(|place| view.seen(place)));
     let [flattest, highest] = HEIGHTS;
     let scale = ((WIDTH - 2.0 * MARGIN) / (right - left)).min(highest / (high - low));
     let drawn_height = ((high - low) * scale).max(flattest);
     let height = HEAD + drawn_height + FOOT;
-    let slack = [
-        WIDTH - (right - left) * scale,
-        drawn_height - (high - low) * scale,
-    ];
+    let beside = (WIDTH - (right - left) * scale) / 2.0;
+    let above = (drawn_height - (high - low) * scale) / 2.0;
     let mut sheet = Sheet {
         view,
         scale,
-        corner: [
-            left - slack[0] / 2.0 / scale,
-            high + (HEAD + slack[1] / 2.0) / scale,
-        ],
+        corner: [left - beside / scale, high + (HEAD + above) / scale],
         height,
         svg: Document::new([WIDTH, height], &[STYLE, DRAWING_STYLE]),
     };
     let title = svg::title([EDGE, TITLE_LINE], WIDTH - 2.0 * EDGE, &mechanism.title);
     sheet.svg.put(&title);
-    sheet.text(
-        [EDGE, CAPTION_LINE],
-        "small soft",
-        "start",
-        &caption(mechanism, scene, given),
-    );
+    let caption = caption(mechanism, scene, given);
+    sheet.text([EDGE, CAPTION_LINE], "small soft", "start", &caption);
     for stroke in ground.iter().chain(&strokes) {
         sheet.stroke(stroke);
     }
@@ -172,10 +148,8 @@ fn caption(mechanism: &Mechanism, scene: &Scene, given: &str) -> String {
         text.push_str("; it does not satisfy the position constraints");
     }
     let named = mechanism.points.iter().zip(&scene.points);
-    let missing: Vec<&str> = named
-        .filter(|(_, place)| place.is_none())
-        .map(|(point, _)| point.name.as_str())
-        .collect();
+    let missing = named.filter(|(_, place)| place.is_none());
+    let missing: Vec<&str> = missing.map(|(point, _)| point.name.as_str()).collect();
     if !missing.is_empty() {
         let missing = missing.join(", ");
         // Writing to a string cannot fail.
@@ -184,25 +158,10 @@ fn caption(mechanism: &Mechanism, scene: &Scene, given: &str) -> String {
     text
 }
 
-/// Smallest and largest coordinates to the right and up.
-fn bounds(view: &View, places: impl Iterator<Item = Vector>) -> [[f64; 2]; 2] {
-    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 2];
-    places.fold(none, |bounds, place| {
-        let seen = view.seen(place);
-        [0, 1].map(|k| [bounds[k][0].min(seen[k]), bounds[k][1].max(seen[k])])
-    })
-}
-
 /// The largest of length, width and height, including the extent along the line of sight.
 fn size(places: impl Iterator<Item = Vector>) -> f64 {
-    let none = [[f64::INFINITY, f64::NEG_INFINITY]; 3];
-    let spans = places.fold(none, |spans, place| {
-        [0, 1, 2].map(|k| [spans[k][0].min(place[k]), spans[k][1].max(place[k])])
-    });
-    spans
-        .map(|[low, high]| high - low)
-        .into_iter()
-        .fold(0.0, f64::max)
+    let sizes = spans(places).map(|[low, high]| high - low);
+    sizes.into_iter().fold(0.0, f64::max)
 }
 
 fn tips(axes: &Axes, extent: f64) -> [Vector; 3] {
@@ -213,11 +172,8 @@ fn tips(axes: &Axes, extent: f64) -> [Vector; 3] {
 /// The largest of 1, 2, 5, 10, … that is not larger.
 fn round_number(value: f64) -> f64 {
     let power = 10.0_f64.powf(value.log10().floor());
-    let steps = [5.0, 2.0].map(|step| step * power);
-    steps
-        .into_iter()
-        .find(|&step| step <= value)
-        .unwrap_or(power)
+    let mut steps = [5.0, 2.0].map(|step| step * power).into_iter();
+    steps.find(|&step| step <= value).unwrap_or(power)
 }
 
 impl Sheet<'_> {
@@ -241,9 +197,8 @@ impl Sheet<'_> {
         let x = x.clamp(PAD + before, WIDTH - PAD - width + before);
         let y = y.clamp(TEXT_SIZE, self.height - PAD);
         let text = svg::text([x, y]).with("class", class);
-        let text = text.with("text-anchor", anchor);
-        self.svg
-            .put(&svg::shortened(text, content, TEXT_SIZE, room));
+        let text = svg::shortened(text.with("text-anchor", anchor), content, TEXT_SIZE, room);
+        self.svg.put(&text);
     }
 
     fn path(&mut self, class: &str, places: &[[f64; 2]], about: &str) {
@@ -252,8 +207,12 @@ impl Sheet<'_> {
     }
 
     fn stroke(&mut self, stroke: &Stroke) {
-        let corners: Vec<[f64; 2]> = stroke.corners.iter().map(|&c| self.place(c)).collect();
+        let corners = self.places(&stroke.corners);
         self.path(stroke.class, &corners, &stroke.about);
+    }
+
+    fn places(&self, places: &[Vector]) -> Vec<[f64; 2]> {
+        places.iter().map(|&place| self.place(place)).collect()
     }
 
     fn dot(&mut self, class: &str, place: [f64; 2], radius: f64) {
@@ -278,86 +237,60 @@ impl Sheet<'_> {
     /// A marked angle. Its name stands where it begins, on the side away from the arc, below a name that
     /// is there already.
     fn arc(&mut self, arc: &Arc, names: &mut Vec<[f64; 2]>) {
-        let corners: Vec<[f64; 2]> = arc.corners.iter().map(|&c| self.place(c)).collect();
+        let corners = self.places(&arc.corners);
         let from = arc.from.map(|end| self.place(end));
         self.path("from", &from, "");
         self.path("angle", &corners, &arc.name);
         let [x, mut y] = from[1];
         let last = corners.last().map_or(x, |[x, _]| *x);
-        let (anchor, side) = if last > x {
-            ("end", -5.0)
-        } else {
-            ("start", 5.0)
+        let (anchor, side) = aside(last > x, 5.0);
+        let [width, height] = NAME_SIZE;
+        let meets = |y: f64| {
+            move |name: &[f64; 2]| (name[0] - x).abs() < width && (name[1] - y).abs() < height
         };
-        while names.iter().any(|[other, line]| {
-            (other - x).abs() < NAME_SIZE[0] && (line - y).abs() < NAME_SIZE[1]
-        }) {
-            y += NAME_SIZE[1];
+        while names.iter().any(meets(y)) {
+            y += height;
         }
         names.push([x, y]);
-        self.text(
-            [x + side, y + 4.0],
-            "small halo angle-name",
-            anchor,
-            &arc.name,
-        );
+        let place = [x + side, y + 4.0];
+        self.text(place, "small halo angle-name", anchor, &arc.name);
     }
 
     /// Points and their names, with those of the bodies whose centres they are.
     fn points(&mut self, mechanism: &Mechanism, scene: &Scene) {
-        let mut names: Vec<([f64; 2], String)> = Vec::new();
+        let mut names: Vec<Named> = Vec::new();
         for (id, point) in mechanism.points.entries() {
-            let place = scene.points[id];
-            let Some(at) = place.map(|place| self.place(place)) else {
+            let Some(at) = scene.points[id].map(|place| self.place(place)) else {
                 continue;
             };
-            let mut bodies = mechanism
-                .bodies
-                .iter()
-                .filter(|body| body.centre == id && body.has_place());
-            match bodies.clone().find(|body| body.inertia.is_none()) {
-                Some(_) => self.dot("mass", at, MASS_RADIUS),
-                None => self.dot("point", at, POINT_RADIUS),
+            let bodies = mechanism.bodies.iter();
+            let mut bodies = bodies.filter(|body| body.centre == id && body.has_place());
+            if bodies.clone().any(|body| body.inertia.is_none()) {
+                self.dot("mass", at, MASS_RADIUS);
+            } else {
+                self.dot("point", at, POINT_RADIUS);
             }
             let name = match bodies.next() {
                 Some(body) => format!("{} ({})", point.name, body.name),
                 None => point.name.clone(),
             };
-            match names.iter_mut().find(|(other, _)| are_close(*other, at)) {
-                Some((_, together)) => {
-                    together.push_str(", ");
-                    together.push_str(&name);
-                }
-                None => names.push((at, name)),
-            }
+            name_at(&mut names, at, Some(name));
         }
-        for ([x, y], name) in names {
-            let (anchor, side) = if x > 0.6 * WIDTH {
-                ("end", -9.0)
-            } else {
-                ("start", 9.0)
-            };
-            self.text([x + side, y + 14.0], "name halo", anchor, &name);
+        for ([x, y], names) in names {
+            let (anchor, side) = aside(x > 0.6 * WIDTH, 9.0);
+            self.text([x + side, y + 14.0], "name halo", anchor, &names.join(", "));
         }
     }
 
     /// Rings around the locations of names; names that meet are written together.
     fn rings(&mut self, mechanism: &Mechanism, scene: &Scene, marked: &[&str]) {
-        let mut rings: Vec<([f64; 2], Vec<&str>)> = Vec::new();
+        let mut rings: Vec<Named> = Vec::new();
         for &name in marked {
-            let mut is_named = false;
-            for point in home(mechanism, name) {
-                let Some(at) = scene.points[point].map(|place| self.place(place)) else {
-                    continue;
-                };
-                let here = rings.iter_mut().find(|(other, _)| are_close(*other, at));
+            let points = home(mechanism, name).into_iter();
+            let places = points.filter_map(|point| Some(self.place(scene.points[point]?)));
+            for (index, at) in places.enumerate() {
                 // A name stands at its first location alone.
-                let first = (!is_named).then_some(name);
-                is_named = true;
-                match here {
-                    Some((_, names)) => names.extend(first),
-                    None => rings.push((at, first.into_iter().collect())),
-                }
+                name_at(&mut rings, at, (index == 0).then(|| name.to_owned()));
             }
         }
         for (at @ [x, y], names) in rings {
@@ -376,19 +309,17 @@ impl Sheet<'_> {
             return;
         };
         let [right, up] = self.view.seen(down);
-        let tail = ARROW_TAIL;
+        let tail @ [x, y] = ARROW_TAIL;
         let along = |s: f64, aside: f64| {
-            [
-                tail[0] + ARROW * (s * right + aside * up),
-                tail[1] + ARROW * (aside * right - s * up),
-            ]
+            let (across, down) = (s * right + aside * up, aside * right - s * up);
+            [x + ARROW * across, y + ARROW * down]
         };
         // Seen from above, the weight points into the paper.
         if dot([right, up, 0.0], [right, up, 0.0]) > 0.01 {
             self.path("arrow", &[tail, along(1.0, 0.0)], "weight");
             let head = [along(0.78, 0.1), along(1.0, 0.0), along(0.78, -0.1)];
             self.path("arrow", &head, "weight");
-            let name = [tail[0] + ARROW_NAME[0], tail[1] + ARROW_NAME[1]];
+            let name = [x + ARROW_NAME[0], y + ARROW_NAME[1]];
             self.text(name, "small", "start", "weight");
         }
     }
@@ -397,29 +328,28 @@ impl Sheet<'_> {
     fn legend(&mut self, height: f64, step: f64, strokes: &[Stroke]) {
         let [first, second, third] = LEGEND_LINES.map(|line| height - line);
         let mut x = EDGE;
+        let mut symbol = first - SYMBOL_RISE;
         for (name, colour) in ["x", "y", "z"].into_iter().zip(AXIS_COLOURS) {
-            let y = first - SYMBOL_RISE;
-            self.path(
-                &format!("axis {colour}"),
-                &[[x, y], [x + LEGEND_AXIS, y]],
-                "",
-            );
+            let line = [[x, symbol], [x + LEGEND_AXIS, symbol]];
+            self.path(&format!("axis {colour}"), &line, "");
             self.text([x + LEGEND_AXIS_NAME, first], "small", "start", name);
             x += LEGEND_AXIS_PITCH;
         }
-        self.text(
-            [x, first],
-            "small",
-            "start",
-            "axes of a frame, with its name at a tip",
-        );
-        let y = second - SYMBOL_RISE;
-        let [symbol, text] = LEGEND_POINT;
-        self.dot("point", [symbol, y], POINT_RADIUS);
-        self.text([text, second], "small", "start", "point (centre of a body)");
-        let [symbol, text] = LEGEND_MASS;
-        self.dot("mass", [symbol, y], MASS_RADIUS);
-        self.text([text, second], "small", "start", "point mass");
+        let about = "axes of a frame, with its name at a tip";
+        self.text([x, first], "small", "start", about);
+        symbol = second - SYMBOL_RISE;
+        for (class, radius, [x, text], about) in [
+            (
+                "point",
+                POINT_RADIUS,
+                LEGEND_POINT,
+                "point (centre of a body)",
+            ),
+            ("mass", MASS_RADIUS, LEGEND_MASS, "point mass"),
+        ] {
+            self.dot(class, [x, symbol], radius);
+            self.text([text, second], "small", "start", about);
+        }
         let hints = [
             ("wheel", "blue: a rolling body through its contact"),
             (
@@ -432,16 +362,32 @@ impl Sheet<'_> {
             .filter_map(|(class, text)| is_drawn(class).then_some(text))
             .collect();
         self.text([EDGE, third], "small", "start", &hints.join("; "));
-        let bar = step * self.scale;
-        let right = WIDTH - EDGE;
-        self.path("arrow", &[[right - bar, y], [right, y]], "");
+        let (bar, right) = (step * self.scale, WIDTH - EDGE);
+        self.path("arrow", &[[right - bar, symbol], [right, symbol]], "");
         let scale = format!("{} m", round_text(step));
         self.text([right, first], "small", "end", &scale);
     }
 }
 
-fn are_close(one: [f64; 2], other: [f64; 2]) -> bool {
-    (other[0] - one[0]).hypot(other[1] - one[1]) < CLOSE
+/// A position with its names.
+type Named = ([f64; 2], Vec<String>);
+
+/// Names that are close to each other are written together.
+fn name_at(names: &mut Vec<Named>, [x, y]: [f64; 2], name: Option<String>) {
+    let is_close = |named: &&mut Named| (x - named.0[0]).hypot(y - named.0[1]) < CLOSE;
+    match names.iter_mut().find(is_close) {
+        Some((_, names)) => names.extend(name),
+        None => names.push(([x, y], name.into_iter().collect())),
+    }
+}
+
+/// Anchor of a text and its distance from a point, to the left or to the right of it.
+const fn aside(is_left: bool, distance: f64) -> (&'static str, f64) {
+    if is_left {
+        ("end", -distance)
+    } else {
+        ("start", distance)
+    }
 }
 
 fn circle(class: &str, [x, y]: [f64; 2], radius: f64) -> Element {

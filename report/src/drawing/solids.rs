@@ -101,10 +101,10 @@ fn axis_of_symmetry(inertia: &Inertia) -> Symmetry {
     let pairs = [(1, 2), (2, 0), (0, 1)].map(|(i, j)| diagonal && equal(m[i][i], m[j][j]));
     match pairs {
         [true, true, _] => Symmetry::Every,
-        _ => match pairs.iter().position(|&equal| equal) {
-            Some(axis) => Symmetry::Axis(inertia.axes[axis]),
-            None => Symmetry::None,
-        },
+        [true, ..] => Symmetry::Axis(inertia.axes[0]),
+        [_, true, _] => Symmetry::Axis(inertia.axes[1]),
+        [.., true] => Symmetry::Axis(inertia.axes[2]),
+        _ => Symmetry::None,
     }
 }
 

@@ -43,3 +43,11 @@ pub(super) fn length(a: Vector) -> f64 {
 pub(super) fn between(a: Vector, matrix: &Matrix, b: Vector) -> f64 {
     dot(a, matrix.map(|row| dot(row, b)))
 }
+
+/// Smallest and largest value of each coordinate.
+pub(super) fn spans<const N: usize>(places: impl Iterator<Item = [f64; N]>) -> [[f64; 2]; N] {
+    let none = [[f64::INFINITY, f64::NEG_INFINITY]; N];
+    places.fold(none, |spans, place| {
+        std::array::from_fn(|k| [spans[k][0].min(place[k]), spans[k][1].max(place[k])])
+    })
+}

@@ -1,11 +1,11 @@
 //! Figures of a study.
 
 use appell_ensemble::rows::{Column, Role};
-use appell_ensemble::summary::{Course, Effects, Number};
+use appell_ensemble::summary::{Course, Effects, Event, Number};
 
-use super::about::About;
-use super::parts::labelled;
-use crate::figure::{Histogram, Layer, Lever, Look, Plot, Scatter, Series, Tornado};
+use super::About;
+use super::parts::{in_brackets, labelled};
+use crate::figure::{Histogram, Layer, Lever, Look, Mark, Plot, Scatter, Tornado};
 use crate::text::short;
 
 /// A figure with its name and heading.
@@ -23,80 +23,60 @@ pub struct Named {
 /// cases over its two most influential factors.
 pub fn figures(about: &About<'_>) -> Vec<Named> {
     let mut all: Vec<Named> = Vec::new();
+    let mut put = |name: &str, kind: &str, heading: String, svg: String| {
+        let name = format!("{name}-{kind}");
+        all.push(Named { name, heading, svg });
+    };
     for course in &about.summary.courses {
         let column = &about.columns[course.column];
-        all.push(Named {
-            name: format!("{}-bands", course.name),
-            heading: format!("{}: {} over time", course.name, column.about),
-            svg: bands(column, course),
-        });
+        let heading = format!("{}: {} over time", course.name, column.about);
+        put(&course.name, "bands", heading, bands(column, course));
     }
     for effects in &about.summary.effects {
         let column = &about.columns[effects.column];
+        let name = &column.name;
         let number = about.summary.number(effects.column);
         if let Some(number) = number.filter(|number| number.moments.count > 0) {
-            all.push(Named {
-                name: format!("{}-histogram", column.name),
-                heading: format!("{}: {}", column.name, column.about),
-                svg: histogram(column, number),
-            });
+            let heading = format!("{name}: {}", column.about);
+            put(name, "histogram", heading, histogram(column, number));
         }
         let levers = levers(about, effects);
         if levers.is_empty() || !has_spread(about, effects.column) {
             continue;
         }
-        all.push(Named {
-            name: format!("{}-levers", column.name),
-            heading: format!("{}: what moves it", column.name),
-            svg: tornado(about, effects, &levers),
-        });
+        let heading = format!("{name}: what moves it");
+        put(name, "levers", heading, tornado(about, effects, &levers));
         if let [a, b, ..] = levers[..] {
-            all.push(Named {
-                name: format!("{}-cases", column.name),
-                heading: format!(
-                    "{} over {} and {}",
-                    column.name, about.columns[a].name, about.columns[b].name
-                ),
-                svg: cases(about, effects.column, [a, b]),
-            });
+            let [x, y] = [a, b].map(|factor| &about.columns[factor].name);
+            let heading = format!("{name} over {x} and {y}");
+            put(name, "cases", heading, cases(about, effects.column, [a, b]));
         }
     }
     all
 }
 
+fn event<'a>(about: &About<'a>, column: usize) -> Option<&'a Event> {
+    let mut events = about.summary.events.iter();
+    events.find(|event| event.column == column)
+}
+
 /// Whether the values of a column differ.
 fn has_spread(about: &About<'_>, column: usize) -> bool {
-    let event = about.summary.events.iter().find(|e| e.column == column);
-    match (event, about.summary.number(column)) {
+    match (event(about, column), about.summary.number(column)) {
         (Some(event), _) => event.happened > 0 && event.happened < event.of,
         (None, Some(number)) => number.moments.max > number.moments.min,
         (None, None) => false,
     }
 }
 
-/// Name of a course and unit, without its time.
+/// Quantiles and mean of a course over time.
 fn bands(column: &Column, course: &Course) -> String {
-    let unit = match column.unit.as_str() {
-        "" | "1" => String::new(),
-        unit => format!(" [{unit}]"),
-    };
-    let values = |list: &[f64]| {
-        list.iter()
-            .map(|&v| column.to_unit(v))
-            .collect::<Vec<f64>>()
-    };
-    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
-        series: Series {
-            label: label.to_owned(),
-            x: course.times.clone(),
-            y,
-        },
-        look,
-        colour,
-    };
+    let values = |list: &[f64]| -> Vec<f64> { list.iter().map(|&v| column.to_unit(v)).collect() };
     let band = |place: usize| values(&course.bands[place]);
+    let layer =
+        |label: &str, y: Vec<f64>, look, colour| Layer::new(label, look, colour, &course.times, y);
     let plot = Plot {
-        labels: ["t [s]".to_owned(), format!("{}{unit}", course.name)],
+        labels: ["t [s]".to_owned(), in_brackets(&course.name, &column.unit)],
         height: 220.0,
         layers: vec![
             layer("5 to 95 %", band(0), Look::Band(band(4)), 0),
@@ -109,18 +89,20 @@ fn bands(column: &Column, course: &Course) -> String {
 }
 
 fn histogram(column: &Column, number: &Number) -> String {
-    let mut marks = Vec::new();
-    for (place, name) in [(0, "5 %"), (2, "median"), (4, "95 %")] {
-        if let Some(quantile) = number.quantiles.get(place) {
-            marks.push((column.to_unit(quantile.value), name.to_owned()));
-        }
-    }
+    let names = [(0, "5 %"), (2, "median"), (4, "95 %")].into_iter();
+    let marks = names.filter_map(|(place, name)| {
+        let quantile = number.quantiles.get(place)?;
+        Some(Mark {
+            x: column.to_unit(quantile.value),
+            about: name.to_owned(),
+        })
+    });
     let figure = Histogram {
         label: labelled(column),
         counted: "cases".to_owned(),
         ends: [number.moments.min, number.moments.max].map(|end| column.to_unit(end)),
         bars: number.bars.clone(),
-        marks,
+        marks: marks.collect(),
     };
     figure.to_svg()
 }
@@ -144,32 +126,24 @@ fn levers(about: &About<'_>, effects: &Effects) -> Vec<usize> {
 fn tornado(about: &About<'_>, effects: &Effects, levers: &[usize]) -> String {
     let column = &about.columns[effects.column];
     let number = about.summary.number(effects.column);
-    let event = about
-        .summary
-        .events
-        .iter()
-        .find(|e| e.column == effects.column);
+    let event = event(about, effects.column);
     let centre = match (number, event) {
         (Some(number), _) => column.to_unit(number.moments.mean),
         (None, Some(event)) => event.happened as f64 / event.of as f64,
         (None, None) => 0.0,
     };
-    let what = if event.is_some() {
-        format!("probability of {}", column.name)
-    } else {
-        format!("mean of {}", labelled(column))
+    let lever = |&factor: &usize| Lever {
+        name: about.columns[factor].name.clone(),
+        ends: effects.ends[factor].map(|end| column.to_unit(end)),
     };
     let figure = Tornado {
-        label: what,
+        label: match event {
+            Some(_) => format!("probability of {}", column.name),
+            None => format!("mean of {}", labelled(column)),
+        },
         legend: ["lowest quarter", "highest quarter"].map(str::to_owned),
         centre,
-        levers: levers
-            .iter()
-            .map(|&factor| Lever {
-                name: about.columns[factor].name.clone(),
-                ends: effects.ends[factor].map(|end| column.to_unit(end)),
-            })
-            .collect(),
+        levers: levers.iter().map(lever).collect(),
     };
     figure.to_svg()
 }
@@ -177,29 +151,29 @@ fn tornado(about: &About<'_>, effects: &Effects, levers: &[usize]) -> String {
 fn cases(about: &About<'_>, column: usize, axes: [usize; 2]) -> String {
     let of = &about.columns[column];
     let points = &about.summary.points;
-    let (classes, class): (Vec<String>, Box<dyn Fn(f64) -> usize>) =
-        if matches!(of.role, Role::Event) {
-            (
-                vec!["not".to_owned(), of.name.clone()],
-                Box::new(|value: f64| usize::from(value != 0.0)),
-            )
+    let is_event = matches!(of.role, Role::Event);
+    let number = about.summary.number(column).filter(|_| !is_event);
+    let quantiles = number.map_or(&[][..], |number| &number.quantiles);
+    let inner = quantiles.get(1..4).unwrap_or_default();
+    let limits: Vec<f64> = inner.iter().map(|quantile| quantile.value).collect();
+    let class = |value: f64| {
+        if is_event {
+            usize::from(value != 0.0)
         } else {
-            let number = about.summary.number(column);
-            let quantiles = number.map_or(&[][..], |number| &number.quantiles);
-            let inner = quantiles.get(1..4).unwrap_or_default();
-            let limits: Vec<f64> = inner.iter().map(|q| q.value).collect();
-            let shown: Vec<String> = limits.iter().map(|&l| short(of.to_unit(l))).collect();
-            let mut names = Vec::new();
-            for place in 0..=shown.len() {
-                names.push(match place {
-                    0 => format!("below {}", shown.first().map_or("", String::as_str)),
-                    place if place == shown.len() => format!("above {}", shown[place - 1]),
-                    place => format!("to {}", shown[place]),
-                });
-            }
-            let class = move |value: f64| limits.iter().filter(|limit| value > **limit).count();
-            (names, Box::new(class))
+            limits.iter().filter(|limit| value > **limit).count()
+        }
+    };
+    let classes = if is_event {
+        vec!["not".to_owned(), of.name.clone()]
+    } else {
+        let shown: Vec<String> = limits.iter().map(|&l| short(of.to_unit(l))).collect();
+        let name = |place: usize| match place {
+            0 => format!("below {}", shown.first().map_or("", String::as_str)),
+            place if place == shown.len() => format!("above {}", shown[place - 1]),
+            place => format!("to {}", shown[place]),
         };
+        (0..=shown.len()).map(name).collect()
+    };
     let place = |axis: usize, case: usize| {
         let column = axes[axis];
         points[column]

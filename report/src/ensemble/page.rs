@@ -1,10 +1,10 @@
 //! The statistics as a self-contained HTML page.
 
-use maud::{Markup, PreEscaped, html};
+use maud::{PreEscaped, html};
 
-use super::about::About;
+use super::About;
 use super::figures::figures;
-use super::parts::{Part, parts, sentences};
+use super::parts::{parts, sentences};
 use crate::page_shell::PageShell;
 
 /// Light and dark, as the figures inside.
@@ -18,7 +18,7 @@ pub fn page(about: &About<'_>) -> String {
             p { (sentence) "." }
         }
         @for part in parts(about) {
-            (table(&part))
+            (part.html())
         }
         @for figure in figures(about) {
             h2 { (figure.heading) }
@@ -27,32 +27,4 @@ pub fn page(about: &About<'_>) -> String {
         h2 { "The study" }
         pre { (about.study) }
     })
-}
-
-fn table(part: &Part) -> Markup {
-    let class = |column: usize| (column > 0).then_some("number");
-    html! {
-        h2 { (part.heading) }
-        div class="wide" {
-            table {
-                @if let Some((heads, rows)) = part.rows.split_first() {
-                    tr {
-                        @for (column, cell) in heads.iter().enumerate() {
-                            th class=[class(column)] { (cell) }
-                        }
-                    }
-                    @for row in rows {
-                        tr {
-                            @for (column, cell) in row.iter().enumerate() {
-                                td class=[class(column)] { (cell) }
-                            }
-                        }
-                    }
-                }
-            }
-        }
-        @for note in &part.notes {
-            p { (note) }
-        }
-    }
 }

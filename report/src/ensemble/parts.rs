@@ -3,33 +3,27 @@
 use appell_ensemble::design::Sampling;
 use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::statistics::moments::Moments;
-use appell_ensemble::statistics::sensitivity::Index;
-use appell_ensemble::summary::{Effects, Event, Number};
+use appell_ensemble::summary::Number;
 
-use super::about::About;
+use super::About;
+use crate::tables::Table;
 use crate::text::short;
-
-/// A table.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct Part {
-    /// Its heading.
-    pub heading: &'static str,
-    /// Its rows, the first one with the column headings.
-    pub rows: Vec<Vec<String>>,
-    /// Notes below the table.
-    pub notes: Vec<String>,
-}
 
 /// Name and unit of a column.
 pub(super) fn labelled(column: &Column) -> String {
-    match column.unit.as_str() {
-        "" | "1" => column.name.clone(),
-        unit => format!("{} [{unit}]", column.name),
+    in_brackets(&column.name, &column.unit)
+}
+
+/// `name [unit]`
+pub(super) fn in_brackets(name: &str, unit: &str) -> String {
+    match unit {
+        "" | "1" => name.to_owned(),
+        unit => format!("{name} [{unit}]"),
     }
 }
 
 /// How many cases there are, and how they ended.
-pub fn sentences(about: &About<'_>) -> Vec<String> {
+pub(super) fn sentences(about: &About<'_>) -> Vec<String> {
     let summary = about.summary;
     let how = match summary.sampling {
         Sampling::Random => "random",
@@ -42,30 +36,27 @@ pub fn sentences(about: &About<'_>) -> Vec<String> {
     } else {
         format!("{} cases ({how})", summary.cases)
     }];
-    let early: u64 = summary.early.iter().map(|(_, count)| count).sum();
-    if early > 0 {
-        let reasons = summary
-            .early
-            .iter()
-            .map(|(reason, count)| format!("{reason} ({count})"));
-        told.push(format!(
-            "{early} ended early: {}",
-            reasons.collect::<Vec<_>>().join("; ")
-        ));
+    let early = summary.early.iter();
+    let count: u64 = early.clone().map(|(_, count)| count).sum();
+    if count > 0 {
+        let reasons: Vec<String> = early
+            .map(|(reason, count)| format!("{reason} ({count})"))
+            .collect();
+        told.push(format!("{count} ended early: {}", reasons.join("; ")));
     }
     told
 }
 
 /// The tables, those with rows.
-pub fn parts(about: &About<'_>) -> Vec<Part> {
-    let mut parts = vec![factors(about), numbers(about), events(about)];
-    parts.extend(sensitivity(about));
-    parts.retain(|part| part.rows.len() > 1);
+pub(super) fn parts(about: &About<'_>) -> Vec<Table> {
+    let mut parts = vec![
+        factors(about),
+        numbers(about),
+        events(about),
+        sensitivity(about),
+    ];
+    parts.retain(Table::has_rows);
     parts
-}
-
-fn heads(words: &[&str]) -> Vec<String> {
-    words.iter().map(ToString::to_string).collect()
 }
 
 fn interval(ends: [f64; 2]) -> String {
@@ -90,41 +81,29 @@ fn row(column: &Column, number: &Number) -> Vec<String> {
     ]
 }
 
-fn factors(about: &About<'_>) -> Part {
-    let heading = "Factors";
-    let mut rows = vec![heads(&["", "mean", "deviation", "5 %", "median", "95 %"])];
-    let mut notes = Vec::new();
+fn factors(about: &About<'_>) -> Table {
+    let columns = " | mean | deviation | 5 % | median | 95 %";
+    let mut part = Table::new("Factors", columns, 1..6);
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
         match &column.role {
-            Role::Factor(items) if items.is_empty() => rows.push(row(column, number)),
+            Role::Factor(items) if items.is_empty() => part.rows.push(row(column, number)),
             Role::Factor(items) => {
-                notes.push(format!("{}: one of {}", column.name, items.join(", ")));
+                let note = format!("{}: one of {}", column.name, items.join(", "));
+                part.notes.push(note);
             }
             _ => {}
         }
     }
-    if rows.len() == 1 && !notes.is_empty() {
-        rows.push(vec!["files".to_owned()]);
+    if !part.has_rows() && !part.notes.is_empty() {
+        part.rows.push(vec!["files".to_owned()]);
     }
-    Part {
-        heading,
-        rows,
-        notes,
-    }
+    part
 }
 
-fn numbers(about: &About<'_>) -> Part {
-    let mut rows = vec![heads(&[
-        "",
-        "mean",
-        "deviation",
-        "5 %",
-        "median",
-        "95 %",
-        "mean ±",
-        "missing",
-    ])];
+fn numbers(about: &About<'_>) -> Table {
+    let columns = " | mean | deviation | 5 % | median | 95 % | mean ± | missing";
+    let mut part = Table::new("Kept quantities", columns, 1..8);
     for number in &about.summary.numbers {
         let column = &about.columns[number.column];
         let Moments { count, missing, .. } = number.moments;
@@ -141,97 +120,57 @@ fn numbers(about: &About<'_>) -> Part {
             0 => String::new(),
             missing => missing.to_string(),
         });
-        rows.push(row);
+        part.rows.push(row);
     }
-    let mut notes = Vec::new();
-    if about.summary.sampling == Sampling::Random {
-        notes.push("± is half the 95 % interval.".to_owned());
+    let note = if about.summary.sampling == Sampling::Random {
+        "± is half the 95 % interval."
     } else {
-        notes.push(
-            "± is half the 95 % interval for independent cases; these are stratified, so that the mean is better known."
-                .to_owned(),
-        );
-    }
-    Part {
-        heading: "Kept quantities",
-        rows,
-        notes,
-    }
+        "± is half the 95 % interval for independent cases; these are stratified, so that the mean is better known."
+    };
+    part.notes.push(note.to_owned());
+    part
 }
 
-fn events(about: &About<'_>) -> Part {
-    let mut rows = vec![heads(&[
-        "",
-        "cases",
-        "of",
-        "probability",
-        "95 % interval",
-        "median time [s]",
-    ])];
-    for Event {
-        column,
-        of,
-        happened,
-        wilson,
-        ..
-    } in &about.summary.events
-    {
-        let when = about.summary.number(column + 1);
+fn events(about: &About<'_>) -> Table {
+    let columns = " | cases | of | probability | 95 % interval | median time [s]";
+    let mut part = Table::new("What happened", columns, 1..6);
+    for event in &about.summary.events {
+        let when = about.summary.number(event.column + 1);
         let median = when.and_then(|when| when.quantiles.get(2));
-        rows.push(vec![
-            about.columns[*column].name.clone(),
-            happened.to_string(),
-            of.to_string(),
-            short(*happened as f64 / *of as f64),
-            interval(*wilson),
+        part.rows.push(vec![
+            about.columns[event.column].name.clone(),
+            event.happened.to_string(),
+            event.of.to_string(),
+            short(event.happened as f64 / event.of as f64),
+            interval(event.wilson),
             median.map_or_else(String::new, |median| short(median.value)),
         ]);
     }
-    let mut notes = Vec::new();
-    if let Some((event, found)) = &about.summary.rare {
-        notes.push(format!(
-            "{event}: probability {:.2e} by splitting (95 %: {:.2e} … {:.2e}; {:.0} motions)",
-            found.value, found.interval[0], found.interval[1], found.evaluations
-        ));
-    }
-    Part {
-        heading: "What happened",
-        rows,
-        notes,
-    }
+    part.notes
+        .extend(about.summary.rare.iter().map(|(event, found)| {
+            format!(
+                "{event}: probability {:.2e} by splitting (95 %: {:.2e} … {:.2e}; {:.0} motions)",
+                found.value, found.interval[0], found.interval[1], found.evaluations
+            )
+        }));
+    part
 }
 
-fn sensitivity(about: &About<'_>) -> Vec<Part> {
-    let mut rows = vec![heads(&[
-        "",
-        "factor",
-        "first order",
-        "95 %",
-        "total",
-        "95 %",
-    ])];
-    for Effects {
-        column, indices, ..
-    } in &about.summary.effects
-    {
-        for (factor, indices) in indices.iter().flatten().enumerate() {
-            let index = |index: Index| [format!("{:.3}", index.value), interval(index.interval)];
-            let mut row = vec![
-                if factor == 0 {
-                    about.columns[*column].name.clone()
-                } else {
-                    String::new()
-                },
-                about.columns[factor].name.clone(),
-            ];
-            row.extend(index(indices.first));
-            row.extend(index(indices.total));
-            rows.push(row);
+fn sensitivity(about: &About<'_>) -> Table {
+    let columns = " | factor | first order | 95 % | total | 95 %";
+    let mut part = Table::new("Sensitivity (parts of the variance)", columns, 1..6);
+    for effects in &about.summary.effects {
+        for (factor, indices) in effects.indices.iter().flatten().enumerate() {
+            let name = match factor {
+                0 => about.columns[effects.column].name.clone(),
+                _ => String::new(),
+            };
+            let mut row = vec![name, about.columns[factor].name.clone()];
+            for index in [indices.first, indices.total] {
+                row.extend([format!("{:.3}", index.value), interval(index.interval)]);
+            }
+            part.rows.push(row);
         }
     }
-    vec![Part {
-        heading: "Sensitivity (parts of the variance)",
-        rows,
-        notes: Vec::new(),
-    }]
+    part
 }

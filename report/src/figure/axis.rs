@@ -21,30 +21,26 @@ impl Axis {
             (low, high) = (low.min(value), high.max(value));
         }
         if low > high {
-            return Self {
-                low: 0.0,
-                high: 1.0,
-            };
+            (low, high) = (0.0, 1.0);
         }
         let size = low.abs().max(high.abs());
+        let mut axis = Self { low, high };
         if high - low <= CONSTANT * size || size == 0.0 {
-            let room = if size == 0.0 { 1.0 } else { 0.1 * size };
-            return Self {
-                low: low - room,
-                high: high + room,
-            };
+            axis.widen_by(if size == 0.0 { 1.0 } else { 0.1 * size });
         }
-        Self { low, high }
+        axis
     }
 
     /// A little more than [`Axis::tight`].
     pub(super) fn padded(values: impl Iterator<Item = f64>) -> Self {
-        let Self { low, high } = Self::tight(values);
-        let room = PADDING * (high - low);
-        Self {
-            low: low - room,
-            high: high + room,
-        }
+        let mut axis = Self::tight(values);
+        axis.widen_by(PADDING * axis.span());
+        axis
+    }
+
+    /// Extends both ends.
+    fn widen_by(&mut self, room: f64) {
+        (self.low, self.high) = (self.low - room, self.high + room);
     }
 
     pub(super) fn span(&self) -> f64 {
@@ -53,8 +49,7 @@ impl Axis {
 
     /// Extends both ends equally, so that the span becomes `span`.
     pub(super) fn widen_to(&mut self, span: f64) {
-        let room = (span - self.span()) / 2.0;
-        (self.low, self.high) = (self.low - room, self.high + room);
+        self.widen_by((span - self.span()) / 2.0);
     }
 
     /// Position of a value between the ends, 0 to 1.
@@ -88,11 +83,7 @@ impl Axis {
 pub(super) fn number(value: f64, step: f64) -> String {
     let size = value.abs().max(step);
     if size >= 1e5 || step < 1e-4 {
-        return if value == 0.0 {
-            "0".to_string()
-        } else {
-            short_exponent(value, step)
-        };
+        return short_exponent(value, step);
     }
     let decimals = (0..=4).find(|decimals| {
         let scaled = step * 10f64.powi(*decimals);
@@ -102,15 +93,14 @@ pub(super) fn number(value: f64, step: f64) -> String {
     let text = format!("{value:.decimals$}");
     // No negative zero, and a typographic minus.
     let is_zero = text.chars().all(|c| matches!(c, '-' | '0' | '.'));
-    if is_zero {
-        text.replace('-', "")
-    } else {
-        text.replace('-', "−")
-    }
+    text.replace('-', if is_zero { "" } else { "−" })
 }
 
 /// The digits that distinguish neighbouring ticks, with an exponent.
 fn short_exponent(value: f64, step: f64) -> String {
+    if value == 0.0 {
+        return "0".to_owned();
+    }
     let order = |x: f64| x.abs().log10().floor();
     let needed = order(value) - order(step);
     let precision = (0..=8usize)

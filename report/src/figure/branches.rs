@@ -1,12 +1,14 @@
-//! Branches of steady motions against the continuation parameter.
+//! Branches of steady motions and their eigenvalues against the continuation parameter.
 
-use appell_analysis::{Branch, Term};
+use appell_analysis::{Branch, Term, loci};
 use appell_runtime::model::{Model, ModelInfo};
 
 use super::{Figure, Mark, Panel, Series};
 
 /// A term below this size on all branches is zero, and not drawn.
 const ZERO: f64 = 1e-12;
+/// Largest number of branches of which eigenvalues are drawn.
+const MOST_BRANCHES: usize = 4;
 
 impl Figure {
     /// Steady motions against the quantity along which they were continued, a panel for each term.
@@ -16,6 +18,7 @@ impl Figure {
         terms: &[Term],
         branches: &[Branch],
     ) -> Self {
+        let info = model.info();
         let values = |term: Term, branch: &Branch| -> Vec<f64> {
             let points = branch.points.iter();
             points.map(|at| term.value(model, &at.point)).collect()
@@ -25,39 +28,67 @@ impl Figure {
             **term != along && all.into_iter().any(|value| value.abs() > ZERO)
         };
         let panel = |term: &Term| {
-            let quantity = term.quantity(model.info());
-            let series = branches.iter().enumerate().map(|(i, branch)| Series {
-                label: match i {
+            let quantity = term.quantity(info);
+            let series = branches.iter().enumerate().map(|(i, branch)| {
+                let label = match i {
                     0 => quantity.name.to_string(),
                     _ => format!("branch {}", i + 1),
-                },
-                x: parameter(model.info(), along, branch),
-                y: values(*term, branch)
-                    .into_iter()
-                    .map(|value| quantity.to_unit(value))
-                    .collect(),
+                };
+                let y = values(*term, branch).into_iter();
+                let y = y.map(|value| quantity.to_unit(value)).collect();
+                Series::new(label, &parameter(info, along, branch), y)
             });
             Panel {
                 unit: quantity.unit.to_string(),
                 series: series.collect(),
             }
         };
-        Self {
-            panels: terms.iter().filter(drawn).map(panel).collect(),
-            ..frame(model.info(), along, branches)
-        }
+        let panels = terms.iter().filter(drawn).map(panel).collect();
+        along_branches(info, along, branches, panels)
+    }
+
+    /// Real and imaginary parts of eigenvalues against the quantity along which motions were continued, two
+    /// panels for each of the first branches.
+    pub fn of_eigenvalues(info: &ModelInfo, along: Term, branches: &[Branch]) -> Self {
+        let drawn = branches.iter().take(MOST_BRANCHES).enumerate();
+        let panels = drawn.flat_map(|(number, branch)| {
+            let x = parameter(info, along, branch);
+            let [mut re, mut im] = [Vec::new(), Vec::new()];
+            let loci = loci(branch.points.iter().map(|at| &at.stability));
+            for (mode, locus) in loci.iter().enumerate() {
+                let label = |part: &str| match mode {
+                    0 if branches.len() > 1 => format!("branch {}: {part} 1", number + 1),
+                    _ => format!("{part} {}", mode + 1),
+                };
+                let values = locus.iter();
+                let y = values.clone().map(|value| value.re).collect();
+                re.push(Series::new(label("re"), &x, y));
+                let y = values.map(|value| value.im).collect();
+                im.push(Series::new(label("im"), &x, y));
+            }
+            [re, im].map(|series| Panel {
+                unit: "1/s".to_owned(),
+                series,
+            })
+        });
+        along_branches(info, along, branches, panels.collect())
     }
 }
 
 /// The continuation parameter along a branch, in its unit.
-pub(super) fn parameter(info: &ModelInfo, along: Term, branch: &Branch) -> Vec<f64> {
+fn parameter(info: &ModelInfo, along: Term, branch: &Branch) -> Vec<f64> {
     let quantity = along.quantity(info);
     let points = branch.points.iter();
     points.map(|at| quantity.to_unit(at.value)).collect()
 }
 
-/// Title, horizontal axis, and a mark at every special point.
-pub(super) fn frame(info: &ModelInfo, along: Term, branches: &[Branch]) -> Figure {
+/// Panels over the continuation parameter, with a mark at every special point.
+fn along_branches(
+    info: &ModelInfo,
+    along: Term,
+    branches: &[Branch],
+    panels: Vec<Panel>,
+) -> Figure {
     let quantity = along.quantity(info);
     let specials = branches.iter().flat_map(|branch| &branch.specials);
     let marks = specials.map(|special| {
@@ -69,7 +100,7 @@ pub(super) fn frame(info: &ModelInfo, along: Term, branches: &[Branch]) -> Figur
     Figure {
         title: info.title.to_string(),
         x_label: format!("{} [{}]", quantity.name, quantity.unit),
-        panels: Vec::new(),
+        panels,
         marks: marks.collect(),
         equal_axes: false,
     }

@@ -1,9 +1,9 @@
 //! Histograms.
 
+use super::area::{Area, INNER, centred};
 use super::axis::Axis;
-use super::{Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, WIDTH};
+use super::{FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, Mark, STYLE, WIDTH};
 use crate::svg::{Document, path, text};
-use std::fmt::Write as _;
 
 /// Bars of equal width.
 #[derive(Debug, Clone, PartialEq)]
@@ -16,63 +16,42 @@ pub struct Histogram {
     pub ends: [f64; 2],
     /// Heights of the bars.
     pub bars: Vec<u64>,
-    /// Marked numbers with their names.
-    pub marks: Vec<(f64, String)>,
+    /// Marked numbers.
+    pub marks: Vec<Mark>,
 }
 
 const HEIGHT: f64 = 150.0;
-const BAR_STYLE: &str = "\
-.bar{fill:#0072b2;fill-opacity:.55;stroke:none}
-@media(prefers-color-scheme:dark){.bar{fill:#56b4e9}}
-";
+const BAR_STYLE: &str = include_str!("histogram.css");
 
 impl Histogram {
     /// The figure as an SVG document.
     pub fn to_svg(&self) -> String {
-        let x_axis = Axis::tight(self.ends.into_iter());
         let heights = self.bars.iter().map(|&count| count as f64);
-        let y_axis = Axis::tight(heights.clone().chain([0.0]));
         let area = Area {
             top: HEADER_HEIGHT,
-            width: WIDTH - LEFT - RIGHT,
             height: HEIGHT,
+            x_axis: Axis::tight(self.ends.into_iter()),
+            y_axis: Axis::tight(heights.clone().chain([0.0])),
         };
-        let mut svg = Document::new(
-            [WIDTH, area.top + HEIGHT + FOOTER_HEIGHT],
-            &[STYLE, BAR_STYLE],
-        );
+        let bottom = area.bottom();
+        let mut svg = Document::new([WIDTH, bottom + FOOTER_HEIGHT], &[STYLE, BAR_STYLE]);
         svg.put(&text([LEFT, 16.0]).text(&self.counted));
-        area.grid(&mut svg, &x_axis, &y_axis);
-        let mut bars = String::new();
-        let wide = area.width / self.bars.len().max(1) as f64;
-        for (place, height) in heights.enumerate() {
-            let high = area.height * y_axis.part(height);
+        area.grid(&mut svg);
+        let wide = INNER / self.bars.len().max(1) as f64;
+        let bar = |(place, height): (usize, f64)| {
+            let high = area.height * area.y_axis.part(height);
             let x = LEFT + wide * place as f64;
-            // Writing to a string cannot fail.
-            let _ = write!(
-                bars,
-                "M{x:.1} {:.1}v{:.1}h{:.1}v{high:.1}z",
-                area.top + area.height,
-                -high,
-                wide - 1.0
-            );
-        }
+            let width = wide - 1.0;
+            format!("M{x:.1} {bottom:.1}v{:.1}h{width:.1}v{high:.1}z", -high)
+        };
+        let bars: String = heights.enumerate().map(bar).collect();
         svg.put(&path("bar", &bars).empty());
-        for (value, name) in &self.marks {
-            let part = x_axis.part(*value);
-            if !(0.0..=1.0).contains(&part) {
-                continue;
+        for mark in &self.marks {
+            if let Some(x) = area.mark(&mut svg, mark) {
+                svg.put(&centred([x, area.top - 5.0], &mark.about));
             }
-            let x = LEFT + area.width * part;
-            let line = format!("M{x:.1} {:.1}v{HEIGHT:.1}", area.top);
-            svg.put(&path("frame dashed", &line).titled(name));
-            svg.put(
-                &text([x, area.top - 5.0])
-                    .with("text-anchor", "middle")
-                    .text(name),
-            );
         }
-        area.name_x(&mut svg, &x_axis, &self.label);
+        area.name_x(&mut svg, &self.label);
         svg.finish()
     }
 }

@@ -1,10 +1,9 @@
 //! Inputs that were computed from recorded motions.
 
-use appell_gap::identify::HALF_WIDTH_95;
 use appell_gap::inverse::Answer;
 use appell_runtime::model::ModelInfo;
 
-use super::{Figure, Panel, Series};
+use super::{Figure, Panel};
 
 /// Number of runs drawn.
 const DRAWN_RUNS: usize = 3;
@@ -15,33 +14,20 @@ impl Figure {
         let panels = answer.inputs.iter().take(DRAWN_RUNS).flat_map(|run| {
             let inputs = info.inputs.iter().take(info.declared_inputs).enumerate();
             inputs.map(|(input, quantity)| {
-                let shifted = |sign: f64| -> Vec<f64> {
-                    let values = run.values[input].iter().zip(&run.stds[input]);
-                    values
-                        .map(|(value, std)| quantity.to_unit(value + sign * HALF_WIDTH_95 * std))
-                        .collect()
-                };
-                let series = |label: String, y: Vec<f64>| Series {
-                    label,
-                    x: run.times.clone(),
-                    y,
-                };
-                Panel {
-                    unit: quantity.unit.to_string(),
-                    series: vec![
-                        series(format!("{}, {}", quantity.name, run.run), shifted(0.0)),
-                        series("95 % from".to_owned(), shifted(-1.0)),
-                        series("to".to_owned(), shifted(1.0)),
-                    ],
-                }
+                let name = format!("{}, {}", quantity.name, run.run);
+                let (values, stds) = (&run.values[input], &run.stds[input]);
+                Panel::with_band(
+                    [&name, "95 % from", "to"],
+                    quantity,
+                    &run.times,
+                    values,
+                    stds,
+                )
             })
         });
-        Self {
-            title: format!("{}: inputs of recorded motions", info.name),
-            x_label: "t [s]".to_owned(),
-            panels: panels.collect(),
-            marks: Vec::new(),
-            equal_axes: false,
-        }
+        Self::over_t(
+            format!("{}: inputs of recorded motions", info.name),
+            panels.collect(),
+        )
     }
 }

@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use super::area::{Area, INNER, SAMPLE, entry};
 use super::axis::Axis;
-use super::{Area, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, TITLE_HEIGHT, WIDTH};
+use super::{FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, STYLE, Series, TITLE_HEIGHT, WIDTH};
 use crate::svg::{Document, Element, path, text, title};
 
 /// Kinds at the points of a grid over two quantities, and curves.
@@ -66,34 +67,12 @@ impl Stroke {
 
 const HEIGHT: f64 = 480.0;
 /// Fillings of the kinds, distinguishable with any colour vision.
-pub(super) const FILLS: &str = ".k0{fill:#56b4e9}.k1{fill:#009e73}.k2{fill:#d55e00}.k3{fill:#888}.k4{fill:#f0e442}.k5{fill:#0072b2}\
-.kind{fill-opacity:.45}.curve{fill:none;stroke-width:1.6;stroke:#222}.thin{stroke-width:.7}\
-.long{stroke-dasharray:8 5}.dots{stroke-dasharray:2 4;stroke-width:2}.spot{fill:#222}\
-@media(prefers-color-scheme:dark){.curve{stroke:#eee}.spot{fill:#eee}}\n";
+pub(super) const FILLS: &str = include_str!("map.css");
 /// Room for a name in the legend.
 pub(super) const LEGEND: f64 = 168.0;
 /// Names in a row of the legend.
 const PER_ROW: usize = 4;
 const LEGEND_ROW: f64 = 18.0;
-
-/// Sample before a name in the legend.
-enum Sample<'a> {
-    Kind(usize),
-    Curve(&'a Curve),
-}
-
-impl Sample<'_> {
-    /// The sample, with the middle of its left end at a point.
-    fn at(&self, [x, y]: [f64; 2]) -> String {
-        match self {
-            Self::Kind(kind) => element(*kind, &format!("M{x:.1} {:.1}h16v10h-16z", y - 5.0)),
-            Self::Curve(curve) => curve.stroke.element(&match curve.stroke {
-                Stroke::Discs | Stroke::Squares => curve.stroke.spot([x + 8.0, y]),
-                _ => format!("M{x:.1} {y:.1}h18"),
-            }),
-        }
-    }
-}
 
 /// An area of a kind.
 pub(super) fn element(kind: usize, line: &str) -> String {
@@ -105,46 +84,45 @@ impl Map {
     pub fn to_svg(&self) -> String {
         let [x_axis, y_axis] = self.ranges.map(|range| Axis::tight(range.into_iter()));
         let kinds = self.kinds.iter().enumerate();
-        let kinds = kinds.filter(|(_, name)| !name.is_empty());
-        let labelled = (self.curves.iter()).filter(|curve| !curve.line.label.is_empty());
-        let entries = kinds.clone().count() + labelled.clone().count();
-        let rows = entries.div_ceil(PER_ROW).max(1);
+        let kinds = kinds.map(|(kind, name)| (Sample::Kind(kind), name));
+        let curves = self.curves.iter();
+        let curves = curves.map(|curve| (Sample::Curve(curve.stroke), &curve.line.label));
+        let legend: Vec<(Sample, &String)> = (kinds.chain(curves))
+            .filter(|(_, name)| !name.is_empty())
+            .collect();
+        let rows = legend.len().div_ceil(PER_ROW).max(1);
         let area = Area {
             top: TITLE_HEIGHT + HEADER_HEIGHT + LEGEND_ROW * (rows - 1) as f64,
-            width: WIDTH - LEFT - RIGHT,
             height: HEIGHT,
+            x_axis,
+            y_axis,
         };
-        let height = area.top + HEIGHT + FOOTER_HEIGHT;
+        let height = area.bottom() + FOOTER_HEIGHT;
         let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS]);
-        svg.put(&title([LEFT, 22.0], WIDTH - LEFT - RIGHT, &self.title));
-        let samples = kinds.map(|(kind, name)| (Sample::Kind(kind), name));
-        let samples =
-            samples.chain(labelled.map(|curve| (Sample::Curve(curve), &curve.line.label)));
-        for (i, (sample, name)) in samples.enumerate() {
+        svg.put(&title([LEFT, 22.0], INNER, &self.title));
+        for (i, (sample, name)) in legend.into_iter().enumerate() {
             let x = LEFT + LEGEND * (i % PER_ROW) as f64;
             let y = TITLE_HEIGHT + HEADER_HEIGHT - 9.0 + LEGEND_ROW * (i / PER_ROW) as f64;
-            svg.put(&sample.at([x, y - 4.0]));
-            svg.put(&text([x + 23.0, y]).text(name));
+            entry(&mut svg, &sample.at([x, y - 4.0]), [x + SAMPLE, y], name);
         }
         for kind in 0..self.kinds.len() {
             svg.put(&element(kind, &self.cells_of(kind, &area)));
         }
-        area.grid(&mut svg, &x_axis, &y_axis);
+        area.grid(&mut svg);
         // Clipped to the ranges.
-        let Area { top, width, .. } = area;
+        let top = area.top;
         let frame = Element::new("svg")
             .with("x", LEFT)
-            .lengths([("y", top), ("width", width)])
+            .lengths([("y", top), ("width", INNER)])
             .with("height", HEIGHT);
-        let view_box = format_args!("{LEFT} {top:.1} {width:.1} {HEIGHT}");
+        let view_box = format_args!("{LEFT} {top:.1} {INNER:.1} {HEIGHT}");
         svg.put(&frame.with("viewBox", view_box).open());
         for curve in &self.curves {
-            let line = curve.path(&area, &x_axis, &y_axis);
-            svg.put(&curve.stroke.element(&line));
+            svg.put(&curve.stroke.element(&curve.path(&area)));
         }
         svg.put("</svg>");
-        area.name_x(&mut svg, &x_axis, &self.labels[0]);
-        let (x, y) = (18.0, area.top + HEIGHT / 2.0);
+        area.name_x(&mut svg, &self.labels[0]);
+        let (x, y) = (18.0, top + HEIGHT / 2.0);
         let label = text([x, y]).with("text-anchor", "middle");
         let label = label.with("transform", format_args!("rotate(-90 {x} {y})"));
         svg.put(&label.text(&self.labels[1]));
@@ -160,17 +138,16 @@ impl Map {
         for (j, row) in self.cells.chunks(columns.max(1)).enumerate() {
             let [top, bottom] = reach([j, j + 1], rows, !down);
             let mut i = 0;
-            while i < row.len() {
-                let same = row[i..].iter().take_while(|cell| **cell == Some(kind));
-                let run = same.count();
-                if run > 0 {
-                    let [from, to] = reach([i, i + run], columns, left);
-                    let [x, width] = [LEFT + area.width * from, area.width * (to - from)];
+            for run in row.chunk_by(PartialEq::eq) {
+                let end = i + run.len();
+                if run[0] == Some(kind) {
+                    let [from, to] = reach([i, end], columns, left);
+                    let [x, width] = [LEFT + INNER * from, INNER * (to - from)];
                     let [y, high] = [area.top + area.height * top, area.height * (bottom - top)];
                     // Writing to a string cannot fail.
                     let _ = write!(path, "M{x:.1} {y:.2}h{width:.1}v{high:.2}h-{width:.1}z");
                 }
-                i += run.max(1);
+                i = end;
             }
         }
         path
@@ -190,16 +167,13 @@ fn reach(run: [usize; 2], count: usize, backwards: bool) -> [f64; 2] {
 }
 
 impl Curve {
-    fn path(&self, area: &Area, x_axis: &Axis, y_axis: &Axis) -> String {
-        if !matches!(self.stroke, Stroke::Discs | Stroke::Squares) {
-            return area.line(&self.line, x_axis, y_axis);
+    fn path(&self, area: &Area) -> String {
+        if !self.stroke.is_spots() {
+            return area.line(&self.line);
         }
         let points = self.line.x.iter().zip(&self.line.y);
-        let place = |(x, y): (&f64, &f64)| {
-            let right = LEFT + area.width * x_axis.part(*x);
-            [right, area.top + area.height * (1.0 - y_axis.part(*y))]
-        };
-        points.map(|point| self.stroke.spot(place(point))).collect()
+        let spot = |(x, y): (&f64, &f64)| self.stroke.spot(area.place(*x, *y));
+        points.map(spot).collect()
     }
 }
 
@@ -208,11 +182,32 @@ impl Stroke {
         path(self.class(), line).empty()
     }
 
+    const fn is_spots(self) -> bool {
+        matches!(self, Self::Discs | Self::Squares)
+    }
+
     /// A spot at a point.
     fn spot(self, [x, y]: [f64; 2]) -> String {
         match self {
             Self::Squares => format!("M{:.1} {:.1}h10v10h-10z", x - 5.0, y - 5.0),
             _ => format!("M{:.1} {y:.1}a5 5 0 1 0 10 0a5 5 0 1 0 -10 0z", x - 5.0),
+        }
+    }
+}
+
+/// Sample before a name in the legend.
+pub(super) enum Sample {
+    Kind(usize),
+    Curve(Stroke),
+}
+
+impl Sample {
+    /// The sample, with the middle of its left end at a point.
+    pub(super) fn at(&self, [x, y]: [f64; 2]) -> String {
+        match self {
+            Self::Kind(kind) => element(*kind, &format!("M{x:.1} {:.1}h16v10h-16z", y - 5.0)),
+            Self::Curve(stroke) if stroke.is_spots() => stroke.element(&stroke.spot([x + 8.0, y])),
+            Self::Curve(stroke) => stroke.element(&format!("M{x:.1} {y:.1}h18")),
         }
     }
 }

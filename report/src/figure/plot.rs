@@ -1,9 +1,8 @@
 //! One quantity over another: points, lines and bands, as SVG.
 
-use std::fmt::Write as _;
-
+use super::area::{Area, SAMPLE, entry};
 use super::axis::Axis;
-use super::{Area, CHARACTER, FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, RIGHT, STYLE, Series, WIDTH};
+use super::{FOOTER_HEIGHT, HEADER_HEIGHT, LEFT, STYLE, Series, WIDTH};
 use crate::svg::{Document, path, text};
 
 /// Layers over a common pair of axes, drawn in their order.
@@ -42,47 +41,46 @@ pub enum Look {
 }
 
 /// Added to the style of the figures.
-const PLOT_STYLE: &str = "\
-.band{stroke:none;fill-opacity:.25}.dots{stroke-width:3.2;stroke-linecap:round;stroke-opacity:.55;fill:none}
-.core{stroke:none;fill-opacity:.45}
-.f0{fill:#0072b2}.f1{fill:#d55e00}.f2{fill:#009e73}.f3{fill:#cc79a7}.f4{fill:#e69f00}.f5{fill:#56b4e9}
-@media(prefers-color-scheme:dark){.f0{fill:#56b4e9}.f1{fill:#e69f00}.f4{fill:#f0e442}.f5{fill:#d55e00}}
-";
+const PLOT_STYLE: &str = include_str!("plot.css");
 /// Room for the name of the vertical axis.
 const HEAD: f64 = 22.0;
 
 impl Plot {
     /// The plot as an SVG document.
     pub fn to_svg(&self) -> String {
-        let x_axis = Axis::tight(self.layers.iter().flat_map(|l| &l.series.x).copied());
-        let y_axis = Axis::padded(self.layers.iter().flat_map(Layer::heights));
         let area = Area {
             top: HEAD + HEADER_HEIGHT,
-            width: WIDTH - LEFT - RIGHT,
             height: self.height,
+            x_axis: Axis::tight(self.layers.iter().flat_map(|l| &l.series.x).copied()),
+            y_axis: Axis::padded(self.layers.iter().flat_map(Layer::heights)),
         };
-        let bottom = area.top + area.height;
-        let height = bottom + FOOTER_HEIGHT;
+        let height = area.bottom() + FOOTER_HEIGHT;
         let mut svg = Document::new([WIDTH, height], &[STYLE, PLOT_STYLE]);
         svg.put(&text([LEFT, 16.0]).text(&self.labels[1]));
-        area.grid(&mut svg, &x_axis, &y_axis);
-        let mut right = LEFT;
+        area.grid(&mut svg);
+        let (mut right, y) = (LEFT, area.top - 9.0);
         for layer in &self.layers {
-            let path = layer.path(&area, &x_axis, &y_axis);
-            svg.put(&layer.element(&path));
+            svg.put(&layer.element(&layer.path(&area)));
             if !layer.series.label.is_empty() {
-                let y = area.top - 9.0;
-                svg.put(&layer.element(&layer.sample([right, y - 4.0])));
-                svg.put(&text([right + 23.0, y]).text(&layer.series.label));
-                right += 23.0 + CHARACTER * layer.series.label.chars().count() as f64 + 16.0;
+                let sample = layer.element(&layer.sample([right, y - 4.0]));
+                right = entry(&mut svg, &sample, [right + SAMPLE, y], &layer.series.label);
             }
         }
-        area.name_x(&mut svg, &x_axis, &self.labels[0]);
+        area.name_x(&mut svg, &self.labels[0]);
         svg.finish()
     }
 }
 
 impl Layer {
+    /// A layer with a name.
+    pub fn new(label: &str, look: Look, colour: usize, x: &[f64], y: Vec<f64>) -> Self {
+        Self {
+            series: Series::new(label, x, y),
+            look,
+            colour,
+        }
+    }
+
     fn heights(&self) -> impl Iterator<Item = f64> {
         let other: &[f64] = match &self.look {
             Look::Band(other) | Look::Core(other) => other,
@@ -110,32 +108,16 @@ impl Layer {
         }
     }
 
-    fn path(&self, area: &Area, x_axis: &Axis, y_axis: &Axis) -> String {
+    fn path(&self, area: &Area) -> String {
+        let Series { x, y, .. } = &self.series;
         match &self.look {
-            Look::Line => area.line(&self.series, x_axis, y_axis),
-            Look::Points => {
-                let place = |x: f64, y: f64| {
-                    let right = LEFT + area.width * x_axis.part(x);
-                    [right, area.top + area.height * (1.0 - y_axis.part(y))]
-                };
-                let mut path = String::new();
-                let points = self.series.x.iter().zip(&self.series.y);
-                for (x, y) in points.filter(|(x, y)| x.is_finite() && y.is_finite()) {
-                    let [x, y] = place(*x, *y);
-                    // Writing to a string cannot fail.
-                    let _ = write!(path, "M{x:.1} {y:.1}h0");
-                }
-                path
-            }
+            Look::Line => area.line(&self.series),
+            Look::Points => area.dots(x.iter().zip(y).map(|(&x, &y)| [x, y])),
             Look::Band(other) | Look::Core(other) => {
-                let there = area.line(&self.series, x_axis, y_axis);
-                let back = Series {
-                    label: String::new(),
-                    x: self.series.x.iter().rev().copied().collect(),
-                    y: other.iter().rev().copied().collect(),
-                };
-                let back = area.line(&back, x_axis, y_axis);
-                format!("{there}{}z", back.replacen('M', "L", 1))
+                let there = area.line(&self.series);
+                let backwards = |values: &[f64]| values.iter().rev().copied().collect::<Vec<_>>();
+                let back = Series::new("", &backwards(x), backwards(other));
+                format!("{there}{}z", area.line(&back).replacen('M', "L", 1))
             }
         }
     }

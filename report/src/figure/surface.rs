@@ -2,8 +2,9 @@
 
 use std::fmt::Write as _;
 
+use super::area::{SAMPLE, entry};
 use super::axis::{Axis, number};
-use super::map::{FILLS, LEGEND, element};
+use super::map::{FILLS, LEGEND, Sample, element};
 use super::{HEADER_HEIGHT, LEFT, STYLE, TITLE_HEIGHT, WIDTH};
 use crate::svg::{self, Document, Element, text};
 
@@ -49,19 +50,15 @@ const SIZE: f64 = 150.0;
 const TURN: [f64; 2] = [0.529_919_264_233_204_9, 0.848_048_096_156_426];
 const DIP: [f64; 2] = [0.422_618_261_740_699_44, 0.906_307_787_036_649_9];
 /// Surfaces are opaque; their mesh shows their form.
-const SOLID: &str = ".piece path{stroke:#222;stroke-width:.35;stroke-linejoin:round;fill-opacity:.85}\
-@media(prefers-color-scheme:dark){.piece path{stroke:#111}}\n";
+const SOLID: &str = include_str!("surface.css");
 
 /// A projected point with its depth.
 fn seen([x, y, z]: [f64; 3]) -> ([f64; 2], f64) {
     let [sideways, depth] = [TURN[1] * x - TURN[0] * y, TURN[0] * x + TURN[1] * y];
     let upwards = DIP[1] * z + DIP[0] * depth;
     let near = DIP[0] * z - DIP[1] * depth;
-    let middle = [WIDTH / 2.0, TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT / 2.0];
-    (
-        [middle[0] + SIZE * sideways, middle[1] - SIZE * upwards],
-        near,
-    )
+    let [across, down] = [WIDTH / 2.0, TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT / 2.0];
+    ([across + SIZE * sideways, down - SIZE * upwards], near)
 }
 
 fn line(index: usize, line: &str) -> String {
@@ -74,27 +71,21 @@ impl Surface {
         let height = TITLE_HEIGHT + HEADER_HEIGHT + HEIGHT;
         let mut svg = Document::new([WIDTH, height], &[STYLE, FILLS, SOLID]);
         svg.put(&svg::title([LEFT, 22.0], WIDTH - 2.0 * LEFT, &self.title));
-        let named = self
-            .kinds
-            .iter()
-            .enumerate()
-            .filter(|(_, name)| !name.is_empty());
+        let place = |entry: usize| {
+            let x = LEFT + LEGEND * entry as f64;
+            [x, TITLE_HEIGHT + HEADER_HEIGHT - 9.0]
+        };
+        let kinds = self.kinds.iter().enumerate();
+        let named = kinds.filter(|(_, name)| !name.is_empty());
         for (i, (kind, name)) in named.enumerate() {
-            let (x, y) = (LEFT + LEGEND * i as f64, TITLE_HEIGHT + HEADER_HEIGHT - 9.0);
-            svg.put(&element(
-                kind,
-                &format!("M{x:.1} {:.1}h16v10h-16z", y - 9.0),
-            ));
-            svg.put(&text([x + 23.0, y]).text(name));
+            let [x, y] = place(i);
+            let sample = Sample::Kind(kind).at([x, y - 4.0]);
+            entry(&mut svg, &sample, [x + SAMPLE, y], name);
         }
         for (i, path) in self.paths.iter().enumerate() {
-            let place = self.kinds.len() + i;
-            let (x, y) = (
-                LEFT + LEGEND * place as f64,
-                TITLE_HEIGHT + HEADER_HEIGHT - 13.0,
-            );
-            svg.put(&line(i, &format!("M{x:.1} {y:.1}h16")));
-            svg.put(&text([x + 23.0, y + 4.0]).text(&path.label));
+            let [x, y] = place(self.kinds.len() + i);
+            let sample = line(i, &format!("M{x:.1} {:.1}h16", y - 4.0));
+            entry(&mut svg, &sample, [x + SAMPLE, y], &path.label);
         }
         self.walls(&mut svg);
         svg.put(&Element::new("g").with("class", "piece").open());
@@ -111,10 +102,12 @@ impl Surface {
 
     /// A point in the box, each quantity between −1 and 1.
     fn inside(&self, values: [f64; 3]) -> [f64; 3] {
-        [0, 1, 2].map(|k: usize| {
-            let [from, to] = self.ranges[k];
-            2.0 * (values[k] - from) / (to - from) - 1.0
-        })
+        [0, 1, 2].map(|k: usize| self.part(k, values[k]))
+    }
+
+    fn part(&self, k: usize, value: f64) -> f64 {
+        let [from, to] = self.ranges[k];
+        2.0 * (value - from) / (to - from) - 1.0
     }
 
     /// A projected path; unknown points interrupt it.
@@ -135,25 +128,18 @@ impl Surface {
 
     /// The pieces, the farthest first.
     fn pieces(&self) -> Vec<(usize, String)> {
-        let mut pieces: Vec<(f64, usize, String)> = Vec::new();
-        for patch in &self.patches {
+        let piece = |patch: &Patch| {
             let corners = patch.corners.map(|corner| self.inside(corner));
-            if corners
-                .iter()
-                .flatten()
-                .any(|part| part.is_nan() || part.abs() > 1.0)
-            {
-                continue;
-            }
-            let near = corners.iter().map(|corner| seen(*corner).1).sum();
-            let path = svg::polyline(corners.map(|corner| seen(corner).0));
-            pieces.push((near, patch.kind, path + "z"));
-        }
+            let mut parts = corners.iter().flatten();
+            let is_inside = parts.all(|part| part.abs() <= 1.0);
+            let near: f64 = corners.iter().map(|corner| seen(*corner).1).sum();
+            let path = svg::polyline(corners.map(|corner| seen(corner).0)) + "z";
+            is_inside.then_some((near, (patch.kind, path)))
+        };
+        let mut pieces: Vec<(f64, (usize, String))> =
+            self.patches.iter().filter_map(piece).collect();
         pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
-        pieces
-            .into_iter()
-            .map(|(_, kind, path)| (kind, path))
-            .collect()
+        pieces.into_iter().map(|(_, piece)| piece).collect()
     }
 
     /// The floor and the two walls behind, with the lines of the ticks.
@@ -164,12 +150,8 @@ impl Surface {
             let _ = write!(grid, "M{x:.1} {y:.1}L{to_x:.1} {to_y:.1}");
         };
         for (k, other, third) in [(0, 1, 2), (1, 0, 2), (2, 0, 1)] {
-            for tick in self
-                .ticks(k)
-                .into_iter()
-                .map(|(part, _)| part)
-                .chain([-1.0, 1.0])
-            {
+            let ticks = self.ticks(k).into_iter().map(|(part, _)| part);
+            for tick in ticks.chain([-1.0, 1.0]) {
                 for (along, still) in [(other, third), (third, other)] {
                     // The faces behind: the far ends of the first two, the floor of the last.
                     let behind = |axis: usize| if axis == 2 { -1.0 } else { 1.0 };
@@ -216,13 +198,9 @@ impl Surface {
         /// Approximate number of ticks.
         const COUNT: u32 = 5;
         let axis = Axis::tight(self.ranges[k].into_iter());
-        let [from, to] = self.ranges[k];
         let ticks = axis.ticks(COUNT).into_iter();
         ticks
-            .map(|tick| {
-                let part = 2.0 * (tick - from) / (to - from) - 1.0;
-                (part, number(tick, axis.step(COUNT)))
-            })
+            .map(|tick| (self.part(k, tick), number(tick, axis.step(COUNT))))
             .collect()
     }
 }

@@ -1,9 +1,9 @@
 //! Tornado diagram of the sensitivities of a number: one bar a factor, the longest on top.
 
+use super::area::{SAMPLE, centred, entry, numbers};
 use super::axis::{Axis, number};
-use super::{FOOTER_HEIGHT, RIGHT, STYLE, WIDTH, centred};
+use super::{FOOTER_HEIGHT, RIGHT, STYLE, WIDTH};
 use crate::svg::{Document, Element, path, text};
-use std::fmt::Write as _;
 
 /// A bar of a tornado.
 #[derive(Debug, Clone, PartialEq)]
@@ -34,10 +34,7 @@ const ROW: f64 = 26.0;
 const BAR: f64 = 16.0;
 /// Largest number of bars.
 const MOST: usize = 15;
-const TORNADO_STYLE: &str = "\
-.low{fill:#d55e00;fill-opacity:.7}.high{fill:#0072b2;fill-opacity:.7}
-@media(prefers-color-scheme:dark){.low{fill:#e69f00}.high{fill:#56b4e9}}
-";
+const TORNADO_STYLE: &str = include_str!("tornado.css");
 
 impl Tornado {
     /// The figure as an SVG document.
@@ -52,27 +49,18 @@ impl Tornado {
         let (width, bottom) = (WIDTH - NAMES - RIGHT, HEAD + ROW * levers.len() as f64);
         let place = |value: f64| NAMES + width * axis.part(value);
         let mut svg = Document::new([WIDTH, bottom + FOOTER_HEIGHT], &[STYLE, TORNADO_STYLE]);
-        let mut grid = String::new();
-        for tick in axis.ticks(8) {
-            let x = place(tick);
-            // Writing to a string cannot fail.
-            let _ = write!(grid, "M{x:.1} {HEAD:.1}V{bottom:.1}");
-            let label = number(tick, axis.step(8));
-            svg.put(&centred([x, bottom + 16.0], &label));
-        }
+        let upright = |x: f64| format!("M{x:.1} {HEAD:.1}V{bottom:.1}");
+        let ticks = axis.ticks(8).into_iter();
+        let grid: String = ticks.map(|tick| upright(place(tick))).collect();
+        numbers(&mut svg, &axis, [NAMES, width], bottom);
         svg.put(&path("grid", &grid).empty());
         svg.put(&centred([NAMES + width / 2.0, bottom + 35.0], &self.label));
         let classes = ["low", "high"];
         for (side, (class, name)) in classes.iter().zip(&self.legend).enumerate() {
             let x = NAMES + 190.0 * side as f64;
             let sample = [("x", x), ("y", 6.0), ("width", 18.0), ("height", 9.0)];
-            svg.put(
-                &Element::new("rect")
-                    .with("class", class)
-                    .lengths(sample)
-                    .empty(),
-            );
-            svg.put(&text([x + 23.0, 15.0]).text(name));
+            let sample = Element::new("rect").with("class", class).lengths(sample);
+            entry(&mut svg, &sample.empty(), [x + SAMPLE, 15.0], name);
         }
         for (row, lever) in levers.iter().enumerate() {
             let y = HEAD + ROW * row as f64 + 0.5 * (ROW - BAR);
@@ -90,9 +78,7 @@ impl Tornado {
                 svg.put(&bar.titled(&number(end, axis.step(8) / 100.0)));
             }
         }
-        let x = place(self.centre);
-        let line = format!("M{x:.1} {HEAD:.1}V{bottom:.1}");
-        svg.put(&path("frame", &line).empty());
+        svg.put(&path("frame", &upright(place(self.centre))).empty());
         svg.finish()
     }
 }

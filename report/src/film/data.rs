@@ -4,6 +4,7 @@ use appell_runtime::Trajectory;
 use appell_runtime::model::{Model, ModelInfo};
 use appell_spec::Mechanism;
 use appell_spec::mechanism::{BodyId, FrameId, Point, PointId};
+use base64::prelude::{BASE64_STANDARD, Engine as _};
 use serde_json::{Value, json};
 
 use crate::drawing::film::{Film, FilmMaker, Force, ForceKind, Shape};
@@ -12,8 +13,8 @@ use crate::drawing::link::{Link, LinkKind};
 /// Largest number of rows; larger pages open slowly.
 const MOST_ROWS: usize = 12_000;
 
-/// The animation of a motion with the values of its columns.
-pub(super) fn json(
+/// The data of a motion for a [`live_page`](super::live_page): the animation with the values of the columns.
+pub fn data(
     maker: &FilmMaker,
     model: &dyn Model,
     motion: &Trajectory,
@@ -149,43 +150,12 @@ fn packed(numbers: impl Iterator<Item = f64>) -> String {
     // Seven digits exceed the resolution of a picture.
     #[allow(clippy::cast_possible_truncation)]
     let bytes: Vec<u8> = numbers.flat_map(|n| (n as f32).to_le_bytes()).collect();
-    base64(&bytes)
-}
-
-fn base64(bytes: &[u8]) -> String {
-    const DIGITS: &[u8; 64] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
-    let mut text = String::with_capacity(bytes.len().div_ceil(3) * 4);
-    for chunk in bytes.chunks(3) {
-        let byte = |k: usize| u32::from(chunk.get(k).copied().unwrap_or(0));
-        let bits = byte(0) << 16 | byte(1) << 8 | byte(2);
-        for k in 0..4 {
-            let digit = DIGITS[(bits >> (18 - 6 * k)) as usize & 63];
-            text.push(if k <= chunk.len() {
-                char::from(digit)
-            } else {
-                '='
-            });
-        }
-    }
-    text
+    BASE64_STANDARD.encode(bytes)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn base_64_is_that_of_rfc_4648() {
-        for (bytes, text) in [
-            ("", ""),
-            ("f", "Zg=="),
-            ("fo", "Zm8="),
-            ("foo", "Zm9v"),
-            ("foobar", "Zm9vYmFy"),
-        ] {
-            assert_eq!(base64(bytes.as_bytes()), text);
-        }
-    }
 
     #[test]
     fn a_long_motion_keeps_its_first_and_last_row() {

@@ -13,20 +13,15 @@ pub fn divided(report: &Report) -> Option<String> {
     let (stays, mut parts): (Vec<&Share>, Vec<&Share>) =
         far.budget.iter().partition(|part| part.is_rest());
     parts.sort_by(|a, b| b.closed.total_cmp(&a.closed));
-    let told = |part: &Share| share(part.closed, part.interval);
-    let parts = parts.into_iter().map(|part| {
-        let small = if part.is_material {
-            ""
-        } else {
-            " (immaterial)"
-        };
-        format!("{} {}{small}", name(part), told(part))
+    let all = parts.into_iter().chain(stays).map(|part| {
+        let closed = share(part.closed, part.interval);
+        match (part.is_rest(), part.is_material) {
+            (true, _) => format!("{closed} stays"),
+            (false, true) => format!("{} {closed}", name(part)),
+            (false, false) => format!("{} {closed} (immaterial)", name(part)),
+        }
     });
-    let stays = stays
-        .into_iter()
-        .map(|part| format!("{} stays", told(part)));
-    let all = parts.chain(stays).collect::<Vec<_>>().join(", ");
-    (!all.is_empty()).then_some(all)
+    all.reduce(|all, one| format!("{all}, {one}"))
 }
 
 /// Display name of a part.
@@ -47,11 +42,7 @@ pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
     let rows = far.budget.iter().map(|part| {
         let added = !(part.is_refit() || part.is_rest());
         [
-            if part.is_effect() {
-                code(name(part))
-            } else {
-                html! { (name(part)) }
-            },
+            html! { @if part.is_effect() { (code(name(part))) } @else { (name(part)) } },
             bare_bar(part.closed),
             html! {
                 (share(part.closed, part.interval))

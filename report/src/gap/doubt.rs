@@ -1,6 +1,6 @@
 //! Suspected errors of units and signs: fitted values that are close to a common conversion factor, or to −1.
 
-use appell_gap::diagnose::{Hypothesis, Report};
+use appell_gap::diagnose::{Hypothesis, Report, Value};
 
 use crate::text::number;
 
@@ -36,30 +36,39 @@ fn of(hypothesis: &Hypothesis) -> Vec<String> {
     let Some(changes) = &hypothesis.changes else {
         return Vec::new();
     };
-    let mut doubts = Vec::new();
+    let values = hypothesis.parameters.iter();
     // An input that acts as u + p u acts 1 + p times.
-    for (input, adds) in &changes.inputs {
-        let gain = adds.strip_suffix(&format!("*{input}"));
-        let mut values = hypothesis.parameters.iter();
-        let value = values.find(|value| gain == Some(&value.name.replace(['@', '.'], "_")));
-        let acts = format!("`{input}` acts as {{}} times its command");
-        doubts.extend(value.and_then(|v| doubt(1.0 + v.value, v.std, &acts, input)));
-    }
+    let inputs = changes.inputs.iter().filter_map(|(input, adds)| {
+        let gain = adds.strip_suffix(&format!("*{input}"))?;
+        let named = |value: &&Value| value.name.replace(['@', '.'], "_") == gain;
+        let value = values.clone().find(named)?;
+        doubt(
+            1.0 + value.value,
+            value.std,
+            "acts as {} times its command",
+            input,
+        )
+    });
+    let mut doubts: Vec<String> = inputs.collect();
     let scales = changes.signal_effects.iter();
-    for scale in scales.filter(|effect| effect.acts == "scale") {
+    let scales = scales.filter(|effect| effect.acts == "scale");
+    doubts.extend(scales.filter_map(|scale| {
         let prefix = format!("{}.", scale.effect);
-        let mut values = hypothesis.parameters.iter();
-        let value = values.find(|value| value.name.starts_with(&prefix));
-        let shows = format!("`{}` reads {{}} times the true value", scale.on);
-        doubts.extend(value.and_then(|v| doubt(v.value, v.std, &shows, &scale.on)));
-    }
-    for parameter in &changes.parameters {
-        let Some(std) = parameter.std else { continue };
+        let value = values
+            .clone()
+            .find(|value| value.name.starts_with(&prefix))?;
+        doubt(
+            value.value,
+            value.std,
+            "reads {} times the true value",
+            &scale.on,
+        )
+    }));
+    doubts.extend(changes.parameters.iter().filter_map(|parameter| {
         let stated = parameter.stated;
-        let (ratio, std) = (parameter.value / stated, std / stated.abs());
-        let is = format!("`{}` is {{}} times its stated value", parameter.name);
-        doubts.extend(doubt(ratio, std, &is, &parameter.name));
-    }
+        let (ratio, std) = (parameter.value / stated, parameter.std? / stated.abs());
+        doubt(ratio, std, "is {} times its stated value", &parameter.name)
+    }));
     doubts
 }
 
@@ -70,7 +79,7 @@ fn doubt(value: f64, std: f64, says: &str, whose: &str) -> Option<String> {
         return None;
     }
     let within = (NEAR * std).max(ROUNDED * size);
-    let says = says.replace("{}", &number(value));
+    let says = format!("`{whose}` {}", says.replace("{}", &number(value)));
     if (value + 1.0).abs() <= within {
         return Some(format!("{says}: is the sign of `{whose}` right?"));
     }
@@ -87,7 +96,7 @@ mod tests {
 
     #[test]
     fn a_factor_between_units_is_doubted_and_nothing_else() {
-        let question = |value, std| doubt(value, std, "`x` shows {} times what there is", "x");
+        let question = |value, std| doubt(value, std, "shows {} times what there is", "x");
         let degrees = question(57.1, 0.6).unwrap_or_default();
         assert!(degrees.contains("57.1"), "{degrees}");
         assert!(degrees.ends_with("close to 180/π: is the unit of `x` right?"));

@@ -66,9 +66,7 @@ pub(super) fn code(text: &str) -> Markup {
     html! { code { (text) } }
 }
 
-/// With a capital letter at the beginning.
-pub(super) fn capital(text: &str) -> String {
-    let mut letters = text.chars();
-    let first = letters.next().map(char::to_uppercase);
-    first.into_iter().flatten().chain(letters).collect()
+/// Cells of texts.
+pub(super) fn cells<const N: usize>(texts: [String; N]) -> [Markup; N] {
+    texts.map(|text| html! { (text) })
 }

@@ -1,10 +1,14 @@
 //! The first lines of a report: the cause, its size, what to change, the error before and after.
 
-use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Value};
+use std::fmt::Write as _;
+
+use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Share, Value};
 
 use super::law::written;
 use super::numbers::{bounded, is_determined, percent, share};
-use super::words::{leading, moved, needs_refit, parameter, refit_sentence, refitted, sentence};
+use super::words::{
+    NO_GAP, REFITTED, leading, moved, needs_refit, parameter, refit_sentence, refitted, sentence,
+};
 use crate::text::{horizon, short, with_unit};
 
 /// The top of the report.
@@ -37,25 +41,22 @@ impl Headline {
 /// The verdict; sizes follow below it.
 fn cause(report: &Report) -> String {
     if report.verdict == GapVerdict::NoGap && refit_sentence(report).is_some() {
-        return "no gap beyond measurement and process noise once parameters are re-fitted"
-            .to_owned();
+        return [NO_GAP, REFITTED].concat();
     }
     sentence(report)
 }
 
 /// Values of the leading effects, and significantly changed parameters where predictions need them.
 fn sizes(report: &Report) -> Vec<String> {
-    let mut budget_effects = report.how_far.iter().flat_map(|far| &far.budget);
+    let budget = report.how_far.iter().flat_map(|far| &far.budget);
+    let (material, slight): (Vec<&Share>, Vec<&Share>) =
+        (budget.filter(|part| part.is_effect())).partition(|part| part.is_material);
     let is_named = match report.verdict {
         GapVerdict::Explained | GapVerdict::Ambiguous => true,
         GapVerdict::NoGap => false,
         // Effects named together with the part that the library does not explain.
-        GapVerdict::Unexplained => budget_effects.any(|part| part.is_effect() && part.is_material),
+        GapVerdict::Unexplained => !material.is_empty(),
     };
-    let budget = report.how_far.iter().flat_map(|far| &far.budget);
-    let slight: Vec<&str> = (budget.filter(|part| part.is_effect() && !part.is_material))
-        .map(|part| part.name.as_str())
-        .collect();
     let first = leading(report).filter(|_| is_named);
     let Some(first) = first else {
         return refit_sentence(report).into_iter().collect();
@@ -66,24 +67,22 @@ fn sizes(report: &Report) -> Vec<String> {
     } else {
         Vec::new()
     };
-    let is_own = |value: &&Value| {
-        let effect = value.name.rsplit_once('.').map(|(effect, _)| effect);
-        let name = effect.and_then(|effect| parameter(first, effect));
-        let name = name.map(|name| format!("{name} = "));
-        name.is_none_or(|name| !parameters.iter().any(|one| one.starts_with(&name)))
+    let is_changed = |effect: &str| {
+        let name = parameter(first, effect).map(|name| format!("{name} = "));
+        name.is_some_and(|name| parameters.iter().any(|one| one.starts_with(&name)))
     };
-    let effects = first.parameters.iter().filter(is_own);
-    let effects = effects.map(|value| {
-        let effect = value.name.rsplit_once('.').map(|(effect, _)| effect);
-        let is_slight = effect.is_some_and(|effect| slight.contains(&effect));
-        let weight = if is_slight {
-            " (predictions hardly change with it)"
-        } else {
-            ""
-        };
-        size(first, value) + weight
-    });
-    let mut sizes: Vec<String> = effects.collect();
+    let mut sizes = Vec::new();
+    for value in &first.parameters {
+        let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
+        let is_slight = slight.iter().any(|part| part.name == effect);
+        let mut text = size(first, value);
+        if is_slight {
+            text += " (predictions hardly change with it)";
+        }
+        if !is_changed(effect) {
+            sizes.push(text);
+        }
+    }
     sizes.extend(parameters);
     sizes
 }
@@ -169,24 +168,20 @@ fn explained(first: Option<&Hypothesis>) -> String {
     let adds = !(changes.items.trim().is_empty() && changes.inputs.is_empty());
     let elsewhere = changes.signal_effects.iter();
     let elsewhere = elsewhere.filter(|one| one.output.is_none());
-    let mut names: Vec<String> = elsewhere.map(|one| one.effect.clone()).collect();
+    let mut names: Vec<&str> = elsewhere.map(|one| one.effect.as_str()).collect();
     names.dedup();
-    if names.is_empty() {
-        let what = if adds {
-            "add the effect to the spec (`appell apply`)"
-        } else {
-            "write the fitted parameters into the spec (`appell apply`)"
-        };
-        return what.to_owned();
-    }
-    let what = if adds {
-        "add to the spec the effects that it can express"
-    } else {
-        "nothing in the equations"
+    let what = match (adds, names.is_empty()) {
+        (true, true) => "add the effect to the spec (`appell apply`)",
+        (false, true) => "write the fitted parameters into the spec (`appell apply`)",
+        (true, false) => "add to the spec the effects that it can express",
+        (false, false) => "nothing in the equations",
     };
-    let belong = if names.len() > 1 { "belong" } else { "belongs" };
-    let names = names.join(", ");
-    format!("{what}; {names} {belong} elsewhere, `appell apply` says where")
+    let listed = names.join(", ");
+    match names.len() {
+        0 => what.to_owned(),
+        1 => format!("{what}; {listed} belongs elsewhere, `appell apply` says where"),
+        _ => format!("{what}; {listed} belong elsewhere, `appell apply` says where"),
+    }
 }
 
 /// Errors before and after, and the share that closes.
@@ -196,37 +191,24 @@ fn error(report: &Report, far: &HowFar) -> String {
     } else {
         format!("{} ahead on held-out runs", horizon(far.horizon_s))
     };
-    let (before, after, floor) = (far.nominal, far.with_effect, far.noise_floor);
-    let mut text = format!(
-        "{what}: {} -> {} times the noise (floor {})",
-        short(before),
-        short(after),
-        short(floor)
-    );
+    let [before, after, floor] = [far.nominal, far.with_effect, far.noise_floor].map(short);
+    let mut text = format!("{what}: {before} -> {after} times the noise (floor {floor})");
     if is_determined(far.closed, far.closed_ci95) {
-        text = format!(
-            "{text}; {} of the gap closes",
-            share(far.closed, far.closed_ci95)
-        );
+        let closed = share(far.closed, far.closed_ci95);
+        // Writing to a string cannot fail.
+        let _ = write!(text, "; {closed} of the gap closes");
     } else {
         text += "; these runs do not determine how much of the gap closes";
     }
-    let refit = refitted(&far.budget);
-    if let Some(refit) = refit.filter(|_| !is_refit_alone(far)) {
-        text = format!(
-            "{text}, {} by re-fitted parameters alone",
-            percent(refit.closed)
-        );
+    // More than the re-fitted parameters differs from the stated model.
+    let mut budget = far.budget.iter();
+    let has_more = budget.any(|part| part.is_effect() || part.is_law());
+    if let Some(refit) = refitted(&far.budget).filter(|_| has_more) {
+        let closed = percent(refit.closed);
+        let _ = write!(text, ", {closed} by re-fitted parameters alone");
     }
     if far.is_worse {
         text += "; worse than with re-fitted parameters alone";
     }
     text
-}
-
-/// Whether the model differs from the stated one in re-fitted parameters alone.
-fn is_refit_alone(far: &HowFar) -> bool {
-    !far.budget
-        .iter()
-        .any(|part| part.is_effect() || part.is_law())
 }

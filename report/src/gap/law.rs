@@ -3,9 +3,9 @@
 use appell_gap::diagnose::{Hypothesis, Law, Report, Share};
 use maud::{Markup, html};
 
-use super::elements::{code, figure, table};
+use super::elements::{cells, code, figure, table};
 use super::numbers::{percent, share};
-use crate::figure::{Layer, Look, Plot, Series};
+use crate::figure::{Layer, Look, Plot};
 use crate::text::short;
 
 /// Standard deviations to both sides of the band.
@@ -16,22 +16,19 @@ const BAND: f64 = 2.0;
 pub fn law_sentence(report: &Report) -> Option<String> {
     let law = report.law.as_ref()?;
     let closes = part(report).map(|part| {
-        if part.closed <= 0.0 {
-            return "; measured, it does not better predictions of held-out runs".to_owned();
-        }
         let closed = share(part.closed, part.interval);
-        format!("; measured, it closes {closed} of the gap")
+        if part.closed > 0.0 {
+            format!("; measured, it closes {closed} of the gap")
+        } else {
+            "; measured, it does not better predictions of held-out runs".to_owned()
+        }
     });
-    let form = law
-        .forms
-        .first()
-        .map(|form| format!("; {} is {} of it", form.text, percent(form.share)));
+    let form = law.forms.first();
+    let form = form.map(|form| format!("; {} is {} of it", form.text, percent(form.share)));
+    let [closes, form] = [closes, form].map(Option::unwrap_or_default);
+    let (equation, depends_on) = (&law.equation, &law.depends_on);
     Some(format!(
-        "a force in the equation of {} that depends on {}{}{}",
-        law.equation,
-        law.depends_on,
-        closes.unwrap_or_default(),
-        form.unwrap_or_default()
+        "a force in the equation of {equation} that depends on {depends_on}{closes}{form}"
     ))
 }
 
@@ -58,21 +55,19 @@ pub(super) fn law(report: &Report) -> Markup {
         return html! {};
     };
     let rows = law.forms.iter().map(|form| {
-        [
-            code(&form.text),
-            html! { (percent(form.share)) },
-            html! { (short(form.log_bayes_factor)) },
-        ]
+        let [share, bayes] = cells([percent(form.share), short(form.log_bayes_factor)]);
+        [code(&form.text), share, bayes]
     });
     html! {
         h3 { "The force that nothing in the library explains" }
         @if let Some(sentence) = law_sentence(report) {
             p {
                 "It is " (sentence) "."
+                " " code { "appell apply" }
                 @match written(report) {
-                    Some(1) => { " " code { "appell apply" } " writes it into the spec." }
-                    Some(number) => { " " code { "appell apply" } ", given hypothesis " (number) ", writes it into the spec." }
-                    None => { " " code { "appell apply" } " does not write it." }
+                    Some(1) => { " writes it into the spec." }
+                    Some(number) => { ", given hypothesis " (number) ", writes it into the spec." }
+                    None => { " does not write it." }
                 }
             }
         }
@@ -85,21 +80,13 @@ pub(super) fn law(report: &Report) -> Markup {
 }
 
 fn curve(law: &Law) -> String {
-    let x: Vec<f64> = law.curve.iter().map(|[x, ..]| *x).collect();
+    let curve = law.curve.iter();
+    let x: Vec<f64> = curve.clone().map(|[x, ..]| *x).collect();
     let at = |deviations: f64| -> Vec<f64> {
-        let values = law.curve.iter();
+        let values = curve.clone();
         values
             .map(|[_, force, std]| force + deviations * std)
             .collect()
-    };
-    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
-        series: Series {
-            label: label.to_owned(),
-            x: x.clone(),
-            y,
-        },
-        look,
-        colour,
     };
     let force = match &law.factor {
         Some(factor) => format!("force over {factor}"),
@@ -112,8 +99,8 @@ fn curve(law: &Law) -> String {
         ],
         height: 260.0,
         layers: vec![
-            layer("95 % band", at(-BAND), Look::Band(at(BAND)), 2),
-            layer("measured law", at(0.0), Look::Line, 0),
+            Layer::new("95 % band", Look::Band(at(BAND)), 2, &x, at(-BAND)),
+            Layer::new("measured law", Look::Line, 0, &x, at(0.0)),
         ],
     };
     plot.to_svg()

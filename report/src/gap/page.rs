@@ -2,14 +2,14 @@
 
 use std::collections::BTreeSet;
 
-use appell_codegen::{Derived, derived};
-use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Share, Where};
+use appell_codegen::derived;
+use appell_gap::diagnose::{AHEAD, GapVerdict, HowFar, Hypothesis, Report, Share, Trace, Where};
 use appell_recordings::{DataSet, Part};
 use maud::{Markup, html};
 
 use super::budget::{budget, closes};
 use super::doubt::doubts;
-use super::elements::{bar, capital, code, figure, separated, table};
+use super::elements::{bar, cells, code, figure, separated, table};
 use super::forces;
 use super::headline::{Headline, values};
 use super::law::law;
@@ -21,7 +21,7 @@ use super::words::{
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
-use crate::text::{horizon, short, with_unit};
+use crate::text::{capitalised, horizon, short, with_unit};
 
 const STYLE: &str = include_str!("page.css");
 /// Relative improvement of predictions below which an effect is of no practical importance.
@@ -37,7 +37,7 @@ pub fn page(set: &DataSet, report: &Report) -> String {
         main {
             h1 { (name) ": model against recordings" }
             p class="faint" { (set.description) }
-            p class="verdict" { (capital(&statement(report))) "." }
+            p class="verdict" { (capitalised(&statement(report))) "." }
             (reading(report))
             @if let Some(far) = &report.how_far {
                 (budget(report, far))
@@ -54,26 +54,22 @@ pub fn page(set: &DataSet, report: &Report) -> String {
 
 /// Below the verdict: size, change, error, and how sure it is.
 fn reading(report: &Report) -> Markup {
-    let Headline {
-        sizes,
-        change,
-        error,
-        ..
-    } = Headline::of(report);
+    let headline = Headline::of(report);
+    let change = headline.change.replace('`', "");
     html! {
         ul class="reading" {
-            @if !sizes.is_empty() {
-                li { b { "Size" } " (± 95 %): " (separated(&sizes, |size| html! { (size) }, &html! { ", " })) "." }
+            @if !headline.sizes.is_empty() {
+                li { b { "Size" } " (± 95 %): " (headline.sizes.join(", ")) "." }
             }
-            li { b { "What to change" } ": " (change.replace('`', "")) "." }
-            @if let Some(error) = error {
+            li { b { "What to change" } ": " (change) "." }
+            @if let Some(error) = headline.error {
                 li { b { "Error" } ", " (error) "." }
             }
             @if let Some((probability, same, rivals)) = alternatives(report) {
                 li { "Probability " (percent_of(probability)) "."
                 @if let Some(next) = next_best(report).filter(|_| report.verdict == GapVerdict::Explained) { " Next: " (next) "." }
-                @if !same.is_empty() { " The same in every motion: " (separated(&same, |one| code(one), &html! { ", " })) "." }
-                @if !rivals.is_empty() { " Not ruled out: " (separated(&rivals, |one| code(one), &html! { ", " })) "." } }
+                @if !same.is_empty() { " The same in every motion: " (codes(&same)) "." }
+                @if !rivals.is_empty() { " Not ruled out: " (codes(&rivals)) "." } }
             }
             @if let Some(far) = &report.how_far {
                 @if let Some(note) = worth(far) { li { (note) } }
@@ -82,25 +78,25 @@ fn reading(report: &Report) -> Markup {
     }
 }
 
+fn codes(names: &[String]) -> Markup {
+    separated(names, |name| code(name), &html! { ", " })
+}
+
 /// Warnings about the leading hypothesis from held-out runs.
 fn worth(far: &HowFar) -> Option<&'static str> {
-    if far.is_worse {
-        return Some(
-            "Predictions become worse with it: the fit does not generalise to the held-out runs.",
-        );
-    }
-    if !is_determined(far.closed, far.closed_ci95) {
-        return None;
-    }
-    if far.closed_ci95[0] <= 0.0 {
-        return Some(
-            "The interval of what closes includes zero: these runs leave it open whether anything does.",
-        );
-    }
     let is_slight =
         far.budget.iter().any(Share::is_effect) && far.with_effect > (1.0 - MATTERS) * far.refitted;
-    is_slight
-        .then_some("Beyond re-fitted parameters, predictions of the held-out runs hardly improve.")
+    let is_determined = is_determined(far.closed, far.closed_ci95);
+    let note = if far.is_worse {
+        "Predictions become worse with it: the fit does not generalise to the held-out runs."
+    } else if is_determined && far.closed_ci95[0] <= 0.0 {
+        "The interval of what closes includes zero: these runs leave it open whether anything does."
+    } else if is_determined && is_slight {
+        "Beyond re-fitted parameters, predictions of the held-out runs hardly improve."
+    } else {
+        return None;
+    };
+    Some(note)
 }
 
 fn place(set: &DataSet, report: &Report) -> Markup {
@@ -114,10 +110,10 @@ fn place(set: &DataSet, report: &Report) -> Markup {
         h2 { "Where" }
         (locus(report))
         @for hint in hints(report) {
-            p { (capital(&hint)) "." }
+            p { (capitalised(&hint)) "." }
         }
         @if let Some(events) = events(report) {
-            p { (capital(&events)) "." }
+            p { (capitalised(&events)) "." }
         }
         @if let Some(svg) = drawing(set, report) {
             @let caption = if svg.contains("class=\"ring") {
@@ -159,7 +155,7 @@ fn locus(report: &Report) -> Markup {
         },
         GapVerdict::Unexplained => html! {
             @if let Some(left) = &report.left {
-                p { (capital(&left.about)) "." }
+                p { (capitalised(&left.about)) "." }
             }
         },
         _ if report.place.equations.is_empty() => html! {
@@ -180,20 +176,16 @@ fn drawing(set: &DataSet, report: &Report) -> Option<String> {
         let label = channel.and_then(|channel| channel.role.label(&set.mechanism));
         label.map_or_else(|| site.to_owned(), |label| label.name.clone())
     };
-    let mut names: Vec<String> = match report.verdict {
+    let names: Vec<String> = match report.verdict {
         GapVerdict::NoGap => Vec::new(),
         GapVerdict::Unexplained => report.left.iter().map(|left| name(&left.place)).collect(),
         _ => sites.map(|site| name(site)).collect(),
     };
     let mut known = BTreeSet::new();
-    names.retain(|name| known.insert(name.clone()));
-    let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let Derived {
-        mechanism,
-        derivation,
-        ..
-    } = derived(&set.spec.file, &set.spec.text).ok()?;
-    marked(&mechanism, derivation, &names).ok()
+    let names = names.iter().map(String::as_str);
+    let names: Vec<&str> = names.filter(|name| known.insert(*name)).collect();
+    let derived = derived(&set.spec.file, &set.spec.text).ok()?;
+    marked(&derived.mechanism, derived.derivation, &names).ok()
 }
 
 fn equations(set: &DataSet, place: &Where) -> Markup {
@@ -220,19 +212,13 @@ fn windows(place: &Where) -> Markup {
     let explained = place.windows.iter().filter(|w| w.unexplained.is_none());
     let count = explained.clone().count();
     let windows = explained.map(|w| {
-        [
-            html! { (w.run) },
-            html! { (short(w.from)) " to " (short(w.to)) " s" },
-            code(&w.equation),
-            html! { (short(w.z)) },
-        ]
+        let when = format!("{} to {} s", short(w.from), short(w.to));
+        let [run, when, size] = cells([w.run.clone(), when, short(w.z)]);
+        [run, when, code(&w.equation), size]
     });
     let regions = place.region.iter().map(|r| {
-        [
-            code(&r.variable),
-            html! { (r.description) },
-            html! { (short(r.z)) },
-        ]
+        let [range, size] = cells([r.description.clone(), short(r.z)]);
+        [code(&r.variable), range, size]
     });
     html! {
         @if count > 0 {
@@ -293,7 +279,7 @@ fn which(report: &Report) -> Markup {
             }
         }
         @for doubt in doubts(report) {
-            p { b { "A unit?" } " " (capital(&doubt.replace('`', ""))) }
+            p { b { "A unit?" } " " (capitalised(&doubt.replace('`', ""))) }
         }
         @for group in &report.tied {
             p {
@@ -303,7 +289,7 @@ fn which(report: &Report) -> Markup {
             }
         }
         @if let Some(named) = imperfections(report) {
-            p { b { "Sensors." } " " (capital(&named)) "." }
+            p { b { "Sensors." } " " (capitalised(&named)) "." }
         }
         // A measured law has its own section.
         @if let Some(left) = report.left.as_ref().filter(|left| left.is_there() && report.law.is_none()) {
@@ -339,14 +325,9 @@ fn how_far(report: &Report) -> Markup {
     }
     let rows = report.horizons.iter().map(|ahead| {
         let floor = ahead.noise_floor.map_or_else(|| "–".to_owned(), short);
-        [
-            horizon(ahead.horizon),
-            short(ahead.nominal),
-            short(ahead.refitted),
-            short(ahead.with_effect),
-            floor,
-        ]
-        .map(|cell| html! { (cell) })
+        let [nominal, refitted, effect] =
+            [ahead.nominal, ahead.refitted, ahead.with_effect].map(short);
+        cells([horizon(ahead.horizon), nominal, refitted, effect, floor])
     });
     let heading = [
         "ahead",
@@ -355,14 +336,6 @@ fn how_far(report: &Report) -> Markup {
         "with the effect",
         "noise floor",
     ];
-    let traces = report.pictures.iter().flat_map(|pictures| &pictures.traces);
-    let disturbances = report.disturbances.iter().map(|(name, before, after)| {
-        [
-            code(name),
-            html! { (short(*before)) },
-            html! { (short(*after)) },
-        ]
-    });
     html! {
         h2 { "How far" }
         (closed(far))
@@ -371,24 +344,38 @@ fn how_far(report: &Report) -> Markup {
             "Root mean square error of predictions, in units of the noise. The floor is what the filter \
              expects if the hypothesis is right."
         }
-        @for trace in plots::most_bettered(traces) {
-            @let caption = format!(
-                "{} of {} (held out): measurement, prediction {} s ahead, and prediction error. The \
-                 band shows two standard deviations of the error expected if the hypothesis is true.",
-                trace.column,
-                trace.run,
-                appell_gap::diagnose::AHEAD
-            );
-            (figure(plots::trace(trace).concat(), &caption))
-        }
+        (traces(report, |trace| format!(
+            "{} of {} (held out): measurement, prediction {AHEAD} s ahead, and prediction error. The band shows two \
+             standard deviations of the error expected if the hypothesis is true.",
+            trace.column, trace.run,
+        )))
         @if !report.disturbances.is_empty() {
             p {
                 "Disturbance that the filter needs to follow the recordings: an effect that is missing \
                  shows as disturbance."
             }
-            (table(["equation of", "without the effect", "with it"], disturbances, 1))
+            (disturbances(report, ["equation of", "without the effect", "with it"]))
         }
     }
+}
+
+/// The channels whose predictions change most, with their captions.
+pub(super) fn traces(report: &Report, caption: impl Fn(&Trace) -> String) -> Markup {
+    let traces = report.pictures.iter().flat_map(|pictures| &pictures.traces);
+    html! {
+        @for trace in plots::most_bettered(traces) {
+            (figure(plots::trace(trace).concat(), &caption(trace)))
+        }
+    }
+}
+
+/// Disturbances, or missing forces, before and after.
+pub(super) fn disturbances(report: &Report, heading: [&str; 3]) -> Markup {
+    let rows = report.disturbances.iter().map(|(name, before, after)| {
+        let [before, after] = cells([*before, *after].map(short));
+        [code(name), before, after]
+    });
+    table(heading, rows, 1)
 }
 
 fn closed(far: &HowFar) -> Markup {
@@ -406,7 +393,7 @@ fn closed(far: &HowFar) -> Markup {
 fn next(set: &DataSet, report: &Report) -> Markup {
     html! {
         h2 { "Next" }
-        p { (capital(&Headline::of(report).change.replace('`', ""))) "." }
+        p { (capitalised(&Headline::of(report).change.replace('`', ""))) "." }
         @if report.verdict == GapVerdict::NoGap && !report.detectable.is_empty() {
             p { "The table below tells how small an effect these recordings would have shown." }
         }
@@ -432,8 +419,8 @@ fn next(set: &DataSet, report: &Report) -> Markup {
 
 fn detectable(report: &Report) -> Markup {
     let rows = report.detectable.iter().map(|limit| {
-        let smallest = with_unit(&short(limit.smallest), &limit.unit);
-        [code(&limit.effect), html! { (smallest) }]
+        let [smallest] = cells([with_unit(&short(limit.smallest), &limit.unit)]);
+        [code(&limit.effect), smallest]
     });
     html! {
         @if !report.detectable.is_empty() {
@@ -454,12 +441,9 @@ fn recordings(set: &DataSet, report: &Report) -> Markup {
             Part::Fit => "training",
             Part::Test => "held out",
         };
-        [
-            html! { (run.name) },
-            html! { (part) },
-            html! { (run.times.len()) },
-            html! { (short(run.duration())) " s" },
-        ]
+        let length = format!("{} s", short(run.duration()));
+        let rows = run.times.len().to_string();
+        cells([run.name.clone(), part.to_owned(), rows, length])
     });
     html! {
         h2 { "Recordings" }

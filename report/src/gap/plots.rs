@@ -3,7 +3,7 @@
 use appell_gap::diagnose::{Experiment, ForceHistory, ForceLaw, Trace};
 use appell_spec::Mechanism;
 
-use crate::figure::{Layer, Look, Plot, Series};
+use crate::figure::{Layer, Look, Plot};
 use crate::svg::{Document, Element, text};
 use crate::text::short;
 
@@ -27,10 +27,8 @@ pub(super) fn most_bettered<'t>(traces: impl Iterator<Item = &'t Trace>) -> Vec<
 fn better(trace: &Trace) -> f64 {
     let square = |predicted: &[f64]| -> f64 {
         let errors = errors(trace, predicted).into_iter();
-        errors
-            .filter(|error| error.is_finite())
-            .map(|error| error * error)
-            .sum()
+        let finite = errors.filter(|error| error.is_finite());
+        finite.map(|error| error * error).sum()
     };
     (square(&trace.refitted) - square(&trace.with_effect)) / trace.deviation.powi(2)
 }
@@ -43,63 +41,44 @@ fn errors(trace: &Trace, predicted: &[f64]) -> Vec<f64> {
 
 /// A channel with its predictions and their errors.
 pub(super) fn trace(trace: &Trace) -> [String; 2] {
-    let layer = |label: &str, y: Vec<f64>, look, colour| Layer {
-        series: Series {
-            label: label.to_owned(),
-            x: trace.times.clone(),
-            y,
-        },
-        look,
-        colour,
-    };
     let [data, stated, refitted, effect] = COLOURS;
-    let label = |text: &str| format!("{text} [{}]", trace.unit);
-    let motion = Plot {
-        labels: ["t [s]".to_owned(), label(&trace.column)],
-        height: 170.0,
-        layers: vec![
-            layer("measured", trace.measured.clone(), Look::Points, data),
-            layer("as stated", trace.nominal.clone(), Look::Line, stated),
-            layer("re-fitted", trace.refitted.clone(), Look::Line, refitted),
-            layer(
-                "with the effect",
-                trace.with_effect.clone(),
-                Look::Line,
-                effect,
-            ),
-        ],
+    let layer =
+        |label: &str, look, colour, y: Vec<f64>| Layer::new(label, look, colour, &trace.times, y);
+    let plot = |name: &str, height, first: Layer, shown: &dyn Fn(&[f64]) -> Vec<f64>| {
+        let plot = Plot {
+            labels: ["t [s]".to_owned(), format!("{name} [{}]", trace.unit)],
+            height,
+            layers: vec![
+                first,
+                layer("as stated", Look::Line, stated, shown(&trace.nominal)),
+                layer("re-fitted", Look::Line, refitted, shown(&trace.refitted)),
+                layer(
+                    "with the effect",
+                    Look::Line,
+                    effect,
+                    shown(&trace.with_effect),
+                ),
+            ],
+        };
+        plot.to_svg()
     };
+    let measured = layer("measured", Look::Points, data, trace.measured.clone());
     let wide = 2.0 * trace.deviation;
     let edge = |value: f64| vec![value; trace.times.len()];
-    let error = |predicted: &[f64]| errors(trace, predicted);
-    let errors = Plot {
-        labels: ["t [s]".to_owned(), label("error")],
-        height: 150.0,
-        layers: vec![
-            layer("expected", edge(-wide), Look::Band(edge(wide)), data),
-            layer("as stated", error(&trace.nominal), Look::Line, stated),
-            layer("re-fitted", error(&trace.refitted), Look::Line, refitted),
-            layer(
-                "with the effect",
-                error(&trace.with_effect),
-                Look::Line,
-                effect,
-            ),
-        ],
-    };
-    [motion.to_svg(), errors.to_svg()]
+    let expected = layer("expected", Look::Band(edge(wide)), data, edge(-wide));
+    [
+        plot(&trace.column, 170.0, measured, &<[f64]>::to_vec),
+        plot("error", 150.0, expected, &|predicted| {
+            errors(trace, predicted)
+        }),
+    ]
 }
 
 /// The missing force against the variable on which it depends.
 pub(super) fn law(law: &ForceLaw) -> String {
-    let layer = |label: &str, points: &[[f64; 2]], look, colour| Layer {
-        series: Series {
-            label: label.to_owned(),
-            x: points.iter().map(|[x, _]| *x).collect(),
-            y: points.iter().map(|[_, y]| *y).collect(),
-        },
-        look,
-        colour,
+    let layer = |label: &str, points: &[[f64; 2]], look, colour| {
+        let [x, y] = [0, 1].map(|k| points.iter().map(|point| point[k]).collect::<Vec<f64>>());
+        Layer::new(label, look, colour, &x, y)
     };
     let [data, stated, _, effect] = COLOURS;
     let [low, high] = drawn(law);
@@ -116,14 +95,12 @@ pub(super) fn law(law: &ForceLaw) -> String {
     if !law.law.is_empty() {
         layers.push(layer("identified law", &law.law, Look::Line, effect));
     }
+    let force = format!(
+        "missing force in the equation of {} [{}]",
+        law.equation, law.unit
+    );
     let plot = Plot {
-        labels: [
-            format!("{} [{}]", law.variable, law.variable_unit),
-            format!(
-                "missing force in the equation of {} [{}]",
-                law.equation, law.unit
-            ),
-        ],
+        labels: [format!("{} [{}]", law.variable, law.variable_unit), force],
         height: 260.0,
         layers,
     };
@@ -214,26 +191,15 @@ pub(super) fn experiment(experiment: &Experiment, mechanism: &Mechanism) -> Vec<
         let input = inputs.find(|input| input.label.name == *name)?;
         let unit = &input.label.unit;
         // Each value is held until the next time.
-        let mut x = Vec::with_capacity(2 * values.len());
-        let mut y = Vec::with_capacity(2 * values.len());
-        for (row, value) in values.iter().enumerate() {
-            let next = experiment.times.get(row + 1);
-            x.extend([
-                experiment.times[row],
-                *next.unwrap_or(&experiment.times[row]),
-            ]);
-            y.extend([unit.from_si(*value); 2]);
-        }
-        let label = String::new();
-        let line = Layer {
-            series: Series { label, x, y },
-            look: Look::Line,
-            colour: 0,
-        };
+        let times = &experiment.times;
+        let ends = (0..values.len())
+            .flat_map(|row| [times[row], *times.get(row + 1).unwrap_or(&times[row])]);
+        let y = values.iter().flat_map(|value| [unit.from_si(*value); 2]);
+        let x: Vec<f64> = ends.collect();
         let plot = Plot {
             labels: ["t [s]".to_owned(), format!("{name} [{}]", unit.text)],
             height: 150.0,
-            layers: vec![line],
+            layers: vec![Layer::new("", Look::Line, 0, &x, y.collect())],
         };
         Some(plot.to_svg())
     };

@@ -1,9 +1,15 @@
 //! The statements of a gap report.
 
-use appell_gap::diagnose::{Change, GapVerdict, Hint, HowFar, Hypothesis, Left, Report, Share};
+use std::fmt::Write as _;
+
+use appell_gap::diagnose::{Change, GapVerdict, HowFar, Hypothesis, Left, Report, Share};
 
 use super::numbers::{bounded, measured, part_of_all, percent};
 use crate::text::{short, with_unit};
+
+/// The verdict where nothing is missing, and the condition for it.
+pub(super) const NO_GAP: &str = "no gap beyond measurement and process noise";
+pub(super) const REFITTED: &str = " once parameters are re-fitted";
 
 /// The verdict in one sentence, with the alternatives.
 pub fn sentence(report: &Report) -> String {
@@ -19,29 +25,40 @@ pub fn sentence(report: &Report) -> String {
         let (sure, next) = (percent_of(probability), next.unwrap_or_default());
         return format!("{statement} (probability {sure}{next})");
     }
-    let same = (!same.is_empty())
-        .then(|| format!("; {} would be the same in every motion", same.join(", ")));
-    let rivals =
-        (!rivals.is_empty()).then(|| format!("; {} cannot be ruled out", rivals.join(", ")));
-    let (same, rivals) = (same.unwrap_or_default(), rivals.unwrap_or_default());
-    let values = leading(report).map(values).unwrap_or_default();
-    let sure = percent_of(probability);
-    format!("{statement} (probability {sure}{values}){same}{rivals}")
+    let mut text = format!("{statement} (probability {}", percent_of(probability));
+    text.extend(leading(report).map(values));
+    text += ")";
+    if !same.is_empty() {
+        // Writing to a string cannot fail.
+        let _ = write!(
+            text,
+            "; {} would be the same in every motion",
+            same.join(", ")
+        );
+    }
+    if !rivals.is_empty() {
+        let _ = write!(text, "; {} cannot be ruled out", rivals.join(", "));
+    }
+    text
 }
 
 /// `; the search of a, b did not converge, so that these are not ruled out`
 fn not_found(failed: &[(Vec<String>, String)]) -> String {
-    /// Longer lists are shown on the page only.
-    const MOST: usize = 3;
     let failed = failed.iter().filter(|(effects, _)| !effects.is_empty());
-    let mut names: Vec<String> = failed.map(|(effects, _)| joined(effects)).collect();
-    if names.is_empty() {
-        return String::new();
+    let names = first_of(3, failed.map(|(effects, _)| joined(effects)).collect());
+    names.map_or_else(String::new, |names| {
+        format!("; the search of {names} did not converge, so that these are not ruled out")
+    })
+}
+
+/// The first items of a list, and how many more there are; a page shows all.
+fn first_of(most: usize, mut items: Vec<String>) -> Option<String> {
+    let more = items.split_off(items.len().min(most)).len();
+    let shown = items.join(", ");
+    match more {
+        0 => (!items.is_empty()).then_some(shown),
+        more => Some(format!("{shown} and {more} more")),
     }
-    let more = names.split_off(names.len().min(MOST)).len();
-    let more = (more > 0).then(|| format!(" and {more} more"));
-    let (names, more) = (names.join(", "), more.unwrap_or_default());
-    format!("; the search of {names}{more} did not converge, so that these are not ruled out")
 }
 
 /// The hypothesis after the leading one, with its probability.
@@ -126,52 +143,40 @@ pub(super) fn alternatives(report: &Report) -> Option<(f64, Vec<String>, Vec<Str
 
 /// The verdict in one sentence.
 pub(super) fn statement(report: &Report) -> String {
-    let about: Vec<&str> = report
-        .found
-        .iter()
-        .map(|found| found.about.as_str())
-        .collect();
+    let about = report.found.iter().map(|found| found.about.as_str());
+    let about: Vec<&str> = about.collect();
+    let names = about.join(" and ");
     if let Some(change) = &report.change {
-        return changed(report, change, &about);
+        return changed(report, change, &names);
     }
     match report.verdict {
         GapVerdict::NoGap => {
-            let refit = refit_sentence(report);
-            let refit = refit.map(|moved| format!(" once parameters are re-fitted: {moved}"));
-            let refit = refit.unwrap_or_default();
-            format!("no gap beyond measurement and process noise{refit}")
+            let refit = refit_sentence(report).map(|moved| format!("{REFITTED}: {moved}"));
+            format!("{NO_GAP}{}", refit.unwrap_or_default())
         }
-        GapVerdict::Explained => match shares(report) {
-            Some(shares) => shares,
-            None => format!("the gap is explained by {}", about.join(" and ")),
-        },
+        GapVerdict::Explained => {
+            shares(report).unwrap_or_else(|| format!("the gap is explained by {names}"))
+        }
         GapVerdict::Ambiguous => shares(report).unwrap_or_else(|| {
             let explain = if about.len() > 1 {
                 "explain"
             } else {
                 "explains"
             };
-            format!("there is a gap; {} {explain} it best", about.join(" and "))
+            format!("there is a gap; {names} {explain} it best")
         }),
         GapVerdict::Unexplained if report.how_far.as_ref().is_some_and(|far| far.is_worse) => {
-            let far = report.how_far.as_ref();
-            let refit = far.and_then(|far| refitted(&far.budget));
-            if let (Some(refit), Some(moved)) = (refit, refit_sentence(report)) {
-                return format!(
-                    "re-fitted parameters close {} of the gap: {moved}; what fits the recordings best beyond them \
-                     does not better predictions",
-                    percent(refit.closed)
-                );
+            let nothing = "there is a gap; what fits the recordings best makes predictions worse and explains nothing";
+            match refitted_share(report).zip(refit_sentence(report)) {
+                Some((share, moved)) => format!(
+                    "{share}: {moved}; what fits the recordings best beyond them does not better predictions"
+                ),
+                None => nothing.to_owned(),
             }
-            "there is a gap; what fits the recordings best makes predictions worse and explains nothing"
-                .to_owned()
         }
         GapVerdict::Unexplained if names_effects(report) => match shares(report) {
             Some(shares) => format!("most of the gap stays: {shares}"),
-            None => format!(
-                "there is a gap; {} explains a part of it, most stays",
-                about.join(" and ")
-            ),
+            None => format!("there is a gap; {names} explains a part of it, most stays"),
         },
         GapVerdict::Unexplained => {
             let law = law_share(report).unwrap_or_default();
@@ -199,22 +204,18 @@ fn refitted_share(report: &Report) -> Option<String> {
 fn unnamed(report: &Report, shares: Option<String>) -> String {
     let left = report.left.as_ref();
     let is_sure = left.is_none_or(Left::is_there);
-    let left = left.map(|left| left.about.as_str()).unwrap_or_default();
-    let left = if left.is_empty() {
-        String::new()
-    } else {
-        format!(": {left}")
-    };
+    let left = left.filter(|left| !left.about.is_empty());
+    let left = left.map_or_else(String::new, |left| format!(": {}", left.about));
+    let before = shares.map(|shares| format!("{shares}; "));
     if is_sure {
-        return match shares {
-            Some(shares) => format!("{shares}; no effect of the library explains the rest{left}"),
+        return match before {
+            Some(before) => format!("{before}no effect of the library explains the rest{left}"),
             None => format!("there is a gap that no effect of the library explains{left}"),
         };
     }
-    let probability = report.which.iter().find(|one| one.is_unknown());
-    let probability = probability.map_or(f64::NAN, |one| one.probability);
-    let before = shares.map_or_else(String::new, |shares| format!("{shares}; "));
-    let sure = percent_of(probability);
+    let unknown = report.which.iter().find(|one| one.is_unknown());
+    let sure = percent_of(unknown.map_or(f64::NAN, |one| one.probability));
+    let before = before.unwrap_or_default();
     format!(
         "{before}the recordings leave it open (probability {sure}) whether something is missing that the library lacks{left}"
     )
@@ -222,13 +223,10 @@ fn unnamed(report: &Report, shares: Option<String>) -> String {
 
 /// `; measured, it closes 90 % of the gap`
 fn law_share(report: &Report) -> Option<String> {
-    let budget = &report.how_far.as_ref()?.budget;
-    let mut law = budget.iter();
-    let law = law.find(|part| part.is_law() && part.is_material)?;
-    Some(format!(
-        "; measured, it closes {} of the gap",
-        part_of_all(law.closed)
-    ))
+    let mut budget = report.how_far.as_ref()?.budget.iter();
+    let law = budget.find(|part| part.is_law() && part.is_material)?;
+    let closed = part_of_all(law.closed);
+    Some(format!("; measured, it closes {closed} of the gap"))
 }
 
 /// The part of the re-fitted parameters, where it matters.
@@ -253,29 +251,28 @@ fn shares(report: &Report) -> Option<String> {
     let names: Vec<String> = material.iter().map(about).collect();
     let (names, all) = (names.join(" and "), material.iter().chain(&others));
     let sum = part_of_all(all.map(|part| part.closed).sum());
-    let before = refit.map_or_else(String::new, |part| {
-        let closed = percent(part.closed);
-        format!("re-fitted parameters close {closed} of the gap; ")
-    });
+    let before = refitted_share(report).map_or_else(String::new, |share| share + "; ");
     let mut text = match material.as_slice() {
         [] if others.is_empty() || before.is_empty() => return None,
         [] => {
             let names: Vec<String> = others.iter().map(about).collect();
+            let names = names.join(" and ");
             let is_parameter = |part: &&Share| {
                 leading(report).is_some_and(|first| parameter(first, &part.name).is_some())
             };
             if let Some(refit) = refit.filter(|_| others.iter().all(is_parameter)) {
-                let (names, closed) = (names.join(" and "), percent(refit.closed));
+                let closed = percent(refit.closed);
                 return Some(format!(
                     "{names}: re-fitted together with the others it closes {closed} of the gap"
                 ));
             }
-            let depend = "predictions of the held-out runs hardly change with";
-            let them = if names.len() > 1 { "them" } else { "it" };
-            let are = if names.len() > 1 { "are" } else { "is" };
-            let names = names.join(" and ");
+            let [are, them] = if others.len() > 1 {
+                ["are", "them"]
+            } else {
+                ["is", "it"]
+            };
             return Some(format!(
-                "{before}{names} {are} there as well, but {depend} {them}"
+                "{before}{names} {are} there as well, but predictions of the held-out runs hardly change with {them}"
             ));
         }
         [one] if others.is_empty() => {
@@ -290,15 +287,13 @@ fn shares(report: &Report) -> Option<String> {
             format!("{before}{names} close {sum} ({each}) of the gap")
         }
     };
-    let tail = budget.iter().filter_map(|part| {
-        let is_told = part.is_law() && part.is_material;
-        let law = is_told.then(|| format!("; a measured law {}", percent(part.closed)));
-        law.or_else(|| {
-            let rest = part_of_all(part.closed);
-            part.is_rest().then(|| format!("; {rest} stays"))
-        })
-    });
-    text.extend(tail);
+    for part in budget {
+        if part.is_law() && part.is_material {
+            let _ = write!(text, "; a measured law {}", percent(part.closed));
+        } else if part.is_rest() {
+            let _ = write!(text, "; {} stays", part_of_all(part.closed));
+        }
+    }
     text.extend(report.how_far.as_ref().and_then(far_from_floor));
     Some(text)
 }
@@ -336,26 +331,23 @@ pub fn before_sentence(change: &Change) -> String {
     let count = change.parameters.len();
     let differing = change.parameters.iter().filter(|own| own.spread > own.std);
     let differing: Vec<&str> = differing.map(|own| own.name.as_str()).collect();
-    let differing = if differing.is_empty() {
-        String::new()
-    } else {
-        format!("; {} differ from run to run", differing.join(", "))
-    };
-    format!("{had}, {count} parameters fitted{differing}")
+    let mut text = format!("{had}, {count} parameters fitted");
+    if !differing.is_empty() {
+        let _ = write!(text, "; {} differ from run to run", differing.join(", "));
+    }
+    text
 }
 
 /// The difference from the previous recordings.
-fn changed(report: &Report, change: &Change, about: &[&str]) -> String {
+fn changed(report: &Report, change: &Change, names: &str) -> String {
     if !change.is_changed {
         return "nothing changed that matters for predictions".to_owned();
     }
-    let names = about.join(" and ");
     match report.verdict {
         GapVerdict::NoGap => "nothing changed".to_owned(),
         GapVerdict::Explained => format!("what changed: {names}"),
         GapVerdict::Ambiguous => {
-            let others = [twins(report), rivals(report)].concat();
-            let all = [vec![names], others].concat();
+            let all = [vec![names.to_owned()], twins(report), rivals(report)].concat();
             format!("something changed: {}", all.join(", or "))
         }
         GapVerdict::Unexplained => {
@@ -368,10 +360,8 @@ fn changed(report: &Report, change: &Change, about: &[&str]) -> String {
 
 /// Whether the most probable hypothesis names effects.
 fn names_effects(report: &Report) -> bool {
-    report
-        .which
-        .first()
-        .is_some_and(|first| !first.parameters.is_empty())
+    let first = report.which.first();
+    first.is_some_and(|first| !first.parameters.is_empty())
 }
 
 /// A probability in whole percent, none of them certain.
@@ -391,11 +381,8 @@ pub(super) fn leading(report: &Report) -> Option<&Hypothesis> {
 /// Names of the hypotheses indistinguishable from the leading one.
 fn twins(report: &Report) -> Vec<String> {
     let first = leading(report).map(|first| &first.effects);
-    let same = report
-        .which
-        .iter()
-        .filter(|one| one.same_as.as_ref() == first);
-    let same = same.filter(|one| one.same_as.is_some());
+    let which = report.which.iter();
+    let same = which.filter(|one| one.same_as.is_some() && one.same_as.as_ref() == first);
     same.map(|one| joined(&one.effects)).collect()
 }
 
@@ -408,28 +395,14 @@ fn rivals(report: &Report) -> Vec<String> {
     let tied = groups.filter(|group| group.contains(first)).flatten();
     let named = |effects: &Vec<String>| {
         let mut hypotheses = report.which.iter();
-        let hypothesis = hypotheses.find(|hypothesis| hypothesis.effects == *effects)?;
-        if hypothesis.same_as.is_some() {
-            return None;
-        }
-        Some(format!(
-            "{} ({}{})",
-            joined(effects),
-            percent_of(hypothesis.probability),
-            values(hypothesis)
-        ))
+        let hypothesis = hypotheses.find(|hypothesis| hypothesis.effects == *effects);
+        let rival = hypothesis.filter(|hypothesis| hypothesis.same_as.is_none())?;
+        let (sure, values) = (percent_of(rival.probability), values(rival));
+        Some(format!("{} ({sure}{values})", joined(effects)))
     };
     tied.filter(|effects| *effects != first)
         .filter_map(named)
         .collect()
-}
-
-/// The sentence of a hint.
-fn hinted(hint: &Hint) -> String {
-    format!(
-        "the gap in the equation of {} depends on {}, a channel that is not in the model",
-        hint.equation, hint.variable
-    )
 }
 
 /// Evidence against statements of the data set: channels missing from the model, tolerances, inputs between rows.
@@ -450,35 +423,28 @@ pub fn hints(report: &Report) -> Vec<String> {
             short(found.log_likelihood)
         )
     });
-    let channels = report.hints.iter().map(hinted);
+    let channels = report.hints.iter().map(|hint| {
+        format!(
+            "the gap in the equation of {} depends on {}, a channel that is not in the model",
+            hint.equation, hint.variable
+        )
+    });
     channels.chain(tolerances).chain(interpolated).collect()
 }
 
 /// Windows that no hypothesis predicts, if any.
 pub fn events(report: &Report) -> Option<String> {
-    /// Longer lists are shown on the page only.
-    const MOST: usize = 4;
-    let windows = report.place.windows.iter();
-    let mut events: Vec<String> = windows
-        .filter_map(|window| {
-            let channel = window.unexplained.as_ref()?;
-            let [from, to] = [window.from, window.to].map(short);
-            Some(format!(
-                "{} at {from} to {to} s (the error of {channel} is {} times an ordinary one)",
-                window.run,
-                short(window.z)
-            ))
-        })
-        .collect();
-    if events.is_empty() {
-        return None;
-    }
-    let more = events.split_off(events.len().min(MOST)).len();
-    let more = (more > 0).then(|| format!(" and {more} more"));
+    let windows = report.place.windows.iter().filter_map(|window| {
+        let channel = window.unexplained.as_ref()?;
+        let [from, to, times] = [window.from, window.to, window.z].map(short);
+        Some(format!(
+            "{} at {from} to {to} s (the error of {channel} is {times} times an ordinary one)",
+            window.run
+        ))
+    });
+    let events = first_of(4, windows.collect())?;
     Some(format!(
-        "an external force, a contact or a fault of the log: {}{}",
-        events.join(", "),
-        more.unwrap_or_default()
+        "an external force, a contact or a fault of the log: {events}"
     ))
 }
 
@@ -502,28 +468,22 @@ pub fn imperfections(report: &Report) -> Option<String> {
         let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
         format!("{effect} {number}")
     });
-    let named: Vec<String> = named.collect();
-    (!named.is_empty()).then(|| {
-        format!(
-            "{}: in the recordings, but too small to change predictions; fitted together with every hypothesis",
-            named.join(", ")
-        )
-    })
+    let named = named.reduce(|all, one| format!("{all}, {one}"))?;
+    Some(format!(
+        "{named}: in the recordings, but too small to change predictions; fitted together with every hypothesis"
+    ))
 }
 
 /// The effects of a hypothesis; for an unexplained rest, also the effects that close a part of the gap.
 pub fn said(report: &Report, hypothesis: &Hypothesis) -> String {
     let named = joined(&hypothesis.effects);
-    if !hypothesis.is_unknown() {
-        return named;
-    }
     let budget = report.how_far.iter().flat_map(|far| &far.budget);
-    let beside = budget.filter(|part| part.is_effect() && part.is_material);
-    let beside: Vec<&str> = beside.map(|part| part.name.as_str()).collect();
-    if beside.is_empty() {
-        named
+    let others = budget.filter(|part| part.is_effect() && part.is_material);
+    let others: Vec<&str> = others.map(|part| part.name.as_str()).collect();
+    if hypothesis.is_unknown() && !others.is_empty() {
+        format!("{named} in addition to {}", others.join(" + "))
     } else {
-        format!("{named} in addition to {}", beside.join(" + "))
+        named
     }
 }
 

@@ -1,11 +1,7 @@
 //! Accelerations of centres of mass, angular accelerations of bodies.
 
-use appell_spec::mechanism::BodyId;
-
-use super::super::writer::Writer;
-use super::super::{About, Letter, Math};
-use super::super::{Block, Section};
-use super::phrases::{about, headed, math, with, words};
+use super::super::{About, Letter, Section, Writer};
+use super::phrases::{about, formula, headed, with, with_formulas};
 use appell_codegen::mechanics::gibbs_appell::along;
 use appell_codegen::symbolic::vector;
 
@@ -14,18 +10,15 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let mut equations = Vec::new();
     let mut shown = Vec::new();
     let accelerations = w.derivation.symbols.accelerations.clone();
-    for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
-        let centre = w.mechanism.bodies[BodyId::new(index)].centre;
+    let bodies = w.derivation.bodies.clone();
+    for (id, body) in w.mechanism.bodies.ids().zip(bodies) {
+        let centre = w.mechanism.bodies[id].centre;
         if !shown.contains(&centre) {
             shown.push(centre);
-            let a = along(
-                w.graph(),
-                body.centre.bias,
-                &body.centre.partial,
-                &accelerations,
-            );
+            let motion = body.centre;
+            let a = along(w.graph(), motion.bias, &motion.partial, &accelerations);
             let letter = Letter::bold("a").below(&w.point(centre));
-            let vector = w.vector(letter, a, body.centre.velocity.frame);
+            let vector = w.vector(letter, a, motion.velocity.frame);
             equations.extend(about(vector, About::Point(centre)));
         }
         if let Some(rotation) = body.rotation
@@ -34,23 +27,14 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
             let alpha = along(w.graph(), rotation.bias, &rotation.partial, &accelerations);
             let letter = Letter::bold("α").below(&body.name);
             let vector = w.vector(letter, alpha, rotation.velocity.frame);
-            equations.extend(about(vector, About::Body(BodyId::new(index))));
+            equations.extend(about(vector, About::Body(id)));
         }
     }
-    let rule = Math::Row(vec![
-        Math::Letter(Letter::bold("a")),
-        Math::Sign("="),
-        Math::Letter(Letter::bold("v").dot()),
-        Math::Sign("+"),
-        Math::Letter(Letter::bold("Ω")),
-        Math::Sign("×"),
-        Math::Letter(Letter::bold("v")),
-    ]);
-    let mut blocks = vec![Block::Sentence(vec![
-        words("In a rotating frame "),
-        math(rule),
-        words(", differentiated component by component; angular accelerations likewise."),
-    ])];
+    let rule = with_formulas(
+        "In a rotating frame {}, differentiated component by component; angular accelerations likewise.",
+        [formula("*a = *v' + *Ω × *v")],
+    );
+    let mut blocks = vec![rule];
     blocks.extend(with(w, "", equations));
     headed("Accelerations", blocks)
 }

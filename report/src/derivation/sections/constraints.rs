@@ -2,17 +2,14 @@
 
 use appell_spec::mechanism::{ConstraintId, ConstraintKind, CoordinateId, GROUND};
 
-use super::super::display::Equation;
 use super::super::units::unit;
-use super::super::writer::Writer;
-use super::super::{About, Block, Row, Section, Span, Table};
-use super::super::{Letter, Math};
+use super::super::{About, Block, Equation, Letter, Math, Row, Section, Span, Writer};
 use super::divisors;
-use super::phrases::{equality, headed, introduced, listed, math, sentence, with, words};
-use super::placement::from_to;
-use appell_codegen::mechanics::expressions::Lowering;
+use super::phrases::{
+    described, equality, headed, introduced, listed, math, sentence, table, with, words,
+};
+use super::placement::{from_to, lowered};
 use appell_codegen::mechanics::row;
-use appell_codegen::symbolic::Graph;
 
 /// Constraints and pseudo-velocities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -23,18 +20,12 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     blocks.push(sentence(
         "The pseudo-velocities are linear in the generalised velocities:",
     ));
-    let definitions = definitions(w);
-    blocks.push(definitions);
+    blocks.extend(table("", definitions(w)));
     blocks.push(sentence(
         "Below, ωᵢ is the i-th of them; rows and columns are in the same order.",
     ));
-    let by = if w
-        .derivation
-        .constraints
-        .rows
-        .iter()
-        .any(|r| !r.is_embedded())
-    {
+    let mut rows = w.derivation.constraints.rows.iter();
+    let by = if rows.any(|row| !row.is_embedded()) {
         "With the constraints they determine the generalised velocities:"
     } else {
         "They determine the generalised velocities:"
@@ -142,45 +133,30 @@ fn equation(w: &mut Writer<'_>, row: &row::Row) -> Equation {
 }
 
 fn held_by_geometry(components: Vec<Vec<Span>>) -> Vec<Span> {
-    let (noun, verb) = if components.len() == 1 {
-        (
+    let [noun, verb] = if components.len() == 1 {
+        [
             "Its component along ",
             " holds by geometry: the coordinates satisfy it identically.",
-        )
+        ]
     } else {
-        (
+        [
             "Its components along ",
             " hold by geometry: the coordinates satisfy them identically.",
-        )
+        ]
     };
-    let mut text = vec![words(noun)];
-    text.extend(listed(components));
-    text.push(words(verb));
-    text
+    [vec![words(noun)], listed(components), vec![words(verb)]].concat()
 }
 
-fn definitions(w: &mut Writer<'_>) -> Block {
-    let mechanism = w.mechanism;
-    let mut rows = Vec::new();
-    for (index, speed) in mechanism.pseudo_velocities.iter().enumerate() {
-        let derivation = &mut *w.derivation;
-        let lowering = Lowering {
-            symbols: &derivation.symbols,
-            rates: &derivation.symbols.rates,
-        };
-        let value = lowering
-            .lower(&mut derivation.algebra.graph, &speed.definition)
-            .unwrap_or(Graph::ZERO);
+fn definitions(w: &mut Writer<'_>) -> Vec<Row> {
+    let speeds = w.mechanism.pseudo_velocities.iter().enumerate();
+    let rows = speeds.map(|(index, speed)| {
+        let value = lowered(w, &speed.definition);
         let left = Math::Letter(w.speed(index));
         let mut right = w.set(value);
         // A pseudo-velocity with the letter of a generalised velocity: γ̇ = dγ/dt.
+        let mut rates = w.derivation.symbols.rates.iter();
         if left == right
-            && let Some(place) = w
-                .derivation
-                .symbols
-                .rates
-                .iter()
-                .position(|&rate| rate == value)
+            && let Some(place) = rates.position(|&rate| rate == value)
         {
             let coordinate = w.letter(w.derivation.symbols.coordinates[place]);
             right = Math::fraction(
@@ -188,18 +164,7 @@ fn definitions(w: &mut Writer<'_>) -> Block {
                 Math::Letter(Letter::plain("t").before('d')),
             );
         }
-        let cells = vec![
-            vec![equality(left, right)],
-            vec![words(&unit(&speed.label))],
-            vec![words(&speed.label.about)],
-        ];
-        rows.push(Row {
-            cells,
-            line: speed.label.line,
-        });
-    }
-    Block::Table(Table {
-        title: String::new(),
-        rows,
-    })
+        described(&speed.label, equality(left, right), unit(&speed.label))
+    });
+    rows.collect()
 }

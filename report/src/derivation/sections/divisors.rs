@@ -1,8 +1,7 @@
 //! Divisors of the generalised velocities that can vanish outside the declared ranges.
 
 use super::super::units::range;
-use super::super::writer::Writer;
-use super::super::{Block, Letter, Math, Span};
+use super::super::{Block, Letter, Math, Span, Writer};
 use super::phrases::{listed, math, words};
 use appell_codegen::mechanics::parameter_ranges;
 use appell_codegen::symbolic::{Expr, Intervals, Node};
@@ -13,13 +12,12 @@ pub(super) fn conditions(w: &mut Writer<'_>) -> Option<Block> {
     if divisors.is_empty() {
         return None;
     }
-    let mut conditions = Vec::new();
-    for &divisor in &divisors {
+    let conditions = divisors.iter().map(|&divisor| {
         let condition = [w.set(divisor), Math::Sign("≠"), Math::zero()];
-        conditions.push(vec![math(Math::Row(condition.into()))]);
-    }
+        vec![math(Math::Row(condition.into()))]
+    });
     let mut what = vec![words("They are valid where ")];
-    what.extend(listed(conditions));
+    what.extend(listed(conditions.collect()));
     let declared = declared(w, &divisors);
     if !declared.is_empty() {
         what.push(words("; the spec declares "));

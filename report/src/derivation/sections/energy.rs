@@ -1,72 +1,46 @@
 //! The acceleration energy and its derivatives.
 
-use super::super::display::Equation;
-use super::super::writer::Writer;
-use super::super::{About, Block, Section, Span};
-use super::super::{Letter, Math};
-use super::phrases::{headed, listed, math, with, words};
-use appell_codegen::mechanics::gibbs_appell::gibbs_form;
+use super::super::{About, Block, Equation, Letter, Math, Section, Span, Writer};
+use super::phrases::{formula, headed, listed, math, with, with_formulas, words};
+use appell_codegen::mechanics::gibbs_appell::{BodyMotion, gibbs_form};
 use appell_codegen::mechanics::motion::independent_blocks;
 use appell_codegen::symbolic::{Expr, Graph, Rational};
-use appell_spec::mechanism::BodyId;
 
 /// A matrix wider than this shows letters, and its entries follow as equations.
 const WIDEST_MATRIX: usize = 82;
 
 /// S, body by body.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
-    let letter = |name: &str| Math::Letter(Letter::plain(name));
-    let bold = |name: &str| Math::Letter(Letter::bold(name));
-    let half = || Math::Ratio("1".to_owned(), "2".to_owned());
-    let dot = || Math::Sign("·");
-    let translation = Math::Row(vec![half(), letter("m"), bold("a"), dot(), bold("a")]);
-    let rotation = Math::Row(vec![
-        half(),
-        bold("α"),
-        dot(),
-        Math::Row(vec![bold("J"), bold("α")]),
-    ]);
-    let spin = Math::Row(vec![bold("ω"), Math::Sign("×"), bold("J"), bold("ω")]);
-    let gyroscopic = Math::Row(vec![bold("α"), dot(), Math::Brackets(Box::new(spin))]);
-    let whole = Math::sum(vec![
-        (false, translation),
-        (false, rotation),
-        (false, gyroscopic),
-    ]);
+    let whole = ["½ m *a · *a", "½ *α · { *J *α }", "*α · ( *ω × *J *ω )"];
+    let whole = whole.map(|term| (false, formula(term))).to_vec();
     let definition = Math::Row(vec![
-        letter("S"),
+        Math::Letter(Letter::plain("S")),
         Math::Sign("="),
         Math::Sign("Σ"),
-        Math::Brackets(Box::new(whole)),
+        Math::Brackets(Box::new(Math::sum(whole))),
     ]);
-    let mut blocks = vec![Block::Sentence(vec![
-        words("The sum runs over the bodies: "),
-        math(definition),
-        words(". Terms without accelerations are omitted; the derivatives do not contain them."),
-    ])];
+    let mut blocks = vec![with_formulas(
+        "The sum runs over the bodies: {}. Terms without accelerations are omitted; the derivatives do not contain \
+         them.",
+        [definition],
+    )];
     let mut equations = Vec::new();
-    for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
+    let bodies = w.derivation.bodies.clone();
+    for (id, body) in w.mechanism.bodies.ids().zip(bodies) {
         let s = energy_of(w, &body);
         let right = w.by_acceleration(s);
         let left = Letter::plain("S").below(&body.name);
-        let about = About::Body(BodyId::new(index));
-        equations.push(Equation::new(Math::Letter(left), right).about(about));
+        equations.push(Equation::new(Math::Letter(left), right).about(About::Body(id)));
     }
     blocks.extend(with(w, "", equations));
     headed("Acceleration energy S", blocks)
 }
 
 /// `½ ω̇ᵀ M ω̇ + bᵀ ω̇` of one body.
-fn energy_of(
-    w: &mut Writer<'_>,
-    body: &appell_codegen::mechanics::gibbs_appell::BodyMotion,
-) -> Expr {
+fn energy_of(w: &mut Writer<'_>, body: &BodyMotion) -> Expr {
     let accelerations = w.derivation.symbols.accelerations.clone();
-    let form = gibbs_form(
-        &mut w.derivation.algebra,
-        std::slice::from_ref(body),
-        accelerations.len(),
-    );
+    let bodies = std::slice::from_ref(body);
+    let form = gibbs_form(&mut w.derivation.algebra, bodies, accelerations.len());
     let graph = w.graph();
     let mut parts = Vec::new();
     for (i, &first) in accelerations.iter().enumerate() {
@@ -94,41 +68,24 @@ pub(super) fn derivatives(w: &mut Writer<'_>) -> Section {
         "The bias b is the part without accelerations:",
         equations,
     ));
-    let heading = Math::Row(vec![
-        Math::fraction(
-            Math::Letter(Letter::plain("S").before('∂')),
-            Math::Letter(Letter::bold("ω").dot().before('∂')),
-        ),
-        Math::Sign("="),
-        Math::Letter(Letter::bold("M")),
-        Math::Letter(Letter::bold("ω").dot()),
-        Math::Sign("+"),
-        Math::Letter(Letter::bold("b")),
-    ]);
+    let heading = math(formula("∂S/∂*ω' = *M *ω' + *b"));
     Section {
-        heading: vec![words("Mass matrix and bias: "), math(heading)],
+        heading: vec![words("Mass matrix and bias: "), heading],
         blocks,
     }
 }
 
 fn matrix_blocks(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Block> {
-    let entries: Vec<Vec<Math>> = matrix
-        .iter()
-        .map(|row| {
-            row.iter()
-                .map(|&entry| {
-                    if entry == Graph::ZERO {
-                        Math::zero()
-                    } else {
-                        w.explicit(entry)
-                    }
-                })
-                .collect()
-        })
+    let mut shown = |&entry: &Expr| match entry {
+        Graph::ZERO => Math::zero(),
+        entry => w.explicit(entry),
+    };
+    let rows = matrix.iter();
+    let entries: Vec<Vec<Math>> = rows
+        .map(|row| row.iter().map(&mut shown).collect())
         .collect();
-    let width: usize = (0..matrix.len())
-        .map(|k| entries.iter().map(|row| row[k].width()).max().unwrap_or(0) + 3)
-        .sum();
+    let widest = |column: usize| entries.iter().map(|row| row[column].width()).max();
+    let width: usize = (0..matrix.len()).map(|k| widest(k).unwrap_or(0) + 3).sum();
     let left = Math::Letter(Letter::bold("M"));
     if width <= WIDEST_MATRIX {
         let whole = Equation::new(left, Math::Matrix(entries)).about(About::Bodies);
@@ -141,12 +98,9 @@ fn matrix_blocks(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Block> {
             if entry.width() <= 3 {
                 continue;
             }
-            let (first, second) = (i.min(j), i.max(j));
-            let place = if matrix.len() > 9 {
-                format!("{},{}", first + 1, second + 1)
-            } else {
-                format!("{}{}", first + 1, second + 1)
-            };
+            let (first, second) = (i.min(j) + 1, i.max(j) + 1);
+            let comma = if matrix.len() > 9 { "," } else { "" };
+            let place = format!("{first}{comma}{second}");
             let letter = Math::Letter(Letter::plain("M").below(&place));
             pattern[i][j] = letter.clone();
             if j >= i {
@@ -171,25 +125,16 @@ fn couplings(w: &mut Writer<'_>, matrix: &[Vec<Expr>]) -> Vec<Span> {
         }
         return text;
     }
-    let groups: Vec<Vec<Span>> = blocks
-        .iter()
-        .map(|block| {
-            let letters = block
-                .iter()
-                .map(|&k| vec![math(Math::Letter(w.speed(k).dot()))])
-                .collect();
-            listed(letters)
-        })
-        .collect();
     text.push(words(&format!(
         "It consists of {} independent blocks: ",
-        groups.len()
+        blocks.len()
     )));
-    for (k, group) in groups.into_iter().enumerate() {
+    for (k, block) in blocks.iter().enumerate() {
         if k > 0 {
             text.push(words("; "));
         }
-        text.extend(group);
+        let letter = |&k: &usize| vec![math(Math::Letter(w.speed(k).dot()))];
+        text.extend(listed(block.iter().map(letter).collect()));
     }
     text.push(words("."));
     text

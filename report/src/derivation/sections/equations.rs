@@ -1,10 +1,7 @@
 //! Appell's equations, the accelerations that solve them, and the energies that check them.
 
-use super::super::display::Equation;
-use super::super::writer::Writer;
-use super::super::{About, Block, Section};
-use super::super::{Letter, Math};
-use super::phrases::{headed, listed, math, sentence, with, words};
+use super::super::{About, Block, Equation, Letter, Math, Section, Writer};
+use super::phrases::{formula, headed, listed, math, sentence, with, words};
 use super::solution::Elimination;
 use appell_codegen::mechanics;
 use appell_codegen::mechanics::gibbs_appell::kinetic_energy;
@@ -16,10 +13,8 @@ const LONGEST_READING: usize = 180;
 /// Whether the solved equations are short enough to be written out, so that the page does not refer
 /// to M and b.
 pub(super) fn are_written_out(w: &mut Writer<'_>) -> bool {
-    let blocks = w.derivation.motion.blocks.clone();
-    blocks
-        .iter()
-        .all(|block| values_to_read(w, block).is_some())
+    let mut blocks = w.derivation.motion.blocks.clone().into_iter();
+    blocks.all(|block| values_to_read(w, &block).is_some())
 }
 
 /// M ω̇ + b = Π, row by row.
@@ -37,33 +32,25 @@ pub(super) fn appell(w: &mut Writer<'_>) -> Section {
         let right = w.explicit(w.derivation.forces[i]);
         equations.push(Equation::new(left, right).about(About::Motion(i)));
     }
-    let general = Math::Row(vec![
-        Math::partial(Letter::plain("S"), Letter::plain("ω").dot().below("i")),
-        Math::Sign("="),
-        Math::Letter(Letter::plain("Π").below("i")),
-    ]);
-    let lead = if w.derivation.given.is_empty() {
-        ""
-    } else {
-        {
-            "Prescribed rates replace the equations of their pseudo-velocities: drives supply the required forces."
-        }
-    };
-    let blocks = with(w, lead, equations);
+    let lead = "Prescribed rates replace the equations of their pseudo-velocities: drives supply the required \
+                forces.";
+    let is_free = w.derivation.given.is_empty();
+    let blocks = with(w, if is_free { "" } else { lead }, equations);
+    let general = math(formula("∂S/∂ω'_i = Π_i"));
     Section {
-        heading: vec![words("Appell's equations "), math(general)],
+        heading: vec![words("Appell's equations "), general],
         blocks,
     }
 }
 
 /// ω̇, as the derivation solved for it.
 pub(super) fn motion(w: &mut Writer<'_>) -> Section {
-    let letters: Vec<Letter> = (0..w.derivation.symbols.speeds.len())
-        .map(|k| w.speed(k).dot())
-        .collect();
+    let speeds = 0..w.derivation.symbols.speeds.len();
+    let letters: Vec<Letter> = speeds.map(|k| w.speed(k).dot()).collect();
     for letter in &letters {
         w.define(letter.clone());
     }
+    let acceleration = |k: usize| Math::Letter(letters[k].clone());
     let mut equations = Vec::new();
     let mut large = Vec::new();
     let mut lead = "Appell's equations, solved for the accelerations:";
@@ -71,13 +58,12 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
         if let Some(values) = values_to_read(w, &block) {
             for (k, value) in values {
                 let right = w.explicit(value);
-                let equation = Equation::new(Math::Letter(letters[k].clone()), right);
-                equations.push(equation.about(About::Motion(k)));
+                equations.push(Equation::new(acceleration(k), right).about(About::Motion(k)));
             }
             continue;
         }
         let elimination = Elimination::of(&block);
-        let solved = elimination.in_letters(|k| Math::Letter(letters[k].clone()));
+        let solved = elimination.in_letters(acceleration);
         if solved.is_empty() {
             large.push(elimination.order);
         } else if solved.len() > 1 {
@@ -88,9 +74,7 @@ pub(super) fn motion(w: &mut Writer<'_>) -> Section {
     }
     let mut blocks = with(w, lead, equations);
     for order in large {
-        let order = order
-            .iter()
-            .map(|&k| vec![math(Math::Letter(letters[k].clone()))]);
+        let order = order.iter().map(|&k| vec![math(acceleration(k))]);
         let mut text = vec![words(
             "M is factorised numerically at each evaluation, in the order ",
         )];
@@ -135,47 +119,39 @@ fn behind(w: &mut Writer<'_>, expr: Expr) -> Expr {
 
 /// T, V and the power of the other loads.
 pub(super) fn energies(w: &mut Writer<'_>) -> Section {
-    let mut kinetic = Vec::new();
-    for body in w.derivation.bodies.clone() {
-        kinetic.push(kinetic_energy(&mut w.derivation.algebra, &body));
-    }
-    let kinetic = w.graph().sum(&kinetic);
-    let mut equations = vec![
-        Equation::new(Math::Letter(Letter::plain("T")), w.explicit(kinetic)).about(About::Bodies),
-    ];
+    let mut equations = Vec::new();
+    let mut state = |w: &mut Writer<'_>, letter: &str, parts: &[Expr], about| {
+        let sum = w.graph().sum(parts);
+        let left = Math::Letter(Letter::plain(letter));
+        equations.push(Equation::new(left, w.explicit(sum)).about(about));
+    };
+    let bodies = w.derivation.bodies.clone();
+    let kinetic: Vec<Expr> = (bodies.iter())
+        .map(|body| kinetic_energy(&mut w.derivation.algebra, body))
+        .collect();
+    state(w, "T", &kinetic, About::Bodies);
     let loads = w.derivation.loads.clone();
     let potential: Vec<Expr> = loads.iter().filter_map(|load| load.potential).collect();
-    let potential = w.graph().sum(&potential);
-    let energy = Math::Letter(Letter::plain("V"));
-    equations.push(Equation::new(energy, w.explicit(potential)).about(About::Loads));
-    let mut power: Vec<Expr> = loads
-        .iter()
+    state(w, "V", &potential, About::Loads);
+    let mut power: Vec<Expr> = (loads.iter())
         .map(|load| load.power_without_potential(w.graph()))
         .collect();
     let accelerations = w.derivation.symbols.accelerations.clone();
     let prescribed = w.derivation.prescribed_power(&accelerations);
     let prescribed = prescribed.unwrap_or(Graph::ZERO);
     power.push(prescribed);
-    let power = w.graph().sum(&power);
-    let letter = Math::Letter(Letter::plain("P"));
-    equations.push(Equation::new(letter, w.explicit(power)).about(About::Loads));
-    let of_power = if prescribed == Graph::ZERO {
-        "Kinetic energy T, potential energy V, power P of the non-conservative loads."
+    state(w, "P", &power, About::Loads);
+    let drives = if prescribed == Graph::ZERO {
+        ""
     } else {
-        "Kinetic energy T, potential energy V, power P of the non-conservative loads and of what keeps up the \
-         prescribed motion."
+        " and of what keeps up the prescribed motion"
     };
-    let mut text = vec![words(of_power)];
-    let steady = w.derivation.symbols.signals.is_empty();
-    if steady {
-        let rate = Math::Row(vec![
-            Math::Letter(Letter::plain("T").dot()),
-            Math::Sign("+"),
-            Math::Letter(Letter::plain("V").dot()),
-            Math::Sign("="),
-            Math::Letter(Letter::plain("P")),
-        ]);
-        text.extend([words(" Every solution satisfies "), math(rate), words(".")]);
+    let mut text = vec![words(&format!(
+        "Kinetic energy T, potential energy V, power P of the non-conservative loads{drives}."
+    ))];
+    if w.derivation.symbols.signals.is_empty() {
+        let rate = math(formula("T' + V' = P"));
+        text.extend([words(" Every solution satisfies "), rate, words(".")]);
     }
     let mut blocks = vec![Block::Sentence(text)];
     blocks.extend(with(w, "", equations));

@@ -1,10 +1,7 @@
 //! Jacobians of the motion, by implicit differentiation.
 
-use super::super::display::Equation;
-use super::super::writer::Writer;
-use super::super::{Block, Section};
-use super::super::{Letter, Math};
-use super::phrases::{headed, math, with, words};
+use super::super::{Block, Equation, Letter, Math, Section, Writer};
+use super::phrases::{formula, headed, with, with_formulas};
 use appell_codegen::symbolic::{Expr, Graph};
 
 /// The derivatives of the residual ρ, those of ω̇ that follow, and those of q̇.
@@ -27,10 +24,8 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
         ),
     ];
     let mut rows = residual(w);
-    rows.extend((0..symbols.rates.len()).map(|k| {
-        let letter = w.letter(symbols.rates[k]);
-        (letter, w.derivation.velocities.rates[k])
-    }));
+    let rates = w.derivation.velocities.rates.clone();
+    rows.extend((symbols.rates.iter().zip(rates)).map(|(&rate, value)| (w.letter(rate), value)));
     for (lead, variables) in lists {
         let mut equations = Vec::new();
         for (letter, value) in &rows {
@@ -52,35 +47,18 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
 /// The differentiated residual, and the equations of the derivatives.
 fn rule() -> Block {
     let bold = |name: &str| Math::Letter(Letter::bold(name));
-    let rates = || Math::Letter(Letter::bold("ω").dot());
-    let residual_rule = Math::Row(vec![
-        bold("ρ"),
-        Math::Sign("="),
-        Math::sum(vec![
-            (false, bold("Π")),
-            (true, bold("b")),
-            (true, Math::Row(vec![bold("M"), rates()])),
-        ]),
-    ]);
-    let derivative = |of: Letter| Math::partial(of, Letter::plain("z"));
-    let rule = Math::Row(vec![
-        bold("M"),
-        derivative(Letter::bold("ω").dot()),
-        Math::Sign("="),
-        derivative(Letter::bold("ρ")),
-    ]);
-    Block::Sentence(vec![
-        words("By Appell's equations "),
-        math(residual_rule),
-        words(
-            " vanishes. Differentiation with respect to a state, an input or a parameter z gives ",
-        ),
-        math(rule),
-        words(
-            ", where ρ is differentiated at constant accelerations. It is solved like the equations \
-             of motion. Entries not listed are zero.",
-        ),
-    ])
+    let terms = vec![
+        (false, bold("Π")),
+        (true, bold("b")),
+        (true, formula("*M *ω'")),
+    ];
+    let residual = Math::Row(vec![bold("ρ"), Math::Sign("="), Math::sum(terms)]);
+    with_formulas(
+        "By Appell's equations {} vanishes. Differentiation with respect to a state, an input or a parameter z \
+         gives {}, where ρ is differentiated at constant accelerations. It is solved like the equations of motion. \
+         Entries not listed are zero.",
+        [residual, formula("*M ∂*ω'/∂z = ∂*ρ/∂z")],
+    )
 }
 
 /// ρ = Π - b - M ω̇, with letters for the accelerations.

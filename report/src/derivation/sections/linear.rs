@@ -1,9 +1,8 @@
 //! The linear equations about a steady motion, and their characteristic polynomial.
 
-use super::super::display::Equation;
-use super::super::writer::Writer;
-use super::super::{Block, Letter, Math, Section, Span};
-use super::phrases::{headed, listed, math, sentence, with, words};
+use super::super::{Block, Equation, Letter, Math, Section, Span, Writer};
+use super::phrases::{formula, headed, listed, math, sentence, with, words};
+use super::solution::raised;
 use appell_codegen::linearisation::{Characteristic, Linearisation};
 use appell_codegen::symbolic::{Expr, Graph};
 
@@ -17,26 +16,22 @@ pub(super) fn steady(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
     let (essential, ignorable) = linear.states.split_at(linear.essential);
     let mut states = vec![words("The motion depends on the essential states ")];
     states.extend(letters(w, essential));
-    if ignorable.is_empty() {
-        states.push(words("."));
-    } else {
+    if !ignorable.is_empty() {
         states.push(words("; "));
         states.extend(letters(w, ignorable));
-        let is_single = ignorable.len() == 1;
-        states.push(words(if is_single {
-            " is ignorable: they do not depend on it."
-        } else {
-            " are ignorable: they do not depend on them."
-        }));
     }
+    states.push(words(match ignorable.len() {
+        0 => ".",
+        1 => " is ignorable: they do not depend on it.",
+        _ => " are ignorable: they do not depend on them.",
+    }));
     let mut blocks = vec![Block::Sentence(states)];
-    let mut values = Vec::new();
-    for symbol in told(w, linear) {
-        let known = linear.steady.values.iter().find(|known| known.0 == symbol);
-        if let Some(&(_, value)) = known {
-            values.push(Equation::new(w.symbol(symbol), w.explicit(value)));
-        }
-    }
+    let values = told(w, linear).into_iter().filter_map(|symbol| {
+        let mut known = linear.steady.values.iter();
+        let &(_, value) = known.find(|known| known.0 == symbol)?;
+        Some(Equation::new(w.symbol(symbol), w.explicit(value)))
+    });
+    let values = values.collect();
     blocks.extend(with(w, "Along the motion", values));
     let mut conditions = Vec::new();
     for &rate in linear.rates.iter().filter(|&&rate| rate != Graph::ZERO) {
@@ -57,11 +52,8 @@ fn told(w: &Writer<'_>, linear: &Linearisation) -> Vec<Expr> {
     let (essential, _) = linear.states.split_at(linear.essential);
     let rates = symbols.coordinates.iter().zip(&symbols.rates);
     let rates = rates.filter(|(coordinate, _)| !essential.contains(coordinate));
-    let states = linear.states.iter().copied();
-    states
-        .chain(rates.map(|(_, &rate)| rate))
-        .chain(linear.inputs.iter().copied())
-        .collect()
+    let rates: Vec<Expr> = rates.map(|(_, &rate)| rate).collect();
+    [linear.states.as_slice(), &rates, &linear.inputs].concat()
 }
 
 /// `a, b and c`
@@ -111,12 +103,10 @@ pub(super) fn equations(w: &mut Writer<'_>, linear: &Linearisation) -> Section {
 
 /// `δẋ = A δx + B δu`, with definitions of x and u.
 fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
-    let bold = |name: &str| Math::Letter(Letter::bold(name));
-    let small = |name: &str| Math::Letter(Letter::bold(name).before('δ'));
     let rate = Math::Letter(Letter::bold("x").dot().before('δ'));
-    let mut right = vec![(false, Math::Row(vec![bold("A"), small("x")]))];
+    let mut right = vec![(false, formula("*A δ*x"))];
     if !linear.inputs.is_empty() {
-        right.push((false, Math::Row(vec![bold("B"), small("u")])));
+        right.push((false, formula("*B δ*u")));
     }
     let equation = Math::Row(vec![rate, Math::Sign("="), Math::sum(right)]);
     let mut text = vec![
@@ -126,12 +116,8 @@ fn rule(w: &mut Writer<'_>, linear: &Linearisation) -> Block {
     ];
     text.extend(letters(w, &linear.states));
     if !linear.inputs.is_empty() {
-        let is_single = linear.inputs.len() == 1;
-        text.push(words(if is_single {
-            " and the input "
-        } else {
-            " and the inputs "
-        }));
+        let plural = if linear.inputs.len() == 1 { "" } else { "s" };
+        text.push(words(&format!(" and the input{plural} ")));
         text.extend(letters(w, &linear.inputs));
     }
     text.push(words(", in this order."));
@@ -178,11 +164,8 @@ fn factored(polynomial: &Characteristic) -> Math {
         if value == Graph::ZERO {
             continue;
         }
-        let mut factors = Vec::new();
-        if k > 0 {
-            factors.push(Math::Letter(numbered("χ", &[k - 1])));
-        }
-        factors.extend(power(degree - k));
+        let coefficient = (k > 0).then(|| Math::Letter(numbered("χ", &[k - 1])));
+        let factors: Vec<Math> = coefficient.into_iter().chain(power(degree - k)).collect();
         let term = if factors.is_empty() {
             Math::integer(1)
         } else {
@@ -190,22 +173,17 @@ fn factored(polynomial: &Characteristic) -> Math {
         };
         terms.push((false, term));
     }
-    let rest = Math::sum(terms);
-    match power(zeros) {
-        Some(power) => Math::product(vec![power, rest]),
-        None => rest,
-    }
+    let factors = power(zeros).into_iter().chain([Math::sum(terms)]);
+    Math::product(factors.collect())
 }
 
+/// A power of λ other than 1.
 fn power(exponent: usize) -> Option<Math> {
     let letter = Math::Letter(Letter::plain("λ"));
     match exponent {
         0 => None,
         1 => Some(letter),
-        _ => Some(Math::Power(
-            Box::new(letter),
-            Box::new(Math::integer(exponent)),
-        )),
+        _ => Some(raised(letter, exponent)),
     }
 }
 

@@ -1,11 +1,10 @@
 //! Frames as chains of rotations, points, bodies.
 
-use appell_spec::mechanism::{Axis, FrameId, GROUND, Inertia, Turn};
+use appell_spec::mechanism::{FrameId, GROUND, Inertia, Turn};
 
-use super::super::writer::Writer;
-use super::super::{Block, Chain, Row, Section, Table};
-use super::super::{Letter, Math};
-use super::phrases::{equality, headed, math, sentence, words};
+use super::super::lexicon::AXES;
+use super::super::{Block, Chain, Letter, Math, Row, Section, Span, Writer};
+use super::phrases::{equality, headed, math, sentence, table, words};
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::{Expr, Graph};
 
@@ -21,50 +20,35 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
             blocks.push(chain(w, leaf));
         }
     }
-    let frames = mechanism
-        .frames
-        .iter()
-        .skip(1)
-        .filter(|f| !f.about.is_empty());
-    let rows: Vec<_> = frames
-        .map(|f| {
-            let cells = vec![
-                vec![math(Math::Words(f.name.clone()))],
-                vec![words(&f.about)],
-            ];
-            Row {
-                cells,
-                line: f.line,
-            }
-        })
-        .collect();
-    table(&mut blocks, "Frames", rows);
-    let points = points(w);
-    table(&mut blocks, "Points", points);
-    let bodies = bodies(w);
-    table(&mut blocks, "Bodies", bodies);
+    let frames = mechanism.frames.iter().skip(1);
+    let frames = frames.filter(|frame| !frame.about.is_empty());
+    let frames = frames.map(|frame| Row {
+        cells: vec![name(&frame.name), vec![words(&frame.about)]],
+        line: frame.line,
+    });
+    blocks.extend(table("Frames", frames.collect()));
+    blocks.extend(table("Points", points(w)));
+    blocks.extend(table("Bodies", bodies(w)));
     headed("Frames, points, bodies", blocks)
 }
 
-fn table(blocks: &mut Vec<Block>, title: &str, rows: Vec<Row>) {
-    if !rows.is_empty() {
-        blocks.push(Block::Table(Table {
-            title: title.to_owned(),
-            rows,
-        }));
-    }
+fn name(name: &str) -> Vec<Span> {
+    vec![math(Math::Words(name.to_owned()))]
 }
 
 /// An expression of the spec, which the derivation has already lowered.
 pub(super) fn lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Expr {
+    try_lowered(w, expr).unwrap_or(Graph::ZERO)
+}
+
+/// An expression of the spec, if it does not divide by zero.
+pub(super) fn try_lowered(w: &mut Writer<'_>, expr: &appell_spec::expr::Expr) -> Option<Expr> {
     let derivation = &mut *w.derivation;
     let lowering = Lowering {
         symbols: &derivation.symbols,
         rates: &derivation.symbols.rates,
     };
-    lowering
-        .lower(&mut derivation.algebra.graph, expr)
-        .unwrap_or(Graph::ZERO)
+    lowering.lower(&mut derivation.algebra.graph, expr).ok()
 }
 
 fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
@@ -74,7 +58,8 @@ fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
     let mut links = Vec::with_capacity(path.len());
     for &frame in &path[1..] {
         let mut label = Vec::new();
-        for (k, turn) in mechanism.frames[frame].turns.iter().enumerate() {
+        let frame = &mechanism.frames[frame];
+        for (k, turn) in frame.turns.iter().enumerate() {
             if k > 0 {
                 label.push(words(", "));
             }
@@ -82,17 +67,12 @@ fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
             label.push(math(w.set(angle)));
             label.push(words(&format!(" about {}", axis(turn))));
         }
-        for (k, id) in mechanism.frames[frame]
-            .quaternion
-            .iter()
-            .flatten()
-            .enumerate()
-        {
+        for (k, id) in frame.quaternion.iter().flatten().enumerate() {
             label.push(words(if k > 0 { ", " } else { "quaternion " }));
             let coordinate = w.derivation.symbols.coordinates[id.index()];
             label.push(math(w.set(coordinate)));
         }
-        links.push((label, mechanism.frames[frame].name.clone()));
+        links.push((label, frame.name.clone()));
     }
     Block::Chain(Chain {
         start: mechanism.frames[GROUND].name.clone(),
@@ -101,22 +81,14 @@ fn chain(w: &mut Writer<'_>, leaf: FrameId) -> Block {
 }
 
 fn axis(turn: &Turn) -> String {
-    let letter = match turn.axis {
-        Axis::X => "x",
-        Axis::Y => "y",
-        Axis::Z => "z",
-    };
-    format!("{}{letter}", if turn.negative { "−" } else { "" })
+    let sign = if turn.negative { "−" } else { "" };
+    format!("{sign}{}", AXES[turn.axis.index()])
 }
 
 /// The letters of two points, adjacent.
 pub(super) fn from_to(from: &str, to: &str) -> String {
-    let single = |name: &str| name.chars().count() == 1;
-    if single(from) && single(to) {
-        format!("{from}{to}")
-    } else {
-        format!("{from},{to}")
-    }
+    let are_single = [from, to].iter().all(|name| name.chars().count() == 1);
+    format!("{from}{}{to}", if are_single { "" } else { "," })
 }
 
 fn points(w: &mut Writer<'_>) -> Vec<Row> {
@@ -133,12 +105,9 @@ fn points(w: &mut Writer<'_>) -> Vec<Row> {
             frame,
             column: false,
         };
-        let cells = vec![
-            vec![equality(Math::Letter(left), right)],
-            vec![words(&point.about)],
-        ];
+        let what = vec![equality(Math::Letter(left), right)];
         rows.push(Row {
-            cells,
+            cells: vec![what, vec![words(&point.about)]],
             line: point.line,
         });
     }
@@ -158,13 +127,8 @@ fn bodies(w: &mut Writer<'_>) -> Vec<Row> {
             let left = Math::Letter(Letter::bold("J").below(&body.name));
             what.push(equality(left, tensor));
         }
-        let cells = vec![
-            vec![math(Math::Words(body.name.clone()))],
-            what,
-            vec![words(&body.about)],
-        ];
         rows.push(Row {
-            cells,
+            cells: vec![name(&body.name), what, vec![words(&body.about)]],
             line: body.line,
         });
     }
@@ -173,10 +137,8 @@ fn bodies(w: &mut Writer<'_>) -> Vec<Row> {
 
 /// An inertia tensor, short where it is diagonal.
 fn tensor(w: &mut Writer<'_>, inertia: &Inertia) -> Math {
-    let mut entries = Vec::with_capacity(9);
-    for entry in inertia.matrix.iter().flatten() {
-        entries.push(lowered(w, entry));
-    }
+    let entries = inertia.matrix.iter().flatten();
+    let entries: Vec<Expr> = entries.map(|entry| lowered(w, entry)).collect();
     let frame = Math::Words(w.frame(inertia.frame));
     let is_diagonal = (0..9).all(|k| k % 4 == 0 || entries[k] == Graph::ZERO);
     if is_diagonal {

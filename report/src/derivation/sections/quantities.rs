@@ -4,68 +4,32 @@ use appell_spec::expr::Expr;
 use appell_spec::mechanism::Label;
 
 use super::super::units::{range, unit, value};
-use super::super::writer::Writer;
-use super::super::{Block, Row, Section, Table};
-use super::super::{Letter, Math};
-use super::phrases::{equality, headed, math, sentence, words};
-use appell_codegen::mechanics::expressions::Lowering;
+use super::super::{Letter, Math, Row, Section, Writer};
+use super::phrases::{described, equality, headed, math, sentence, table};
+use super::placement::try_lowered;
 
 /// Tables of the quantities.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
     let m = w.mechanism;
-    let plain = |label: &Label, second: String| {
-        let cells = vec![
-            vec![math(Math::Letter(Letter::of(&label.name)))],
-            vec![words(&second)],
-            vec![words(&label.about)],
-        ];
-        Row {
-            cells,
-            line: label.line,
-        }
+    let row = |label: &Label, second: String| -> Row {
+        described(label, math(Math::Letter(Letter::of(&label.name))), second)
     };
+    let with_unit = |label: &Label| row(label, unit(label));
+    let parameters = m.parameters.iter();
+    let parameters = parameters.map(|p| row(&p.label, value(&p.label, p.value)));
+    let coordinates = m.coordinates.iter().map(|q| match q.range {
+        Some(ends) => row(&q.label, range(&q.label, ends)),
+        None => with_unit(&q.label),
+    });
+    let inputs = m.inputs.iter().map(|u| with_unit(&u.label));
+    let signals = m.signals.iter().map(|s| with_unit(&s.label));
     let mut blocks = vec![sentence(
         "Numbers at the right margin are lines of the spec.",
     )];
-    let mut table = |title: &str, rows: Vec<Row>| {
-        if !rows.is_empty() {
-            blocks.push(Block::Table(Table {
-                title: title.to_owned(),
-                rows,
-            }));
-        }
-    };
-    table(
-        "Parameters",
-        m.parameters
-            .iter()
-            .map(|p| plain(&p.label, value(&p.label, p.value)))
-            .collect(),
-    );
-    table(
-        "Coordinates q",
-        m.coordinates
-            .iter()
-            .map(|q| {
-                let ends = q.range.map(|ends| range(&q.label, ends));
-                plain(&q.label, ends.unwrap_or_else(|| unit(&q.label)))
-            })
-            .collect(),
-    );
-    table(
-        "Inputs",
-        m.inputs
-            .iter()
-            .map(|u| plain(&u.label, unit(&u.label)))
-            .collect(),
-    );
-    table(
-        "Known functions of time",
-        m.signals
-            .iter()
-            .map(|s| plain(&s.label, unit(&s.label)))
-            .collect(),
-    );
+    blocks.extend(table("Parameters", parameters.collect()));
+    blocks.extend(table("Coordinates q", coordinates.collect()));
+    blocks.extend(table("Inputs", inputs.collect()));
+    blocks.extend(table("Known functions of time", signals.collect()));
     headed("Quantities", blocks)
 }
 
@@ -91,35 +55,13 @@ fn equalities<'m>(
     title: &str,
     named: impl Iterator<Item = (&'m Label, &'m Expr)>,
 ) -> Option<Section> {
-    let mut rows = Vec::new();
-    for (label, value) in named {
-        let derivation = &mut *w.derivation;
-        let lowering = Lowering {
-            symbols: &derivation.symbols,
-            rates: &derivation.symbols.rates,
-        };
-        let Ok(expr) = lowering.lower(&mut derivation.algebra.graph, value) else {
-            continue;
-        };
-        let right = w.set(expr);
+    let rows = named.filter_map(|(label, value)| {
+        let expr = try_lowered(w, value)?;
         let left = Math::Letter(Letter::of(&label.name));
-        let cells = vec![
-            vec![equality(left, right)],
-            vec![words(&unit(label))],
-            vec![words(&label.about)],
-        ];
-        rows.push(Row {
-            cells,
-            line: label.line,
-        });
-    }
-    if rows.is_empty() {
-        return None;
-    }
+        Some(described(label, equality(left, w.set(expr)), unit(label)))
+    });
+    let table = table("", rows.collect())?;
     let mut blocks = w.definitions();
-    blocks.push(Block::Table(Table {
-        title: String::new(),
-        rows,
-    }));
+    blocks.push(table);
     Some(headed(title, blocks))
 }

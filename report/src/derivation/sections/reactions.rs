@@ -1,9 +1,7 @@
 //! Constraint forces.
 
-use super::super::Section;
-use super::super::display::Equation;
-use super::super::writer::Writer;
-use super::super::{Letter, Math};
+use super::super::lexicon::AXES;
+use super::super::{Equation, Letter, Math, Section, Writer};
 use super::phrases::{headed, with};
 use appell_codegen::mechanics::finding::Outcome;
 use appell_codegen::mechanics::reactions::reactions;
@@ -28,7 +26,7 @@ pub(super) fn section(w: &mut Writer<'_>) -> Outcome<Option<Section>> {
     let mut equations = Vec::new();
     let places = w.derivation.constraints.reactions.clone();
     for (place, force) in places.iter().zip(forces) {
-        for (component, axis) in force.into_iter().zip(super::super::lexicon::AXES) {
+        for (component, axis) in force.into_iter().zip(AXES) {
             let component = w.derivation.algebra.shortest(component);
             if component == Graph::ZERO {
                 continue;

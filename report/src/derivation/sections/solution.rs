@@ -1,7 +1,6 @@
 //! Symbolic elimination, for blocks of the mass matrix whose explicit form is unreadable.
 
-use super::super::display::Equation;
-use super::super::{About, Letter, Math};
+use super::super::{About, Equation, Letter, Math};
 use super::energy::numbered;
 use appell_codegen::mechanics::motion::Block;
 
@@ -33,16 +32,12 @@ impl Elimination {
                 let couplings = order.iter().enumerate().map(row).collect();
                 Self { order, couplings }
             }
-            Block::Factorized(block) => Self {
-                order: block.speeds.clone(),
-                couplings: (0..block.speeds.len())
-                    .map(|row| {
-                        (0..row)
-                            .filter(|&column| block.couples(row, column))
-                            .collect()
-                    })
-                    .collect(),
-            },
+            Block::Factorized(block) => {
+                let order = block.speeds.clone();
+                let row = |row| (0..row).filter(|&c| block.couples(row, c)).collect();
+                let couplings = (0..order.len()).map(row).collect();
+                Self { order, couplings }
+            }
         }
     }
 
@@ -86,7 +81,7 @@ impl Elimination {
             let coupling = entry("L", k, p);
             let value = Math::fraction(Math::sum(terms), numbered("D", p));
             equations.push(Equation::new(coupling.clone(), value).about(About::Inertia(k, p)));
-            let change = Math::product(vec![square(coupling.clone()), numbered("D", p)]);
+            let change = Math::product(vec![raised(coupling.clone(), 2), numbered("D", p)]);
             pivot.push((true, change));
             reduced.push((true, Math::product(vec![coupling, numbered("z", p)])));
         }
@@ -117,12 +112,8 @@ fn entry(name: &str, i: usize, j: usize) -> Math {
     } else {
         (i + 1, j + 1)
     };
-    let place = if i.max(j) > 9 {
-        format!("{i},{j}")
-    } else {
-        format!("{i}{j}")
-    };
-    Math::Letter(Letter::plain(name).below(&place))
+    let comma = if i.max(j) > 9 { "," } else { "" };
+    Math::Letter(Letter::plain(name).below(&format!("{i}{comma}{j}")))
 }
 
 /// `Π - b`
@@ -130,6 +121,6 @@ fn force_less_bias(k: usize) -> Math {
     Math::Sum(vec![(false, numbered("Π", k)), (true, numbered("b", k))])
 }
 
-fn square(base: Math) -> Math {
-    Math::Power(Box::new(base), Box::new(Math::integer(2)))
+pub(super) fn raised(base: Math, exponent: usize) -> Math {
+    Math::Power(Box::new(base), Box::new(Math::integer(exponent)))
 }

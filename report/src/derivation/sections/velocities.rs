@@ -1,10 +1,12 @@
 //! Angular velocities of frames and bodies, velocities of points.
 
-use appell_spec::mechanism::{BodyId, FrameId, GROUND, PointId};
+use std::collections::BTreeSet;
 
-use super::super::writer::Writer;
-use super::super::{About, Letter, Section};
+use appell_spec::mechanism::{FrameId, GROUND, PointId};
+
+use super::super::{About, Letter, Section, Writer};
 use super::phrases::{about, headed, sentence, with};
+use appell_codegen::symbolic::vector::ZERO;
 
 /// Velocities, each in the frame where it is shortest.
 pub(super) fn section(w: &mut Writer<'_>) -> Section {
@@ -12,22 +14,19 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
     for frame in written_frames(w) {
         let v = w.derivation.kinematics.frames.angular_velocity(frame);
         // A body-fixed frame rotates with its body.
-        let rotations = w
-            .derivation
-            .bodies
-            .iter()
-            .filter_map(|b| b.rotation.as_ref());
-        if rotations.into_iter().any(|r| r.velocity == v) {
+        let mut rotations = w.derivation.bodies.iter().flat_map(|b| &b.rotation);
+        if rotations.any(|r| r.velocity == v) {
             continue;
         }
         let letter = Letter::bold("Ω").below(&w.frame(frame));
         equations.extend(about(w.vector(letter, v.v, v.frame), About::Frame(frame)));
     }
-    for (index, body) in w.derivation.bodies.clone().into_iter().enumerate() {
+    let bodies = w.derivation.bodies.clone();
+    for (id, body) in w.mechanism.bodies.ids().zip(bodies) {
         if let Some(rotation) = body.rotation {
             let letter = Letter::bold("ω").below(&body.name);
             let vector = w.vector(letter, rotation.velocity.v, rotation.velocity.frame);
-            equations.extend(about(vector, About::Body(BodyId::new(index))));
+            equations.extend(about(vector, About::Body(id)));
         }
     }
     for point in moving_points(w) {
@@ -44,31 +43,23 @@ pub(super) fn section(w: &mut Writer<'_>) -> Section {
 }
 
 /// The rotating frames in which motions of bodies are written.
-fn written_frames(w: &Writer<'_>) -> Vec<FrameId> {
-    let mut frames: Vec<FrameId> = Vec::new();
-    for body in &w.derivation.bodies {
-        let rotation = body.rotation.as_ref().map(|r| r.velocity.frame);
-        for frame in [Some(body.centre.velocity.frame), rotation]
-            .into_iter()
-            .flatten()
-        {
-            if frame != GROUND && !frames.contains(&frame) {
-                frames.push(frame);
-            }
-        }
-    }
-    frames.sort_unstable();
-    frames
+fn written_frames(w: &Writer<'_>) -> BTreeSet<FrameId> {
+    let bodies = w.derivation.bodies.iter();
+    let frames = bodies.flat_map(|body| {
+        let rotation = body.rotation.as_ref();
+        let frames = [Some(&body.centre.velocity), rotation.map(|r| &r.velocity)];
+        frames.into_iter().flatten().map(|velocity| velocity.frame)
+    });
+    frames.filter(|&frame| frame != GROUND).collect()
 }
 
 /// Centres of mass, then the other points of application of loads.
 fn moving_points(w: &Writer<'_>) -> Vec<PointId> {
-    let mut points: Vec<PointId> = w.mechanism.bodies.iter().map(|b| b.centre).collect();
-    points.extend(w.mechanism.loads.iter().flat_map(|load| load.kind.points()));
+    let centres = w.mechanism.bodies.iter().map(|b| b.centre);
+    let loads = w.mechanism.loads.iter();
     let mut once = Vec::new();
-    for point in points {
-        let moves =
-            w.derivation.kinematics.velocity(point).v != appell_codegen::symbolic::vector::ZERO;
+    for point in centres.chain(loads.flat_map(|load| load.kind.points())) {
+        let moves = w.derivation.kinematics.velocity(point).v != ZERO;
         if moves && !once.contains(&point) {
             once.push(point);
         }

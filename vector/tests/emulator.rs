@@ -11,7 +11,7 @@ use std::ops::Range;
 use appell_codegen::jit::{Elementary, check};
 use appell_codegen::symbolic::{Function, Rational, Relation};
 use appell_codegen::tape::{
-    Argument, Arithmetic, Operation, ResultArray, Tape, Value, interpret_weighted,
+    Argument, Arithmetic, Operation, ResultArray, Tape, interpret_weighted,
 };
 use appell_runtime::model::At;
 use appell_test_kit::Random;
@@ -164,12 +164,12 @@ impl Processor {
         assert_eq!(*self.general(Register::RSP) % 16, 0);
         // SAFETY: the code passes addresses of its arguments and of its frame to routines of this type.
         unsafe {
-            let routine = transmute::<u64, Routine>(address);
+            let routine = transmute::<*const (), Routine>(address as *const ());
             routine(
                 first as *const f64,
                 second as *const f64,
                 to as *mut f64,
-                rows,
+                usize::try_from(rows).unwrap(),
             );
         }
         // Only memory and callee-saved registers survive.

@@ -104,18 +104,10 @@ impl BaseParameters {
             "without_effect": structure.without_effect,
         });
         if let Some(fit) = &self.fit {
-            let speeds = |speeds: &[Speed]| -> Value {
-                let speeds = speeds.iter().map(|own| {
-                    json!({
-                        "pseudo_velocity": own.name, "inputs": own.inputs, "nominal": own.nominal, "left": own.left,
-                    })
-                });
-                speeds.collect()
-            };
             value["motions"] = json!(fit.motions);
             value["condition"] = json!(fit.condition);
-            value["training"] = speeds(&fit.training);
-            value["test"] = speeds(&fit.test);
+            value["training"] = json!(fit.training);
+            value["test"] = json!(fit.test);
         }
         value
     }

@@ -1,7 +1,6 @@
 //! Many motions that differ in their initial states, eight at a time.
 
-use appell_runtime::integrate::{BlockSolver, Dop853, Dopri5, Places};
-use appell_runtime::lanes::{AtLanes, LANES};
+use appell_runtime::integrate::{BlockSolver, Dop853, Dopri5};
 use appell_runtime::simulate::{Method, Prepared, Sampling, run_together};
 use appell_runtime::{Trajectory, simulate::SimulationError};
 
@@ -114,28 +113,7 @@ fn integrate<'w>(
 ) -> Vec<Result<Trajectory, SimulationError>> {
     let (p, options) = (&ready.parameters, &ready.options);
     let (sampling, extras) = (Sampling::Every(ready.interval), motion.extras);
-    let mut outside = vec![[0.0; LANES]; closed.inputs()];
-    let (mut state, mut one) = (Vec::new(), vec![0.0; closed.inputs()]);
-    let mut rates = |which: &[usize; LANES], at: Places<'_>, rates: &mut [[f64; LANES]]| {
-        let Places { t, x, p: of_lanes } = at;
-        if closed.is_driven() {
-            for (l, &motion) in which.iter().enumerate() {
-                state.clear();
-                state.extend(x.iter().map(|x| x[l]));
-                controllers[motion].fill_outside(p, t[l], &state, &mut one);
-                for (outside, one) in outside.iter_mut().zip(&one) {
-                    outside[l] = *one;
-                }
-            }
-        }
-        let at = AtLanes {
-            t,
-            x,
-            u: &outside,
-            p: of_lanes,
-        };
-        closed.rates.call(at, [rates]);
-    };
+    let mut rates = closed.rates_of(|which, t, x, u| controllers[which].fill_outside(p, t, x, u));
     run_together(prepared, sampling, extras, |motions| match motion.method {
         Method::Dopri5 => BlockSolver::<Dopri5>::new().integrate(&mut rates, motions, options),
         _ => BlockSolver::<Dop853>::new().integrate(&mut rates, motions, options),

@@ -233,17 +233,10 @@ impl<'a> Reader<'a> {
             given.into_iter().map(Option::unwrap_or_default).collect()
         });
         if let Some(raw) = object.get("state") {
-            let given = info.states.iter().zip(&state);
-            let missing: Vec<&str> = given
-                .filter(|(_, value)| value.is_none())
-                .map(|(q, _)| q.name.as_ref())
-                .collect();
             // A wrong number has been reported already.
             let named: Object<'a> = serde_json::from_str(raw.get()).unwrap_or_default();
-            let missing: Vec<&str> = missing
-                .into_iter()
-                .filter(|name| named.get(name).is_none())
-                .collect();
+            let names = info.states.iter().map(|state| state.name.as_ref());
+            let missing: Vec<&str> = names.filter(|name| named.get(name).is_none()).collect();
             if !missing.is_empty() {
                 let message = format!("the state lacks {}", missing.join(", "));
                 self.tell(

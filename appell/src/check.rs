@@ -18,9 +18,7 @@ use crate::source::Source;
 
 /// A valid spec.
 pub struct Checked {
-    file: String,
     derived: Derived,
-    summary: Summary,
     warnings: Report,
 }
 
@@ -36,8 +34,6 @@ impl Source {
         let mut derived = audited(&self.file, &self.text)?;
         let warnings = std::mem::take(&mut derived.warnings);
         Ok(Checked {
-            file: self.file.clone(),
-            summary: Summary::of(&derived),
             warnings: Report::new(self.file.as_str(), self.text.as_str(), warnings),
             derived,
         })
@@ -53,17 +49,87 @@ impl Checked {
     /// Compares the equations with Kane's and with Lagrange's equations with multipliers, until a time
     /// limit.
     pub fn thorough(&self, limit: Duration) -> Result<Thorough, Error> {
-        Thorough::new(&self.file, &self.derived, limit)
+        Thorough::new(self.warnings.file(), &self.derived, limit)
+    }
+
+    fn speeds(&self) -> Vec<&str> {
+        let speeds = self.derived.mechanism.pseudo_velocities.iter();
+        speeds.map(|speed| speed.label.name.as_str()).collect()
+    }
+
+    /// Constraint rows, those that are embedded in the geometry or the others.
+    fn rows(&self, embedded: bool) -> Vec<&str> {
+        let rows = self.derived.derivation.constraints.rows.iter();
+        let rows = rows.filter(|row| row.is_embedded() == embedded);
+        rows.map(|row| row.name.as_str()).collect()
+    }
+
+    /// The speeds of each independent block of the mass matrix.
+    fn blocks(&self) -> Vec<Vec<&str>> {
+        let speeds = self.speeds();
+        let blocks = independent_blocks(&self.derived.derivation.gibbs.mass_matrix);
+        let names = |block: &Vec<usize>| block.iter().map(|&speed| speeds[speed]).collect();
+        blocks.iter().map(names).collect()
+    }
+
+    /// The coordinates whose rates are solved with pivoting.
+    fn solved_numerically(&self) -> Vec<&str> {
+        let coordinates = &self.derived.mechanism.coordinates;
+        let solved = self.derived.derivation.velocities.solved_numerically.iter();
+        solved
+            .map(|&q| coordinates[CoordinateId::new(q)].label.name.as_str())
+            .collect()
     }
 
     /// The summary as text.
     pub fn text(&self) -> String {
-        self.summary.text(&self.file)
+        let Derived { mechanism, .. } = &self.derived;
+        let mut text = format!("{}: {}\n", self.warnings.file(), mechanism.title);
+        // Writing to a string cannot fail.
+        let mut line = |label: &str, what: String| {
+            let _ = writeln!(text, "  {label:<22}{what}");
+        };
+        let counted = |names: &[&str]| match names {
+            [] => "none".to_owned(),
+            names => format!("{}: {}", names.len(), names.join(", ")),
+        };
+        let speeds = self.speeds();
+        line(
+            "degrees of freedom",
+            format!("{}: {}", speeds.len(), speeds.join(", ")),
+        );
+        line("coordinates", mechanism.coordinates.len().to_string());
+        line("constraint rows", counted(&self.rows(false)));
+        let embedded = self.rows(true);
+        if !embedded.is_empty() {
+            line("embedded in geometry", counted(&embedded));
+        }
+        let blocks = self.blocks().into_iter();
+        let blocks = blocks.map(|block| format!("{{{}}}", block.join(", ")));
+        line("blocks of M", blocks.collect::<Vec<_>>().join(" "));
+        let rates = match &self.solved_numerically()[..] {
+            [] => "in closed form, without division by a quantity that can vanish".to_owned(),
+            solved => format!(
+                "in closed form, except for {} (solved with pivoting)",
+                solved.join(", ")
+            ),
+        };
+        line("coordinate rates", rates);
+        text
     }
 
     /// The summary and the warnings as JSON.
     pub(crate) fn to_json(&self) -> Value {
-        self.summary.json(&self.warnings)
+        let Derived { mechanism, .. } = &self.derived;
+        let speeds = self.speeds();
+        json!({
+            "file": self.warnings.file(), "ok": true, "findings": findings(&self.warnings),
+            "title": mechanism.title,
+            "degrees_of_freedom": speeds.len(), "pseudo_velocities": speeds,
+            "coordinates": mechanism.coordinates.len(), "constraint_rows": self.rows(false),
+            "embedded_rows": self.rows(true), "mass_matrix_blocks": self.blocks(),
+            "solved_numerically": self.solved_numerically(),
+        })
     }
 }
 
@@ -96,113 +162,4 @@ pub fn findings(report: &Report) -> Vec<Value> {
         })
     };
     report.diagnostics().iter().map(finding).collect()
-}
-
-/// Summary of a spec.
-struct Summary {
-    title: String,
-    speeds: Vec<String>,
-    coordinates: usize,
-    rows: Vec<String>,
-    embedded: Vec<String>,
-    blocks: Vec<Vec<String>>,
-    solved_numerically: Vec<String>,
-}
-
-impl Summary {
-    fn of(derived: &Derived) -> Self {
-        let Derived {
-            mechanism,
-            derivation,
-            ..
-        } = derived;
-        let speeds: Vec<String> = mechanism
-            .pseudo_velocities
-            .iter()
-            .map(|w| w.label.name.clone())
-            .collect();
-        let rows = |embedded: bool| {
-            let rows = derivation
-                .constraints
-                .rows
-                .iter()
-                .filter(|row| row.is_embedded() == embedded);
-            rows.map(|row| row.name.clone()).collect()
-        };
-        let blocks = independent_blocks(&derivation.gibbs.mass_matrix);
-        let names = |block: &Vec<usize>| block.iter().map(|&speed| speeds[speed].clone()).collect();
-        let blocks = blocks.iter().map(names).collect();
-        let coordinate = |&q: &usize| {
-            mechanism.coordinates[CoordinateId::new(q)]
-                .label
-                .name
-                .clone()
-        };
-        Self {
-            title: mechanism.title.clone(),
-            coordinates: mechanism.coordinates.len(),
-            rows: rows(false),
-            embedded: rows(true),
-            blocks,
-            solved_numerically: derivation
-                .velocities
-                .solved_numerically
-                .iter()
-                .map(coordinate)
-                .collect(),
-            speeds,
-        }
-    }
-
-    fn text(&self, file: &str) -> String {
-        let mut text = format!("{file}: {}\n", self.title);
-        // Writing to a string cannot fail.
-        let mut line = |label: &str, what: String| {
-            let _ = writeln!(text, "  {label:<22}{what}");
-        };
-        line(
-            "degrees of freedom",
-            format!("{}: {}", self.speeds.len(), self.speeds.join(", ")),
-        );
-        let rows = |rows: &[String]| {
-            if rows.is_empty() {
-                "none".to_owned()
-            } else {
-                format!("{}: {}", rows.len(), rows.join(", "))
-            }
-        };
-        line("coordinates", self.coordinates.to_string());
-        line("constraint rows", rows(&self.rows));
-        if !self.embedded.is_empty() {
-            line("embedded in geometry", rows(&self.embedded));
-        }
-        let blocks: Vec<String> = self
-            .blocks
-            .iter()
-            .map(|block| format!("{{{}}}", block.join(", ")))
-            .collect();
-        line("blocks of M", blocks.join(" "));
-        line(
-            "coordinate rates",
-            if self.solved_numerically.is_empty() {
-                "in closed form, without division by a quantity that can vanish".to_owned()
-            } else {
-                format!(
-                    "in closed form, except for {} (solved with pivoting)",
-                    self.solved_numerically.join(", ")
-                )
-            },
-        );
-        text
-    }
-
-    fn json(&self, warnings: &Report) -> Value {
-        json!({
-            "file": warnings.file(), "ok": true, "findings": findings(warnings), "title": self.title,
-            "degrees_of_freedom": self.speeds.len(), "pseudo_velocities": self.speeds,
-            "coordinates": self.coordinates, "constraint_rows": self.rows,
-            "embedded_rows": self.embedded, "mass_matrix_blocks": self.blocks,
-            "solved_numerically": self.solved_numerically,
-        })
-    }
 }

@@ -3,18 +3,16 @@
 use std::fmt;
 
 use appell_codegen::formulations::compare_typed;
-use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::Expr;
-use appell_codegen::{Derived, derived};
+use appell_spec::Scope;
 use appell_spec::mechanism::Mechanism;
 use appell_spec::units::Unit;
-use appell_spec::{Scope, Snippet, formula};
 use serde_json::{Value, json};
 
 pub use appell_codegen::formulations::Agreement;
 
-use crate::conditions::per_second;
-use crate::setup::{Assignment, bracketed, unknown};
+use crate::conditions::{lowered, per_second};
+use crate::setup::{Assignment, expression, unknown};
 use crate::source::Source;
 use crate::{Error, Field};
 
@@ -46,25 +44,14 @@ impl Source {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn compare(&self, equations: &[Assignment]) -> Result<Compared, Error> {
-        let Derived {
-            mechanism,
-            mut derivation,
-            ..
-        } = derived(&self.file, &self.text)?;
+        let (mechanism, mut derivation) = self.derived()?;
         let mut typed: Vec<(usize, Expr)> = Vec::with_capacity(equations.len());
         let mut names = Vec::with_capacity(equations.len());
         for Assignment { name, value } in equations {
             let (state, name, unit) = rate(&mechanism, name)?;
-            let text = bracketed(value);
-            let snippet = Snippet::alone(&text);
-            let read = formula(&self.text, &snippet, "the equation", Scope::Equation, &unit);
-            let read = read.map_err(Error::expression(Field::Equation, name, &text))?;
-            let lowering = Lowering {
-                symbols: &derivation.symbols,
-                rates: &derivation.symbols.rates,
-            };
-            let lowered = lowering.lower(&mut derivation.algebra.graph, &read);
-            let lowered = lowered.map_err(|_| {
+            let (spec, scope) = (&self.text, Scope::Equation);
+            let expr = expression(spec, Field::Equation, name, value, scope, &unit)?;
+            let lowered = lowered(&mut derivation, &expr).ok_or_else(|| {
                 let message = format!("{name}: `{value}` divides by zero");
                 Error::request(Field::Equation, message)
             })?;

@@ -3,11 +3,12 @@
 use appell_codegen::mechanics::Derivation;
 use appell_codegen::mechanics::expressions::Lowering;
 use appell_codegen::symbolic::Expr;
+use appell_spec::Scope;
+use appell_spec::expr::Expr as SpecExpr;
 use appell_spec::mechanism::Mechanism;
 use appell_spec::units::{self, Unit};
-use appell_spec::{Scope, Snippet, formula};
 
-use crate::setup::{Assignment, bracketed, listed, unknown};
+use crate::setup::{Assignment, bracketed, expression, listed, unknown};
 use crate::{Error, Field};
 
 /// Symbols with their values, from texts such as `theta=0, dot(psi)=0`.
@@ -23,22 +24,23 @@ pub(crate) fn conditions(
             .parse()
             .map_err(|help| Error::request(Field::About, format!("{text}: {help}")))?;
         let (symbol, unit) = quantity(mechanism, derivation, &name)?;
-        let value = bracketed(&value);
-        let snippet = Snippet::alone(&value);
-        let read = formula(spec, &snippet, "the value", Scope::Motion, &unit);
-        let read = read.map_err(Error::expression(Field::About, &name, &value))?;
-        let lowering = Lowering {
-            symbols: &derivation.symbols,
-            rates: &derivation.symbols.rates,
-        };
-        let lowered = lowering.lower(&mut derivation.algebra.graph, &read);
-        let lowered = lowered.map_err(|_| {
-            let message = format!("{name}: `{value}` divides by zero");
+        let expr = expression(spec, Field::About, &name, &value, Scope::Motion, &unit)?;
+        let lowered = lowered(derivation, &expr).ok_or_else(|| {
+            let message = format!("{name}: `{}` divides by zero", bracketed(&value));
             Error::request(Field::About, message)
         })?;
         conditions.push((symbol, lowered));
     }
     Ok(conditions)
+}
+
+/// An expression in the graph of a derivation; `None` if it divides by zero.
+pub(crate) fn lowered(derivation: &mut Derivation, expr: &SpecExpr) -> Option<Expr> {
+    let lowering = Lowering {
+        symbols: &derivation.symbols,
+        rates: &derivation.symbols.rates,
+    };
+    lowering.lower(&mut derivation.algebra.graph, expr).ok()
 }
 
 /// Symbol and unit of a state, an input, or a rate: `psi_dot` or `dot(psi)`.

@@ -1,12 +1,12 @@
 //! The derivation of a spec as a page, as emitted code and as a drawing.
 
 use appell_codegen::compile::report;
+use appell_codegen::derived;
 use appell_codegen::emit::{Options, emit, emit_functions};
 use appell_codegen::linearisation::{Linearisation, SteadyMotion};
-use appell_codegen::mechanics::assemble;
 use appell_codegen::mechanics::finding::Finding;
+use appell_codegen::mechanics::{Derivation, assemble};
 use appell_codegen::program::Program;
-use appell_codegen::{Derived, derived};
 use appell_codegen::{c, python};
 use appell_report::derivation::{self, Page};
 use appell_report::drawing::{Moment, drawing, drawing_at};
@@ -61,6 +61,12 @@ impl Source {
         Ok(appell_spec::load(&self.file, &self.text)?.mechanism)
     }
 
+    /// The mechanism with its derivation.
+    pub(crate) fn derived(&self) -> Result<(Mechanism, Derivation), Error> {
+        let derived = derived(&self.file, &self.text)?;
+        Ok((derived.mechanism, derived.derivation))
+    }
+
     /// The derivation, from frames up to a stage.
     ///
     /// ```
@@ -72,11 +78,7 @@ impl Source {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn derivation(&self, stage: Stage, format: Format) -> Result<String, Error> {
-        let Derived {
-            mechanism,
-            mut derivation,
-            ..
-        } = derived(&self.file, &self.text)?;
+        let (mechanism, mut derivation) = self.derived()?;
         let page = derivation::page(&mechanism, &mut derivation, stage)
             .map_err(|findings| report(&mechanism, &self.text, &findings))?;
         Ok(format.set(&page))
@@ -93,11 +95,7 @@ impl Source {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn equations_of_motion(&self, format: Format) -> Result<String, Error> {
-        let Derived {
-            mechanism,
-            mut derivation,
-            ..
-        } = derived(&self.file, &self.text)?;
+        let (mechanism, mut derivation) = self.derived()?;
         let page = derivation::equations_of_motion(&mechanism, &mut derivation);
         Ok(format.set(&page))
     }
@@ -105,11 +103,7 @@ impl Source {
     /// The linear equations about a steady motion: A, B and the characteristic polynomial. States, rates
     /// and inputs without a condition such as `theta=0` or `dot(psi)=0` stay symbolic.
     pub fn linear_equations(&self, about: &[String], format: Format) -> Result<String, Error> {
-        let Derived {
-            mechanism,
-            mut derivation,
-            ..
-        } = derived(&self.file, &self.text)?;
+        let (mechanism, mut derivation) = self.derived()?;
         let conditions = conditions(&self.text, &mechanism, &mut derivation, about)?;
         let steady = SteadyMotion::new(&mechanism, &mut derivation, &conditions);
         let linear = steady.and_then(|steady| Linearisation::about(&mut derivation, steady));
@@ -162,11 +156,7 @@ impl Source {
 
     /// The mechanism at its initial state, with other values of some parameters and states.
     pub fn drawing_at(&self, set: &[Assignment], initial: &[Assignment]) -> Result<String, Error> {
-        let Derived {
-            mechanism,
-            derivation,
-            ..
-        } = derived(&self.file, &self.text)?;
+        let (mechanism, derivation) = self.derived()?;
         let refused = |findings: Vec<Finding>| report(&mechanism, &self.text, &findings);
         if set.is_empty() && initial.is_empty() {
             return drawing(&mechanism, derivation).map_err(|findings| refused(findings).into());

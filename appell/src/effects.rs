@@ -90,10 +90,7 @@ impl Example {
 
     fn of(effect: Effect, source: &Source) -> Result<Self, Error> {
         let mechanism = source.mechanism()?;
-        let spec = Spec {
-            file: source.file.clone(),
-            text: source.text.clone(),
-        };
+        let spec = Spec::from(source);
         let scales = magnitudes(&mechanism);
         let effects = std::slice::from_ref(&effect);
         let all = candidates(&mechanism, &spec, effects, &scales).map_err(Error::computation)?;

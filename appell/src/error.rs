@@ -101,7 +101,7 @@ pub enum Error {
     },
     /// No parameters can be estimated.
     #[error("{}{}", .0, advice(.0))]
-    Identify(#[source] IdentifyError),
+    Identify(#[from] IdentifyError),
     /// A gap cannot be diagnosed.
     #[error(transparent)]
     Diagnose(DiagnoseError),
@@ -229,13 +229,17 @@ impl Error {
             | Self::Recording(_)
             | Self::Table { .. } => Class::Data,
             Self::Simulate(SimulationError::Undetermined { .. }) => Class::Computation,
-            Self::Request { .. } | Self::Expression(_) | Self::Simulate(_) => Class::Request,
-            Self::Stability(_) | Self::Fmu(_) | Self::Json(_) | Self::Computation(_) => {
-                Class::Computation
-            }
+            Self::Request { .. }
+            | Self::Expression(_)
+            | Self::Simulate(_)
+            | Self::Chart(ChartError::Grid(..)) => Class::Request,
+            Self::Branch(error) | Self::Chart(ChartError::Branch(error)) => of_branch(error),
+            Self::Stability(_)
+            | Self::Chart(_)
+            | Self::Fmu(_)
+            | Self::Json(_)
+            | Self::Computation(_) => Class::Computation,
             Self::Steady(error) => of_steady(error),
-            Self::Branch(error) => of_branch(error),
-            Self::Chart(error) => of_chart(error),
             Self::Design(error) => error.class(),
             Self::At { source, .. } => source.class(),
             Self::Identify(error) => of_identification(error),
@@ -297,14 +301,6 @@ fn of_branch(error: &BranchError) -> Class {
         BranchError::Steady(error) => of_steady(error),
         BranchError::Isolated { .. } | BranchError::Range { .. } => Class::Request,
         BranchError::Stability(_) => Class::Computation,
-    }
-}
-
-fn of_chart(error: &ChartError) -> Class {
-    match error {
-        ChartError::Branch(error) => of_branch(error),
-        ChartError::Grid(..) => Class::Request,
-        _ => Class::Computation,
     }
 }
 
@@ -393,12 +389,6 @@ impl From<ChartError> for Error {
 impl From<EffectError> for Error {
     fn from(EffectError(report): EffectError) -> Self {
         Self::Report(report)
-    }
-}
-
-impl From<IdentifyError> for Error {
-    fn from(error: IdentifyError) -> Self {
-        Self::Identify(error)
     }
 }
 

@@ -150,39 +150,33 @@ impl Values {
             info.input_len(),
             info.parameter_len(),
         );
-        let mut rates = vec![0.0; n];
-        let (mut a, mut b, mut p) = (vec![0.0; n * n], vec![0.0; n * m], vec![0.0; n * k]);
-        model.rates(at, &mut rates);
+        let filled = |count: usize, fill: &dyn Fn(&mut [f64])| {
+            let mut values = vec![0.0; count];
+            fill(&mut values);
+            values
+        };
+        let (mut a, mut b) = (vec![0.0; n * n], vec![0.0; n * m]);
         model.jacobians(at, &mut vec![0.0; n], &mut a, &mut b);
-        model.parameter_jacobian(at, &mut p);
         let (mut mass_matrix, mut bias, mut forces) =
             (vec![0.0; s * s], vec![0.0; s], vec![0.0; s]);
         model.appell(at, &mut mass_matrix, &mut bias, &mut forces);
-        let mut residual = vec![0.0; info.constraint_rows.len()];
-        model.constraint_residual(at, &mut residual);
-        let mut reactions = vec![0.0; 3 * info.reactions.len()];
-        model.constraint_forces(at, &mut reactions);
-        let mut outputs = vec![0.0; info.output_len()];
-        model.outputs(at, &mut outputs);
+        let (rows, reactions) = (info.constraint_rows.len(), info.reactions.len());
         Self {
-            rates,
+            rates: filled(n, &|rates| model.rates(at, rates)),
             a,
             b,
-            p,
+            p: filled(n * k, &|p| model.parameter_jacobian(at, p)),
             mass_matrix,
             bias,
             forces,
             energies: model.energies(at),
-            residual,
-            reactions,
+            residual: filled(rows, &|rows| model.constraint_residual(at, rows)),
+            reactions: filled(3 * reactions, &|forces| model.constraint_forces(at, forces)),
             contacts: ContactForces::new().at(model, at).to_vec(),
             conditions: Conditions::of(model, at),
-            outputs,
-            inverse_dynamics: accelerations.map(|given| {
-                let mut demand = vec![0.0; s];
-                model.inverse_dynamics(at, given, &mut demand);
-                demand
-            }),
+            outputs: filled(info.output_len(), &|outputs| model.outputs(at, outputs)),
+            inverse_dynamics: accelerations
+                .map(|given| filled(s, &|demand| model.inverse_dynamics(at, given, demand))),
         }
     }
 

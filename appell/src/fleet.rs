@@ -6,15 +6,16 @@
 
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Component, Path, PathBuf};
-use std::sync::Mutex;
-use std::sync::atomic::{AtomicUsize, Ordering};
 
 use appell_gap::diagnose::{ENGINE, Options};
 use appell_report::gap::page;
+use rayon::ThreadPoolBuilder;
+use rayon::prelude::*;
 use serde::Deserialize;
 use serde_json::Value;
 
 use crate::diagnosis::Library;
+use crate::gap_report::Hypothesis;
 use crate::{Error, Field, files, gap_report, recording};
 
 /// Folders to be diagnosed with the same options.
@@ -53,18 +54,9 @@ pub struct Summary {
     /// The verdict.
     pub verdict: String,
     /// The hypotheses, the most probable first.
-    pub which: Vec<Likely>,
+    pub which: Vec<Hypothesis>,
     /// Prediction errors on held-out runs; nothing without such runs.
     pub how_far: Option<Closed>,
-}
-
-/// A hypothesis.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-pub struct Likely {
-    /// Its effects.
-    pub effects: Vec<String>,
-    /// Its probability.
-    pub probability: f64,
 }
 
 /// How far the gap closes.
@@ -98,28 +90,15 @@ impl Fleet<'_> {
             return Err(Error::request(Field::Recordings, "there are no folders"));
         }
         let names = names(self.folders);
-        let next = AtomicUsize::new(0);
-        let rigs: Mutex<Vec<Option<Rig>>> = Mutex::new(vec![None; self.folders.len()]);
-        let work = || {
-            loop {
-                let place = next.fetch_add(1, Ordering::Relaxed);
-                let Some(folder) = self.folders.get(place) else {
-                    return;
-                };
-                let rig = self.rig(folder, &names[place]);
-                done(&rig);
-                if let Ok(mut rigs) = rigs.lock() {
-                    rigs[place] = Some(rig);
-                }
-            }
-        };
-        std::thread::scope(|scope| {
-            for _ in 0..self.workers.clamp(1, self.folders.len()) {
-                scope.spawn(work);
-            }
+        let workers = self.workers.clamp(1, self.folders.len());
+        let pool = ThreadPoolBuilder::new().num_threads(workers).build();
+        let rigs = self.folders.par_iter().zip(&names).with_max_len(1);
+        let rigs = rigs.map(|(folder, name)| {
+            let rig = self.rig(folder, name);
+            done(&rig);
+            rig
         });
-        let rigs = rigs.into_inner().unwrap_or_default();
-        Ok(rigs.into_iter().flatten().collect())
+        Ok(pool.map_err(Error::computation)?.install(|| rigs.collect()))
     }
 
     fn rig(&self, folder: &Path, name: &str) -> Rig {

@@ -3,9 +3,8 @@
 mod error;
 
 use std::io::{Cursor, Write as _};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
-use std::sync::atomic::{AtomicU32, Ordering};
 use std::{env, fs, io};
 
 use appell_codegen::fmu::{self, Emitted};
@@ -104,42 +103,18 @@ fn unsupported(system: &str) -> FmuError {
     FmuError::Platform { platform }
 }
 
-/// A folder that is removed at the end.
-struct Scratch(PathBuf);
-
-static NEXT: AtomicU32 = AtomicU32::new(0);
-
-impl Scratch {
-    fn new() -> io::Result<Self> {
-        loop {
-            let number = NEXT.fetch_add(1, Ordering::Relaxed);
-            let path = env::temp_dir().join(format!("appell-fmu-{}-{number}", std::process::id()));
-            match fs::create_dir(&path) {
-                Ok(()) => return Ok(Self(path)),
-                // One of another process that ended early.
-                Err(cause) if cause.kind() == io::ErrorKind::AlreadyExists => {}
-                Err(cause) => return Err(cause),
-            }
-        }
-    }
-}
-
-impl Drop for Scratch {
-    fn drop(&mut self) {
-        // On failure the rest stays among temporary files.
-        let _ = fs::remove_dir_all(&self.0);
-    }
-}
-
 /// The shared library.
 fn compiled(emitted: &Emitted) -> Result<Vec<u8>, Error> {
     let failed = |doing| move |cause| FmuError::Scratch { doing, cause };
-    let folder = Scratch::new().map_err(failed("make a folder for the compilation"))?;
+    // Removed at the end; on failure it stays among temporary files.
+    let folder = tempfile::Builder::new().prefix("appell-fmu-").tempdir();
+    let folder = folder.map_err(failed("make a folder for the compilation"))?;
     for (name, text) in &emitted.sources {
-        files::write(&folder.0.join(name), text)?;
+        files::write(&folder.path().join(name), text)?;
     }
-    compile(emitted, &folder.0)?;
-    Ok(fs::read(folder.0.join(LIBRARY)).map_err(failed("read the compiled library"))?)
+    compile(emitted, folder.path())?;
+    let library = fs::read(folder.path().join(LIBRARY));
+    Ok(library.map_err(failed("read the compiled library"))?)
 }
 
 /// The name of the library while it is made.

@@ -8,7 +8,7 @@ use appell_codegen::schedule::{pi, schedule};
 use appell_codegen::symbolic::{Derivatives, Expr, Graph};
 use appell_codegen::tape::{Tape, enclose_along, interpret};
 use appell_runtime::Signal;
-use appell_runtime::model::{Along, At, ModelInfo};
+use appell_runtime::model::{Along, At, ModelInfo, Quantity};
 use appell_runtime::real::{Enclosure, Real};
 use appell_runtime::signal::{SignalError, differentiated, enclosed};
 use appell_spec::Mechanism;
@@ -73,30 +73,10 @@ impl Workbench {
     /// The expressions as a function of time, state and parameters.
     pub(crate) fn function(
         self,
-        info: &ModelInfo,
+        model: &ModelInfo,
         exprs: Vec<Expr>,
     ) -> Result<StateFunction, SignalError> {
-        StateFunction::new(self, info, exprs)
-    }
-}
-
-/// Up to this many inputs and signals are evaluated without allocation.
-const FEW_INPUTS: usize = 16;
-
-/// Expressions as one function of time, state and parameters.
-pub(crate) struct StateFunction {
-    tape: Tape,
-    native: Option<NativeFunction>,
-    count: usize,
-    declared: usize,
-    /// Signals and the orders of their derivatives that are inputs of the model.
-    derivatives: Vec<(usize, u8)>,
-    signals: Vec<Signal>,
-}
-
-impl StateFunction {
-    fn new(bench: Workbench, model: &ModelInfo, exprs: Vec<Expr>) -> Result<Self, SignalError> {
-        let Workbench { graph, symbols } = bench;
+        let Self { graph, symbols } = self;
         let signals = model
             .signals
             .iter()
@@ -105,21 +85,11 @@ impl StateFunction {
         let mut info = model.clone();
         // The inputs of this function: those of the model, of which it must not use the declared ones, and
         // all signals.
-        let mut inputs = model.inputs.to_vec();
-        inputs.extend(
-            model
-                .signals
-                .iter()
-                .map(|signal| appell_runtime::model::Quantity {
-                    name: signal.name.clone(),
-                    about: "".into(),
-                    unit: "".into(),
-                    scale: 1.0,
-                    value: 0.0,
-                    range: [f64::NEG_INFINITY, f64::INFINITY],
-                }),
-        );
-        info.inputs = inputs.into();
+        let of_signals = model.signals.iter().map(|signal| Quantity {
+            name: signal.name.clone(),
+            ..Quantity::new("", "", "")
+        });
+        info.inputs = model.inputs.iter().cloned().chain(of_signals).collect();
         let mut input_symbols = symbols.inputs.clone();
         let derivatives = model.signal_inputs.iter();
         input_symbols.extend(
@@ -157,7 +127,7 @@ impl StateFunction {
         let tape = schedule(&program, &program.functions[0]);
         // The interpreter gives the same results.
         let native = NativeFunction::compile(&tape, sizes).ok();
-        Ok(Self {
+        Ok(StateFunction {
             tape,
             native,
             count,
@@ -166,10 +136,31 @@ impl StateFunction {
             signals,
         })
     }
+}
 
+/// Up to this many inputs and signals are evaluated without allocation.
+const FEW_INPUTS: usize = 16;
+
+/// Expressions as one function of time, state and parameters.
+pub(crate) struct StateFunction {
+    tape: Tape,
+    native: Option<NativeFunction>,
+    count: usize,
+    declared: usize,
+    /// Signals and the orders of their derivatives that are inputs of the model.
+    derivatives: Vec<(usize, u8)>,
+    signals: Vec<Signal>,
+}
+
+impl StateFunction {
     /// Its operations. Their inputs are the declared ones, then those of [`Self::fill_signals`].
     pub(crate) fn tape(&self) -> &Tape {
         &self.tape
+    }
+
+    /// How many values it has.
+    pub(crate) fn count(&self) -> usize {
+        self.count
     }
 
     /// How many declared inputs there are.

@@ -2,10 +2,7 @@
 
 use std::path::Path;
 
-use appell_gap::diagnose::{
-    Ahead, Change, Changes, ENGINE, Interpolated, Law, Refitted, Report, SignalEffect, Tolerances,
-    Window,
-};
+use appell_gap::diagnose::{Ahead, Change, Changes, ENGINE, Law, Report};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -16,44 +13,15 @@ const SCHEMA: &str = "gap-report/1";
 
 /// A gap report as JSON; `next` is the file of the proposed experiment, `findings` are those about the data.
 pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value {
-    let equations = report.place.equations.iter().map(|e| {
-        json!({ "name": e.name, "share": e.share, "p_value": e.p_value, "rms": e.rms, "unit": e.unit })
-    });
-    let windows = report.place.windows.iter().map(window);
-    let region = report
-        .place
-        .region
-        .iter()
-        .map(|r| json!({ "variable": r.variable, "description": r.description, "z": r.z }));
-    let which = report.which.iter().map(|h| {
-        let parameters = h.parameters.iter().map(value);
-        json!({
-            "effects": h.effects, "probability": h.probability, "same_as": h.same_as,
-            "log_bayes_factor": h.log_bayes_factor, "parameters": parameters.collect::<Vec<_>>(),
-            "changes": h.changes.as_ref().map(changes),
-        })
-    });
-    let tied = report.tied.iter().map(|group| {
-        let names = group.iter().map(|effects| effects.join("+"));
-        names.collect::<Vec<_>>()
-    });
+    let joined = |group: &[Vec<String>]| -> Vec<String> {
+        group.iter().map(|effects| effects.join("+")).collect()
+    };
+    let tied = report.tied.iter().map(|group| joined(group));
     let far = report.how_far.as_ref().map(|far| {
-        json!({
-            "horizon_s": far.horizon_s, "nominal": far.nominal, "refitted": far.refitted,
-            "with_effect": far.with_effect, "noise_floor": far.noise_floor, "closed": far.closed,
-            "closed_ci95": far.closed_ci95, "closed_vs_refitted": far.closed_vs_refitted,
-            "before": far.before, "bettered_ci95": far.bettered_ci95,
-            "budget": far.budget.iter().map(|part| json!({
-                "effect": part.name, "closed": part.closed, "interval": part.interval,
-                "material": part.is_material,
-            })).collect::<Vec<_>>(),
-            "runs": far.runs, "horizons": report.horizons.iter().map(ahead).collect::<Vec<_>>(),
-        })
+        let mut far = json!(far);
+        far["horizons"] = report.horizons.iter().map(ahead).collect();
+        far
     });
-    let detectable = report
-        .detectable
-        .iter()
-        .map(|d| json!({ "effect": d.effect, "smallest": d.smallest, "unit": d.unit }));
     let failed = report
         .failed
         .iter()
@@ -63,7 +31,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
     );
     let experiment = report.experiment.as_ref().map(|one| {
         json!({
-            "separates": one.separates.iter().map(|effects| effects.join("+")).collect::<Vec<_>>(),
+            "separates": joined(&one.separates),
             "file": next.and_then(Path::file_name).map(|name| name.to_string_lossy()),
             "separation_now": one.separation_now, "separation_then": one.separation_then,
             "about": one.about,
@@ -74,39 +42,22 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         "engine": ENGINE,
         "mechanism": report.mechanism,
         "verdict": report.verdict.word(),
-        "hints": report.hints.iter().map(|hint| json!({
-            "variable": hint.variable,
-            "equation": hint.equation,
-            "gain": hint.gain,
-            "log_bayes_factor": hint.log_bayes_factor,
-        })).collect::<Vec<_>>(),
-        "tolerances": report.tolerances.map(tolerances),
-        "interpolated": report.interpolated.iter().map(interpolated).collect::<Vec<_>>(),
+        "hints": report.hints,
+        "tolerances": report.tolerances,
+        "interpolated": report.interpolated,
         "by_simulation": report.is_by_simulation,
         "by_forces": report.is_by_forces,
         "rows": { "fitted": report.rows[0], "all": report.rows[1] },
-        "where": {
-            "domain": report.place.domain,
-            "equations": equations.collect::<Vec<_>>(),
-            "windows": windows.collect::<Vec<_>>(),
-            "region": region.collect::<Vec<_>>(),
-        },
-        "which": which.collect::<Vec<_>>(),
+        "where": report.place,
+        "which": report.which,
         "tied": tied.collect::<Vec<_>>(),
         "how_far": far,
         "experiment": experiment,
-        "detectable": detectable.collect::<Vec<_>>(),
-        "left": report.left.as_ref().map(|left| json!({
-            "place": left.place,
-            "variable": left.variable,
-            "about": left.about,
-            "log_bayes_factor": left.log_bayes_factor,
-            "gain": left.gain,
-            "explained": left.explained,
-        })),
+        "detectable": report.detectable,
+        "left": report.left,
         "law": report.law.as_ref().map(law),
         "change": report.change.as_ref().map(change),
-        "imperfections": report.imperfections.iter().map(value).collect::<Vec<_>>(),
+        "imperfections": report.imperfections,
         "independent": report.independent,
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
@@ -114,37 +65,26 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
     })
 }
 
-/// A value that was found.
-fn value(found: &appell_gap::diagnose::Value) -> Value {
-    json!({ "name": found.name, "value": found.value, "std": found.std, "unit": found.unit })
-}
-
 /// A measured law: its curve with standard deviations, and the closest analytic forms.
 fn law(law: &Law) -> Value {
     let column = |of: fn(&[f64; 3]) -> f64| law.curve.iter().map(of).collect::<Vec<_>>();
-    let forms = law.forms.iter().map(|form| {
-        json!({ "form": form.text, "share": form.share, "log_bayes_factor": form.log_bayes_factor })
-    });
     json!({
         "equation": law.equation, "unit": law.unit, "depends_on": law.depends_on,
         "variable": law.variable, "variable_unit": law.variable_unit, "factor": law.factor,
         "at": column(|[x, ..]| *x), "value": column(|[_, force, _]| *force),
         "std": column(|[.., std]| *std),
         "log_bayes_factor": law.log_bayes_factor,
-        "forms": forms.collect::<Vec<_>>(),
+        "forms": law.forms,
     })
 }
 
 /// The difference from the previous recordings, in SI.
 fn change(change: &Change) -> Value {
     let (verdict, effects) = &change.before;
-    let parameters = change.parameters.iter().map(
-        |one| json!({ "name": one.name, "value": one.value, "std": one.std, "spread": one.spread }),
-    );
     json!({
         "changed": change.is_changed,
         "before": { "verdict": verdict.word(), "effects": effects },
-        "parameters": parameters.collect::<Vec<_>>(),
+        "parameters": change.parameters,
     })
 }
 
@@ -155,23 +95,6 @@ fn ahead(ahead: &Ahead) -> Value {
         "horizon_s": horizon, "free_run": horizon.is_none(), "nominal": ahead.nominal,
         "refitted": ahead.refitted, "with_effect": ahead.with_effect,
         "noise_floor": ahead.noise_floor,
-    })
-}
-
-/// The changes of the spec, as [`Hypothesis::changes`] reads them.
-fn changes(changes: &Changes) -> Value {
-    let inputs = changes.inputs.iter();
-    let parameters = changes.parameters.iter().map(|p| {
-        json!({ "name": p.name, "stated": p.stated, "value": p.value, "std": p.std, "unit": p.unit })
-    });
-    let beside = changes.signal_effects.iter();
-    json!({
-        "items": changes.items,
-        "inputs": inputs.map(|(input, adds)| json!({ "input": input, "adds": adds })).collect::<Vec<_>>(),
-        "parameters": parameters.collect::<Vec<_>>(),
-        "beside": beside.map(|b| json!({
-            "effect": b.effect, "acts": b.acts, "on": b.on, "output": b.output,
-        })).collect::<Vec<_>>(),
     })
 }
 
@@ -189,54 +112,23 @@ pub struct GapReport {
 }
 
 /// A hypothesis of a report.
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub struct Hypothesis {
-    effects: Vec<String>,
+    /// Its effects.
+    pub effects: Vec<String>,
     /// Its probability.
     pub probability: f64,
     #[serde(default)]
     pub(crate) parameters: Vec<Found>,
-    changes: Option<WrittenChanges>,
+    changes: Option<Changes>,
 }
 
-#[derive(Debug, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Deserialize)]
 pub(crate) struct Found {
     pub(crate) name: String,
     pub(crate) value: Option<f64>,
     pub(crate) std: Option<f64>,
     pub(crate) unit: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct WrittenChanges {
-    items: String,
-    inputs: Vec<Added>,
-    parameters: Vec<Parameter>,
-    beside: Vec<Outside>,
-}
-
-#[derive(Debug, Deserialize)]
-struct Added {
-    input: String,
-    adds: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct Parameter {
-    name: String,
-    stated: f64,
-    value: f64,
-    std: Option<f64>,
-    unit: String,
-}
-
-#[derive(Debug, Deserialize)]
-struct Outside {
-    effect: String,
-    acts: String,
-    on: String,
-    #[serde(default)]
-    output: Option<String>,
 }
 
 impl GapReport {
@@ -326,49 +218,6 @@ impl Hypothesis {
 
     /// Its changes of the spec.
     pub fn changes(&self) -> Changes {
-        let Some(written) = &self.changes else {
-            return Changes::default();
-        };
-        let inputs = written.inputs.iter();
-        let parameters = written.parameters.iter().map(|p| Refitted {
-            name: p.name.clone(),
-            stated: p.stated,
-            value: p.value,
-            std: p.std,
-            unit: p.unit.clone(),
-        });
-        let signal_effects = written.beside.iter().map(|b| SignalEffect {
-            effect: b.effect.clone(),
-            acts: b.acts.clone(),
-            on: b.on.clone(),
-            output: b.output.clone(),
-        });
-        Changes {
-            items: written.items.clone(),
-            brought: Vec::new(),
-            inputs: inputs
-                .map(|one| (one.input.clone(), one.adds.clone()))
-                .collect(),
-            parameters: parameters.collect(),
-            signal_effects: signal_effects.collect(),
-        }
+        self.changes.clone().unwrap_or_default()
     }
-}
-
-fn window(window: &Window) -> Value {
-    let mut fields = json!({
-        "run": window.run, "from_s": window.from, "to_s": window.to, "equation": window.equation, "z": window.z,
-    });
-    if let Some(channel) = &window.unexplained {
-        fields["unexplained"] = json!(channel);
-    }
-    fields
-}
-
-fn tolerances(found: Tolerances) -> Value {
-    json!({ "factor": found.factor, "log_bayes_factor": found.log_bayes_factor })
-}
-
-fn interpolated(found: &Interpolated) -> Value {
-    json!({ "input": found.input, "log_likelihood": found.log_likelihood })
 }

@@ -2,10 +2,9 @@
 
 pub use appell_runtime::inputs::InputSource;
 
-mod by_model;
 pub(crate) mod closed_loop;
 pub mod controller;
 pub mod feedback;
-mod law;
+pub mod law;
 mod switching;
 pub mod tabulated;

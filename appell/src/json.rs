@@ -8,6 +8,7 @@ mod motion;
 mod recording;
 
 use appell_runtime::model::Quantity;
+use nalgebra::DMatrix;
 use serde_json::{Map, Value, json};
 
 pub use crate::gap_report::json as diagnosis;
@@ -49,6 +50,13 @@ pub(crate) fn named(quantities: &[Quantity], values: &[f64]) -> Map<String, Valu
     let pairs = quantities.iter().zip(values);
     pairs
         .map(|(quantity, &value)| (quantity.name.to_string(), json!(value)))
+        .collect()
+}
+
+/// The rows of a matrix.
+pub(crate) fn rows(matrix: &DMatrix<f64>) -> Value {
+    let rows = matrix.row_iter();
+    rows.map(|row| row.iter().copied().collect::<Value>())
         .collect()
 }
 

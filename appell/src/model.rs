@@ -12,6 +12,7 @@ use appell_gap::{diagnose as gap, identify};
 use appell_recordings::DataSet;
 use appell_runtime::integrate::{Direction, Event};
 use appell_runtime::model::{Model as Equations, ModelInfo};
+use appell_runtime::simulate::SimulationError;
 use appell_runtime::{Simulation, Trajectory};
 
 use crate::control::attraction::{self, Explored};
@@ -52,14 +53,7 @@ impl Model {
     /// # Ok::<(), appell::Error>(())
     /// ```
     pub fn from_spec(text: &str) -> Result<Self, Error> {
-        Self::of(
-            Source {
-                file: "spec.toml".to_owned(),
-                text: text.to_owned(),
-                shipped: None,
-            },
-            None,
-        )
+        Self::of(Source::of("spec.toml", text), None)
     }
 
     /// The model of a spec file.
@@ -84,24 +78,24 @@ impl Model {
             None => engine::Equations::at_hand(&source)?,
             Some(engine) => engine::Equations::new(&source, engine)?,
         };
-        Ok(Self {
+        Ok(Self::with(source, equations))
+    }
+
+    fn with(source: Source, equations: engine::Equations) -> Self {
+        Self {
             source,
             equations,
             adjoints: false,
             rates: OnceLock::new(),
-        })
+        }
     }
 
     /// The model of a derivation that is there already, for motions as machine code; `derived` is that of
     /// the source. Whatever needs derivatives of the equations panics: steady motions, gains, evaluation.
     pub fn of_motions(source: Source, derived: Derived) -> Result<Self, Error> {
         let program = derived.program(&source.text, &FunctionKind::OF_MOTIONS)?;
-        Ok(Self {
-            source,
-            equations: engine::Equations::of(program, Engine::Jit),
-            adjoints: false,
-            rates: OnceLock::new(),
-        })
+        let equations = engine::Equations::of(program, Engine::Jit);
+        Ok(Self::with(source, equations))
     }
 
     /// The model of a spec with adjoints, which [`identify`](Self::identify) and
@@ -109,10 +103,8 @@ impl Model {
     pub fn for_estimation(source: Source) -> Result<Self, Error> {
         let equations = engine::Equations::for_estimation(&source)?;
         Ok(Self {
-            source,
-            equations,
             adjoints: true,
-            rates: OnceLock::new(),
+            ..Self::with(source, equations)
         })
     }
 
@@ -188,6 +180,14 @@ impl Model {
             }
             .run()
         };
+        self.simulate_with(motion, run)
+    }
+
+    fn simulate_with(
+        &self,
+        motion: &Motion,
+        run: impl FnOnce(Simulation<'_>) -> Result<Trajectory, SimulationError>,
+    ) -> Result<Simulated, Error> {
         let ready = motion.ready(self.equations(), self.setup()?, self.name())?;
         motion.simulate(self.equations(), &ready, run)
     }
@@ -223,8 +223,7 @@ impl Model {
             }
             .run()
         };
-        let ready = motion.ready(self.equations(), self.setup()?, self.name())?;
-        motion.simulate(self.equations(), &ready, run)
+        self.simulate_with(motion, run)
     }
 
     /// A page that animates a motion; `ending` is the reason of an early end.

@@ -35,7 +35,7 @@ pub fn read_frames(
     model: Option<&str>,
 ) -> Result<DataSet, Error> {
     let spec = model.map(Source::find).transpose()?;
-    let spec = spec.as_ref().map(spec_of);
+    let spec = spec.as_ref().map(Spec::from);
     with_doubts(match (description, spec) {
         (Some((file, text)), spec) => {
             appell_recordings::read_frames(file, text, frames, &library(), spec)?
@@ -49,13 +49,6 @@ pub fn read_frames(
 const UNNAMED: &str = "CSV files and data frames need the mechanism whose names their columns have; name a shipped one \
                        or a spec";
 
-fn spec_of(source: &Source) -> Spec {
-    Spec {
-        file: source.file.clone(),
-        text: source.text.clone(),
-    }
-}
-
 /// The shipped mechanisms.
 fn library() -> Vec<(&'static str, Spec)> {
     let shipped = ALL.iter().map(|shipped| {
@@ -66,7 +59,7 @@ fn library() -> Vec<(&'static str, Spec)> {
 }
 
 fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
-    let spec = source.map(spec_of);
+    let spec = source.map(Spec::from);
     if let Some(path) = paths.iter().find(|path| !path.exists()) {
         let message = format!("there is no folder or file `{}`", path.display());
         return Err(Error::request(Field::Recordings, message));

@@ -103,9 +103,5 @@ pub fn entry(file: &str, robot: &Imported) -> Value {
 
 /// The spec of a robot, as if it were read from a file.
 pub fn source(file: &str, imported: &Imported) -> Source {
-    Source {
-        file: file.to_owned(),
-        text: imported.spec.clone(),
-        shipped: None,
-    }
+    Source::of(file, imported.spec.as_str())
 }

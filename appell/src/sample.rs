@@ -32,17 +32,7 @@ struct Rig {
 const CART: Rig = Rig {
     spec: ("my_rig.toml", include_str!("../rig/my_rig.toml")),
     description: include_str!("../rig/recording.toml"),
-    hidden: r#"
-[loads.rubbing]
-kind     = "generalized"
-velocity = "v"
-force    = "-0.4 [N]*tanh(v/(0.02 [m/s]))"
-
-[loads.grain]
-kind     = "generalized"
-velocity = "v"
-force    = "-0.3 [N]*sin(20 [1/m]*x)"
-"#,
+    hidden: include_str!("sample/cart.toml"),
     measured: &["x"],
     inputs: &["F"],
     commands: |t, [slow, fast]| vec![2.0 * (slow * t).sin() + 1.5 * (fast * t).cos()],
@@ -53,21 +43,7 @@ force    = "-0.3 [N]*sin(20 [1/m]*x)"
 const ARM: Rig = Rig {
     spec: ("arm.toml", include_str!("../arm/arm.toml")),
     description: include_str!("../arm/recording.toml"),
-    hidden: r#"
-[points.tool]
-from = "fore"
-in   = "fore"
-at   = ["0.02 [m]", 0, "-0.31 [m]"]
-
-[bodies.tool]
-centre = "tool"
-mass   = "0.5 [kg]"
-
-[loads.end]
-kind     = "generalized"
-velocity = "w_2"
-force    = "-max(q_2 - 0.6, 0)*(150 [N*m] + 40 [N*m*s]*w_2)"
-"#,
+    hidden: include_str!("sample/arm.toml"),
     measured: &["q_1", "q_2"],
     inputs: &["tau_1", "tau_2"],
     commands: |t, [slow, fast]| {

@@ -2,7 +2,7 @@
 
 use std::borrow::Cow;
 
-use appell_runtime::model::{ModelInfo, tidy};
+use appell_runtime::model::{ModelInfo, Quantity, tidy};
 use appell_spec::expr::Expr;
 pub use appell_spec::mechanism::InputId;
 use appell_spec::mechanism::{CoordinateId, ParameterId, SpeedId};
@@ -92,22 +92,11 @@ impl<'a> Setup<'a> {
     pub fn set_with(&mut self, field: Field, assignments: &[Assignment]) -> Result<(), Error> {
         unique(assignments, field)?;
         for assignment in assignments {
-            let names = || {
-                self.mechanism
-                    .parameters
-                    .iter()
-                    .map(|p| p.label.name.as_str())
-            };
-            let index = known(field, &assignment.name, "parameter", names())?;
-            let unit = self.mechanism.parameters[ParameterId::new(index)]
-                .label
-                .unit
-                .clone();
-            let value = self.value(field, &assignment.name, &assignment.value, &unit)?;
-            let parameter = &self.mechanism.parameters[ParameterId::new(index)];
-            let low = parameter.at_least.unwrap_or(f64::NEG_INFINITY);
-            let high = parameter.at_most.unwrap_or(f64::INFINITY);
-            inside(&assignment.name, value, [low, high], &unit)
+            let Assignment { name, value } = assignment;
+            let index = known(field, name, "parameter", &self.info.parameters)?;
+            let unit = self.unit_of_parameter(index);
+            let value = self.value(field, name, value, unit)?;
+            inside(name, value, self.limits_of_parameter(index), unit)
                 .map_err(|message| Error::request(field, message))?;
             self.parameters[index] = value;
         }
@@ -137,25 +126,17 @@ impl<'a> Setup<'a> {
 
     /// Index of a state.
     pub fn state(&self, field: Field, name: &str) -> Result<usize, Error> {
-        known(
-            field,
-            name,
-            "state",
-            self.info.states.iter().map(|state| state.name.as_ref()),
-        )
+        known(field, name, "state", &self.info.states)
+    }
+
+    /// The declared inputs.
+    pub(crate) fn declared_inputs(&self) -> &'a [Quantity] {
+        &self.info.inputs[..self.info.declared_inputs]
     }
 
     /// Index of a declared input.
     pub fn input(&self, field: Field, name: &str) -> Result<usize, Error> {
-        known(
-            field,
-            name,
-            "input",
-            self.mechanism
-                .inputs
-                .iter()
-                .map(|input| input.label.name.as_str()),
-        )
+        known(field, name, "input", self.declared_inputs())
     }
 
     /// A constant value of a declared input, with its index.
@@ -165,8 +146,29 @@ impl<'a> Setup<'a> {
         Assignment { name, value }: &Assignment,
     ) -> Result<(usize, f64), Error> {
         let input = self.input(field, name)?;
-        let unit = &self.mechanism.inputs[InputId::new(input)].label.unit;
+        let unit = self.unit_of_input(input);
         Ok((input, self.value(field, name, value, unit)?))
+    }
+
+    /// Unit of a parameter.
+    pub(crate) fn unit_of_parameter(&self, index: usize) -> &Unit {
+        &self.mechanism.parameters[ParameterId::new(index)]
+            .label
+            .unit
+    }
+
+    /// Limits of a parameter in SI.
+    pub(crate) fn limits_of_parameter(&self, index: usize) -> [f64; 2] {
+        let parameter = &self.mechanism.parameters[ParameterId::new(index)];
+        [
+            parameter.at_least.unwrap_or(f64::NEG_INFINITY),
+            parameter.at_most.unwrap_or(f64::INFINITY),
+        ]
+    }
+
+    /// Unit of a declared input.
+    pub(crate) fn unit_of_input(&self, index: usize) -> &Unit {
+        &self.mechanism.inputs[InputId::new(index)].label.unit
     }
 
     /// Unit of a state.
@@ -185,17 +187,9 @@ impl<'a> Setup<'a> {
     /// A value in SI of the quantity `name`: a number in its unit, a number with a unit, or an
     /// expression in the parameters.
     pub fn value(&self, field: Field, name: &str, text: &str, unit: &Unit) -> Result<f64, Error> {
-        let text = bracketed(text);
-        let expr = formula(
-            self.spec,
-            &Snippet::alone(&text),
-            "the value",
-            Scope::Constant,
-            unit,
-        )
-        .map_err(Error::expression(field, name, &text))?;
+        let expr = expression(self.spec, field, name, text, Scope::Constant, unit)?;
         self.constant(&expr).ok_or_else(|| {
-            let message = format!("{name}: `{text}` is not a finite number");
+            let message = format!("{name}: `{}` is not a finite number", bracketed(text));
             Error::request(field, message)
         })
     }
@@ -229,6 +223,25 @@ impl<'a> Setup<'a> {
     }
 }
 
+/// The expression of a request for a quantity, with the names of a spec.
+pub(crate) fn expression(
+    spec: &str,
+    field: Field,
+    name: &str,
+    text: &str,
+    scope: Scope,
+    unit: &Unit,
+) -> Result<Expr, Error> {
+    let what = match scope {
+        Scope::Law => "the input",
+        Scope::Equation => "the equation",
+        _ => "the value",
+    };
+    let text = bracketed(text);
+    let expr = formula(spec, &Snippet::alone(&text), what, scope, unit);
+    expr.map_err(Error::expression(field, name, &text))
+}
+
 /// `30cm` and `30 cm` become `30[cm]`; any other text is already an expression.
 pub(crate) fn bracketed(text: &str) -> Cow<'_, str> {
     let (number, rest) = text.split_at(number_length(text));
@@ -251,43 +264,25 @@ fn meant(unit: &str) -> bool {
 
 /// Length in bytes of the number at the start of a text. An `e` without digits begins a unit.
 fn number_length(text: &str) -> usize {
-    let bytes = text.as_bytes();
-    let digits = |from: usize| {
-        bytes[from..]
-            .iter()
-            .take_while(|b| b.is_ascii_digit())
-            .count()
+    let is_number = |end: &usize| {
+        let number = text.get(..*end).unwrap_or_default();
+        // Not `inf` nor `nan`.
+        let is_finite = number.ends_with(|c: char| c.is_ascii_digit() || c == '.');
+        is_finite && number.parse::<f64>().is_ok()
     };
-    let sign = |from: usize| usize::from(matches!(bytes.get(from), Some(b'-' | b'+')));
-    let start = sign(0);
-    let whole = digits(start);
-    let mut end = start + whole;
-    let mut fraction = 0;
-    if bytes.get(end) == Some(&b'.') {
-        fraction = digits(end + 1);
-        end += 1 + fraction;
-    }
-    if whole + fraction == 0 {
-        return 0;
-    }
-    if let Some(b'e' | b'E') = bytes.get(end) {
-        let exponent = end + 1 + sign(end + 1);
-        if digits(exponent) > 0 {
-            end = exponent + digits(exponent);
-        }
-    }
-    end
+    (1..=text.len()).rev().find(is_number).unwrap_or(0)
 }
 
 /// Position of a name, or an error that suggests another.
-pub(crate) fn known<'n>(
+pub(crate) fn known(
     field: Field,
     name: &str,
     what: &str,
-    names: impl Iterator<Item = &'n str> + Clone,
+    among: &[Quantity],
 ) -> Result<usize, Error> {
-    names
-        .clone()
+    let names = among.iter().map(|quantity| quantity.name.as_ref());
+    let mut places = names.clone();
+    places
         .position(|other| other == name)
         .ok_or_else(|| Error::request(field, unknown(name, what, names)))
 }

@@ -4,6 +4,7 @@ use std::path::Path;
 
 use appell_models::ALL;
 pub use appell_models::Shipped;
+use appell_recordings::Spec;
 use appell_spec::limits::MAX_FILE;
 
 use crate::{Error, Field, files};
@@ -20,6 +21,15 @@ pub struct Source {
 }
 
 impl Source {
+    /// The text of a spec and the name of its file.
+    pub fn of(file: impl Into<String>, text: impl Into<String>) -> Self {
+        Self {
+            file: file.into(),
+            text: text.into(),
+            shipped: None,
+        }
+    }
+
     /// A shipped name or the path of a spec file; `-` is standard input. A shipped name takes precedence; `./name` is the file.
     pub fn find(model: &str) -> Result<Self, Error> {
         if Shipped::find(model).is_some() {
@@ -50,11 +60,16 @@ impl Source {
 
     /// A spec file.
     pub fn read(path: &Path) -> Result<Self, Error> {
-        Ok(Self {
-            text: files::read(path, MAX_FILE as u64)?,
-            file: path.to_string_lossy().replace('\\', "/"),
-            shipped: None,
-        })
+        let text = files::read(path, MAX_FILE as u64)?;
+        Ok(Self::of(path.to_string_lossy().replace('\\', "/"), text))
+    }
+}
+
+/// The same without the compiled mechanism.
+impl From<&Source> for Spec {
+    fn from(Source { file, text, .. }: &Source) -> Self {
+        let (file, text) = (file.clone(), text.clone());
+        Self { file, text }
     }
 }
 

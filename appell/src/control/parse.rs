@@ -2,7 +2,7 @@
 
 use appell_analysis::control::sampled::Sampling;
 use appell_analysis::{Point, SteadyProblem, Term};
-use appell_runtime::model::{Model, ModelInfo, Quantity};
+use appell_runtime::model::Model;
 use nalgebra::Complex;
 
 use super::design::Method;
@@ -34,7 +34,7 @@ pub(crate) fn point(
     if assignments.iter().any(follows) {
         return motion(model, setup, assignments, scheduled);
     }
-    let declared = &info.inputs[..info.declared_inputs];
+    let declared = setup.declared_inputs();
     let is_input = |a: &&Assignment| declared.iter().any(|input| input.name == a.name);
     let (inputs, states): (Vec<_>, Vec<_>) = assignments.iter().partition(is_input);
     let states: Vec<Assignment> = states.into_iter().cloned().collect();
@@ -252,19 +252,11 @@ pub(crate) fn disturbances(setup: &Setup<'_>, text: &str) -> Result<(usize, Vec<
     Ok((state, spread(ends, steps(FIELD, &range)?)))
 }
 
-/// Scheduling variable.
-#[derive(Debug, Clone, Copy)]
-enum Varied {
-    State(usize),
-    Input(usize),
-    Parameter(usize),
-}
-
-/// Scheduling variable with its values.
+/// Scheduling variable, a state, input or parameter, with its values.
 pub(crate) struct Values {
-    varied: Varied,
+    pub(crate) term: Term,
     /// In SI.
-    pub si: Vec<f64>,
+    pub(crate) si: Vec<f64>,
 }
 
 /// Values of a scheduling variable: `NAME=FROM..TO/STEPS`.
@@ -272,88 +264,61 @@ pub(crate) fn values(setup: &mut Setup<'_>, schedule: &Assignment) -> Result<Val
     let [from, to] = ends(Field::Schedule, schedule)?;
     let steps = steps(Field::Schedule, schedule)?;
     let (name, info) = (&schedule.name, setup.info);
-    let varied = if let Some(state) = info.state_index(name) {
-        Varied::State(state)
-    } else if let Some(input) = info.input_index(name).filter(|i| *i < info.declared_inputs) {
-        Varied::Input(input)
-    } else if let Some(parameter) = info.parameter_index(name) {
-        Varied::Parameter(parameter)
-    } else {
-        let inputs = &info.inputs[..info.declared_inputs];
+    let is_varied = |term: &Term| match *term {
+        Term::State(_) | Term::Parameter(_) => true,
+        Term::Input(input) => input < info.declared_inputs,
+        Term::Output(_) | Term::Rate(_) => false,
+    };
+    let term = Term::named(info, name).filter(is_varied).ok_or_else(|| {
         let names = (info.states.iter())
-            .chain(inputs)
+            .chain(setup.declared_inputs())
             .chain(info.parameters.iter());
         let names = names.map(|quantity| quantity.name.as_ref());
         let message = unknown(name, "state, input or parameter", names);
-        return Err(Error::request(Field::Schedule, message));
-    };
+        Error::request(Field::Schedule, message)
+    })?;
     let mut end = |text: &str| -> Result<f64, Error> {
         let assignment = Assignment {
             name: name.clone(),
             value: text.trim().to_owned(),
         };
-        match varied {
-            Varied::State(state) => {
+        match term {
+            Term::State(state) => {
                 setup.start_with(Field::Schedule, &[assignment])?;
                 Ok(setup.initial[state])
             }
-            Varied::Input(_) => Ok(setup.input_value(Field::Schedule, &assignment)?.1),
-            Varied::Parameter(parameter) => {
+            Term::Parameter(parameter) => {
                 setup.set_with(Field::Schedule, &[assignment])?;
                 Ok(setup.parameters[parameter])
             }
+            _ => Ok(setup.input_value(Field::Schedule, &assignment)?.1),
         }
     };
     let (from, to) = (end(from)?, end(to)?);
     Ok(Values {
-        varied,
+        term,
         si: spread([from, to], steps),
     })
 }
 
 impl Values {
-    /// The variable.
-    pub(crate) fn quantity<'q>(&self, info: &'q ModelInfo) -> &'q Quantity {
-        match self.varied {
-            Varied::State(state) => &info.states[state],
-            Varied::Input(input) => &info.inputs[input],
-            Varied::Parameter(parameter) => &info.parameters[parameter],
-        }
-    }
-
-    /// The variable as a condition of a steady motion.
-    pub(crate) fn term(&self) -> Term {
-        match self.varied {
-            Varied::State(state) => Term::State(state),
-            Varied::Input(input) => Term::Input(input),
-            Varied::Parameter(parameter) => Term::Parameter(parameter),
-        }
-    }
-
-    /// Whether a law can measure it, which it cannot for an input.
-    pub(crate) fn measurable(&self) -> bool {
-        !matches!(self.varied, Varied::Input(_))
-    }
-
     /// Sets the variable.
     pub(crate) fn place(&self, setup: &mut Setup<'_>, inputs: &mut GivenInputs, value: f64) {
-        match self.varied {
-            Varied::State(state) => setup.initial[state] = value,
-            Varied::Parameter(parameter) => setup.parameters[parameter] = value,
-            Varied::Input(input) => {
+        match self.term {
+            Term::State(state) => setup.initial[state] = value,
+            Term::Parameter(parameter) => setup.parameters[parameter] = value,
+            Term::Input(input) => {
                 inputs.retain(|(other, _)| *other != input);
                 inputs.push((input, value));
             }
+            Term::Output(_) | Term::Rate(_) => {}
         }
     }
 
     /// A failure at a value of the variable.
     pub(crate) fn at(&self, setup: &Setup<'_>, value: f64, failure: Error) -> Error {
-        let quantity = self.quantity(setup.info);
-        let [shown, unit] = [
-            quantity.to_unit(value).to_string(),
-            quantity.unit.to_string(),
-        ];
+        let quantity = self.term.quantity(setup.info);
+        let (shown, unit) = (quantity.to_unit(value), &quantity.unit);
         Error::At {
             place: format!("{} = {shown} {unit}", quantity.name),
             source: Box::new(failure),

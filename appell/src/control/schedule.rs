@@ -1,5 +1,6 @@
 //! Gain schedules: a law at each value of a state, input or parameter.
 
+use appell_analysis::Term;
 use appell_runtime::model::{Model, Quantity};
 
 use super::design::{self, Design};
@@ -33,7 +34,7 @@ impl Schedule {
         for &value in &values.si {
             // The steady motion may be given in terms of the scheduling variable.
             values.place(&mut setup, &mut Vec::new(), value);
-            let condition = Some((values.term(), value));
+            let condition = Some((values.term, value));
             let design = parse::point(model, &mut setup, &request.at, condition)
                 .and_then(|mut at| {
                     values.place(&mut setup, &mut at, value);
@@ -45,8 +46,8 @@ impl Schedule {
             designs.push((value, design));
         }
         Ok(Self {
-            over: values.quantity(setup.info).clone(),
-            measurable: values.measurable(),
+            over: values.term.quantity(setup.info).into_owned(),
+            measurable: !matches!(values.term, Term::Input(_)),
             designs,
         })
     }

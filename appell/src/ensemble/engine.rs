@@ -9,9 +9,9 @@ use appell_ensemble::study::{Kept, Method};
 use appell_runtime::Simulation;
 use appell_runtime::inputs::ModelInputs;
 use appell_runtime::integrate::{
-    BlockSolver, Cause, Direction, Dop853, Dopri5, Ending, Event, Options, Places,
+    BlockSolver, Cause, Direction, Dop853, Dopri5, Ending, Event, Options,
 };
-use appell_runtime::lanes::{AtLanes, LANES};
+use appell_runtime::lanes::LANES;
 use appell_runtime::model::ModelInfo;
 use appell_runtime::real::Enclosure;
 use appell_runtime::simulate::{
@@ -339,12 +339,7 @@ impl Ensemble {
             max_steps: max_steps.unwrap_or(options.max_steps),
             ..options
         };
-        let mut outside = OutsideInputs::new(closed, sources, self.states());
-        let rates = |which: &[usize; LANES], at: Places<'_>, rates: &mut [Block]| {
-            let u = outside.at(which, at);
-            let Places { t, x, p } = at;
-            closed.rates.call(AtLanes { t, x, u, p }, [rates]);
-        };
+        let rates = closed.rates_of(|which, t, x, u| sources[which].fill_outside(t, x, u));
         observe_together(prepared, viewers, |motions| match motion.method {
             Method::Dopri5 => solvers.dopri5.integrate(rates, motions, &options),
             Method::Dop853 => solvers.dop853.integrate(rates, motions, &options),
@@ -359,52 +354,6 @@ impl Ensemble {
             counts.sum()
         });
         counts.max().unwrap_or(0)
-    }
-
-    /// Number of states.
-    fn states(&self) -> usize {
-        self.variants[0].model.info().state_len()
-    }
-}
-
-/// A number of each of eight motions.
-type Block = [f64; LANES];
-
-/// External inputs of a block of motions.
-struct OutsideInputs<'r> {
-    sources: &'r [&'r Noisy<'r>],
-    is_driven: bool,
-    u: Vec<Block>,
-    /// State and inputs of one motion.
-    one: [Vec<f64>; 2],
-}
-
-impl<'r> OutsideInputs<'r> {
-    fn new(closed: &ClosedLoop, sources: &'r [&'r Noisy<'r>], states: usize) -> Self {
-        let inputs = closed.inputs();
-        Self {
-            sources,
-            is_driven: closed.is_driven(),
-            u: vec![[0.0; LANES]; inputs],
-            one: [vec![0.0; states], vec![0.0; inputs]],
-        }
-    }
-
-    fn at(&mut self, which: &[usize; LANES], at: Places<'_>) -> &[Block] {
-        let Places { t, x, .. } = at;
-        if self.is_driven {
-            let [state, outside] = &mut self.one;
-            for (l, &motion) in which.iter().enumerate() {
-                for (state, x) in state.iter_mut().zip(x) {
-                    *state = x[l];
-                }
-                self.sources[motion].fill_outside(t[l], state, outside);
-                for (u, outside) in self.u.iter_mut().zip(&*outside) {
-                    u[l] = *outside;
-                }
-            }
-        }
-        &self.u
     }
 }
 

@@ -8,7 +8,6 @@ use appell_ensemble::distribution::Distribution;
 use appell_ensemble::limits::{MAX_ENTRIES, MAX_TABLE};
 use appell_ensemble::rows::{Column, Role};
 use appell_ensemble::study::{Correlation, FEEDBACK, MODEL, Text, Varied, Vary};
-use appell_spec::mechanism::ParameterId;
 use appell_spec::units::Unit;
 use appell_spec::{Code, did_you_mean, shown};
 
@@ -80,10 +79,7 @@ fn unknown(reading: &mut Reading<'_>, setup: &Setup<'_>, name: &str, at: &Text) 
 /// Unit of a target.
 fn unit(setup: &Setup<'_>, target: Target) -> Unit {
     match target {
-        Target::Parameter(index) => setup.mechanism.parameters[ParameterId::new(index)]
-            .label
-            .unit
-            .clone(),
+        Target::Parameter(index) => setup.unit_of_parameter(index).clone(),
         Target::State(index) => setup.unit_of_state(index).clone(),
         Target::Model | Target::Feedback => none(),
     }
@@ -327,12 +323,12 @@ fn variation(
                 Target::Model | Target::Feedback => 0.0,
             };
             let (text, part) = (part, reading.constant(setup, part, &one)?);
-            not_negative(reading, text, part)?;
+            reading.not_negative(text, part)?;
             Distribution::Normal([nominal, (nominal * part).abs()])
         }
         Varied::Normal(texts) => {
             let values = several(reading, texts, &two)?;
-            not_negative(reading, &texts[1], values[1])?;
+            reading.not_negative(&texts[1], values[1])?;
             Distribution::Normal([values[0], values[1]])
         }
         Varied::Uniform(texts) => {
@@ -342,7 +338,7 @@ fn variation(
         }
         Varied::Lognormal(texts) => {
             let values = several(reading, texts, &[&unit, &one])?;
-            not_negative(reading, &texts[1], values[1])?;
+            reading.not_negative(&texts[1], values[1])?;
             if values[0] <= 0.0 {
                 let message = "the median of a lognormal distribution is positive";
                 reading.tell(Code::ValueOutsideLimits, message, &texts[0], "");
@@ -394,15 +390,6 @@ fn variation(
         return None;
     }
     Some((Variation::Drawn(truncated), Vec::new()))
-}
-
-fn not_negative(reading: &mut Reading<'_>, text: &Text, value: f64) -> Option<()> {
-    if value < 0.0 {
-        let message = "a standard deviation is not negative";
-        reading.tell(Code::ValueOutsideLimits, message, text, "");
-        return None;
-    }
-    Some(())
 }
 
 fn increasing(reading: &mut Reading<'_>, texts: &[Text], values: &[f64]) -> Option<()> {

@@ -86,17 +86,11 @@ impl Landscape for Peak<'_> {
 impl Ensemble {
     /// Replicates of the rare event as chunks; none if the study has no rare event.
     pub fn replicates(&self) -> Option<Chunks> {
-        self.rare.as_ref().map(|_| {
-            let particles = self
-                .study
-                .rare
-                .as_ref()
-                .map_or(0, |rare| rare.particles.value);
-            Chunks {
-                study: format!("{}-rare-{particles}", self.hash),
-                cases: REPLICATES,
-                size: 1,
-            }
+        self.rare.as_ref()?;
+        Some(Chunks {
+            study: format!("{}-rare-{}", self.hash, self.all_particles()),
+            cases: REPLICATES,
+            size: 1,
         })
     }
 
@@ -140,14 +134,14 @@ impl Ensemble {
         .map_err(Error::computation)
     }
 
+    fn all_particles(&self) -> u64 {
+        let rare = self.study.rare.as_ref();
+        rare.map_or(0, |rare| rare.particles.value)
+    }
+
     /// Particles of a replicate.
     fn particles(&self) -> usize {
-        let all = self
-            .study
-            .rare
-            .as_ref()
-            .map_or(0, |rare| rare.particles.value);
-        usize::try_from(all / REPLICATES).unwrap_or(usize::MAX)
+        usize::try_from(self.all_particles() / REPLICATES).unwrap_or(usize::MAX)
     }
 
     /// The probability of the rare event, once all replicates are there.

@@ -3,9 +3,10 @@
 use std::path::{Path, PathBuf};
 
 use appell_ensemble::study::{Placed, Study, Text};
+use appell_runtime::model::Quantity;
 use appell_spec::expr::{Expr, Span};
 use appell_spec::units::Unit;
-use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, formula, shown};
+use appell_spec::{Code, Diagnostic, Report, Scope, Snippet, did_you_mean, formula, shown};
 
 use crate::Error;
 use crate::setup::{Setup, bracketed};
@@ -51,10 +52,13 @@ impl<'s> Reading<'s> {
     ) {
         let diagnostic = Diagnostic::error(code, message).at(at.span(), "");
         let help = (!help.is_empty()).then(|| help.to_owned());
-        let diagnostic = diagnostic.maybe_help(help);
-        // Several specs cause the same finding.
-        if !self.findings.contains(&diagnostic) {
-            self.findings.push(diagnostic);
+        self.add(diagnostic.maybe_help(help));
+    }
+
+    /// Adds a finding once: several specs cause the same.
+    pub(super) fn add(&mut self, finding: Diagnostic) {
+        if !self.findings.contains(&finding) {
+            self.findings.push(finding);
         }
     }
 
@@ -91,6 +95,18 @@ impl<'s> Reading<'s> {
         }
     }
 
+    /// Index of the quantity of a name; an unknown one is reported.
+    pub(super) fn known(&mut self, name: &Text, what: &str, among: &[Quantity]) -> Option<usize> {
+        let names = among.iter().map(|quantity| quantity.name.as_ref());
+        let found = names.clone().position(|other| other == name.text);
+        if found.is_none() {
+            let help = did_you_mean(&name.text, names, String::new);
+            let message = format!("there is no {what} `{}`", name.text);
+            self.tell(Code::UnknownName, message, name, &help);
+        }
+        found
+    }
+
     /// The value of a quantity.
     pub(super) fn expr(
         &mut self,
@@ -110,9 +126,7 @@ impl<'s> Reading<'s> {
             Ok(expr) => Some(expr),
             Err(findings) => {
                 for finding in findings {
-                    if !self.findings.contains(&finding) {
-                        self.findings.push(finding);
-                    }
+                    self.add(finding);
                 }
                 None
             }
@@ -128,6 +142,16 @@ impl<'s> Reading<'s> {
             self.tell(Code::NotFinite, message, text, "");
         }
         value
+    }
+
+    /// Reports a negative standard deviation.
+    pub(super) fn not_negative(&mut self, text: &Text, value: f64) -> Option<()> {
+        if value < 0.0 {
+            let message = "a standard deviation is not negative";
+            self.tell(Code::ValueOutsideLimits, message, text, "");
+            return None;
+        }
+        Some(())
     }
 
     /// An error with all findings, if there are any.

@@ -1,7 +1,6 @@
 //! The spec of a study: that of the mechanism, with the quantities defined by the study as parameters and the kept
 //! expressions as outputs.
 
-use std::fmt::Write as _;
 use std::sync::Arc;
 
 use appell_ensemble::study::{Keep, Kept, Text};
@@ -105,11 +104,7 @@ pub(super) fn extended(
     if reading.findings.len() > before {
         return Ok(None);
     }
-    let source = Source {
-        file: source.file.clone(),
-        text: composition.text(),
-        shipped: None,
-    };
+    let source = Source::of(source.file.as_str(), composition.text());
     let model = Model::of(source, Some(Engine::Jit))?;
     let outputs = model.setup()?.mechanism.outputs;
     for kept in &mut kept {
@@ -250,25 +245,13 @@ fn take(
                 .map_or(at.at.clone(), |(span, _)| place(span)),
             String::new(),
         )];
-        if !reading.findings.contains(&told) {
-            reading.findings.push(told);
-        }
+        reading.add(told);
     }
     is_right
 }
 
-/// A text as a string of TOML.
+/// A text of a study, which has no control characters, as a string of TOML.
 fn quoted(text: &str) -> String {
-    let mut quoted = "\"".to_owned();
-    for c in text.chars() {
-        match c {
-            '"' | '\\' => quoted.extend(['\\', c]),
-            c if c.is_control() => {
-                // Writing to a string cannot fail.
-                let _ = write!(quoted, "\\u{:04X}", u32::from(c));
-            }
-            c => quoted.push(c),
-        }
-    }
-    quoted + "\""
+    let escaped = text.replace('\\', "\\\\").replace('"', "\\\"");
+    format!("\"{escaped}\"")
 }

@@ -6,8 +6,7 @@ use std::sync::Arc;
 use appell_ensemble::limits::MAX_HELD;
 use appell_ensemble::study::{Entry, Text};
 use appell_spec::expr::Expr;
-use appell_spec::mechanism::{InputId, ParameterId};
-use appell_spec::{Code, Scope, did_you_mean};
+use appell_spec::{Code, Scope};
 
 use super::factors::{self, Target};
 use super::noise::Noise;
@@ -56,11 +55,7 @@ pub(super) fn nominal<'m>(
     let study = reading.study;
     let mut derived = Derived::default();
     for Entry { name, value } in &study.motion.set {
-        let Some(Target::Parameter(index)) = factors::named(&setup, &name.text) else {
-            let names = setup.info.parameters.iter().map(|p| p.name.as_ref());
-            let help = did_you_mean(&name.text, names, String::new);
-            let message = format!("there is no parameter `{}`", name.text);
-            reading.tell(Code::UnknownName, message, name, &help);
+        let Some(index) = reading.known(name, "parameter", &setup.info.parameters) else {
             continue;
         };
         if study.vary.iter().any(|vary| vary.name.text == name.text) {
@@ -68,26 +63,19 @@ pub(super) fn nominal<'m>(
             reading.tell(Code::ConflictingKeys, message, name, "remove one of them");
             continue;
         }
-        let unit = setup.mechanism.parameters[ParameterId::new(index)]
-            .label
-            .unit
-            .clone();
-        let expr = reading.expr(&setup, value, "the value", Scope::Constant, &unit);
+        let unit = setup.unit_of_parameter(index);
+        let expr = reading.expr(&setup, value, "the value", Scope::Constant, unit);
         if let Some(expr) = expr {
             setup.parameters[index] = setup.constant(&expr).unwrap_or(f64::NAN);
             derived.set.push((index, expr, value.clone()));
         }
     }
     for Entry { name, value } in &study.motion.initial {
-        let Some(index) = setup.info.state_index(&name.text) else {
-            let names = setup.info.states.iter().map(|state| state.name.as_ref());
-            let help = did_you_mean(&name.text, names, String::new);
-            let message = format!("there is no state `{}`", name.text);
-            reading.tell(Code::UnknownName, message, name, &help);
+        let Some(index) = reading.known(name, "state", &setup.info.states) else {
             continue;
         };
-        let unit = setup.unit_of_state(index).clone();
-        let expr = reading.expr(&setup, value, "the initial value", Scope::Constant, &unit);
+        let unit = setup.unit_of_state(index);
+        let expr = reading.expr(&setup, value, "the initial value", Scope::Constant, unit);
         if let Some(expr) = expr {
             setup.initial[index] = setup.constant(&expr).unwrap_or(f64::NAN);
             derived.start.push((index, expr, value.clone()));
@@ -135,18 +123,11 @@ pub(super) fn variant(
     }
     start.extend(derived.start);
     for Entry { name, value } in &study.motion.input {
-        let Some(index) = setup.info.input_index(&name.text) else {
-            let names = setup.info.inputs.iter().map(|input| input.name.as_ref());
-            let help = did_you_mean(&name.text, names, String::new);
-            let message = format!("there is no input `{}`", name.text);
-            reading.tell(Code::UnknownName, message, name, &help);
+        let Some(index) = reading.known(name, "input", setup.declared_inputs()) else {
             continue;
         };
-        let unit = setup.mechanism.inputs[InputId::new(index)]
-            .label
-            .unit
-            .clone();
-        let expr = reading.expr(&setup, value, "the input", Scope::Law, &unit);
+        let unit = setup.unit_of_input(index);
+        let expr = reading.expr(&setup, value, "the input", Scope::Law, unit);
         if let Some(expr) = expr {
             reading.at(value, plan.input(index, &expr, &setup))?;
         }
@@ -157,12 +138,8 @@ pub(super) fn variant(
     }
     let set = compile(reading, &setup, derived.set)?;
     let start = compile(reading, &setup, start)?;
-    let limits = setup.mechanism.parameters.iter().map(|parameter| {
-        [
-            parameter.at_least.unwrap_or(f64::NEG_INFINITY),
-            parameter.at_most.unwrap_or(f64::INFINITY),
-        ]
-    });
+    let parameters = 0..setup.mechanism.parameters.len();
+    let limits = parameters.map(|index| setup.limits_of_parameter(index));
     let inputs = study.motion.input.iter().map(|input| &input.value);
     let driving = study.motion.feedback.iter().chain(law).chain(inputs);
     let wiring = match driving.last() {
@@ -205,12 +182,9 @@ fn noises(reading: &mut Reading<'_>, setup: &Setup<'_>) -> Vec<Noise> {
         }
         let target = factors::named(setup, &noise.name.text);
         let (onto, unit) = match target {
-            Some(Target::State(index)) => {
-                (Onto::Measured(index), setup.unit_of_state(index).clone())
-            }
+            Some(Target::State(index)) => (Onto::Measured(index), setup.unit_of_state(index)),
             Some(Target::Parameter(index)) if noise.unit.is_some() => {
-                let label = &setup.mechanism.parameters[ParameterId::new(index)].label;
-                (Onto::Parameter(index), label.unit.clone())
+                (Onto::Parameter(index), setup.unit_of_parameter(index))
             }
             _ => {
                 let message = format!("there is no state `{}`", noise.name.text);
@@ -219,11 +193,8 @@ fn noises(reading: &mut Reading<'_>, setup: &Setup<'_>) -> Vec<Noise> {
                 continue;
             }
         };
-        if let Some(deviation) = reading.constant(setup, &noise.deviation, &unit) {
-            if deviation < 0.0 {
-                let message = "a standard deviation is not negative";
-                reading.tell(Code::ValueOutsideLimits, message, &noise.deviation, "");
-            }
+        if let Some(deviation) = reading.constant(setup, &noise.deviation, unit) {
+            reading.not_negative(&noise.deviation, deviation);
             noises.push(Noise::new(
                 study.seed,
                 &noise.name.text,

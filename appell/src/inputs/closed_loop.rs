@@ -2,7 +2,11 @@
 
 use appell_codegen::jit::{Elementary, Sizes};
 use appell_codegen::tape::{Seen, Tape, closed_loop};
+use appell_runtime::integrate::Places;
+use appell_runtime::lanes::{AtLanes, LANES};
 use appell_vector::{Target, VectorError, VectorFunction};
+
+use super::law::index;
 
 /// Target of a disturbance in the measurements of laws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,8 +29,9 @@ pub(super) struct Outside {
 /// The equations with expressions and laws. They call the elementary functions of the runtime, so that results agree
 /// bit by bit on every machine.
 pub(crate) struct ClosedLoop {
-    pub(crate) rates: VectorFunction,
+    rates: VectorFunction,
     inputs: usize,
+    /// Whether any of the inputs is ever nonzero.
     is_driven: bool,
 }
 
@@ -56,14 +61,27 @@ impl ClosedLoop {
         })
     }
 
-    /// Number of its inputs: external ones, then disturbances of the measurements.
-    pub(crate) fn inputs(&self) -> usize {
-        self.inputs
-    }
-
-    /// Whether any of the inputs is ever nonzero.
-    pub(crate) fn is_driven(&self) -> bool {
-        self.is_driven
+    /// The rates of blocks of motions; `fill` writes the inputs of a motion by its index, for a time and a state: external
+    /// ones, then disturbances of the measurements.
+    pub(crate) fn rates_of(
+        &self,
+        fill: impl Fn(usize, f64, &[f64], &mut [f64]),
+    ) -> impl FnMut(&[usize; LANES], Places<'_>, &mut [[f64; LANES]]) {
+        let mut u = vec![[0.0; LANES]; self.inputs];
+        let (mut state, mut inputs) = (Vec::new(), vec![0.0; self.inputs]);
+        move |which, Places { t, x, p }, rates| {
+            let driven = which.iter().enumerate().filter(|_| self.is_driven);
+            for (lane, &motion) in driven {
+                state.clear();
+                state.extend(x.iter().map(|x| x[lane]));
+                fill(motion, t[lane], &state, &mut inputs);
+                for (u, input) in u.iter_mut().zip(&inputs) {
+                    u[lane] = *input;
+                }
+            }
+            let at = AtLanes { t, x, u: &u, p };
+            self.rates.call(at, [rates]);
+        }
     }
 }
 
@@ -82,8 +100,4 @@ impl Onto {
             },
         }
     }
-}
-
-fn index(place: usize) -> u32 {
-    u32::try_from(place).unwrap_or(u32::MAX)
 }

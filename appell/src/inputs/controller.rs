@@ -1,32 +1,27 @@
 //! The inputs of a simulation as one function of time and state.
 
-mod bounds;
-
 use std::cell::Cell;
+use std::ops::Range;
 use std::sync::Arc;
 
-use appell_analysis::control::sampled::Sampling;
 use appell_analysis::control::sampler::Sampler;
 use appell_codegen::jit::Sizes;
 use appell_codegen::symbolic::Expr as Lowered;
-use appell_codegen::tape::Tape;
+use appell_codegen::tape::{Argument, Arithmetic, ResultArray, Tape, Value};
 use appell_runtime::inputs::{InputSource, TabulatedInputs};
-use appell_runtime::model::{Along, At, Model, ModelInfo, Switching};
-use appell_runtime::real::Enclosure;
+use appell_runtime::model::{Along, Model, ModelInfo, Switching};
+use appell_runtime::real::{Enclosure, Real};
+use appell_spec::Scope;
 use appell_spec::expr::Expr;
-use appell_spec::mechanism::InputId;
-use appell_spec::{Scope, Snippet, formula};
-use nalgebra::DVector;
 
 use crate::formula::{StateFunction, Workbench};
-use crate::inputs::by_model::ModelLaw;
 use crate::inputs::closed_loop::{ClosedLoop, Onto, Outside};
-use crate::inputs::feedback::{self, Aim, Feedback, Gains, Sampled};
-use crate::inputs::law::{self, ScheduledLaw, Slot, Term};
+use crate::inputs::feedback::Feedback;
+use crate::inputs::law::{Law, Moment, Stage};
 use crate::inputs::switching::InputSwitches;
 use crate::inputs::tabulated::Table;
 use crate::motion::Driven;
-use crate::setup::{Assignment, Setup, bracketed};
+use crate::setup::{Assignment, Setup, expression};
 use crate::{Error, Field};
 
 /// The sum of expressions, feedback laws and recordings in one motion.
@@ -34,10 +29,8 @@ pub struct Controller<'w> {
     wiring: &'w Wiring,
     model: &'w dyn Model,
     parameters: Vec<f64>,
-    /// Measurements of the discrete-time laws with gains.
-    samplers: Vec<Sampler>,
-    /// The same for laws by inverse dynamics; nothing for one in continuous time.
-    model_samplers: Vec<Option<Sampler>>,
+    /// Measurements of each law; nothing for one in continuous time.
+    samplers: Vec<Option<Sampler>>,
     switching_times: Vec<f64>,
     /// Buffer for the values of the function.
     values: Cell<Vec<f64>>,
@@ -45,24 +38,28 @@ pub struct Controller<'w> {
 
 /// The common parts of all motions under the same expressions, laws and recordings.
 pub struct Wiring {
-    /// One value per entry of `slots`.
+    /// Terms of inputs and desired values of laws.
     function: StateFunction,
-    slots: Vec<Slot>,
+    terms: Vec<Term>,
+    laws: Vec<PlacedLaw>,
     recorded: Option<TabulatedInputs>,
     driven: Vec<DrivenInputs>,
-    sampled: Vec<SampledLaw>,
-    scheduled: Vec<ScheduledLaw>,
-    by_model: Vec<ModelLaw>,
     switching_times: Vec<f64>,
     /// Switching functions of the expressions.
     switches: Option<InputSwitches>,
 }
 
-/// A discrete-time law.
-struct SampledLaw {
-    sampling: Sampling,
-    inputs: Vec<usize>,
-    pending_gains: Vec<Vec<f64>>,
+/// A term of an input: a value of the function.
+#[derive(Clone, Copy)]
+struct Term {
+    input: usize,
+    value: usize,
+}
+
+/// A law with the places of its desired values among those of the function.
+struct PlacedLaw {
+    law: Box<dyn Law>,
+    desired: Range<usize>,
 }
 
 /// Inputs computed by a program, with their indices.
@@ -72,12 +69,8 @@ type DrivenInputs = (Vec<usize>, Arc<dyn InputSource + Send + Sync>);
 pub struct Plan {
     bench: Workbench,
     exprs: Vec<Lowered>,
-    slots: Vec<Slot>,
-    /// Terms whose desired value is zero.
-    zero: Vec<Term>,
-    sampled: Vec<(Sampled, Vec<usize>)>,
-    scheduled: Vec<ScheduledLaw>,
-    by_model: Vec<ModelLaw>,
+    terms: Vec<Term>,
+    laws: Vec<PlacedLaw>,
     recorded: Option<Table>,
     driven: Vec<DrivenInputs>,
     switching_times: Vec<f64>,
@@ -91,11 +84,8 @@ impl Plan {
         Self {
             bench: Workbench::new(&setup.mechanism),
             exprs: Vec::new(),
-            slots: Vec::new(),
-            zero: Vec::new(),
-            sampled: Vec::new(),
-            scheduled: Vec::new(),
-            by_model: Vec::new(),
+            terms: Vec::new(),
+            laws: Vec::new(),
             recorded: None,
             driven: Vec::new(),
             switching_times: Vec::new(),
@@ -105,9 +95,8 @@ impl Plan {
 
     /// Whether there is no source.
     pub fn is_empty(&self) -> bool {
-        let laws = self.zero.is_empty() && self.scheduled.is_empty() && self.by_model.is_empty();
         let given = self.recorded.is_some() || !self.driven.is_empty();
-        self.slots.is_empty() && laws && !given
+        self.terms.is_empty() && self.laws.is_empty() && !given
     }
 
     /// The last time of a recording in s.
@@ -122,7 +111,7 @@ impl Plan {
 
     fn take(&mut self, field: Field, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
         if self.set.contains(&input) {
-            let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
+            let name = &setup.declared_inputs()[input].name;
             let message = format!("the input `{name}` is given twice");
             return Err(Error::request(field, message));
         }
@@ -130,12 +119,12 @@ impl Plan {
         Ok(())
     }
 
-    /// Adds an expression, which may not divide by the number zero.
-    fn push(&mut self, slot: Slot, expr: &Expr) -> Result<(), &'static str> {
-        let lowered = self.bench.lower(expr);
-        self.exprs
-            .push(lowered.ok_or("an expression divides by the number zero")?);
-        self.slots.push(slot);
+    /// Adds a term of an input, which may not divide by the number zero.
+    fn term(&mut self, input: usize, expr: &Expr) -> Result<(), &'static str> {
+        let lowered = self.bench.lower(expr).ok_or(DIVIDES_BY_ZERO)?;
+        let value = self.exprs.len();
+        self.terms.push(Term { input, value });
+        self.exprs.push(lowered);
         Ok(())
     }
 
@@ -143,24 +132,16 @@ impl Plan {
     pub fn expression(&mut self, assignment: &Assignment, setup: &Setup<'_>) -> Result<(), Error> {
         let Assignment { name, value } = assignment;
         let input = setup.input(Field::Input, name)?;
-        let unit = &setup.mechanism.inputs[InputId::new(input)].label.unit;
-        let text = bracketed(value);
-        let expr = formula(
-            setup.spec,
-            &Snippet::alone(&text),
-            "the input",
-            Scope::Law,
-            unit,
-        )
-        .map_err(Error::expression(Field::Input, name, &text))?;
+        let unit = setup.unit_of_input(input);
+        let expr = expression(setup.spec, Field::Input, name, value, Scope::Law, unit)?;
         self.input(input, &expr, setup)
     }
 
     /// Adds an expression that has been read.
     pub fn input(&mut self, input: usize, expr: &Expr, setup: &Setup<'_>) -> Result<(), Error> {
         self.take(Field::Input, input, setup)?;
-        let name = &setup.mechanism.inputs[InputId::new(input)].label.name;
-        self.push(Slot::Input(input), expr)
+        let name = &setup.declared_inputs()[input].name;
+        self.term(input, expr)
             .map_err(|reason| Error::request(Field::Input, format!("{name}: {reason}")))
     }
 
@@ -190,81 +171,27 @@ impl Plan {
     /// Adds a feedback law.
     pub fn feedback(&mut self, feedback: Feedback) -> Result<(), Error> {
         let told = |reason: &str| Error::data(&feedback.file, reason);
-        for (&input, offset) in feedback.inputs.iter().zip(&feedback.offsets) {
-            if let Some(offset) = offset {
-                self.push(Slot::Input(input), offset).map_err(told)?;
-            }
+        for (input, offset) in &feedback.offsets {
+            self.term(*input, offset).map_err(told)?;
         }
         self.switching_times.extend(&feedback.switching_times);
-        let gains = match feedback.gains {
-            Gains::Fixed(gains) => gains,
-            Gains::ByModel(law) => {
-                let sampling = feedback.sampled.map(|sampled| sampled.sampling);
-                return self.by_model(law, feedback.inputs, sampling).map_err(told);
-            }
-            Gains::Scheduled(over, schedule) => {
-                let (states, desired): (Vec<_>, Vec<_>) = feedback.states.into_iter().unzip();
-                let law = self.scheduled.len();
-                for (place, expr) in desired.iter().enumerate() {
-                    if let Some(expr) = expr {
-                        self.push(Slot::Beside(law, place), expr).map_err(told)?;
-                    }
-                }
-                self.scheduled.push(ScheduledLaw {
-                    over,
-                    schedule,
-                    inputs: feedback.inputs,
-                    states,
-                });
-                return Ok(());
-            }
-        };
-        let law = feedback.sampled.is_some().then_some(self.sampled.len());
-        for (&input, gains) in feedback.inputs.iter().zip(&gains) {
-            for ((state, desired), &gain) in feedback.states.iter().zip(gains) {
-                let term = Term {
-                    input,
-                    state: *state,
-                    gain,
-                    law,
-                };
-                match desired {
-                    Some(expr) => self.push(Slot::Desired(term), expr).map_err(told)?,
-                    None => self.zero.push(term),
-                }
-            }
-        }
-        if let Some(sampled) = feedback.sampled {
-            self.sampled.push((sampled, feedback.inputs));
-        }
-        Ok(())
+        self.law(feedback.law).map_err(told)
     }
 
-    /// Adds a law that computes inputs from the equations of motion.
-    fn by_model(
-        &mut self,
-        law: feedback::ModelLaw,
-        inputs: Vec<usize>,
-        sampling: Option<Sampling>,
-    ) -> Result<(), &'static str> {
-        let place = self.by_model.len();
-        if let Aim::ComputedTorque { followed, .. } = &law.aim {
-            for (which, followed) in followed.iter().enumerate() {
-                let mut value = self.bench.lower(&followed.desired);
-                for order in 0..3 {
-                    let lowered = value.ok_or("an expression divides by the number zero")?;
-                    self.exprs.push(lowered);
-                    self.slots.push(Slot::Followed(place, which, order));
-                    value = Some(self.bench.rate(lowered));
-                }
+    /// Adds a law after the others of its stage.
+    fn law(&mut self, law: Box<dyn Law>) -> Result<(), &'static str> {
+        let first = self.exprs.len();
+        for desired in law.desired() {
+            let mut value = self.bench.lower(desired).ok_or(DIVIDES_BY_ZERO)?;
+            self.exprs.push(value);
+            for _ in 0..law.derivatives() {
+                value = self.bench.rate(value);
+                self.exprs.push(value);
             }
         }
-        self.by_model.push(ModelLaw {
-            inputs,
-            aim: law.aim,
-            believed: law.believed,
-            sampling,
-        });
+        let desired = first..self.exprs.len();
+        self.laws.push(PlacedLaw { law, desired });
+        self.laws.sort_by_key(|placed| placed.law.stage());
         Ok(())
     }
 
@@ -272,17 +199,8 @@ impl Plan {
     pub fn wiring(self, setup: &Setup<'_>, until: f64) -> Result<Wiring, Error> {
         let switches = InputSwitches::new(&self.bench, setup.info, &self.exprs)?;
         let function = self.bench.function(setup.info, self.exprs)?;
-        let mut slots = self.slots;
-        // Values beyond those of the function are zero.
-        slots.extend(self.zero.into_iter().map(Slot::Desired));
-        let sampled = self.sampled.into_iter().map(|(law, inputs)| SampledLaw {
-            sampling: law.sampling,
-            inputs,
-            pending_gains: law.pending_gains,
-        });
-        let sampled: Vec<SampledLaw> = sampled.collect();
-        let samplings = sampled.iter().map(|law| law.sampling);
-        for sampling in samplings.chain(self.by_model.iter().filter_map(|law| law.sampling)) {
+        let samplings = self.laws.iter().filter_map(|placed| placed.law.sampling());
+        for sampling in samplings {
             let measurements = until / sampling.period();
             if measurements > MOST_MEASUREMENTS {
                 let message = format!(
@@ -294,20 +212,28 @@ impl Plan {
         }
         Ok(Wiring {
             function,
-            slots,
+            terms: self.terms,
+            laws: self.laws,
             recorded: self.recorded.map(|table| table.values),
             driven: self.driven,
-            sampled,
-            scheduled: self.scheduled,
-            by_model: self.by_model,
             switching_times: self.switching_times,
             switches,
         })
     }
 }
 
+/// Why an expression has no value.
+const DIVIDES_BY_ZERO: &str = "an expression divides by the number zero";
+
 /// Maximum number of measurements in a motion.
 const MOST_MEASUREMENTS: f64 = 1e6;
+
+impl PlacedLaw {
+    /// Whether its inputs are external ones of a closed loop.
+    fn is_outside(&self) -> bool {
+        self.law.stage() >= Stage::Sampled
+    }
+}
 
 impl Wiring {
     /// The inputs of a motion of a model from 0 to `until` in s.
@@ -318,27 +244,38 @@ impl Wiring {
         until: f64,
     ) -> Controller<'w> {
         let mut times = self.switching_times.clone();
-        let sampler = |sampling: Sampling| Sampler::new(sampling, until);
-        let samplers = self.sampled.iter().map(|law| sampler(law.sampling));
-        let samplers: Vec<Sampler> = samplers.collect();
-        let model_samplers = self.by_model.iter().map(|law| law.sampling.map(sampler));
-        let model_samplers: Vec<Option<Sampler>> = model_samplers.collect();
-        let all = samplers.iter().chain(model_samplers.iter().flatten());
-        times.extend(all.flat_map(Sampler::switching_times));
+        let samplings = self.laws.iter().map(|placed| placed.law.sampling());
+        let samplers = samplings.map(|sampling| Some(Sampler::new(sampling?, until)));
+        let samplers: Vec<Option<Sampler>> = samplers.collect();
+        times.extend(samplers.iter().flatten().flat_map(Sampler::switching_times));
         Controller {
             wiring: self,
             model,
             parameters,
             samplers,
-            model_samplers,
             switching_times: times,
             values: Cell::default(),
         }
     }
 
-    /// Expressions and continuous-time laws as operations.
-    fn law(&self, info: &ModelInfo) -> Tape {
-        law::tape(&self.function, &self.slots, &self.scheduled, info)
+    /// The inputs of a model, in its order, as operations: external inputs, expressions and laws.
+    fn tape(&self, info: &ModelInfo) -> Tape {
+        let mut tape = self.function.tape().clone();
+        let values = tape.results.swap_remove(0).entries;
+        let external = (0..).map(Argument::Input).take(info.input_len());
+        let mut inputs: Vec<Value> = external.map(|input| tape.argument(input)).collect();
+        for &Term { input, value } in &self.terms {
+            inputs[input] = tape.binary(Arithmetic::Add, inputs[input], values[value]);
+        }
+        for placed in self.laws.iter().filter(|placed| !placed.is_outside()) {
+            let desired = &values[placed.desired.clone()];
+            placed.law.write(desired, &mut tape, &mut inputs);
+        }
+        tape.results = vec![ResultArray {
+            name: "inputs".to_owned(),
+            entries: inputs,
+        }];
+        tape
     }
 
     /// The equations of motion with expressions and laws substituted; `rates` are the model's. `seen` are the measurements
@@ -349,83 +286,39 @@ impl Wiring {
         info: &ModelInfo,
         seen: &[Onto],
     ) -> Result<ClosedLoop, Error> {
-        let given = self.recorded.is_some() || !self.driven.is_empty() || !self.by_model.is_empty();
+        let given = self.recorded.is_some() || !self.driven.is_empty();
         let outside = Outside {
             inputs: self.function.inputs(),
-            is_there: given || !self.sampled.is_empty() || self.function.has_signals(),
+            is_there: given || self.has_laws_outside() || self.function.has_signals(),
         };
-        ClosedLoop::new(&self.law(info), rates, Sizes::from(info), outside, seen)
+        ClosedLoop::new(&self.tape(info), rates, Sizes::from(info), outside, seen)
             .map_err(Error::computation)
     }
 
-    /// Subtracts from each input the feedback of a law, or of the continuous-time terms.
-    fn feedback(&self, law: Option<usize>, x: &[f64], values: &[f64], inputs: &mut [f64]) {
-        for (slot, value) in self.slots.iter().zip(values) {
-            match slot {
-                Slot::Desired(term) if term.law == law => {
-                    inputs[term.input] -= term.gain * (x[term.state] - value);
-                }
-                _ => {}
-            }
-        }
+    fn has_laws_outside(&self) -> bool {
+        self.laws.iter().any(PlacedLaw::is_outside)
     }
 }
 
 impl Controller<'_> {
-    /// Adds the held values of discrete-time laws to `count` inputs.
-    fn add_held(
-        &self,
-        t: f64,
-        x: &[f64],
-        values: &[f64],
-        count: usize,
-        mut add: impl FnMut(usize, f64),
-    ) {
+    /// Adds the inputs of all laws, or of those outside of a closed loop.
+    fn add_laws(&self, p: &[f64], t: f64, x: &[f64], values: &[f64], u: &mut [f64], all: bool) {
         let wiring = self.wiring;
-        let laws = wiring.sampled.iter().zip(&self.samplers);
-        for (law, (sampled, sampler)) in laws.enumerate() {
-            let acting = sampler.acting(t, |pending| {
-                let mut asked = vec![0.0; count];
-                wiring.feedback(Some(law), x, values, &mut asked);
-                sampled.asked(&asked, &pending.concat())
-            });
-            for (&input, acting) in sampled.inputs.iter().zip(acting.iter().flatten()) {
-                add(input, *acting);
+        for (placed, sampler) in wiring.laws.iter().zip(&self.samplers) {
+            if !(all || placed.is_outside()) {
+                continue;
             }
-        }
-    }
-
-    /// Adds the inputs of laws by inverse dynamics to the declared inputs.
-    fn add_by_model(&self, p: &[f64], t: f64, x: &[f64], values: &[f64], u: &mut [f64]) {
-        let wiring = self.wiring;
-        if wiring.by_model.is_empty() {
-            return;
-        }
-        let mut all = vec![0.0; self.model.info().input_len()];
-        let (declared, signals) = all.split_at_mut(u.len());
-        wiring.function.fill_signals(t, signals);
-        declared.copy_from_slice(u);
-        let laws = wiring.by_model.iter().zip(&self.model_samplers);
-        for (law, (by_model, sampler)) in laws.enumerate() {
-            let mut desired = vec![[0.0; 3]; by_model.inputs.len()];
-            for (slot, value) in wiring.slots.iter().zip(values) {
-                if let Slot::Followed(of, which, order) = *slot
-                    && of == law
-                {
-                    desired[which][order] = *value;
-                }
-            }
-            let at = At { t, x, u: &all, p };
-            let asked = || by_model.asked(self.model, at, &desired);
-            let acting = match sampler {
-                Some(sampler) => sampler.acting(t, |_| asked()),
-                None => Some(asked()),
+            let at = Moment {
+                model: self.model,
+                t,
+                x,
+                p,
+                desired: &values[placed.desired.clone()],
+                function: &wiring.function,
+                sampler: sampler.as_ref(),
             };
-            for (&input, acting) in by_model.inputs.iter().zip(acting.iter().flatten()) {
-                all[input] += acting;
-            }
+            placed.law.add(&at, u);
         }
-        u.copy_from_slice(&all[..u.len()]);
     }
 
     /// Inputs from recordings and programs.
@@ -452,44 +345,32 @@ impl Controller<'_> {
         let wiring = self.wiring;
         let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));
         self.fill_given(t, x, declared);
-        if !wiring.sampled.is_empty() || !wiring.by_model.is_empty() {
-            let mut values = vec![0.0; wiring.slots.len()];
-            wiring.function.values(t, x, p, &mut values);
-            let count = declared.len();
-            self.add_held(t, x, &values, count, |input, held| declared[input] += held);
-            self.add_by_model(p, t, x, &values, declared);
+        if wiring.has_laws_outside() {
+            self.with_values(p, t, x, |values| {
+                self.add_laws(p, t, x, values, declared, false);
+            });
         }
         wiring.function.fill_signals(t, signals);
     }
 
     /// The inputs with other parameters in the expressions, as many as those of the motion.
     pub fn inputs_with(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
-        let wiring = self.wiring;
         self.fill_given(t, x, u);
-        let mut values = self.values.take();
-        values.clear();
-        values.resize(wiring.slots.len(), 0.0);
-        wiring.function.values(t, x, p, &mut values);
-        for (slot, value) in wiring.slots.iter().zip(&values) {
-            if let Slot::Input(input) = *slot {
-                u[input] += value;
+        self.with_values(p, t, x, |values| {
+            for &Term { input, value } in &self.wiring.terms {
+                u[input] += values[value];
             }
-        }
-        wiring.feedback(None, x, &values, u);
-        for (law, scheduled) in wiring.scheduled.iter().enumerate() {
-            scheduled.add(x, p, u, |y| {
-                for (slot, value) in wiring.slots.iter().zip(&values) {
-                    if let Slot::Beside(of, place) = *slot
-                        && of == law
-                    {
-                        y[place] -= value;
-                    }
-                }
-            });
-        }
-        let count = u.len();
-        self.add_held(t, x, &values, count, |input, held| u[input] += held);
-        self.add_by_model(p, t, x, &values, u);
+            self.add_laws(p, t, x, values, u, true);
+        });
+    }
+
+    /// Calls a function with the values of terms and of desired values.
+    fn with_values(&self, p: &[f64], t: f64, x: &[f64], call: impl FnOnce(&[f64])) {
+        let function = &self.wiring.function;
+        let mut values = self.values.take();
+        values.resize(function.count(), 0.0);
+        function.values(t, x, p, &mut values);
+        call(&values);
         self.values.set(values);
     }
 
@@ -509,37 +390,32 @@ impl InputSource for Controller<'_> {
     }
 
     fn bounds(&self, along: &Along<'_>, u: &mut [Enclosure]) {
-        self.bounds_along(along, u);
+        let wiring = self.wiring;
+        match &wiring.recorded {
+            Some(recorded) => recorded.bounds(along, u),
+            None => u.fill(Enclosure::constant(0.0)),
+        }
+        let mut own = u.to_vec();
+        for (inputs, source) in &wiring.driven {
+            source.bounds(along, &mut own);
+            for &input in inputs {
+                u[input] += own[input];
+            }
+        }
+        let mut values = vec![Enclosure::constant(0.0); wiring.function.count()];
+        let p = &self.parameters;
+        wiring.function.bounds(&Along { p, ..*along }, &mut values);
+        for &Term { input, value } in &wiring.terms {
+            u[input] += values[value];
+        }
+        for placed in &wiring.laws {
+            let desired = &values[placed.desired.clone()];
+            placed.law.bounds(desired, along, u);
+        }
     }
 
     fn switching(&self) -> Option<&dyn Switching> {
         let switches = self.wiring.switches.as_ref();
         switches.map(|switches| switches as &dyn Switching)
-    }
-}
-
-impl ScheduledLaw {
-    /// Adds the inputs of the law; `less` subtracts the desired deviations from the states.
-    fn add(&self, x: &[f64], p: &[f64], u: &mut [f64], less: impl Fn(&mut DVector<f64>)) {
-        let states = self.states.iter().map(|&state| x[state]);
-        let mut y = DVector::from_iterator(self.states.len(), states);
-        less(&mut y);
-        let asked = self.schedule.at(self.over.value(x, p)).asked(&y);
-        for (&input, asked) in self.inputs.iter().zip(asked.iter()) {
-            u[input] += asked;
-        }
-    }
-}
-
-impl SampledLaw {
-    /// The inputs after a measurement, from the feedback of the states and the pending inputs, the oldest
-    /// first. Initially fewer inputs are pending than there are gains.
-    fn asked(&self, feedback: &[f64], pending: &[f64]) -> Vec<f64> {
-        let rows = self.inputs.iter().zip(&self.pending_gains);
-        rows.map(|(&input, gains)| {
-            let terms = gains.iter().rev().zip(pending.iter().rev());
-            feedback[input] - terms.map(|(gain, pending)| gain * pending).sum::<f64>()
-        })
-        .collect()
     }
 }

@@ -45,7 +45,8 @@ pub fn read(
     interpolation: Option<Interpolation>,
 ) -> Result<Table, Error> {
     let file = path.to_string_lossy();
-    let columns = match described(&file) {
+    let described = described(&file);
+    let columns = match described {
         Some(_) if interpolation.is_some() => {
             let message = "a data set says itself how its inputs run from row to row: write `interpolation` in the line of the channel";
             return Err(Error::request(Field::Interpolation, message));
@@ -58,7 +59,7 @@ pub fn read(
             interpolation.unwrap_or(Interpolation::Hold),
         )?,
     };
-    let is_stated = described(&file).is_some() || interpolation.is_some();
+    let is_stated = described.is_some() || interpolation.is_some();
     let [from, to] =
         [columns.times.first(), columns.times.last()].map(|end| end.copied().unwrap_or(0.0));
     if from > until {
@@ -67,36 +68,21 @@ pub fn read(
         );
         return Err(Error::data(file, message));
     }
-    let given: Vec<usize> = columns.inputs.iter().map(|column| column.input).collect();
-    let smooth = columns
-        .inputs
-        .iter()
-        .filter(|_| !is_stated)
-        .filter_map(|column| {
-            let late = Smooth::of([column.values.as_slice()].into_iter())?.held;
-            Some((
-                setup.mechanism.inputs[InputId::new(column.input)]
-                    .label
-                    .name
-                    .clone(),
-                late,
-            ))
-        });
-    let smooth = smooth.collect();
-    let mut own: Vec<Option<Column>> = Vec::new();
-    own.resize_with(setup.mechanism.inputs.len(), || None);
-    for column in columns.inputs {
-        let input = column.input;
-        own[input] = Some(column);
-    }
+    let names = setup.declared_inputs();
+    let smooth = columns.inputs.iter().filter(|_| !is_stated);
+    let smooth = smooth.filter_map(|column| {
+        let late = Smooth::of([column.values.as_slice()].into_iter())?.held;
+        Some((names[column.input].name.to_string(), late))
+    });
     let mut signals = Vec::new();
-    for (input, column) in setup.mechanism.inputs.iter().zip(own) {
+    for (input, quantity) in names.iter().enumerate() {
+        let column = columns.inputs.iter().find(|column| column.input == input);
         let (times, values, interpolation) = match column {
-            Some(own) => (columns.times.clone(), own.values, own.interpolation),
+            Some(own) => (columns.times.clone(), own.values.clone(), own.interpolation),
             None => (vec![0.0], vec![0.0], Interpolation::Hold),
         };
         let table = SignalTable {
-            name: input.label.name.clone().into(),
+            name: quantity.name.clone(),
             times: times.into(),
             values: values.into(),
             interpolation,
@@ -109,9 +95,9 @@ pub fn read(
     }
     Ok(Table {
         values: TabulatedInputs::new(signals),
-        given,
+        given: columns.inputs.iter().map(|column| column.input).collect(),
         until: to,
-        smooth,
+        smooth: smooth.collect(),
     })
 }
 
@@ -128,12 +114,7 @@ fn described(text: &str) -> Option<(&str, &str)> {
 /// The inputs of a run of a data set.
 fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Columns, Error> {
     // The spec may be in no file.
-    let source = Source {
-        file: name.to_owned(),
-        text: spec.to_owned(),
-        shipped: None,
-    };
-    let mut set = recording::read_of(&source, &[description.into()])?;
+    let mut set = recording::read_of(&Source::of(name, spec), &[description.into()])?;
     recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();

@@ -3,10 +3,10 @@
 use appell_analysis::control::controllability::Controllability;
 use appell_analysis::control::sampled::Sampling;
 use appell_runtime::model::{ModelInfo, Quantity};
-use nalgebra::{Complex, DMatrix};
+use nalgebra::Complex;
 use serde_json::{Map, Value, json};
 
-use super::named;
+use super::{named, rows};
 use crate::control::Schedule;
 use crate::control::design::{Design, DesignedGains};
 
@@ -89,11 +89,6 @@ fn law_json(law: &DesignedGains) -> Value {
 
 fn complex(value: &Complex<f64>) -> Value {
     json!([value.re, value.im])
-}
-
-fn rows(matrix: &DMatrix<f64>) -> Value {
-    let row = |row: nalgebra::RowDVector<f64>| json!(row.as_slice());
-    matrix.row_iter().map(|r| row(r.into_owned())).collect()
 }
 
 fn chosen(quantities: &[Quantity], places: &[usize]) -> Vec<String> {

@@ -4,6 +4,8 @@ use appell_gap::identify::Answer;
 use appell_recordings::DataSet;
 use serde_json::{Value, json};
 
+use super::rows;
+
 /// The result of an identification.
 pub fn identification(set: &DataSet, answer: &Answer) -> Value {
     let parameters = answer.parameters.iter().map(|estimate| {
@@ -14,18 +16,6 @@ pub fn identification(set: &DataSet, answer: &Answer) -> Value {
             "interval95": estimate.interval95(), "at_limit": estimate.at_limit,
         })
     });
-    let rows = answer.correlation.row_iter();
-    let correlation = rows.map(|row| row.iter().copied().collect::<Vec<f64>>());
-    let combinations = answer
-        .combinations
-        .iter()
-        .map(|known| json!({ "parts": known.parts, "deviation_in_tolerances": known.deviation }));
-    let levels = |levels: &[appell_gap::identify::Level]| {
-        let levels = levels.iter().map(
-            |level| json!({ "name": level.name, "nominal": level.nominal, "fitted": level.fitted }),
-        );
-        levels.collect::<Vec<_>>()
-    };
     let whiteness = answer.whiteness.iter().map(|(column, consistency)| {
         json!({
             "channel": column, "count": consistency.count,
@@ -63,10 +53,10 @@ pub fn identification(set: &DataSet, answer: &Answer) -> Value {
         "mechanism": set.mechanism.name,
         "is_optimum": answer.is_optimum,
         "parameters": parameters.collect::<Vec<_>>(),
-        "correlation": correlation.collect::<Vec<_>>(),
-        "combinations": combinations.collect::<Vec<_>>(),
-        "noise": levels(&answer.noise),
-        "disturbances": levels(&answer.disturbances),
+        "correlation": rows(&answer.correlation),
+        "combinations": answer.combinations,
+        "noise": answer.noise,
+        "disturbances": answer.disturbances,
         "innovations": whiteness.collect::<Vec<_>>(),
         "log_likelihood": { "nominal": answer.log_likelihoods[0], "fitted": answer.log_likelihoods[1] },
         "repeatability": repeatability.collect::<Vec<_>>(),

@@ -4,7 +4,7 @@ use appell_gap::inverse::{Answer, Inputs};
 use appell_runtime::model::ModelInfo;
 use serde_json::{Value, json};
 
-use super::names;
+use super::{names, rows};
 
 /// Input-free relations, estimated parameters and the inputs of recorded motions.
 pub fn inverse(info: &ModelInfo, answer: &Answer) -> Value {
@@ -27,8 +27,6 @@ pub fn inverse(info: &ModelInfo, answer: &Answer) -> Value {
     };
     let noise = answer.noise.iter();
     let noise = noise.map(|(column, std)| json!({ "column": column, "std": std }));
-    let rows = answer.correlation.row_iter();
-    let correlation = rows.map(|row| row.iter().copied().collect::<Vec<f64>>());
     json!({
         "schema": "inverse/1",
         "mechanism": info.name,
@@ -37,7 +35,7 @@ pub fn inverse(info: &ModelInfo, answer: &Answer) -> Value {
         "spacing_s": answer.spacing,
         "estimates": estimates.collect::<Vec<_>>(),
         "noise": noise.collect::<Vec<_>>(),
-        "noise_correlation": correlation.collect::<Vec<_>>(),
+        "noise_correlation": rows(&answer.correlation),
         "runs": answer.inputs.iter().map(inputs).collect::<Vec<_>>(),
     })
 }

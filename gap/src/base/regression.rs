@@ -5,6 +5,7 @@ use appell_estimate::inverse::Motion;
 use appell_recordings::Part;
 use appell_runtime::model::{At, Model};
 use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
 
 use super::adjustment::{Equation, adjust};
 use super::error::BaseError;
@@ -31,9 +32,10 @@ impl Estimate {
 }
 
 /// Residuals of the equation of a pseudo-velocity: root mean squares of forces, in SI.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Speed {
     /// Name of the pseudo-velocity.
+    #[serde(rename = "pseudo_velocity")]
     pub name: String,
     /// The generalised force of the recorded inputs.
     pub inputs: f64,

@@ -7,6 +7,7 @@ use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_deviations, set_parameters};
 use appell_spec::mechanism::{Parameter, ParameterId};
 use appell_spec::units::{self, Unit};
+use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use toml_edit::{DocumentMut, Item};
 
 use super::bench::Bench;
@@ -15,22 +16,25 @@ use super::{ChangeError, DiagnoseError};
 use crate::effects::{ACTING, Acts, Candidate, EffectModel, ModelError, Part, with_candidates};
 
 /// Changes of a spec.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Changes {
     /// Items to add, in the spec language, with the fitted values.
     pub items: String,
     /// Terms added to an input wherever it acts: its name and an expression.
+    #[serde(serialize_with = "write_added", deserialize_with = "read_added")]
     pub inputs: Vec<(String, String)>,
     /// Parameters of the items, without switches.
+    #[serde(skip)]
     pub brought: Vec<Refitted>,
     /// Parameters of this rig.
     pub parameters: Vec<Refitted>,
     /// Effects on inputs or channels, which a spec cannot express.
+    #[serde(rename = "beside")]
     pub signal_effects: Vec<SignalEffect>,
 }
 
 /// The value of a parameter on this rig, in its unit.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Refitted {
     /// Name.
     pub name: String,
@@ -45,7 +49,7 @@ pub struct Refitted {
 }
 
 /// An effect on an input or a channel.
-#[derive(Debug, Clone, PartialEq, Eq)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct SignalEffect {
     /// Name.
     pub effect: String,
@@ -56,6 +60,23 @@ pub struct SignalEffect {
     pub on: String,
     /// The output that a channel measures, among the items.
     pub output: Option<String>,
+}
+
+/// A term of an input in the file of a report.
+#[derive(Serialize, Deserialize)]
+struct Added {
+    input: String,
+    adds: String,
+}
+
+fn write_added<S: Serializer>(inputs: &[(String, String)], to: S) -> Result<S::Ok, S::Error> {
+    let added = inputs.iter().cloned();
+    to.collect_seq(added.map(|(input, adds)| Added { input, adds }))
+}
+
+fn read_added<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
+    let added: Vec<Added> = Deserialize::deserialize(from)?;
+    Ok(added.into_iter().map(|one| (one.input, one.adds)).collect())
 }
 
 impl Changes {

@@ -1,6 +1,7 @@
 //! The gap report, with the names of its format.
 
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 use super::calibration::TIED;
 use super::changes::Changes;
@@ -72,7 +73,7 @@ impl GapVerdict {
 }
 
 /// An estimate.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Value {
     /// Effect and parameter.
     pub name: String,
@@ -85,7 +86,7 @@ pub struct Value {
 }
 
 /// A hypothesis with its probability.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Hypothesis {
     /// Names of its effects; none for the nominal model, `unknown` for none of the library.
     pub effects: Vec<String>,
@@ -109,7 +110,7 @@ impl Hypothesis {
 }
 
 /// An equation and its part in the gap.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct ShareOf {
     /// Pseudo-velocity.
     pub name: String,
@@ -124,24 +125,27 @@ pub struct ShareOf {
 }
 
 /// A window of time in which the gap shows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Window {
     /// File of the run.
     pub run: String,
     /// Begin in s.
+    #[serde(rename = "from_s")]
     pub from: f64,
     /// End in s.
+    #[serde(rename = "to_s")]
     pub to: f64,
     /// Pseudo-velocity; empty for a channel whose predictions fail.
     pub equation: String,
     /// Size in standard deviations.
     pub z: f64,
     /// The channel whose predictions also fail there under the best hypothesis; `None` if that explains the gap.
+    #[serde(skip_serializing_if = "Option::is_none")]
     pub unexplained: Option<String>,
 }
 
 /// A region of the state space in which the gap shows.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Region {
     /// Variable.
     pub variable: String,
@@ -152,7 +156,7 @@ pub struct Region {
 }
 
 /// Where the gap lies.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Where {
     /// Force, parameter, actuator, constraint, sensor or none.
     pub domain: &'static str,
@@ -177,9 +181,10 @@ impl Where {
 }
 
 /// A part of the gap.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Share {
     /// `refit`, an effect, `law` for a force that was measured, or `unexplained`.
+    #[serde(rename = "effect")]
     pub name: String,
     /// Part of the gap of the nominal model, on the held-out runs.
     pub closed: f64,
@@ -187,6 +192,7 @@ pub struct Share {
     pub interval: [f64; 2],
     /// Whether it is large enough to name a cause: above the tolerance, relative to the gap of the re-fitted
     /// model.
+    #[serde(rename = "material")]
     pub is_material: bool,
 }
 
@@ -213,7 +219,7 @@ impl Share {
 }
 
 /// Prediction errors on held-out runs, in units of the noise.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 #[expect(missing_docs, reason = "the words of the contract")]
 pub struct HowFar {
     pub horizon_s: f64,
@@ -224,20 +230,21 @@ pub struct HowFar {
     pub closed: f64,
     pub closed_ci95: [f64; 2],
     pub closed_vs_refitted: f64,
-    /// The shares of the gap.
-    pub budget: Vec<Share>,
     /// Error of the nominal model on earlier recordings, scaled by the ratio of its expected errors.
     pub before: Option<f64>,
     /// Relative reduction of the mean square error of the nominal model by the leading hypothesis, and of that of the
     /// re-fitted one, between quantiles of 2.5 and 97.5 %.
     pub bettered_ci95: [[f64; 2]; 2],
+    /// The shares of the gap.
+    pub budget: Vec<Share>,
     /// Whether the leading hypothesis predicts significantly worse than the re-fitted model.
+    #[serde(skip)]
     pub is_worse: bool,
     pub runs: Vec<String>,
 }
 
 /// The smallest detectable size of an effect.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Detectable {
     /// Effect.
     pub effect: String,
@@ -263,7 +270,7 @@ pub struct Ahead {
 }
 
 /// The residual of the best hypothesis as a nonparametric law: a force or an error of a channel.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Left {
     /// Pseudo-velocity of the equation with the force, or channel with the error.
     pub place: String,
@@ -310,9 +317,10 @@ pub struct Law {
 }
 
 /// A form with its evidence.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Form {
     /// With the names of the spec, up to factors: `omega*abs(omega)`.
+    #[serde(rename = "form")]
     pub text: String,
     /// Its gain relative to that of the law.
     pub share: f64,
@@ -321,7 +329,7 @@ pub struct Form {
 }
 
 /// A channel outside the model on which the gap of the nominal model depends.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Hint {
     /// The channel, or its rate.
     pub variable: String,
@@ -334,7 +342,7 @@ pub struct Hint {
 }
 
 /// Stated tolerances that the re-fitted parameters contradict.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Tolerances {
     /// The most probable factor on all of them.
     pub factor: f64,
@@ -343,7 +351,7 @@ pub struct Tolerances {
 }
 
 /// A held input for which linear interpolation between rows fits better.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Interpolated {
     /// Channel.
     pub input: String,
@@ -363,7 +371,7 @@ pub struct Change {
 }
 
 /// An earlier estimate of a parameter.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Before {
     /// Name.
     pub name: String,

@@ -6,6 +6,7 @@ use appell_estimate::{
 };
 use appell_runtime::model::Quantity;
 use nalgebra::DMatrix;
+use serde::Serialize;
 
 use super::IdentifyError;
 use super::drift::Course;
@@ -53,7 +54,7 @@ impl Estimate {
 }
 
 /// A level of noise, before and after the parameters were fitted.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Level {
     /// Column or pseudo-velocity.
     pub name: String,
@@ -64,11 +65,12 @@ pub struct Level {
 }
 
 /// A combination of parameters, in units of their tolerances, and its uncertainty.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Serialize)]
 pub struct Known {
     /// Parts of the parameters, in the order of the estimates.
     pub parts: Vec<f64>,
     /// Standard deviation from the recordings alone, in units of the tolerance.
+    #[serde(rename = "deviation_in_tolerances")]
     pub deviation: f64,
 }
 

@@ -1,7 +1,8 @@
 //! Entries of a feedback file: names of states and inputs, numbers, lists and expressions.
 
+use appell_analysis::control::sampled::Sampling;
+use appell_runtime::model::Quantity;
 use appell_spec::expr::{Expr, Span};
-use appell_spec::mechanism::InputId;
 use appell_spec::units::Unit;
 use appell_spec::{Code, Diagnostic, Scope, Snippet, formula};
 use toml::Spanned;
@@ -13,7 +14,6 @@ pub(super) type Value<'t> = Spanned<DeValue<'t>>;
 
 /// Reader of a file, with its findings.
 pub(super) struct Reader<'r> {
-    pub(super) file: &'r str,
     pub(super) text: &'r str,
     pub(super) setup: &'r Setup<'r>,
     pub(super) findings: Vec<Diagnostic>,
@@ -21,12 +21,18 @@ pub(super) struct Reader<'r> {
 
 impl Reader<'_> {
     pub(super) fn tell(&mut self, code: Code, message: impl Into<String>, at: Span, help: &str) {
+        let help = (!help.is_empty()).then(|| help.to_owned());
         let diagnostic = Diagnostic::error(code, message).at(at, "");
-        self.findings.push(if help.is_empty() {
-            diagnostic
-        } else {
-            diagnostic.help(help)
-        });
+        self.findings.push(diagnostic.maybe_help(help));
+    }
+
+    pub(super) fn wrong_type(&mut self, value: &Value<'_>, message: impl Into<String>, help: &str) {
+        self.tell(Code::WrongType, message, value.span(), help);
+    }
+
+    pub(super) fn missing(&mut self, key: &str, help: &str) {
+        let message = format!("the key `{key}` is missing");
+        self.tell(Code::MissingKey, message, 0..0, help);
     }
 
     pub(super) fn known_keys(&mut self, table: &DeTable<'_>, known: &[&str]) {
@@ -49,6 +55,28 @@ impl Reader<'_> {
         }
     }
 
+    /// Sampling of the controller; `None` for a continuous-time or an invalid one.
+    pub(super) fn sampling(&mut self, table: &DeTable<'_>) -> Option<Sampling> {
+        let Some(period) = table.get("sampled_ms") else {
+            for key in ["delay_ms", "pending_gains"] {
+                if let Some(value) = table.get(key) {
+                    let message = format!("`{key}` needs `sampled_ms`");
+                    let help = "only a discrete-time controller has a delay";
+                    self.tell(Code::MissingKey, message, value.span(), help);
+                }
+            }
+            return None;
+        };
+        let delay = match table.get("delay_ms") {
+            Some(delay) => self.number(delay)?,
+            None => 0.0,
+        };
+        let sampling = Sampling::new(self.number(period)? / 1e3, delay / 1e3);
+        sampling
+            .map_err(|error| self.wrong_type(period, error.to_string(), ""))
+            .ok()
+    }
+
     /// The inputs of the law.
     pub(super) fn inputs(&mut self, table: &DeTable<'_>) -> Option<Vec<usize>> {
         match (table.get("input"), table.get("inputs")) {
@@ -64,15 +92,18 @@ impl Reader<'_> {
 
     pub(super) fn input(&mut self, value: &Value<'_>) -> Option<usize> {
         let (name, at) = self.string(value)?;
-        let inputs = self.setup.mechanism.inputs.iter();
-        let names: Vec<String> = inputs.map(|input| input.label.name.clone()).collect();
-        self.find(&name, "input", &names, at)
+        self.find(&name, "input", self.setup.declared_inputs().iter(), at)
     }
 
-    /// One expression, or a list of them for several inputs.
-    pub(super) fn offsets(&mut self, table: &DeTable<'_>, inputs: &[usize]) -> Vec<Option<Expr>> {
+    pub(super) fn state(&mut self, value: &Value<'_>) -> Option<usize> {
+        let (name, at) = self.string(value)?;
+        self.find(&name, "state", self.setup.info.states.iter(), at)
+    }
+
+    /// Offsets of inputs: one expression, or a list of them for several inputs.
+    pub(super) fn offsets(&mut self, table: &DeTable<'_>, inputs: &[usize]) -> Vec<(usize, Expr)> {
         let Some(value) = table.get("offset") else {
-            return vec![None; inputs.len()];
+            return Vec::new();
         };
         let values = match value.get_ref() {
             DeValue::Array(values) => values.iter().collect(),
@@ -80,13 +111,15 @@ impl Reader<'_> {
         };
         self.count("offset", values.len(), "input", inputs.len(), value.span());
         let setup = self.setup;
-        let units = inputs
-            .iter()
-            .map(|&input| &setup.mechanism.inputs[InputId::new(input)].label.unit);
-        let pairs = values.into_iter().zip(units);
-        pairs
-            .map(|(value, unit)| self.expression(value, Scope::Law, "the offset", unit))
-            .collect()
+        let pairs = values.into_iter().zip(inputs);
+        let offsets = pairs.filter_map(|(value, &input)| {
+            let unit = setup.unit_of_input(input);
+            Some((
+                input,
+                self.expression(value, Scope::Law, "the offset", unit)?,
+            ))
+        });
+        offsets.collect()
     }
 
     /// Numbers: a list for one input, a list of lists for several.
@@ -140,12 +173,7 @@ impl Reader<'_> {
     pub(super) fn numbers(&mut self, value: &Value<'_>) -> Option<Vec<f64>> {
         let DeValue::Array(elements) = value.get_ref() else {
             let help = "write a list of numbers for each input";
-            self.tell(
-                Code::WrongType,
-                "expected a list of numbers",
-                value.span(),
-                help,
-            );
+            self.wrong_type(value, "expected a list of numbers", help);
             return None;
         };
         let read: Vec<Option<f64>> = elements.iter().map(|value| self.number(value)).collect();
@@ -161,12 +189,8 @@ impl Reader<'_> {
     ) -> Option<Vec<T>> {
         let value = table.get(key)?;
         let DeValue::Array(elements) = value.get_ref() else {
-            self.tell(
-                Code::WrongType,
-                format!("`{key}` must be a list"),
-                value.span(),
-                "write it in brackets",
-            );
+            let message = format!("`{key}` must be a list");
+            self.wrong_type(value, message, "write it in brackets");
             return None;
         };
         let read: Vec<Option<T>> = elements.iter().map(|value| element(self, value)).collect();
@@ -186,26 +210,18 @@ impl Reader<'_> {
         };
         let DeValue::Table(entries) = value.get_ref() else {
             let help = "write `name = \"expression\"` for each state";
-            self.tell(
-                Code::WrongType,
-                format!("`{key}` must be a table"),
-                value.span(),
-                help,
-            );
+            self.wrong_type(value, format!("`{key}` must be a table"), help);
             return Vec::new();
         };
-        let mut read = Vec::new();
-        for (name, value) in entries {
-            let Some(state) = self.find(name.get_ref(), "state", &self.states(), name.span())
-            else {
-                continue;
-            };
-            let unit = self.setup.unit_of_state(state);
-            if let Some(expr) = self.expression(value, scope, what, unit) {
-                read.push((state, expr, name.span()));
-            }
-        }
-        read
+        let setup = self.setup;
+        let entries = entries.iter().filter_map(|(name, value)| {
+            let states = setup.info.states.iter();
+            let state = self.find(name.get_ref(), "state", states, name.span())?;
+            let unit = setup.unit_of_state(state);
+            let expr = self.expression(value, scope, what, unit)?;
+            Some((state, expr, name.span()))
+        });
+        entries.collect()
     }
 
     /// The value of a quantity: a number, a number with a unit, or an expression.
@@ -217,15 +233,10 @@ impl Reader<'_> {
         unit: &Unit,
     ) -> Option<Expr> {
         let text = match value.get_ref() {
-            DeValue::String(text) => text.to_string(),
-            DeValue::Integer(_) | DeValue::Float(_) => self.text[value.span()].to_owned(),
+            DeValue::String(text) => text.as_ref(),
+            DeValue::Integer(_) | DeValue::Float(_) => &self.text[value.span()],
             _ => {
-                self.tell(
-                    Code::WrongType,
-                    "expected an expression, as a string",
-                    value.span(),
-                    "",
-                );
+                self.wrong_type(value, "expected an expression, as a string", "");
                 return None;
             }
         };
@@ -235,46 +246,24 @@ impl Reader<'_> {
             text: &text,
             whole: value.span(),
         };
-        match formula(self.setup.spec, &snippet, what, scope, unit) {
-            Ok(expr) => Some(expr),
-            Err(findings) => {
-                self.findings.extend(findings);
-                None
-            }
-        }
+        formula(self.setup.spec, &snippet, what, scope, unit)
+            .map_err(|findings| self.findings.extend(findings))
+            .ok()
     }
 
-    pub(super) fn states(&self) -> Vec<String> {
-        self.setup
-            .info
-            .states
-            .iter()
-            .map(|state| state.name.to_string())
-            .collect()
-    }
-
-    pub(super) fn state(&mut self, value: &Value<'_>) -> Option<usize> {
-        let (name, at) = self.string(value)?;
-        self.find(&name, "state", &self.states(), at)
-    }
-
-    /// Index of a name; an unknown one is reported.
-    pub(super) fn find(
+    /// Index of the quantity of a name; an unknown one is reported.
+    pub(super) fn find<'q>(
         &mut self,
         name: &str,
         what: &str,
-        names: &[String],
+        among: impl Iterator<Item = &'q Quantity> + Clone,
         at: Span,
     ) -> Option<usize> {
-        let found = names.iter().position(|other| other == name);
+        let names = among.map(|quantity| quantity.name.as_ref());
+        let found = names.clone().position(|other| other == name);
         if found.is_none() {
-            let help = instead(name, names.iter().map(String::as_str));
-            self.tell(
-                Code::UnknownName,
-                format!("there is no {what} `{name}`"),
-                at,
-                &help,
-            );
+            let message = format!("there is no {what} `{name}`");
+            self.tell(Code::UnknownName, message, at, &instead(name, names));
         }
         found
     }
@@ -283,32 +272,21 @@ impl Reader<'_> {
         if let DeValue::String(text) = value.get_ref() {
             return Some((text.to_string(), value.span()));
         }
-        self.tell(
-            Code::WrongType,
-            "expected a name, as a string",
-            value.span(),
-            "put it in quotes",
-        );
+        self.wrong_type(value, "expected a name, as a string", "put it in quotes");
         None
     }
 
     pub(super) fn number(&mut self, value: &Value<'_>) -> Option<f64> {
         let text = match value.get_ref() {
-            DeValue::Integer(number) => number.as_str().to_owned(),
-            DeValue::Float(number) => number.as_str().to_owned(),
-            _ => String::new(),
+            DeValue::Integer(number) => number.as_str(),
+            DeValue::Float(number) => number.as_str(),
+            _ => "",
         };
-        match text.replace('_', "").parse::<f64>() {
-            Ok(number) if number.is_finite() => Some(number),
-            _ => {
-                self.tell(
-                    Code::WrongType,
-                    "expected a finite number",
-                    value.span(),
-                    "",
-                );
-                None
-            }
+        let number = text.replace('_', "").parse::<f64>().ok();
+        let number = number.filter(|number| number.is_finite());
+        if number.is_none() {
+            self.wrong_type(value, "expected a finite number", "");
         }
+        number
     }
 }

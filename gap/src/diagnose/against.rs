@@ -178,30 +178,17 @@ fn widened(parameter: &Estimate, factor: f64) -> f64 {
     (known + told / factor).sqrt().recip()
 }
 
-/// Whether the explanation of a difference improves predictions over some horizon significantly and by enough. Parameters
-/// within the uncertainty of their earlier estimates do not count, nor do errors that occur on the earlier recordings too.
+/// Whether the explanation of a difference improves predictions significantly and by enough. Parameters within the
+/// uncertainty of their earlier estimates do not count, nor do errors that occur on the earlier recordings too.
 fn matters(report: &Report, set: &DataSet, told: &Told) -> bool {
-    let Some(far) = &report.how_far else {
-        return true;
-    };
-    let is_open = is_open(report, set, told);
-    // The error on the earlier recordings relative to that on the new ones is known over one horizon.
-    let usual = far.before.map_or(0.0, |before| before / far.nominal);
-    let is_bettered = |nominal: f64, refitted: f64, with_effect: f64, bettered: [[f64; 2]; 2]| {
-        let base = usize::from(is_open && refitted < nominal);
-        let left = with_effect.max(usual * nominal);
-        let part = 1.0 - (left / [nominal, refitted][base]).powi(2);
-        bettered[base][0] > 0.0 && part > CHANGED
-    };
-    is_bettered(
-        far.nominal,
-        far.refitted,
-        far.with_effect,
-        far.bettered_ci95,
-    ) || report
-        .horizons
-        .iter()
-        .any(|at| is_bettered(at.nominal, at.refitted, at.with_effect, at.bettered_ci95))
+    let far = report.how_far.as_ref();
+    far.is_none_or(|far| {
+        let bases = [far.nominal, far.refitted];
+        let base = usize::from(is_open(report, set, told) && far.refitted < far.nominal);
+        let left = far.with_effect.max(far.before.unwrap_or(0.0));
+        let bettered = 1.0 - (left / bases[base]).powi(2);
+        far.bettered_ci95[base][0] > 0.0 && bettered > CHANGED
+    })
 }
 
 /// Whether the re-fitted parameters are jointly within the uncertainty of their earlier estimates, by a χ² test of

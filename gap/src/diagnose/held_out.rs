@@ -165,6 +165,7 @@ impl HowFar {
         budget: Vec<Share>,
         runs: Vec<String>,
     ) -> Self {
+        let bettered = |base: usize| paired.interval95(|means| 1.0 - means[2] / means[base]);
         let closed = |from: f64, to: f64| (from - to) / (from - floor * floor);
         let means = paired.means();
         Self {
@@ -178,7 +179,7 @@ impl HowFar {
             closed_vs_refitted: closed(means[1], means[2]),
             budget,
             before: None,
-            bettered_ci95: paired.bettered_ci95(),
+            bettered_ci95: [0, 1].map(bettered),
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,
             runs,
         }

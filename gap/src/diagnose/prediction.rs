@@ -103,13 +103,6 @@ impl Paired {
         [at(25), at(975)]
     }
 
-    /// Of the nominal model, the re-fitted one and the leading hypothesis: [`HowFar::bettered_ci95`].
-    ///
-    /// [`HowFar::bettered_ci95`]: super::report::HowFar::bettered_ci95
-    pub(super) fn bettered_ci95(&self) -> [[f64; 2]; 2] {
-        [0, 1].map(|base| self.interval95(|means| 1.0 - means[2] / means[base]))
-    }
-
     fn drawn(&self, number: impl Fn(&[f64]) -> f64) -> Vec<f64> {
         let mut random = SplitMix64::seed_from_u64(1);
         let count = self.sums.len();

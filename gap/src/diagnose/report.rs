@@ -265,8 +265,6 @@ pub struct Ahead {
     pub with_effect: f64,
     /// Expected by the filter; `None` for the free run.
     pub noise_floor: Option<f64>,
-    /// As [`HowFar::bettered_ci95`].
-    pub bettered_ci95: [[f64; 2]; 2],
 }
 
 /// The residual of the best hypothesis as a nonparametric law: a force or an error of a channel.

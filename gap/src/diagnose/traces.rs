@@ -9,7 +9,7 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::held_out::{HeldOut, Leader};
-use super::prediction::{Paired, noise, stated, taken_over};
+use super::prediction::{noise, stated, taken_over};
 use super::report::{Ahead, Trace};
 use crate::held_out::{AHEAD, HORIZONS, origins};
 
@@ -33,10 +33,9 @@ impl HeldOut {
         let noise = noise(bench, comparison.best())?;
         let nominal = stated(bench, refitted)?;
         let ahead = |horizon: f64| {
-            let errors = |fitted: &Fitted| self.errors(bench, fitted, &noise, horizon);
-            let [nominal, refitted] = [errors(&nominal)?, errors(refitted)?];
-            let with_effect = leader.errors(horizon)?;
-            let paired = Paired::of(&[&nominal, &refitted, &with_effect]);
+            let error = |fitted: &Fitted| -> Result<f64, DiagnoseError> {
+                Ok(self.errors(bench, fitted, &noise, horizon)?.mean().sqrt())
+            };
             let floor = if horizon.is_finite() {
                 Some(leader.floor(horizon)?)
             } else {
@@ -44,11 +43,10 @@ impl HeldOut {
             };
             Ok(Ahead {
                 horizon,
-                nominal: nominal.mean().sqrt(),
-                refitted: refitted.mean().sqrt(),
-                with_effect: with_effect.mean().sqrt(),
+                nominal: error(&nominal)?,
+                refitted: error(refitted)?,
+                with_effect: leader.errors(horizon)?.mean().sqrt(),
                 noise_floor: floor,
-                bettered_ci95: paired.bettered_ci95(),
             })
         };
         HORIZONS.into_iter().map(ahead).collect()

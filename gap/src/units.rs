@@ -130,8 +130,8 @@ fn unit_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> 
         .collect()
 }
 
-/// Channels that fit the equations with the opposite sign, such as an axis mounted in reverse. Signs that the motion
-/// does not determine, because of a mirror symmetry, are not doubted.
+/// Channels consistent with the equations only with reversed sign, such as a sensor axis mounted backwards. Signs that
+/// are undetermined by a mirror symmetry are not reported.
 fn sign_doubts(set: &DataSet, balance: &Balance<'_>, stated: &[Option<f64>]) -> Vec<Doubt> {
     let all: Vec<usize> = (0..stated.len()).collect();
     let reversed = |channels: Vec<usize>| {

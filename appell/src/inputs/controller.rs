@@ -339,8 +339,8 @@ impl Controller<'_> {
         }
     }
 
-    /// External inputs of the [`ClosedLoop`] of the wiring: recordings, held inputs, signals. The parameters and the state
-    /// are those that laws measure.
+    /// Fills the external inputs of the [`ClosedLoop`]: recordings, held inputs, signals. Feedback laws are evaluated at
+    /// `p` and `x`.
     pub(crate) fn fill_outside(&self, p: &[f64], t: f64, x: &[f64], u: &mut [f64]) {
         let wiring = self.wiring;
         let (declared, signals) = u.split_at_mut(wiring.function.declared().min(u.len()));

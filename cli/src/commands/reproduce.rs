@@ -11,11 +11,11 @@ use crate::progress;
 use appell::files;
 use appell_papers::book::{self, Claim, Section, Tally};
 
-/// Recomputes a paper: its equations, tables and figures against the published ones.
+/// Reproduces a paper: its equations, tables and figures against the published ones.
 ///
-/// The book is one self-contained HTML page. For the electric unicycle the simulated rides are
-/// written too, as data sets for `appell diagnose`. The exit status is 4 if a comparison does not give
-/// its expected result.
+/// The report is one self-contained HTML page. For the electric unicycle the simulated rides are
+/// written too, as data sets for `appell diagnose`. The exit status is 4 if a comparison has an
+/// unexpected result.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

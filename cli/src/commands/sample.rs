@@ -22,12 +22,12 @@ pub(crate) struct Sample {
 /// What there is to try.
 #[derive(Debug, clap::Subcommand)]
 enum What {
-    /// A simulated rig with its spec, three recordings and their description: something moves it that its spec lacks
+    /// A simulated rig: its spec, which omits one effect, three recordings and their description
     Rig {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,
     },
-    /// An arm of two links that holds a tool and has a stop, of which its spec knows nothing, with three recordings
+    /// A two-link arm with a payload and an end stop, both missing from its spec, and three recordings
     Arm {
         /// The folder, which is made if it is not there; nothing is overwritten
         folder: PathBuf,

@@ -19,10 +19,10 @@ use crate::{output, picture, progress, summary};
 
 /// Integrates the equations of motion and summarises the motion.
 ///
-/// Plain numbers, such as `20`, `2*10` or `5*sin(2*t)`, are in the unit that the spec declares for
-/// the quantity. Names and numbers with a unit, such as `30cm` or `5[m/s]/R`, are converted and
+/// Expressions without units, such as `20`, `2*10` or `5*sin(2*t)`, are in the declared unit of the
+/// quantity. Names and numbers with a unit, such as `30cm` or `5[m/s]/R`, are converted and
 /// checked. Expressions for inputs may contain `t`, states and parameters; a plain coefficient of a
-/// state, as in `-3*x - v`, is a gain in SI. Inputs and feedback are added.
+/// state, as in `-3*x - v`, is a gain in SI. Inputs and feedback are summed.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:

@@ -10,8 +10,8 @@
 //! linear theory). The constraint rows of the contact equal s instead of zero. F is the force of pure rolling:
 //! its change due to creep is of second order in κ.
 //!
-//! Creep has inertia. With the creep velocities s as additional pseudo-velocities, M and m the blocks of the
-//! mass matrix, Appell's equations are `M ω̇ + m ṡ + b(q, ω, s) = Π(q, ω, s)`. The state is `w = ω + M⁻¹ m s`,
+//! Creep couples inertially. With the creep velocities s as additional pseudo-velocities and `[M m]` the rows of the
+//! mass matrix for ω, Appell's equations are `M ω̇ + m ṡ + b(q, ω, s) = Π(q, ω, s)`. The state is `w = ω + M⁻¹ m s`,
 //! and
 //!
 //! `M ẇ = Π - b + (ṁ - Ṁ M⁻¹ m) s`,

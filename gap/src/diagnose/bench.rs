@@ -250,8 +250,8 @@ impl<'a> Bench<'a> {
         setup
     }
 
-    /// The gain of a hypothesis with delayed channels over another one. The first rows of such channels are lost: both
-    /// are compared on the rows that remain.
+    /// Difference in log likelihood between a hypothesis with delayed channels and another one, on the rows that the delay
+    /// leaves.
     pub(super) fn gain_of_late(&self, from: &Fitted, to: &Fitted) -> Result<f64, DiagnoseError> {
         let (mut before, mut after) = (self.setup(&from.members), self.setup(&to.members));
         let channels = before.channels.iter_mut().zip(&mut after.channels);

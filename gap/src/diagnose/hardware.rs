@@ -12,8 +12,8 @@ use nalgebra::DMatrix;
 
 use crate::effects::EffectModel;
 
-/// ln 1000, the range of the logarithm of d′: the d′ of an effect that dominates the motion is about a thousand.
-/// Rounded to two digits, as in the calibration.
+/// ln 1000, the range of ln d′, where d′ is the size of an effect over its standard deviation: about 1000 for an effect
+/// that dominates the motion. Rounded to two digits, as in the calibration.
 pub(super) const LN_1000: f64 = 6.9;
 const DEGREES: f64 = 3.0;
 /// Density of Student's t at zero.

@@ -1,8 +1,8 @@
 //! Measurement of a force outside the library: a law of its variable, with its band.
 //!
-//! The harmonics of the variable with the largest gains become terms of a load in the spec, in addition to the
-//! identified effects, and their amplitudes are fitted like all other parameters, with a prior that allows a law as rough
-//! as one with a step. The law can therefore predict runs and be written into a spec.
+//! The harmonics that increase the log likelihood most become terms of a load in the spec, in addition to the identified
+//! effects; their amplitudes are fitted like other parameters, with a prior that admits discontinuous laws. The law can
+//! therefore predict runs and be written into a spec.
 
 mod deviation;
 mod hidden_mass;

@@ -4,8 +4,8 @@
 //! mechanism, and the derivatives by the sizes are the first-order effects of the candidates. A hypothesis
 //! frees some sizes.
 //!
-//! A candidate with an additional coordinate has a model of its own, together with all other candidates, derived on
-//! demand. Its parameters are declared in every model, so that parameter indices agree.
+//! A candidate that introduces a coordinate has its own model, which contains all other candidates and is derived on
+//! demand. Every model declares its parameters, so that parameter indices agree.
 
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};

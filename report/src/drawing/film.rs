@@ -224,8 +224,8 @@ fn reactions(mechanism: &Mechanism, model: &dyn Model) -> Vec<(usize, Force)> {
     found.collect()
 }
 
-/// Forces of the spec on points, and weights, as expressions in the ground. A force that depends on a
-/// reaction has no values here, and no arrow.
+/// Point forces and weights of the spec, as expressions of ground-frame components. Forces that depend on reactions
+/// are omitted and have no arrow.
 fn applied(
     algebra: &mut Algebra,
     mechanism: &Mechanism,

@@ -234,8 +234,7 @@ impl Sheet<'_> {
         }
     }
 
-    /// A marked angle. Its name stands where it begins, on the side away from the arc, below a name that
-    /// is there already.
+    /// Draws the arc of an angle. Its label is placed at its start, outside the arc, below any label already there.
     fn arc(&mut self, arc: &Arc, names: &mut Vec<[f64; 2]>) {
         let corners = self.places(&arc.corners);
         let from = arc.from.map(|end| self.place(end));

@@ -471,10 +471,7 @@ impl Mechanism {
     pub fn down(&self) -> Option<[i8; 3]> {
         self.loads.iter().find_map(|load| match load.kind {
             LoadKind::Gravity { down, .. } => Some(down),
-            LoadKind::Force { .. }
-            | LoadKind::Torque { .. }
-            | LoadKind::SpringDamper { .. }
-            | LoadKind::Generalized { .. } => None,
+            _ => None,
         })
     }
 
@@ -569,10 +566,7 @@ impl LoadKind {
                 between: Connection::Points(a, b),
                 ..
             } => vec![*a, *b],
-            Self::SpringDamper { .. }
-            | Self::Gravity { .. }
-            | Self::Torque { .. }
-            | Self::Generalized { .. } => Vec::new(),
+            _ => Vec::new(),
         }
     }
 }

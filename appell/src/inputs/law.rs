@@ -33,7 +33,7 @@ pub trait Law: Debug + Send + Sync {
     /// Adds its inputs to the declared inputs of a model.
     fn add(&self, at: &Moment<'_>, u: &mut [f64]);
 
-    /// Adds its inputs as operations, if it can be part of a [`ClosedLoop`](super::closed_loop::ClosedLoop).
+    /// Adds its inputs as operations, if it can be part of a closed loop.
     fn write(&self, _desired: &[Value], _tape: &mut Tape, _inputs: &mut [Value]) {}
 
     /// Adds bounds on its inputs along a segment of a motion.

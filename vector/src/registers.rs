@@ -105,7 +105,7 @@ impl Allocator<'_> {
                 result,
                 entry,
             }) => {
-                let from = self.load(value, None);
+                let from = self.load(value);
                 self.used(value);
                 self.code.store(result, entry, from);
             }
@@ -119,9 +119,9 @@ impl Allocator<'_> {
             Operation::Negate(a) => self.bitwise(value, set.xor, *a, SIGN),
             Operation::Function(Function::Abs, a) => self.bitwise(value, set.and, *a, MAGNITUDE),
             Operation::Function(Function::Sqrt, a) => {
-                let of = self.operand(*a, None);
+                let of = self.operand(*a);
                 self.used(*a);
-                let to = self.new_register(value, None);
+                let to = self.new_register(value);
                 self.code.square_root(to, of);
             }
             Operation::Choice {
@@ -142,7 +142,7 @@ impl Allocator<'_> {
         let (left, right) = self.pair(left, right);
         self.used(a);
         self.used(b);
-        let to = self.new_register(value, None);
+        let to = self.new_register(value);
         let code = match operation {
             Arithmetic::Add => self.set.add,
             Arithmetic::Subtract => self.set.subtract,
@@ -154,9 +154,9 @@ impl Allocator<'_> {
 
     /// An operation on the bits of a value and of a constant.
     fn bitwise(&mut self, value: Value, code: Code, a: Value, bits: u64) {
-        let left = self.load(a, None);
+        let left = self.load(a);
         self.used(a);
-        let to = self.new_register(value, None);
+        let to = self.new_register(value);
         let right = Operand::Memory(Memory::Constant(bits));
         self.code.binary(code, to, left, right);
     }
@@ -172,8 +172,8 @@ impl Allocator<'_> {
     }
 
     fn pair(&mut self, left: Value, right: Value) -> (u8, Operand) {
-        let register = self.load(left, Some(right));
-        (register, self.operand(right, Some(left)))
+        let register = self.load(left);
+        (register, self.operand(right))
     }
 
     fn compare(&mut self, relation: Relation, compared: [Value; 2]) {
@@ -195,7 +195,7 @@ impl Allocator<'_> {
         let (register, operand) = self.pair(otherwise, then);
         self.used(then);
         self.used(otherwise);
-        let to = self.new_register(value, None);
+        let to = self.new_register(value);
         self.code.select(to, operand, register);
     }
 
@@ -204,7 +204,7 @@ impl Allocator<'_> {
         for_each_operand(self.tape, call, |operand| given.push(operand));
         let addresses = if let Operation::Solve { .. } = call {
             for (slot, &operand) in (0..).zip(&given) {
-                let from = self.load(operand, None);
+                let from = self.load(operand);
                 self.code.keep(slot, from);
             }
             vec![Memory::Slot(0)]
@@ -241,27 +241,27 @@ impl Allocator<'_> {
             Some(memory @ (Memory::Argument(..) | Memory::Slot(_))) => memory,
             // Constants are not stored for all lanes.
             Some(Memory::Constant(_)) => {
-                let from = self.load(value, None);
+                let from = self.load(value);
                 let slot = self.slots.take(1);
                 self.dead.push(slot);
                 self.code.keep(slot, from);
                 Memory::Slot(slot)
             }
             None => {
-                let from = self.load(value, None);
+                let from = self.load(value);
                 self.keep(value, from)
             }
         }
     }
 
     /// The last operand of an instruction, in memory if available there and not worth a register.
-    fn operand(&mut self, value: Value, pinned: Option<Value>) -> Operand {
+    fn operand(&mut self, value: Value) -> Operand {
         if let Some(register) = self.register[value.index()] {
             return Operand::Register(register);
         }
         match self.home[value.index()] {
             Some(memory) if !self.is_worth_a_register(value) => Operand::Memory(memory),
-            _ => Operand::Register(self.load(value, pinned)),
+            _ => Operand::Register(self.load(value)),
         }
     }
 
@@ -270,11 +270,11 @@ impl Allocator<'_> {
         self.uses.after(value) != NEVER && self.held.contains(&None)
     }
 
-    fn load(&mut self, value: Value, pinned: Option<Value>) -> u8 {
+    fn load(&mut self, value: Value) -> u8 {
         if let Some(register) = self.register[value.index()] {
             return register;
         }
-        let to = self.new_register(value, pinned);
+        let to = self.new_register(value);
         // A value without a register is in memory, where eviction has stored it.
         if let Some(from) = self.home[value.index()] {
             self.code.load(to, from);
@@ -282,11 +282,11 @@ impl Allocator<'_> {
         to
     }
 
-    /// Allocates a register for a value, evicting another one than `pinned` if necessary.
-    fn new_register(&mut self, value: Value, pinned: Option<Value>) -> u8 {
+    /// Allocates a register for a value, evicting another one if necessary.
+    fn new_register(&mut self, value: Value) -> u8 {
         let free = self.held.iter().position(Option::is_none);
         let place = free.unwrap_or_else(|| {
-            let place = self.least_wanted(pinned);
+            let place = self.least_wanted();
             if let Some(leaving) = self.held[place] {
                 self.evict(leaving);
             }
@@ -298,7 +298,8 @@ impl Allocator<'_> {
         register
     }
 
-    fn least_wanted(&self, pinned: Option<Value>) -> usize {
+    /// The register to be evicted. Operands of the current instruction have the soonest next uses and stay.
+    fn least_wanted(&self) -> usize {
         let now = self.uses.now;
         let distance = |value: Value| {
             let next = self.uses.next(value) as usize - now as usize;
@@ -309,8 +310,7 @@ impl Allocator<'_> {
         };
         let held = self.held.iter().enumerate();
         let held = held.filter_map(|(place, value)| Some((place, (*value)?)));
-        let evictable = held.filter(|(_, value)| Some(*value) != pinned);
-        let furthest = evictable.max_by_key(|&(_, value)| distance(value));
+        let furthest = held.max_by_key(|&(_, value)| distance(value));
         furthest.map_or(0, |(place, _)| place)
     }
 

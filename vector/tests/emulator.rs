@@ -8,7 +8,7 @@
 use std::mem::transmute;
 use std::ops::Range;
 
-use appell_codegen::jit::{Elementary, check};
+use appell_codegen::jit::{Elementary, Sizes, check};
 use appell_codegen::symbolic::{Function, Rational, Relation};
 use appell_codegen::tape::{
     Argument, Arithmetic, Operation, ResultArray, Tape, interpret_weighted,
@@ -22,7 +22,7 @@ use crate::jit_support::{SIZES, same};
 
 const WEIGHTS: usize = 2;
 /// Words of the stack.
-const STACK: usize = 1 << 14;
+const STACK: usize = 1 << 17;
 
 type Vector = [f64; 8];
 
@@ -43,10 +43,16 @@ struct Processor {
     writable: Vec<Range<u64>>,
 }
 
-/// The addresses of a slice.
+/// The addresses of a slice that the code reads.
 fn addresses<T>(slice: &[T]) -> Range<u64> {
-    let range = slice.as_ptr_range();
-    range.start.addr() as u64..range.end.addr() as u64
+    let Range { start, end } = slice.as_ptr_range();
+    start.expose_provenance() as u64..end.addr() as u64
+}
+
+/// The addresses of a slice that the code writes.
+fn writable_addresses<T>(slice: &mut [T]) -> Range<u64> {
+    let Range { start, end } = slice.as_mut_ptr_range();
+    start.expose_provenance() as u64..end.addr() as u64
 }
 
 impl Processor {
@@ -259,15 +265,16 @@ impl Arguments {
     }
 }
 
-/// The results of machine code.
-fn executed(tape: &Tape, instructions: Instructions, arguments: &Arguments) -> Vec<Vector> {
-    let target = Target {
-        instructions,
-        elementary: Elementary::Standard,
-    };
-    let checked = check(tape, SIZES).unwrap();
+/// The results of machine code, given time, states, inputs, parameters and weights.
+pub(crate) fn emulated(
+    tape: &Tape,
+    sizes: Sizes,
+    target: Target,
+    arguments: [&[Vector]; 5],
+) -> Vec<Vector> {
+    let checked = check(tape, sizes).unwrap();
     let code = machine_code(&checked, target).unwrap().unwrap();
-    let (first, selector) = match instructions {
+    let (first, selector) = match target.instructions {
         Instructions::Avx512 => (Register::ZMM0, Register::K1),
         _ => (Register::YMM0, Register::YMM15),
     };
@@ -276,29 +283,27 @@ fn executed(tape: &Tape, instructions: Instructions, arguments: &Arguments) -> V
         .into_iter()
         .map(|len| vec![[7.0; 8]; len])
         .collect();
-    let stack = vec![0_u64; STACK];
+    let mut stack = vec![0_u64; STACK];
     for lane in (0..8).step_by(code.lanes) {
         let offset = 8 * lane;
-        let list = results.iter_mut();
-        let list: Vec<u64> = list
-            .map(|result| result.as_mut_ptr().addr() as u64 + offset)
+        let mut writable: Vec<_> = results
+            .iter_mut()
+            .map(|result| writable_addresses(result))
             .collect();
-        let mut readable: Vec<_> = arguments.0.iter().map(|of| addresses(of)).collect();
+        let list: Vec<u64> = writable.iter().map(|range| range.start + offset).collect();
+        let mut readable = arguments.map(addresses).to_vec();
         readable.extend([addresses(&list), addresses(&code.bytes)]);
-        let mut writable: Vec<_> = results.iter().map(|of| addresses(of)).collect();
-        writable.push(addresses(&stack));
+        let stack = writable_addresses(&mut stack);
+        writable.push(stack.clone());
 
         let mut general = [7; 16];
-        let [t, x, u, p, weights] = arguments
-            .0
-            .each_ref()
-            .map(|of| addresses(of).start + offset);
+        let [t, x, u, p, weights] = arguments.map(|of| addresses(of).start + offset);
         for (register, address) in [(7, t), (6, x), (2, u), (1, p), (8, weights)] {
             general[register] = address;
         }
         general[9] = addresses(&list).start;
         // As after a call of the function.
-        general[4] = addresses(&stack).end / 16 * 16 - 8;
+        general[4] = stack.end / 16 * 16 - 8;
         let mut processor = Processor {
             lanes: code.lanes,
             first,
@@ -405,7 +410,12 @@ fn machine_code_of_both_vector_units_has_the_results_of_the_interpreter() {
         let tape = random_tape(&mut random, len);
         let arguments = Arguments::random(&mut random);
         for instructions in [Instructions::Avx2, Instructions::Avx512] {
-            let results = executed(&tape, instructions, &arguments);
+            let target = Target {
+                instructions,
+                elementary: Elementary::Standard,
+            };
+            let blocks = arguments.0.each_ref().map(Vec::as_slice);
+            let results = emulated(&tape, SIZES, target, blocks);
             for lane in 0..8 {
                 let expected = arguments.interpreted(&tape, lane);
                 let found: Vec<f64> = results.iter().map(|block| block[lane]).collect();

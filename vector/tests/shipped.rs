@@ -12,6 +12,7 @@ use appell_runtime::model::{At, ModelInfo, Quantity};
 use appell_test_kit::{Random, shipped};
 use appell_vector::{Instructions, Target, VectorFunction};
 
+use crate::emulator::emulated;
 use crate::jit_support::{lane, same};
 
 /// Blocks of random points per function.
@@ -175,10 +176,21 @@ fn every_mechanism_has_the_bits_of_scalar_code_in_every_lane() {
                     0 => Block::astray(&program, &mut random),
                     _ => Block::random(&program, &mut random),
                 };
+                let mut results: Vec<(Target, Vec<[f64; LANES]>)> = Vec::new();
                 for (target, function) in &functions {
-                    let native = &natives[target.elementary as usize];
                     let mut found = vec![[f64::NAN; LANES]; len];
                     function.call(block.at(), [&mut found]);
+                    results.push((*target, found));
+                }
+                // Also where the processor lacks it.
+                let wide = Target {
+                    instructions: Instructions::Avx512,
+                    ..Target::default()
+                };
+                let arguments: [&[_]; 5] = [&[block.t], &block.x, &block.u, &block.p, &[]];
+                results.push((wide, emulated(&schedule, sizes, wide, arguments)));
+                for (target, found) in results {
+                    let native = &natives[target.elementary as usize];
                     for (l, place) in block.places.iter().enumerate() {
                         let mut expected = vec![f64::NAN; len];
                         native.call(place.at(), [&mut expected]);

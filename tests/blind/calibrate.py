@@ -1,4 +1,4 @@
-"""From evidence to probabilities that hold: finds the four numbers of gap/src/diagnose/calibration.rs.
+"""From evidence to probabilities that hold: finds the four numbers of gap/diagnosis/src/diagnose/calibration.rs.
 
     calibrate.py --collect REPORTS --labels LABELS   takes from reports what is needed: calibration.json
     calibrate.py                                     finds the numbers, tells how well claims hold
@@ -22,8 +22,8 @@ from score import is_truth, rate, write
 
 HERE = Path(__file__).resolve().parent
 DATA = HERE / "calibration.json"
-TOOL = HERE / "../../gap/src/diagnose/calibration.rs"
-ENGINE = HERE / "../../gap/src/diagnose.rs"
+TOOL = HERE / "../../gap/diagnosis/src/diagnose/calibration.rs"
+ENGINE = HERE / "../../gap/diagnosis/src/diagnose.rs"
 NAMES = ["TEMPERATURE", "MIMICKED", "INEXACT", "LEFT"]
 RANGES = {"TEMPERATURE": (1.0, 4.0), "MIMICKED": (0.02, 0.9), "INEXACT": (0.02, 0.9), "LEFT": (0.02, 0.5)}
 MARKS = "<!-- calibration of tests/blind: begin -->", "<!-- calibration of tests/blind: end -->"

@@ -12,16 +12,16 @@ const MOST_LINES: usize = 700;
 /// Which crates a crate may depend on; [`ARCHITECTURE.md`] tells why.
 const MAY_KNOW: &[(&str, &[&str])] = &[
     ("model_spec", &[]),
-    ("files", &[]),
+    ("model_spec/files", &[]),
     ("runtime", &[]),
     ("codegen", &["appell-spec", "appell-runtime"]),
-    ("vector", &["appell-codegen", "appell-runtime"]),
+    ("codegen/vector", &["appell-codegen", "appell-runtime"]),
     ("generated", &["appell-runtime", "appell-codegen"]),
-    ("spectra", &[]),
-    ("analysis", &["appell-runtime", "appell-spectra"]),
-    ("estimate", &["appell-runtime", "appell-spectra"]),
+    ("analysis/spectra", &[]),
+    ("analysis/stability", &["appell-runtime", "appell-spectra"]),
+    ("gap/estimate", &["appell-runtime", "appell-spectra"]),
     (
-        "recordings",
+        "gap/recordings",
         &[
             "appell-files",
             "appell-spec",
@@ -30,7 +30,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "gap",
+        "gap/diagnosis",
         &[
             "appell-spec",
             "appell-codegen",
@@ -42,7 +42,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
     ),
     ("robots", &["appell-spec"]),
     (
-        "ensemble",
+        "analysis/ensemble",
         &["appell-files", "appell-spec", "appell-recordings"],
     ),
     (
@@ -77,9 +77,9 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-vector",
         ],
     ),
-    ("lsp", &["appell-spec", "appell-codegen"]),
+    ("apps/lsp", &["appell-spec", "appell-codegen"]),
     (
-        "watch",
+        "apps/watch",
         &[
             "appell",
             "appell-spec",
@@ -88,7 +88,10 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-runtime",
         ],
     ),
-    ("python", &["appell", "appell-report", "appell-runtime"]),
+    (
+        "apps/python",
+        &["appell", "appell-report", "appell-runtime"],
+    ),
     (
         "papers",
         &[
@@ -106,7 +109,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
         ],
     ),
     (
-        "cli",
+        "apps/cli",
         &[
             "appell",
             "appell-lsp",
@@ -128,23 +131,23 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
 
 /// Crates below the command line: they name no mechanism and no flag.
 const NAME_NO_MECHANISM: [&str; 17] = [
-    "files",
+    "model_spec/files",
     "model_spec",
     "codegen",
-    "vector",
+    "codegen/vector",
     "runtime",
-    "spectra",
-    "analysis",
-    "estimate",
-    "recordings",
-    "gap",
+    "analysis/spectra",
+    "analysis/stability",
+    "gap/estimate",
+    "gap/recordings",
+    "gap/diagnosis",
     "robots",
-    "ensemble",
+    "analysis/ensemble",
     "report",
     "appell",
-    "lsp",
-    "watch",
-    "python",
+    "apps/lsp",
+    "apps/watch",
+    "apps/python",
 ];
 
 fn read(path: &Path) -> String {
@@ -301,13 +304,13 @@ fn every_file_of_tests_is_run() {
     let folders = [
         "model_spec",
         "codegen",
-        "vector",
-        "recordings",
-        "gap",
+        "codegen/vector",
+        "gap/recordings",
+        "gap/diagnosis",
         "appell",
-        "lsp",
-        "watch",
-        "cli",
+        "apps/lsp",
+        "apps/watch",
+        "apps/cli",
         "tests",
     ];
     for main in files(&folders, "rs") {
@@ -561,10 +564,10 @@ fn only_emit_writes_rust_and_only_jit_writes_machine_code() {
 /// Where machine code is written to memory and called, or calls routines.
 const CALL_MACHINE_CODE: [&str; 5] = [
     "codegen/src/jit",
-    "vector/src/function.rs",
-    "vector/src/machine.rs",
-    "vector/src/routines.rs",
-    "vector/tests/emulator.rs",
+    "codegen/vector/src/function.rs",
+    "codegen/vector/src/machine.rs",
+    "codegen/vector/src/routines.rs",
+    "codegen/vector/tests/emulator.rs",
 ];
 
 #[test]

@@ -181,10 +181,11 @@ def table_across(rows, now, best):
     """The error of calibration of each set of cases: with the numbers of the tool, with those found on all, and
     across kinds of law."""
     said = across(rows, best)
+    engines = ", ".join(sorted({str(row["engine"]) for row in rows}))
     whole = [row for row in rows if not row["left_out"]]
     yield (
         "Mean difference between what the first answer claims and how often it is right, in ten parts of the "
-        f"probability (engine {engine()}, one-step evidence): with the constants of the tool, with those found on all "
+        f"probability (engine {engines}, one-step evidence): with the constants of the tool, with those found on all "
         "cases, and with those found without the kind of law that is judged. By chance alone: its median were "
         "every claim exact. Development scores."
     )
@@ -241,7 +242,8 @@ def main():
     stale = [row for row in rows if row.get("engine") != engine()]
     if stale:
         cases = sorted({row.get("case", "no case") for row in stale})
-        print(f"{len(stale)} of {len(rows)} rows are not of engine {engine()}: {', '.join(cases)}")
+        some = ", ".join(cases[:5])
+        print(f"{len(stale)} of {len(rows)} rows are not of engine {engine()}: {some}, ...")
     if ask.check and stale:
         raise SystemExit("the data are stale: diagnose the cases anew, then --collect")
     if ask.check and surprise(rows, now) > surprise(rows, best) + 0.02:

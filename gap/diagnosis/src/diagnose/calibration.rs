@@ -2,7 +2,7 @@
 //!
 //! Evidence is overconfident: laws are never exact, disturbances never white, and a library never
 //! complete. Four constants correct for this; they are maximum-likelihood estimates from cases whose cause
-//! is known (`tests/blind/calibrate.py`, with the data), half of them diagnosed with a
+//! was known (`tests/blind/calibrate.py`), half of them diagnosed with a
 //! library that lacks their cause. A tenth of all gaps are assumed to have a cause outside the library.
 
 use std::f64::consts::TAU;

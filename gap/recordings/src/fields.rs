@@ -18,6 +18,14 @@ fn whole(integer: &DeInteger<'_>) -> Option<f64> {
     }
 }
 
+/// A tolerance, one standard deviation.
+pub enum Tolerance {
+    /// In the unit of the value.
+    Absolute(f64),
+    /// As a share of the value.
+    Relative(f64),
+}
+
 /// A value with its position.
 pub type Value<'t> = Spanned<DeValue<'t>>;
 
@@ -168,6 +176,21 @@ impl<'t> Fields<'t> {
             return None;
         }
         Some(number)
+    }
+
+    /// A tolerance that may be absent: a number, or a text in per cent of the value, `"3 %"`.
+    pub fn tolerance(&mut self, table: &DeTable<'_>, key: &str) -> Option<Tolerance> {
+        let value = table.get(key)?;
+        let Some(text) = value.get_ref().as_str() else {
+            return self.deviation(table, key).map(Tolerance::Absolute);
+        };
+        let share = text.strip_suffix('%').map(str::trim);
+        let share = share.and_then(|share| share.parse::<f64>().ok());
+        let share = share.filter(|share| share.is_finite() && *share >= 0.0);
+        if share.is_none() {
+            self.wrong_type(value, "a number, or a share of the value such as \"3 %\"");
+        }
+        share.map(|share| Tolerance::Relative(share / 100.0))
     }
 
     /// A unit that may be absent: then the one of the quantity. One of another dimension is reported.

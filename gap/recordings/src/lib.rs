@@ -60,6 +60,7 @@ mod observed;
 mod parquet;
 mod quantum;
 mod rebound;
+mod robot;
 mod run;
 mod set;
 mod stretches;
@@ -75,6 +76,7 @@ pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;
 pub use frame::Frame;
+pub use robot::Robot;
 pub use level::{Noise, NoiseSource};
 pub use set::{DataSet, Parameter, Part, Run, Spec};
 
@@ -131,6 +133,7 @@ fn assemble<'s>(
 ) -> Result<DataSet, DataError> {
     let Manifest {
         spec,
+        robot,
         mechanism,
         description,
         parameters,
@@ -159,6 +162,7 @@ fn assemble<'s>(
     let runs = stretches::uninterrupted(read_runs, &channels, &mut findings);
     let mut set = DataSet {
         spec,
+        robot,
         mechanism,
         description,
         parameters,

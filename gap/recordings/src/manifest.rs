@@ -32,14 +32,16 @@ use toml::Spanned;
 use toml::de::DeTable;
 
 use crate::channel::{Channel, Measured, Role};
-use crate::fields::{Fields, Value};
+use crate::fields::{Fields, Tolerance, Value};
 use crate::limits::MAX_RUNS;
+use crate::robot::Robot;
 use crate::time::{self, Stated, TIME, may_be_time};
 use crate::{DataError, Library, Parameter, Part, Spec};
 
 /// A description whose names and units fit the mechanism.
 pub(crate) struct Manifest {
     pub(crate) spec: Spec,
+    pub(crate) robot: Option<Robot>,
     pub(crate) mechanism: Mechanism,
     pub(crate) description: String,
     pub(crate) parameters: Vec<Parameter>,
@@ -93,10 +95,19 @@ pub(crate) fn read(
     let Some(spec) = spec else {
         return Err(fields.report().into());
     };
+    let robot = Robot::read(Path::new(&spec.file), &spec.text, parameter_keys(table))?;
+    let (spec, robot) = match robot {
+        Some((spec, robot)) => (spec, Some(robot)),
+        None => (spec, None),
+    };
     let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
     let description = fields.string(table, "description");
-    let parameters = parameters(&mut fields, table, &mechanism);
-    let (time, channels) = channels(&mut fields, table, &mechanism);
+    let named = Named {
+        mechanism: &mechanism,
+        robot: robot.as_ref(),
+    };
+    let parameters = parameters(&mut fields, table, named);
+    let (time, channels) = channels(&mut fields, table, named);
     let runs = runs(&mut fields, table, path.parent().unwrap_or(Path::new("")));
     if fields.is_wrong() {
         return Err(fields.report().into());
@@ -104,12 +115,44 @@ pub(crate) fn read(
     Ok(Manifest {
         description: description.map_or_else(String::new, |(text, _)| text),
         spec,
+        robot,
         mechanism,
         parameters,
         time,
         channels,
         runs,
     })
+}
+
+/// The names that a description may use: those of the spec, or those of a robot file.
+#[derive(Clone, Copy)]
+struct Named<'m> {
+    mechanism: &'m Mechanism,
+    robot: Option<&'m Robot>,
+}
+
+impl Named<'_> {
+    /// The parameters that a key names, each with the value that is one in the spec: of a factor the number that it
+    /// multiplies.
+    fn parameters(self, key: &str) -> Vec<(usize, f64)> {
+        let parameters = &self.mechanism.parameters;
+        let index = |name: &str| parameters.iter().position(|own| own.label.name == name);
+        let Some(robot) = self.robot else {
+            return index(key).map(|index| (index, 1.0)).into_iter().collect();
+        };
+        let numbers = robot.numbers(key).filter_map(|number| {
+            let one = if number.relative { number.value } else { 1.0 };
+            Some((index(&number.parameter)?, one))
+        });
+        numbers.collect()
+    }
+}
+
+/// The keys of `[parameters]`.
+fn parameter_keys(table: &DeTable<'_>) -> Vec<String> {
+    let section = table.get("parameters").and_then(|own| own.get_ref().as_table());
+    let keys = section.into_iter().flat_map(DeTable::keys);
+    keys.map(|key| key.get_ref().to_string()).collect()
 }
 
 /// The spec of a name, or of a path relative to the description.
@@ -146,39 +189,51 @@ fn find(
     Ok(None)
 }
 
-/// The parameters of the spec with the values of this rig.
+/// The parameters of the spec with the values of this rig. An exact name counts before a pattern.
 fn parameters(
     fields: &mut Fields<'_>,
     table: &DeTable<'_>,
-    mechanism: &Mechanism,
+    named: Named<'_>,
 ) -> Vec<Parameter> {
-    let own = mechanism.parameters.iter();
+    let own = named.mechanism.parameters.iter();
     let mut parameters: Vec<Parameter> = own.map(Parameter::stated).collect();
     let Some(table) = fields.section(table, "parameters") else {
         return parameters;
     };
-    for (key, value) in table {
+    let is_pattern = |name: &str| name.starts_with('*');
+    let mut entries: Vec<_> = table.iter().collect();
+    entries.sort_by_key(|(key, _)| (!is_pattern(key.get_ref()), key.span().start));
+    for (key, value) in entries {
         let name = key.get_ref().as_ref();
-        let known = || mechanism.parameters.iter().map(|p| p.label.name.as_str());
-        let Some(index) = known().position(|own| own == name) else {
-            unknown(fields, "parameter", name, key.span(), known());
+        let found = named.parameters(name);
+        if found.is_empty() && !named.robot.is_some_and(|robot| robot.numbers(name).next().is_some()) {
+            let known = || named.mechanism.parameters.iter().map(|p| p.label.name.as_str());
+            match named.robot {
+                Some(robot) => unknown_number(fields, robot, name, key.span()),
+                None => unknown(fields, "parameter", name, key.span(), known()),
+            }
             continue;
-        };
-        if let Some(read) = parameter(
-            fields,
-            value,
-            &mechanism.parameters[ParameterId::new(index)],
-        ) {
-            parameters[index] = read;
+        }
+        for (index, one) in found {
+            let own = &named.mechanism.parameters[ParameterId::new(index)];
+            let stated = named.robot.is_some().then(|| parameters[index]);
+            match parameter(fields, value, own, stated, one) {
+                Some(read) => parameters[index] = read,
+                None => break,
+            }
         }
     }
     parameters
 }
 
+/// Reads a parameter. One of a robot, `stated` in its file, needs no value; it may be a factor, of a number that is
+/// `one` in SI.
 fn parameter(
     fields: &mut Fields<'_>,
     value: &Value<'_>,
     own: &appell_spec::mechanism::Parameter,
+    stated: Option<Parameter>,
+    one: f64,
 ) -> Option<Parameter> {
     let Some(table) = value.get_ref().as_table() else {
         let wanted = "a table such as { value = 1.2, unit = \"kg\", std = 0.03 }";
@@ -186,16 +241,41 @@ fn parameter(
         return None;
     };
     fields.only(table, &["value", "unit", "std"]);
-    let unit = fields.unit(table, Some((&own.label.name, &own.label.unit)));
-    let std = fields.deviation(table, "std");
-    let Some(number) = table.get("value") else {
-        let message = "the key `value` is missing";
-        fields.tell(Code::MissingKey, message, value.span(), "");
-        return None;
+    let is_factor = stated.is_some() && own.label.unit.dimension == Dimension::NONE;
+    let quantity = (own.label.name.as_str(), &own.label.unit);
+    let unit = fields.unit(table, (!is_factor).then_some(quantity));
+    let unit = unit.or_else(|| is_factor.then(|| Unit::si(Dimension::NONE)))?;
+    let scale = unit.scale / one;
+    let tolerance = fields.tolerance(table, "std");
+    let value = match (table.get("value"), stated) {
+        (Some(number), _) => {
+            let at = number.span();
+            let value = fields.number(number)? * scale;
+            outside(fields, own, value, &unit, &at);
+            value
+        }
+        (None, Some(stated)) => stated.value,
+        (None, None) => {
+            let message = "the key `value` is missing";
+            fields.tell(Code::MissingKey, message, value.span(), "");
+            return None;
+        }
     };
-    let at = number.span();
-    let (number, unit) = (fields.number(number)?, unit?);
-    let value = number * unit.scale;
+    let std = tolerance.map(|tolerance| match tolerance {
+        Tolerance::Absolute(std) => std * scale,
+        Tolerance::Relative(share) => share * value.abs(),
+    });
+    Some(Parameter { value, std })
+}
+
+/// Reports a value outside the limits of its parameter.
+fn outside(
+    fields: &mut Fields<'_>,
+    own: &appell_spec::mechanism::Parameter,
+    value: f64,
+    unit: &Unit,
+    at: &Span,
+) {
     let limits = [
         own.at_least
             .filter(|least| value < *least)
@@ -212,17 +292,13 @@ fn parameter(
         );
         fields.tell(Code::ValueOutsideLimits, message, at.clone(), "");
     }
-    Some(Parameter {
-        value,
-        std: std.map(|std| std * unit.scale),
-    })
 }
 
 /// The description of the times, and the channels.
 fn channels(
     fields: &mut Fields<'_>,
     table: &DeTable<'_>,
-    mechanism: &Mechanism,
+    named: Named<'_>,
 ) -> (Stated, Vec<Channel>) {
     let Some(table) = fields.section(table, "channels") else {
         if table.get("channels").is_none() {
@@ -246,7 +322,7 @@ fn channels(
     }
     let read = entries
         .into_iter()
-        .filter_map(|(key, value)| channel(fields, key.get_ref(), value, key.span(), mechanism));
+        .filter_map(|(key, value)| channel(fields, key.get_ref(), value, key.span(), named));
     let channels: Vec<Channel> = read.collect();
     if !fields.is_wrong() && !channels.iter().any(Channel::is_measured) {
         let message = "no channel measures anything";
@@ -335,7 +411,7 @@ fn channel(
     column: &str,
     value: &Value<'_>,
     at: Span,
-    mechanism: &Mechanism,
+    named: Named<'_>,
 ) -> Option<Channel> {
     let Some(table) = value.get_ref().as_table() else {
         let wanted = "a table such as { measures = \"theta\", unit = \"rad\" }";
@@ -364,11 +440,11 @@ fn channel(
             fields.tell(Code::ConflictingKeys, message, at, "remove one of them");
             return None;
         }
-        (Some((name, at)), None) => measured(fields, &name, at, mechanism)?,
-        (None, Some((name, at))) => commanded(fields, &name, at, mechanism)?,
+        (Some((name, at)), None) => measured(fields, &name, at, named)?,
+        (None, Some((name, at))) => commanded(fields, &name, at, named)?,
         (None, None) => Role::Recorded,
     };
-    let label = role.label(mechanism);
+    let label = role.label(named.mechanism);
     let unit = fields.unit(table, label.map(|label| (label.name.as_str(), &label.unit)));
     let stated = fields.deviation(table, "noise_std");
     if stated.is_some() && !matches!(role, Role::Measures(_)) {
@@ -418,14 +494,20 @@ fn interpolation(
     found.map(|(_, interpolation)| *interpolation)
 }
 
-fn measured(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism) -> Option<Role> {
-    let found = Measured::named(name, mechanism);
+fn measured(fields: &mut Fields<'_>, name: &str, at: Span, named: Named<'_>) -> Option<Role> {
+    let mechanism = named.mechanism;
+    let own = named.robot.and_then(|robot| robot.measured(name));
+    let found = Measured::named(own.unwrap_or(name), mechanism);
     if found.is_none() {
         let is_input = mechanism.inputs.iter().any(|i| i.label.name == name);
         if is_input {
             let message = format!("`{name}` is an input, which is commanded");
             let help = format!("write input = \"{name}\"");
             fields.tell(Code::NotAllowedHere, message, at, &help);
+        } else if let Some(robot) = named.robot {
+            let known = robot.quantities();
+            let known = known.iter().map(String::as_str);
+            unknown(fields, "joint, its velocity or torque", name, at, known);
         } else {
             let known = Measured::names(mechanism);
             let what = "coordinate, pseudo-velocity or output";
@@ -435,13 +517,28 @@ fn measured(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism
     found.map(Role::Measures)
 }
 
-fn commanded(fields: &mut Fields<'_>, name: &str, at: Span, mechanism: &Mechanism) -> Option<Role> {
-    let names = || mechanism.inputs.iter().map(|i| i.label.name.as_str());
-    let found = names().position(|own| own == name);
+fn commanded(fields: &mut Fields<'_>, name: &str, at: Span, named: Named<'_>) -> Option<Role> {
+    let names = || named.mechanism.inputs.iter().map(|i| i.label.name.as_str());
+    let own = named.robot.and_then(|robot| robot.input(name));
+    let found = names().position(|known| known == own.unwrap_or(name));
     if found.is_none() {
         unknown(fields, "input", name, at, names());
     }
     found.map(Role::Input)
+}
+
+/// Reports a key of `[parameters]` that names nothing of a robot.
+fn unknown_number(fields: &mut Fields<'_>, robot: &Robot, name: &str, at: Span) {
+    let entries = robot.dictionary.entries.iter();
+    let known: Vec<String> = entries
+        .map(|entry| format!("{}.{}", entry.element, entry.attribute))
+        .collect();
+    let help = did_you_mean(name, known.iter().map(String::as_str), || {
+        "write ELEMENT.ATTRIBUTE with names of the robot file, such as \"elbow.damping\", or \"*.mass\" for all"
+            .to_owned()
+    });
+    let message = format!("the robot has no number `{}`", shown(name));
+    fields.tell(Code::UnknownName, message, at, &help);
 }
 
 fn unknown<'n>(

@@ -5,6 +5,7 @@ use appell_spec::{Mechanism, mechanism};
 use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind};
+use crate::robot::Robot;
 
 /// The text of a spec and its name in messages.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -20,6 +21,8 @@ pub struct Spec {
 pub struct DataSet {
     /// The spec of the mechanism.
     pub spec: Spec,
+    /// The robot whose file the spec was made from.
+    pub robot: Option<Robot>,
     /// The mechanism.
     pub mechanism: Mechanism,
     /// Description of the recordings.

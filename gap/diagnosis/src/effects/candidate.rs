@@ -264,7 +264,12 @@ impl Candidate {
                     stem
                 };
                 let id = unused(id, mechanism);
-                candidates.push(Self::new(effect, &site, &id, variant)?);
+                let candidate = Self::new(effect, &site, &id, variant)?;
+                // The input of a servo is a set-point; what its actuator adds is a term of the load.
+                let adds_to = |name: &str| candidate.added.iter().any(|(own, _)| own == name);
+                if !(adds_to(&site.name) && sites.is_servo(&site.name)) {
+                    candidates.push(candidate);
+                }
             }
         }
         if effect.is_together {

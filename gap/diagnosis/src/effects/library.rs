@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which the library is listed.
-const FILES: [(&str, &str); 33] = files![
+const FILES: [(&str, &str); 35] = files![
     "viscous_friction",
     "coulomb_friction",
     "directional_friction",
@@ -30,6 +30,8 @@ const FILES: [(&str, &str); 33] = files![
     "added_inertia_turning",
     "actuator_gain",
     "actuator_bias",
+    "servo_gain",
+    "servo_bias",
     "actuator_lag",
     "actuator_delay",
     "actuator_saturation",

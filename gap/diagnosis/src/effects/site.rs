@@ -10,7 +10,7 @@ use appell_spec::units::{Dimension, Unit};
 use num_traits::Zero;
 
 use super::extent::Extent;
-use super::load::Stated;
+use super::load::{Stated, controlled};
 use super::site_kind::{LATER_BODY, LATER_DRIVEN, SiteKind};
 
 /// Typical magnitudes from recordings, in SI.
@@ -135,7 +135,8 @@ impl<'m> Sites<'m> {
                 .collect(),
             SiteKind::Reached => moving.filter_map(|q| self.reached(q)).collect(),
             SiteKind::Pair => self.pairs(),
-            SiteKind::Load => self.loads(),
+            SiteKind::Load => self.loads().collect(),
+            SiteKind::Servo => self.loads().filter(|load| self.is_servo(&load.name)).collect(),
             SiteKind::Wheel => self.wheels(),
             SiteKind::Contact => self.contacts(),
             SiteKind::Gravity => self.gravity().into_iter().collect(),
@@ -238,9 +239,9 @@ impl<'m> Sites<'m> {
     }
 
     /// Loads that depend on the motion like a controller.
-    fn loads(&self) -> Vec<Site> {
+    fn loads(&self) -> impl Iterator<Item = Site> {
         let loads = self.mechanism.loads.iter().enumerate();
-        let site = |(index, load): (usize, &Load)| {
+        let site = move |(index, load): (usize, &Load)| {
             let largest = self.scales.loads[index];
             let stated = Stated::of(self.mechanism, load, self.text)?;
             (largest > 0.0).then(|| Site {
@@ -256,7 +257,15 @@ impl<'m> Sites<'m> {
                 ..Site::default()
             })
         };
-        loads.filter_map(site).collect()
+        loads.filter_map(site)
+    }
+
+    /// Whether a load is the actuator of the input of this name.
+    pub(super) fn is_servo(&self, name: &str) -> bool {
+        let mut loads = self.mechanism.loads.iter();
+        let mut inputs = self.mechanism.inputs.iter();
+        inputs.any(|input| input.label.name == name)
+            && loads.any(|load| load.name == name && controlled(load).is_some())
     }
 
     /// Coordinates whose rates are pseudo-velocities and appear in no other one, if there are inputs; the

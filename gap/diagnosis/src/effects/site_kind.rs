@@ -35,10 +35,12 @@ pub enum SiteKind {
     Pair,
     /// A load that depends on the motion like a feedback controller.
     Load,
+    /// Such a load with the name of its input, the actuator of a robot.
+    Servo,
 }
 
 /// Keyword, kind and description.
-const WORDS: [(&str, SiteKind, &str); 16] = [
+const WORDS: [(&str, SiteKind, &str); 17] = [
     (
         "coordinate",
         SiteKind::Coordinate,
@@ -82,6 +84,11 @@ const WORDS: [(&str, SiteKind, &str); 16] = [
         "load",
         SiteKind::Load,
         "load that depends on the motion like a feedback controller",
+    ),
+    (
+        "servo",
+        SiteKind::Servo,
+        "such a load with the name of its input, the actuator of a robot",
     ),
 ];
 
@@ -133,7 +140,7 @@ impl SiteKind {
             Self::Wheel => &[OF_BODY, OF_WHEEL, LATER_BODY],
             Self::Gravity => &[&["gravity"], ACROSS],
             Self::Input => &[&["unit", "largest", "narrow"]],
-            Self::Load => &[&["expression", "unit", "largest", "narrow"]],
+            Self::Load | Self::Servo => &[&["expression", "unit", "largest", "narrow"]],
             Self::Contact | Self::Parameter | Self::Channel => &[],
         }
     }

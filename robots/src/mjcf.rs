@@ -1,5 +1,6 @@
 //! MJCF: bodies within bodies, with joints and geoms, and defaults by class.
 
+mod actuators;
 mod compiler;
 mod defaults;
 mod equality;
@@ -69,6 +70,8 @@ pub(crate) struct Reader<'x, 'f> {
     touching: Vec<Span>,
     /// Whether masses of static bodies count as well.
     all_count: bool,
+    /// Whether actuators are read.
+    actuators: bool,
     root: Element<'x>,
     /// The file with its includes.
     whole: &'f Whole<'f>,
@@ -109,6 +112,7 @@ pub(crate) fn read(
         left_out: Vec::new(),
         touching: Vec::new(),
         all_count: options.floating,
+        actuators: options.actuators,
         root,
         whole,
     };
@@ -139,7 +143,7 @@ pub(crate) fn read(
         reader.scale_to(total);
     }
     let mut tendons = reader.tendons();
-    reader.drives(&mut tendons);
+    let drives = reader.drives(&mut tendons);
     if !mass::settle(&mut reader.links, &tendons) {
         findings.error(
             Code::LimitExceeded,
@@ -176,6 +180,7 @@ pub(crate) fn read(
         tendons,
         connections,
         driven: driven(root),
+        drives,
         left_out: reader.left_out,
     };
     for one in switched_off(&is_off) {

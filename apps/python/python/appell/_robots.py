@@ -61,6 +61,7 @@ def import_robot(
     lock: Mapping[str, float | None] | Iterable[str] = (),
     snap: bool = False,
     floating: bool = False,
+    actuators: bool = False,
     root: str | Path | None = None,
 ) -> Robot:
     """A URDF or an MJCF file as a spec, with the files that it includes.
@@ -73,7 +74,7 @@ def import_robot(
     """
     chosen = ",".join(many(parameters))
     values = lock.items() if isinstance(lock, Mapping) else ((joint, None) for joint in many(lock))
-    spec, fields = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating, root and Path(root))
+    spec, fields = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating, actuators, root and Path(root))
     fields = json.loads(fields)
     return Robot(
         spec=spec,

@@ -27,6 +27,7 @@ const MAY_KNOW: &[(&str, &[&str])] = &[
             "appell-spec",
             "appell-runtime",
             "appell-estimate",
+            "appell-robots",
         ],
     ),
     (

@@ -88,6 +88,7 @@ fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
     let mut set = DataSet {
         parameters: own.map(Parameter::stated).collect(),
         spec,
+        robot: None,
         mechanism,
         description: String::new(),
         channels,

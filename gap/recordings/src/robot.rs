@@ -106,9 +106,11 @@ impl Robot {
         named.flatten().collect()
     }
 
-    /// A text with the names of the spec replaced by those of the file.
+    /// A text with the parameters of the spec under the names of their numbers in the file. Names of elements with
+    /// other characters than letters, digits, `_`, `-`, `.` and `/` stay, for they may mean something in the text.
     pub fn named(&self, text: &str) -> String {
         let is_part = |c: char| c.is_alphanumeric() || c == '_';
+        let is_plain = |c: char| is_part(c) || "-./".contains(c);
         let mut named = String::with_capacity(text.len());
         let mut rest = text;
         while let Some(start) = rest.find(is_part) {
@@ -118,12 +120,12 @@ impl Robot {
             let (word, after) = word.split_at(end);
             let mut entries = self.dictionary.entries.iter();
             match entries.find(|entry| entry.parameter == word) {
-                Some(entry) => {
+                Some(entry) if entry.element.chars().all(is_plain) => {
                     named.push_str(&entry.element);
                     named.push('.');
                     named.push_str(entry.attribute);
                 }
-                None => named.push_str(word),
+                _ => named.push_str(word),
             }
             rest = after;
         }

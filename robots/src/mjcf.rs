@@ -1,6 +1,7 @@
 //! MJCF: bodies within bodies, with joints and geoms, and defaults by class.
 
 mod compiler;
+mod corrected;
 mod defaults;
 mod equality;
 mod geoms;
@@ -25,6 +26,7 @@ use crate::without::Without;
 use crate::xml::{Element, Findings, Span, children, elements, exactly, tag};
 
 use compiler::{Compiler, InertiaFrom};
+pub use corrected::{Amount, Change, Corrected, JointNumber, corrected};
 use defaults::Defaults;
 use equality::Equality;
 pub(crate) use replicate::expanded;

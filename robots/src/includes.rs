@@ -268,6 +268,14 @@ impl<'f> Whole<'f> {
         (piece.file, at(place.start)..at(place.end))
     }
 
+    /// The place in the first file for a place in the combined text. The error is the name of another file that has it.
+    pub(crate) fn in_first(&self, place: &Span) -> Result<Span, &str> {
+        match self.origin(place) {
+            (0, place) => Ok(place),
+            (file, _) => Err(&self.files[file].0),
+        }
+    }
+
     /// Name of the file and line for a position in the combined text.
     pub(crate) fn line(&self, place: &Span) -> (&str, usize) {
         let (file, place) = self.origin(place);

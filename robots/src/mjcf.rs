@@ -2,6 +2,7 @@
 
 mod actuators;
 mod compiler;
+mod corrected;
 mod defaults;
 mod equality;
 mod geoms;
@@ -26,6 +27,7 @@ use crate::without::Without;
 use crate::xml::{Element, Findings, Span, children, elements, exactly, tag};
 
 use compiler::{Compiler, InertiaFrom};
+pub use corrected::{Amount, Change, Corrected, JointNumber, corrected};
 use defaults::Defaults;
 use equality::Equality;
 pub(crate) use replicate::expanded;

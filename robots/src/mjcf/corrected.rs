@@ -1,0 +1,322 @@
+//! The text of an MJCF file with changes of its numbers; everything else stays byte for byte.
+//!
+//! | file | changes |
+//! |---|---|
+//! | `corrected/joint.rs` | numbers of joints, springs, readings |
+//! | `corrected/body.rs` | masses, centres of mass, inertias, payloads |
+//! | `corrected/actuator.rs` | gains, biases, lags, delays, limits of actuators |
+//! | `corrected/law.rs` | the law of an actuator, as its classes and shortcuts define it |
+//! | `corrected/option.rs` | gravity |
+//! | `corrected/play.rs` | backlash: a second joint |
+//! | `corrected/sheet.rs` | attributes that are to be written, element by element |
+//! | `corrected/bytes.rs` | replacements of ranges of the text |
+
+mod actuator;
+mod body;
+mod bytes;
+mod joint;
+mod law;
+mod option;
+mod play;
+mod sheet;
+
+use appell_spec::{Code, Diagnostic, Severity};
+
+use crate::Failure;
+use crate::format::Format;
+use crate::includes::Whole;
+use crate::options::Options;
+use crate::rotation::Vector;
+use crate::xml::{self, Findings, Span, parse};
+
+use sheet::Sheet;
+
+/// A change of a number, in SI.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Amount {
+    /// The new value.
+    To(f64),
+    /// A summand.
+    Add(f64),
+    /// A factor.
+    Times(f64),
+}
+
+impl Amount {
+    /// The changed value of a number.
+    pub fn of(self, value: f64) -> f64 {
+        match self {
+            Self::To(new) => new,
+            Self::Add(summand) => value + summand,
+            Self::Times(factor) => value * factor,
+        }
+    }
+}
+
+/// A number of a joint.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum JointNumber {
+    /// Damping: the factor of the rate.
+    Damping,
+    /// Dry friction.
+    Frictionloss,
+    /// Reflected inertia of the drive, as written at the joint: without that of its actuators.
+    Armature,
+    /// Stiffness of the spring: the factor of its elongation.
+    Stiffness,
+    /// Where the spring is relaxed.
+    Springref,
+    /// The position in the pose of the file. Neither the range nor the spring moves along, as they do with
+    /// [`Change::Reading`].
+    Ref,
+}
+
+/// A change of a file; names are those of the file, numbers are in SI.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Change {
+    /// A number of a joint.
+    Joint {
+        /// The joint.
+        joint: String,
+        /// Its number.
+        attribute: JointNumber,
+        /// The change.
+        amount: Amount,
+    },
+    /// The mass of a body, with all that is fixed to it. Its centre of mass, and its inertia about that, stay.
+    Mass {
+        /// The body.
+        body: String,
+        /// The change.
+        amount: Amount,
+    },
+    /// The centre of mass of a body, with all that is fixed to it, in its frame. The inertia about it stays.
+    Centre {
+        /// The body.
+        body: String,
+        /// The change of each component.
+        amounts: [Amount; 3],
+    },
+    /// The inertia of a body about its centre of mass, with all that is fixed to it.
+    Inertia {
+        /// The body.
+        body: String,
+        /// The factor of all moments of inertia.
+        factor: f64,
+    },
+    /// A point mass that is fixed to a body.
+    Payload {
+        /// The body.
+        body: String,
+        /// Its mass.
+        mass: f64,
+        /// Its position in the frame of the body.
+        at: Vector,
+    },
+    /// The gain of a position servo, and the equal one of its feedback.
+    Kp {
+        /// The actuator.
+        actuator: String,
+        /// The change.
+        amount: Amount,
+    },
+    /// The gain of the rate of a servo.
+    Kv {
+        /// The actuator.
+        actuator: String,
+        /// The change.
+        amount: Amount,
+    },
+    /// The transmission ratio of an actuator.
+    Gear {
+        /// The actuator.
+        actuator: String,
+        /// The change.
+        amount: Amount,
+    },
+    /// A factor of all the force of an actuator: the `gear` of a motor, gains and bounds of any other one.
+    Gain {
+        /// The actuator.
+        actuator: String,
+        /// The factor.
+        factor: f64,
+    },
+    /// A summand of the force of an actuator, before its gear.
+    Bias {
+        /// The actuator.
+        actuator: String,
+        /// The summand.
+        add: f64,
+    },
+    /// The time constant of a first-order lag of the command of an actuator, which replaces one that it has.
+    Lag {
+        /// The actuator.
+        actuator: String,
+        /// The time constant, in s.
+        seconds: f64,
+    },
+    /// The delay of the command of an actuator, which replaces one that it has.
+    Delay {
+        /// The actuator.
+        actuator: String,
+        /// The delay, in s.
+        seconds: f64,
+    },
+    /// The largest force of an actuator in both directions, before its gear.
+    ForceLimit {
+        /// The actuator.
+        actuator: String,
+        /// The limit.
+        limit: f64,
+    },
+    /// A spring in addition to that of a joint.
+    Spring {
+        /// The joint.
+        joint: String,
+        /// Its stiffness.
+        stiffness: f64,
+        /// Where it is relaxed.
+        relaxed_at: f64,
+    },
+    /// The acceleration of gravity, x, y and z.
+    Gravity(Vector),
+    /// Backlash behind the drive of a joint: a second joint after it, in the same body and along the same axis. The
+    /// drive, its armature and its friction, and the encoder stay at the first one.
+    Play {
+        /// The joint.
+        joint: String,
+        /// The whole way from one flank to the other.
+        gap: f64,
+    },
+    /// An encoder that reads the position of a joint with a bias: the range and the spring move along, and the robot
+    /// stays where it is.
+    Reading {
+        /// The joint.
+        joint: String,
+        /// What the encoder reads in addition.
+        bias: f64,
+    },
+}
+
+/// A file with changes.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Corrected {
+    /// Its text.
+    pub text: String,
+    /// What was changed, a sentence for each element.
+    pub edits: Vec<String>,
+}
+
+/// Why a change cannot be made.
+type Refused = Box<Diagnostic>;
+
+#[allow(
+    clippy::unnecessary_box_returns,
+    reason = "all refusals are boxed, as errors of results"
+)]
+fn refused(code: Code, at: Span, message: impl Into<String>, help: impl Into<String>) -> Refused {
+    let error = Diagnostic::error(code, message).at(at, "");
+    Box::new(error.help(help))
+}
+
+/// The text of an MJCF file with changes of its numbers, and with remarks as comments at its head. All other bytes are
+/// those of `text`. `others` reads the files that it includes; an element in one of them cannot be changed.
+///
+/// ```
+/// use appell_robots::{Amount, Change, JointNumber, corrected};
+///
+/// let door = r#"<mujoco>
+///   <worldbody><body name="leaf"><inertial pos="0.4 0 0" mass="20" diaginertia="0.1 1.1 1.1"/>
+///     <joint name="hinge" axis="0 0 1"   damping="0.5" /> <!-- as measured -->
+///   </body></worldbody></mujoco>"#;
+/// let friction = Change::Joint {
+///     joint: "hinge".to_owned(),
+///     attribute: JointNumber::Frictionloss,
+///     amount: Amount::Add(0.2),
+/// };
+/// let none = |_: &str| Err("only this text is read".to_owned());
+/// let better = corrected("door.xml", door, &[friction], &[], &none).unwrap();
+/// assert!(better.text.contains(r#"damping="0.5" frictionloss="0.2" /> <!-- as measured -->"#));
+/// ```
+///
+/// # Errors
+///
+/// The file is no MJCF, has errors, or lacks an element that is to be changed; or MJCF cannot express a change.
+pub fn corrected(
+    file: &str,
+    text: &str,
+    changes: &[Change],
+    remarks: &[String],
+    others: &dyn Fn(&str) -> Result<Vec<u8>, String>,
+) -> Result<Corrected, Failure> {
+    let whole = Whole::read(file, text, others).map_err(Failure::File)?;
+    let whole = super::expanded(whole).map_err(Failure::File)?;
+    let fail = |mut findings: Vec<Diagnostic>| {
+        findings.retain(|finding| finding.severity == Severity::Error);
+        Failure::File(Box::new(whole.first_error(findings)))
+    };
+    let document = parse(&whole.text).map_err(|error| fail(vec![error]))?;
+    let root = document.root_element();
+    let word = root.tag_name().name();
+    if Format::named(word) != Some(Format::Mjcf) {
+        let message = format!(
+            "the file begins with `<{}>`, and is no MJCF",
+            appell_spec::shown(word)
+        );
+        let help = "corrections are written into files that begin with `<mujoco>`";
+        return Err(fail(vec![*refused(
+            Code::NotAllowedHere,
+            xml::tag(root),
+            message,
+            help,
+        )]));
+    }
+    let findings = Findings::default();
+    let robot = super::read(root, &findings, &whole, &Options::default());
+    if findings.has_errors() {
+        return Err(fail(findings.into_inner()));
+    }
+    let mut sheet = Sheet::new(root, &whole, text, robot, &findings);
+    for change in changes {
+        sheet.change(change).map_err(|error| fail(vec![*error]))?;
+    }
+    sheet.finish().map_err(|error| fail(vec![*error]))?;
+    let (mut edits, said) = sheet.edits().map_err(|error| fail(vec![*error]))?;
+    edits.remark(text, remarks);
+    Ok(Corrected {
+        text: edits.applied(text),
+        edits: said,
+    })
+}
+
+impl Sheet<'_, '_> {
+    fn change(&mut self, change: &Change) -> Result<(), Refused> {
+        match change {
+            Change::Joint {
+                joint,
+                attribute,
+                amount,
+            } => self.joint_number(joint, *attribute, *amount),
+            Change::Spring {
+                joint,
+                stiffness,
+                relaxed_at,
+            } => self.spring(joint, *stiffness, *relaxed_at),
+            Change::Reading { joint, bias } => self.reading(joint, *bias),
+            Change::Play { joint, gap } => self.play(joint, *gap),
+            Change::Mass { body, amount } => self.mass(body, *amount),
+            Change::Centre { body, amounts } => self.centre(body, *amounts),
+            Change::Inertia { body, factor } => self.inertia_times(body, *factor),
+            Change::Payload { body, mass, at } => self.payload(body, *mass, *at),
+            Change::Kp { actuator, amount } => self.kp(actuator, *amount),
+            Change::Kv { actuator, amount } => self.kv(actuator, *amount),
+            Change::Gear { actuator, amount } => self.gear(actuator, *amount),
+            Change::Gain { actuator, factor } => self.gain(actuator, *factor),
+            Change::Bias { actuator, add } => self.bias(actuator, *add),
+            Change::Lag { actuator, seconds } => self.lag(actuator, *seconds),
+            Change::Delay { actuator, seconds } => self.delay(actuator, *seconds),
+            Change::ForceLimit { actuator, limit } => self.force_limit(actuator, *limit),
+            Change::Gravity(gravity) => self.gravity(*gravity),
+        }
+    }
+}

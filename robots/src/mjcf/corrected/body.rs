@@ -1,0 +1,316 @@
+//! Masses, centres of mass, inertias and payloads of bodies.
+
+use appell_spec::{Code, did_you_mean};
+
+use crate::inertia::Inertia;
+use crate::rotation::{Pose, Vector};
+use crate::xml::{Element, children, tag};
+
+use super::super::compiler::InertiaFrom;
+use super::bytes::{number, numbers, same};
+use super::sheet::Sheet;
+use super::{Amount, Refused, refused};
+
+/// Orientations of an inertia.
+const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
+/// Bodies that are fixed to each other: one mass, one centre, one inertia.
+pub(super) struct Group {
+    /// The link that has the joint.
+    head: usize,
+    /// Before the changes and after them, in the frame of the head.
+    before: Inertia,
+    after: Inertia,
+    /// The factor of the moments of inertia, while nothing else changes them.
+    factor: f64,
+    /// Whether more than the factor changes the moments of inertia.
+    reshaped: bool,
+}
+
+impl<'x> Sheet<'x, '_> {
+    /// The link of a body.
+    fn link(&self, name: &str) -> Result<usize, Refused> {
+        let links = || (self.robot.links.iter().enumerate()).filter(|(_, link)| link.written);
+        let found = links().find(|(_, link)| link.name == name);
+        found.map(|(index, _)| index).ok_or_else(|| {
+            let known = links().map(|(_, link)| link.name.as_str());
+            refused(
+                Code::UnknownReference,
+                tag(self.root),
+                format!("there is no body `{}`", appell_spec::shown(name)),
+                did_you_mean(name, known, || "name a body of the file".to_owned()),
+            )
+        })
+    }
+
+    /// The link with a joint to which a link is fixed, and its pose in that one.
+    fn head(&self, link: usize) -> Option<(usize, Pose)> {
+        let (mut at, mut pose) = (link, Pose::IDENTITY);
+        while self.robot.links[at].joint.is_none() {
+            pose = self.robot.links[at].pose.then(pose);
+            at = self.robot.links[at].parent?;
+        }
+        Some((at, pose))
+    }
+
+    /// The element of a link.
+    fn body(&self, link: usize) -> Result<Element<'x>, Refused> {
+        let link = &self.robot.links[link];
+        self.at(&link.place).ok_or_else(|| {
+            let message = format!("body `{}` has no element", link.name);
+            refused(
+                Code::UnknownReference,
+                tag(self.root),
+                message,
+                "name a body of the file",
+            )
+        })
+    }
+
+    /// The group of a body, and the pose of the body in its frame.
+    fn group(&mut self, name: &str) -> Result<(usize, Pose), Refused> {
+        let link = self.link(name)?;
+        let Some((head, pose)) = self.head(link) else {
+            let message = format!("body `{name}` does not move");
+            let help = "its mass changes nothing: name a body with a joint";
+            return Err(refused(
+                Code::NotAllowedHere,
+                tag(self.body(link)?),
+                message,
+                help,
+            ));
+        };
+        let known = self.groups.iter().position(|group| group.head == head);
+        let index = known.unwrap_or_else(|| {
+            let whole = self.members(head).into_iter();
+            let whole = whole.fold(Inertia::NONE, |sum, (member, pose)| {
+                sum.with(&self.robot.links[member].inertia.placed(pose))
+            });
+            self.groups.push(Group {
+                head,
+                before: whole,
+                after: whole,
+                factor: 1.0,
+                reshaped: false,
+            });
+            self.groups.len() - 1
+        });
+        Ok((index, pose))
+    }
+
+    /// The links of a group with their poses, the head first.
+    fn members(&self, head: usize) -> Vec<(usize, Pose)> {
+        let links = head..self.robot.links.len();
+        let of_it = links.filter_map(|link| {
+            let (own, pose) = self.head(link)?;
+            (own == head).then_some((link, pose))
+        });
+        of_it.collect()
+    }
+
+    pub(super) fn mass(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
+        let (index, _) = self.group(name)?;
+        let before = self.groups[index].after.mass;
+        self.groups[index].after.mass = self.at_least_zero(name, "mass", amount.of(before));
+        Ok(())
+    }
+
+    pub(super) fn centre(&mut self, name: &str, amounts: [Amount; 3]) -> Result<(), Refused> {
+        let (index, pose) = self.group(name)?;
+        let group = &mut self.groups[index];
+        let before = pose.inverse().of(group.after.centre);
+        let after = [0, 1, 2].map(|k| amounts[k].of(before[k]));
+        if numbers(&after) != numbers(&before) {
+            group.after.centre = pose.of(after);
+        }
+        Ok(())
+    }
+
+    pub(super) fn inertia_times(&mut self, name: &str, factor: f64) -> Result<(), Refused> {
+        let (index, _) = self.group(name)?;
+        let factor = self.at_least_zero(name, "factor of its inertia", factor);
+        let group = &mut self.groups[index];
+        group.factor *= factor;
+        group.after.tensor = group.after.tensor.map(|entry| entry * factor);
+        Ok(())
+    }
+
+    pub(super) fn payload(&mut self, name: &str, mass: f64, at: Vector) -> Result<(), Refused> {
+        if mass == 0.0 {
+            return Ok(());
+        }
+        let (index, pose) = self.group(name)?;
+        if mass < 0.0 {
+            // A body has no negative mass: the payload is taken away from the body itself.
+            let point = Inertia {
+                mass,
+                centre: pose.of(at),
+                tensor: [0.0; 6],
+            };
+            let group = &mut self.groups[index];
+            group.after = group.after.with(&point);
+            group.reshaped = true;
+            return Ok(());
+        }
+        let element = self.body(self.link(name)?)?;
+        let payload = self.free_name("body", "payload");
+        let (own, place) = (number(mass / self.scale()?), numbers(&at));
+        let text = format!(
+            "<body name=\"{payload}\" pos=\"{place}\"><inertial pos=\"0 0 0\" mass=\"{own}\" diaginertia=\"0 0 0\"/></body>"
+        );
+        let words = format!(
+            "body {payload}: new in {name} at {place}, mass {}",
+            number(mass)
+        );
+        self.said.push(words);
+        self.insert_into(element, &text, false)
+    }
+
+    /// A name for a new element, which no other one of its kind has.
+    pub(super) fn free_name(&mut self, kind: &str, wanted: &str) -> String {
+        let taken = |name: &str| {
+            let same =
+                |one: &Element<'_>| one.has_tag_name(kind) && one.attribute("name") == Some(name);
+            self.named.contains(name) || self.root.descendants().any(|one| same(&one))
+        };
+        let numbered = (2..).map(|count| format!("{wanted}_{count}"));
+        let mut all = [wanted.to_owned()].into_iter().chain(numbered);
+        let free = all.find(|name| !taken(name));
+        let free = free.unwrap_or_else(|| wanted.to_owned());
+        self.named.insert(free.clone());
+        free
+    }
+
+    /// Masses over those that are written, where `settotalmass` scales them.
+    fn scale(&self) -> Result<f64, Refused> {
+        match self.compiler.total_mass {
+            None => Ok(1.0),
+            Some(_) => Err(refused(
+                Code::NotAllowedHere,
+                tag(self.root),
+                "masses are scaled by `settotalmass`",
+                "write the scaled masses out, and remove `settotalmass`",
+            )),
+        }
+    }
+
+    /// Writes masses and inertias of all groups that were changed.
+    pub(super) fn finish(&mut self) -> Result<(), Refused> {
+        for group in std::mem::take(&mut self.groups) {
+            if group.before != group.after {
+                self.write(&group)?;
+            }
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, group: &Group) -> Result<(), Refused> {
+        let scale = self.scale()?;
+        let members = self.members(group.head);
+        let body = self.body(group.head)?;
+        let inertial = children(body, "inertial").last();
+        let from = self.compiler.inertia_from;
+        self.refuse_geoms(body)?;
+        let alone = members
+            .iter()
+            .skip(1)
+            .all(|(link, _)| self.robot.links[*link].inertia.is_nothing());
+        match inertial {
+            Some(inertial) if alone && !group.reshaped && from != InertiaFrom::Geoms => {
+                self.write_numbers(inertial, group)
+            }
+            _ => {
+                let others = members.iter().skip(1);
+                let own = others.fold(group.after, |own, (link, pose)| {
+                    own.with(&negative(self.robot.links[*link].inertia.placed(*pose)))
+                });
+                self.write_whole(body, inertial, own, scale)
+            }
+        }
+    }
+
+    fn refuse_geoms(&self, body: Element<'x>) -> Result<(), Refused> {
+        if self.compiler.inertia_from != InertiaFrom::Geoms {
+            return Ok(());
+        }
+        let message = "masses of bodies are those of their geoms by `inertiafromgeom`";
+        let help = "write `inertiafromgeom=\"auto\"`";
+        Err(refused(Code::NotAllowedHere, tag(body), message, help))
+    }
+
+    /// Changes numbers of `<inertial>`, in its own axes.
+    fn write_numbers(&mut self, inertial: Element<'x>, group: &Group) -> Result<(), Refused> {
+        let (before, after) = (group.before, group.after);
+        if !same(before.mass, after.mass) {
+            self.set(inertial, "mass", number(after.mass))?;
+        }
+        if numbers(&before.centre) != numbers(&after.centre) {
+            self.set(inertial, "pos", numbers(&after.centre))?;
+        }
+        if !same(group.factor, 1.0) {
+            for key in ["diaginertia", "fullinertia"] {
+                if let Some(all) = self.numbers(inertial, "inertial", key)? {
+                    let all: Vec<f64> = all.iter().map(|one| one * group.factor).collect();
+                    self.set(inertial, key, numbers(&all))?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Writes all numbers of `<inertial>`, in the axes of the body.
+    fn write_whole(
+        &mut self,
+        body: Element<'x>,
+        inertial: Option<Element<'x>>,
+        own: Inertia,
+        scale: f64,
+    ) -> Result<(), Refused> {
+        if own.mass < 0.0 || own.impossible().is_some() {
+            let name = body.attribute("name").unwrap_or_default();
+            let message = format!(
+                "no body can have the inertia that is left for `{name}`: {}",
+                own.impossible()
+                    .unwrap_or_else(|| "its mass is negative".to_owned())
+            );
+            let help = "change the bodies that are fixed to it by hand";
+            return Err(refused(Code::NotPhysical, tag(body), message, help));
+        }
+        let [xx, yy, zz, products @ ..] = own.tensor.map(|entry| entry / scale);
+        let (key, other, moments) = if products.iter().all(|entry| *entry == 0.0) {
+            ("diaginertia", "fullinertia", numbers(&[xx, yy, zz]))
+        } else {
+            let [xy, xz, yz] = products;
+            (
+                "fullinertia",
+                "diaginertia",
+                numbers(&[xx, yy, zz, xy, xz, yz]),
+            )
+        };
+        let (mass, place) = (number(own.mass / scale), numbers(&own.centre));
+        if let Some(inertial) = inertial {
+            for key in ORIENTATIONS {
+                self.remove(inertial, key)?;
+            }
+            self.remove(inertial, other)?;
+            self.set(inertial, "pos", place)?;
+            self.set(inertial, "mass", mass)?;
+            return self.set(inertial, key, moments);
+        }
+        let name = body.attribute("name").unwrap_or_default();
+        self.said.push(format!(
+            "body {name}: inertial written out, mass {mass} at {place}, {key} {moments}"
+        ));
+        let text = format!("<inertial pos=\"{place}\" mass=\"{mass}\" {key}=\"{moments}\"/>");
+        self.insert_into(body, &text, true)
+    }
+}
+
+/// What, added to a body, takes another one away from it.
+fn negative(inertia: Inertia) -> Inertia {
+    Inertia {
+        mass: -inertia.mass,
+        tensor: inertia.tensor.map(|entry| -entry),
+        ..inertia
+    }
+}

@@ -1,0 +1,64 @@
+//! Gravity, and what the solver is given.
+
+use appell_spec::Code;
+
+use crate::rotation::Vector;
+use crate::xml::{Element, children, elements, tag};
+
+use super::bytes::numbers;
+use super::sheet::{Sheet, read};
+use super::{Refused, refused};
+
+use super::super::GRAVITY;
+use super::super::schema::disabled;
+
+/// Default step of `MuJoCo`, in s.
+const TIMESTEP: f64 = 0.002;
+
+impl<'x> Sheet<'x, '_> {
+    /// The last `<option>` with an attribute, or the last one at all.
+    fn option(&self, key: &str) -> Option<Element<'x>> {
+        let all = || children(self.root, "option");
+        let with = all().filter(|option| option.has_attribute(key)).last();
+        with.or_else(|| all().last())
+    }
+
+    /// The step of the simulation.
+    pub(super) fn timestep(&self) -> Result<f64, Refused> {
+        let option = self.option("timestep");
+        let given = option.and_then(|option| Some((option, option.attribute("timestep")?)));
+        let Some((option, given)) = given else {
+            return Ok(TIMESTEP);
+        };
+        let step = read(given, option, "timestep")?.first().copied();
+        Ok(step.filter(|step| *step > 0.0).unwrap_or(TIMESTEP))
+    }
+
+    pub(super) fn gravity(&mut self, gravity: Vector) -> Result<(), Refused> {
+        if disabled(self.root, "gravity") {
+            let message = "gravity is disabled by a `flag`";
+            let help = "remove `gravity=\"disable\"`";
+            return Err(refused(Code::NotAllowedHere, tag(self.root), message, help));
+        }
+        let option = self.option("gravity");
+        let given = option.and_then(|option| Some((option, self.own(option, "gravity")?)));
+        let before = match given {
+            Some((option, given)) => read(&given, option, "gravity")?,
+            None => GRAVITY.to_vec(),
+        };
+        if before == gravity {
+            return Ok(());
+        }
+        let words = numbers(&gravity);
+        if let Some(option) = option {
+            return self.set(option, "gravity", words);
+        }
+        self.said.push(format!("option: gravity {words}"));
+        let text = format!("<option gravity=\"{words}\"/>");
+        let compiler = elements(self.root).find(|one| one.has_tag_name("compiler"));
+        match compiler {
+            Some(compiler) => self.insert_after(compiler, &text),
+            None => self.insert_into(self.root, &text, true),
+        }
+    }
+}

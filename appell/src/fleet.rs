@@ -16,6 +16,7 @@ use serde_json::Value;
 
 use crate::diagnosis::Library;
 use crate::gap_report::Hypothesis;
+use crate::json::in_names_of;
 use crate::{Error, Field, files, gap_report, recording};
 
 /// Folders to be diagnosed with the same options.
@@ -135,10 +136,11 @@ impl Fleet<'_> {
         let report = self.library.diagnose(&set, &options, |_| {})?;
         let warnings = recording::warnings(&set);
         let findings = [self.library.warnings.as_slice(), &warnings].concat();
-        let mut json = gap_report::json(&report, None, &findings);
+        let json = gap_report::json(&report, None, &findings);
+        let mut json = in_names_of(&set, json);
         json["of"] = of.into();
         if self.with_pages {
-            files::write(&page_path, &page(&set, &report))?;
+            files::write(&page_path, &set.named(&page(&set, &report)))?;
         }
         files::write_json(&path, &json)?;
         Ok((serde_json::from_value(json)?, false))

@@ -7,6 +7,7 @@ mod inverse;
 mod motion;
 mod recording;
 
+use appell_recordings::DataSet;
 use appell_runtime::model::Quantity;
 use nalgebra::DMatrix;
 use serde_json::{Map, Value, json};
@@ -43,6 +44,24 @@ pub fn thorough(thorough: &Thorough) -> Value {
 /// A converted motion capture.
 pub fn capture(converted: &Converted) -> Value {
     converted.to_json()
+}
+
+/// A result about a data set, with numbers of a robot under the names of its file.
+pub fn in_names_of(set: &DataSet, value: Value) -> Value {
+    match value {
+        Value::String(text) => set.named(&text).into(),
+        Value::Array(values) => values
+            .into_iter()
+            .map(|value| in_names_of(set, value))
+            .collect(),
+        Value::Object(fields) => {
+            let fields = fields
+                .into_iter()
+                .map(|(key, value)| (key, in_names_of(set, value)));
+            Value::Object(fields.collect())
+        }
+        other => other,
+    }
 }
 
 /// Values by the names of their quantities.

@@ -22,7 +22,7 @@
 //! | [`sample::rig`], [`sample::robot`] | `appell sample` |
 //! | [`robot::read`], [`robot::import`] | `appell import` |
 //! | [`ensemble::Ensemble`] | `appell ensemble` |
-//! | [`Source::improved`] with a [`gap_report::GapReport`] | `appell apply` |
+//! | [`Source::improved`], [`correction::correct`] with a [`gap_report::GapReport`] | `appell apply` |
 //!
 //! Numbers given as texts are in the units of the spec, or have units of their own; results are in SI.
 //! Types of lower-level crates that occur in signatures are re-exported. Pages are those of the crate
@@ -36,6 +36,7 @@ pub mod check;
 pub mod comparison;
 mod conditions;
 pub mod control;
+pub mod correction;
 pub mod derivation;
 pub mod diagnosis;
 pub mod effects;

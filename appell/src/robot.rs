@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use appell_files::FileError;
-use appell_robots::{Failure, MAX_FILE};
+use appell_robots::{Change, Corrected, Failure, MAX_FILE};
 pub use appell_robots::{Format, Imported, LeftOut, Letters, Lock, Options, SNAP, Without};
 use serde_json::{Value, json};
 use walkdir::WalkDir;
@@ -45,18 +45,50 @@ fn told(failure: Failure) -> Error {
 /// Reads a file with those that it includes, and the meshes that give bodies their inertia, and turns it into a spec.
 /// These files are below `root`, or else below the folder of the file.
 pub fn read(path: &Path, root: Option<&Path>, options: &Options) -> Result<Imported, Error> {
-    let text = files::read(path, MAX_FILE)?;
-    let file = path.to_string_lossy().replace('\\', "/");
+    read_text(path, &files::read(path, MAX_FILE)?, root, options)
+}
+
+/// [`read`], given the text of the file.
+pub(crate) fn read_text(
+    path: &Path,
+    text: &str,
+    root: Option<&Path>,
+    options: &Options,
+) -> Result<Imported, Error> {
+    let others = beside(path, root);
+    appell_robots::import_with(&name(path), text, options, &others).map_err(told)
+}
+
+/// The text of an MJCF file with changes; everything else stays byte for byte.
+pub(crate) fn corrected(
+    path: &Path,
+    text: &str,
+    changes: &[Change],
+    remarks: &[String],
+) -> Result<Corrected, Error> {
+    let others = beside(path, None);
+    appell_robots::corrected(&name(path), text, changes, remarks, &others).map_err(told)
+}
+
+/// The name of a file in messages.
+fn name(path: &Path) -> String {
+    path.to_string_lossy().replace('\\', "/")
+}
+
+/// Reads files that a robot file names, below `root` or else below its folder.
+fn beside<'p>(
+    path: &'p Path,
+    root: Option<&'p Path>,
+) -> impl Fn(&str) -> Result<Vec<u8>, String> + 'p {
     let folder = path.parent().unwrap_or(Path::new(""));
-    let others = |name: &str| {
+    move |name: &str| {
         let path = appell_files::within(root.unwrap_or(folder), folder, name);
         let bytes = path.and_then(|path| appell_files::read(&path, MAX_MESH));
         bytes.map_err(|why| match why {
             FileError::Outside { .. } => format!("{why}, or name a folder above both as the root"),
             why => why.to_string(),
         })
-    };
-    appell_robots::import_with(&file, &text, options, &others).map_err(told)
+    }
 }
 
 /// The robot files of a folder and of the folders in it, by their names, each with its format.

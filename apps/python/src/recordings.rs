@@ -238,6 +238,7 @@ impl Gap {
     /// The gap report as JSON.
     fn json(&self, py: Python<'_>) -> PyResult<String> {
         let report = appell::json::diagnosis(&self.report, None, &self.findings);
+        let report = appell::json::in_names_of(&self.set, report);
         let text = serde_json::to_string_pretty(&report);
         text.map(|text| text + "\n")
             .map_err(|error| exception(py, &error.into()))
@@ -245,11 +246,13 @@ impl Gap {
 
     /// The diagnosis in one sentence.
     fn sentence(&self) -> String {
-        appell_report::gap::sentence(&self.report)
+        let sentence = appell_report::gap::sentence(&self.report);
+        self.set.named(&sentence).into_owned()
     }
 
     fn page(&self) -> String {
-        appell_report::gap::page(&self.set, &self.report)
+        let page = appell_report::gap::page(&self.set, &self.report);
+        self.set.named(&page).into_owned()
     }
 
     /// The inputs proposed for the next experiment, as CSV.

@@ -76,8 +76,8 @@ pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;
 pub use frame::Frame;
-pub use robot::Robot;
 pub use level::{Noise, NoiseSource};
+pub use robot::Robot;
 pub use set::{DataSet, Parameter, Part, Run, Spec};
 
 use frame::Source;

@@ -150,7 +150,9 @@ impl Named<'_> {
 
 /// The keys of `[parameters]`.
 fn parameter_keys(table: &DeTable<'_>) -> Vec<String> {
-    let section = table.get("parameters").and_then(|own| own.get_ref().as_table());
+    let section = table
+        .get("parameters")
+        .and_then(|own| own.get_ref().as_table());
     let keys = section.into_iter().flat_map(DeTable::keys);
     keys.map(|key| key.get_ref().to_string()).collect()
 }
@@ -190,11 +192,7 @@ fn find(
 }
 
 /// The parameters of the spec with the values of this rig. An exact name counts before a pattern.
-fn parameters(
-    fields: &mut Fields<'_>,
-    table: &DeTable<'_>,
-    named: Named<'_>,
-) -> Vec<Parameter> {
+fn parameters(fields: &mut Fields<'_>, table: &DeTable<'_>, named: Named<'_>) -> Vec<Parameter> {
     let own = named.mechanism.parameters.iter();
     let mut parameters: Vec<Parameter> = own.map(Parameter::stated).collect();
     let Some(table) = fields.section(table, "parameters") else {
@@ -206,8 +204,18 @@ fn parameters(
     for (key, value) in entries {
         let name = key.get_ref().as_ref();
         let found = named.parameters(name);
-        if found.is_empty() && !named.robot.is_some_and(|robot| robot.numbers(name).next().is_some()) {
-            let known = || named.mechanism.parameters.iter().map(|p| p.label.name.as_str());
+        if found.is_empty()
+            && !named
+                .robot
+                .is_some_and(|robot| robot.numbers(name).next().is_some())
+        {
+            let known = || {
+                named
+                    .mechanism
+                    .parameters
+                    .iter()
+                    .map(|p| p.label.name.as_str())
+            };
             match named.robot {
                 Some(robot) => unknown_number(fields, robot, name, key.span()),
                 None => unknown(fields, "parameter", name, key.span(), known()),

@@ -71,10 +71,13 @@ impl Robot {
             let rest = name.strip_prefix(whole);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
         };
-        self.dictionary.entries.iter().filter(move |entry| match &element {
-            Some(key) => is_or_holds(key, &format!("{}.{}", entry.element, entry.attribute)),
-            None => is_or_holds(&attribute, entry.attribute),
-        })
+        self.dictionary
+            .entries
+            .iter()
+            .filter(move |entry| match &element {
+                Some(key) => is_or_holds(key, &format!("{}.{}", entry.element, entry.attribute)),
+                None => is_or_holds(&attribute, entry.attribute),
+            })
     }
 
     /// The quantity of the spec that a channel measures: a joint, its velocity, or its torque.
@@ -100,8 +103,15 @@ impl Robot {
     pub(crate) fn quantities(&self) -> Vec<String> {
         let joints = self.dictionary.joints.iter();
         let named = joints.flat_map(|joint| {
-            let torque = joint.torque.as_ref().map(|_| format!("{}.torque", joint.name));
-            [Some(joint.name.clone()), Some(format!("{}.velocity", joint.name)), torque]
+            let torque = joint
+                .torque
+                .as_ref()
+                .map(|_| format!("{}.torque", joint.name));
+            [
+                Some(joint.name.clone()),
+                Some(format!("{}.velocity", joint.name)),
+                torque,
+            ]
         });
         named.flatten().collect()
     }

@@ -1,5 +1,7 @@
 //! A data set: a mechanism, the parameters of a rig, channels and runs.
 
+use std::borrow::Cow;
+
 use appell_spec::{Mechanism, mechanism};
 
 use crate::channel::{Channel, Role};
@@ -93,6 +95,14 @@ impl Run {
 }
 
 impl DataSet {
+    /// A text about it, with numbers of a robot under the names of its file.
+    pub fn named<'t>(&self, text: &'t str) -> Cow<'t, str> {
+        match &self.robot {
+            Some(robot) => robot.named(text).into(),
+            None => text.into(),
+        }
+    }
+
     /// Adds a doubt about a channel.
     pub fn doubt(&mut self, kind: FindingKind, column: &str, message: String) {
         let finding = Finding::new(kind, message);

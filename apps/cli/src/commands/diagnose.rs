@@ -155,10 +155,10 @@ impl Diagnose {
         if let Some(path) = &self.json {
             let findings = [replaced.as_slice(), &warnings].concat();
             let json = appell::json::diagnosis(&report, next.as_deref(), &findings);
-            files::write_json(path, &json)?;
+            files::write_json(path, &appell::json::in_names_of(&set, json))?;
         }
         if let Some(path) = &self.html {
-            files::write(path, &appell_report::gap::page(&set, &report))?;
+            files::write(path, &set.named(&appell_report::gap::page(&set, &report)))?;
         }
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref(), &self.apply(&set));
@@ -169,7 +169,7 @@ impl Diagnose {
         for warning in &warnings {
             text.extend(["  data      ", warning, "\n"]);
         }
-        output::print_beside(&text, &outputs)
+        output::print_beside(&set.named(&text), &outputs)
     }
 
     fn library(&self) -> Result<Library, Error> {

@@ -136,7 +136,10 @@ impl<'m> Sites<'m> {
             SiteKind::Reached => moving.filter_map(|q| self.reached(q)).collect(),
             SiteKind::Pair => self.pairs(),
             SiteKind::Load => self.loads().collect(),
-            SiteKind::Servo => self.loads().filter(|load| self.is_servo(&load.name)).collect(),
+            SiteKind::Servo => self
+                .loads()
+                .filter(|load| self.is_servo(&load.name))
+                .collect(),
             SiteKind::Wheel => self.wheels(),
             SiteKind::Contact => self.contacts(),
             SiteKind::Gravity => self.gravity().into_iter().collect(),

@@ -42,6 +42,7 @@ mod picture;
 mod planted;
 mod recording;
 mod reproduce;
+mod robot_gap;
 mod simulate;
 mod steady;
 mod sticking;

@@ -138,7 +138,7 @@ fn assemble<'s>(
         description,
         parameters,
         time,
-        channels,
+        mut channels,
         runs,
     } = manifest;
     let mut findings = Vec::new();
@@ -158,6 +158,9 @@ fn assemble<'s>(
     }
     if !errors.is_empty() {
         return Err(DataError::several(errors));
+    }
+    if let Some(robot) = &robot {
+        robot.drive(&mut read_runs, &mut channels, &mechanism);
     }
     let runs = stretches::uninterrupted(read_runs, &channels, &mut findings);
     let mut set = DataSet {

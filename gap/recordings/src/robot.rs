@@ -4,8 +4,11 @@ use std::path::Path;
 
 use appell_files::FileError;
 use appell_robots::{Dictionary, Entry, Failure, Format, Letters, Options};
+use appell_spec::Mechanism;
+use appell_spec::mechanism::Interpolation;
 
-use crate::{DataError, Spec};
+use crate::channel::{Channel, Role};
+use crate::{DataError, Run, Spec};
 
 /// Largest mesh, in bytes.
 const MAX_MESH: u64 = 1 << 28;
@@ -25,7 +28,7 @@ impl Robot {
     pub(crate) fn read(
         path: &Path,
         text: &str,
-        keys: Vec<String>,
+        mut keys: Vec<String>,
     ) -> Result<Option<(Spec, Self)>, DataError> {
         if Format::of(text).is_none() {
             return Ok(None);
@@ -37,20 +40,28 @@ impl Robot {
             let bytes = path.and_then(|path| appell_files::read(&path, MAX_MESH));
             bytes.map_err(|why: FileError| why.to_string())
         };
-        let options = Options {
-            letters: Letters::Matching(keys),
-            actuators: true,
-            ..Options::default()
+        let imported = loop {
+            let options = Options {
+                letters: Letters::Matching(keys.clone()),
+                actuators: true,
+                ..Options::default()
+            };
+            match appell_robots::import_with(&file, text, &options, &others) {
+                Ok(imported) => break imported,
+                Err(Failure::File(report)) => return Err(DataError::Report(report)),
+                Err(Failure::Lock(why)) => return Err(DataError::whole(&*file, why)),
+                // The description has its place, and reports it.
+                Err(Failure::Unknown { name, .. }) if keys.contains(&name) => {
+                    keys.retain(|key| *key != name);
+                }
+                Err(Failure::Unknown { name, help }) => {
+                    return Err(DataError::whole(
+                        &*file,
+                        format!("`{name}` is unknown; {help}"),
+                    ));
+                }
+            }
         };
-        let imported = appell_robots::import_with(&file, text, &options, &others);
-        let imported = imported.map_err(|failure| match failure {
-            Failure::File(report) => DataError::Report(report),
-            Failure::Lock(why) => DataError::whole(&*file, why),
-            Failure::Unknown { name, help } => DataError::whole(
-                &*file,
-                format!("`[parameters]` names `{name}`, which the robot does not have; {help}"),
-            ),
-        })?;
         let spec = Spec {
             file: file.clone(),
             text: imported.spec,
@@ -99,6 +110,33 @@ impl Robot {
         Some(&actuator.input)
     }
 
+    /// Replaces commands by what the actuators make of them, where these have a filter or a delay. An input with
+    /// interpolation is taken as it is.
+    pub(crate) fn drive(&self, runs: &mut [Run], channels: &mut [Channel], mechanism: &Mechanism) {
+        for (index, channel) in channels.iter_mut().enumerate() {
+            let (Role::Input(_), None) = (channel.role, channel.interpolation) else {
+                continue;
+            };
+            let Some(label) = channel.role.label(mechanism) else {
+                continue;
+            };
+            let mut actuators = self.dictionary.actuators.iter();
+            let Some(actuator) = actuators.find(|actuator| actuator.input == label.name) else {
+                continue;
+            };
+            if actuator.lag <= 0.0 && actuator.delay <= 0.0 {
+                continue;
+            }
+            for run in runs.iter_mut() {
+                let command = &run.values[index];
+                run.values[index] = followed(&run.times, command, actuator.lag, actuator.delay);
+            }
+            if actuator.lag > 0.0 {
+                channel.interpolation = Some(Interpolation::Linear);
+            }
+        }
+    }
+
     /// All names that channels may measure.
     pub(crate) fn quantities(&self) -> Vec<String> {
         let joints = self.dictionary.joints.iter();
@@ -140,5 +178,60 @@ impl Robot {
             rest = after;
         }
         named + rest
+    }
+}
+
+/// What an actuator makes of its command: after its delay, the output of its filter. The command is held from each row
+/// to the next; the output is to be joined by lines, which have the mean of the filter's output in each interval.
+pub(crate) fn followed(times: &[f64], command: &[f64], lag: f64, delay: f64) -> Vec<f64> {
+    let held: Vec<f64> = times
+        .iter()
+        .map(|time| {
+            let since = times.partition_point(|own| *own <= time - delay);
+            command[since.saturating_sub(1)]
+        })
+        .collect();
+    if lag <= 0.0 {
+        return held;
+    }
+    let mut output = Vec::with_capacity(held.len());
+    output.extend(held.first());
+    // By how much the mean in an interval exceeds that of a line.
+    let mut excess = Vec::with_capacity(held.len());
+    for (row, pair) in times.windows(2).enumerate() {
+        let step = pair[1] - pair[0];
+        let (from, to) = (output[row], held[row]);
+        let left = (-step / lag).exp();
+        let next = to + (from - to) * left;
+        let mean = to + (from - to) * (1.0 - left) * lag / step;
+        output.push(next);
+        excess.push(mean - f64::midpoint(from, next));
+    }
+    for (row, value) in output.iter_mut().enumerate() {
+        let before = row.checked_sub(1).and_then(|row| excess.get(row));
+        let sides = [before, excess.get(row)];
+        let sides: Vec<f64> = sides.into_iter().flatten().copied().collect();
+        *value += sides.iter().sum::<f64>() / sides.len().max(1) as f64;
+    }
+    output
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_output_of_a_filter_has_its_mean_in_every_interval() {
+        let (step, lag, slope) = (0.01, 0.025, 3.0);
+        let times: Vec<f64> = (0..200).map(|row| f64::from(row) * step).collect();
+        let command: Vec<f64> = times.iter().map(|time| slope * time).collect();
+        let output = followed(&times, &command, lag, 0.0);
+        // Behind a ramp that is held, the mean output lags by the time constant and half a step.
+        for row in 100..199 {
+            let mean = f64::midpoint(output[row], output[row + 1]);
+            let expected = slope * (times[row] - lag);
+            assert!((mean - expected).abs() < 1e-9, "{mean} {expected}");
+        }
+        assert_eq!(followed(&times, &command, 0.0, 0.02)[50], command[48]);
     }
 }

@@ -1,0 +1,152 @@
+//! From a robot file and recordings to a corrected robot file.
+
+use serde_json::Value;
+
+use crate::rig;
+use crate::support::Folder;
+
+/// The carriage of the rig as a robot file.
+const ROBOT: &str = r#"<!-- A carriage on a rail. -->
+<mujoco model="carriage">
+  <worldbody>
+    <body name="cart">
+      <inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>
+      <joint name="x" type="slide" axis="1 0 0"/>  <!-- the rail -->
+    </body>
+  </worldbody>
+  <actuator>
+    <motor name="F" joint="x"/>
+  </actuator>
+</mujoco>
+"#;
+
+const DESCRIPTION: &str = r#"
+mechanism   = "robot.xml"
+description = "simulated rig"
+[parameters]
+"*.mass" = { std = "2 %" }
+[channels]
+x = { measures = "x", unit = "m", noise_std = 1e-3 }
+F = { input = "F", unit = "N" }
+[runs]
+fit  = ["a.csv", "b.csv"]
+test = ["c.csv"]
+"#;
+
+/// A rig with dry friction that its robot file lacks.
+fn rig() -> Folder {
+    let folder = rig::dry(0.4);
+    folder.write("robot.xml", ROBOT);
+    folder.write("recording.toml", DESCRIPTION);
+    folder
+}
+
+/// The number after a text.
+fn number_after(text: &str, before: &str) -> f64 {
+    let (_, rest) = text.split_once(before).expect("the text");
+    let end = rest.find(|c: char| !(c.is_ascii_digit() || ".e-".contains(c)));
+    let number = &rest[..end.expect("an end")];
+    number.parse().expect("a number")
+}
+
+#[test]
+fn friction_is_found_from_a_robot_file_and_written_into_it() {
+    let folder = rig();
+    let asked = ["diagnose", "--data", ".", "--json", "report.json"];
+    let told = folder.done(&asked).stdout;
+    assert!(
+        told.contains("appell apply ./robot.xml") || told.contains("appell apply robot.xml"),
+        "{told}"
+    );
+    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
+    assert_eq!(report["which"][0]["effects"][0], "coulomb_friction@x");
+    let fitted = &report["which"][0]["changes"]["parameters"][0];
+    assert_eq!(fitted["name"], "cart.mass");
+
+    let apply = [
+        "apply",
+        "robot.xml",
+        "--report",
+        "report.json",
+        "-o",
+        "better.xml",
+    ];
+    let told = folder.done(&apply).stdout;
+    assert!(told.contains("frictionloss"), "{told}");
+    let better = folder.read("better.xml");
+    let friction = number_after(&better, "frictionloss=\"");
+    assert!((friction - 0.4).abs() < 0.02, "{better}");
+    let mass = number_after(&better, "mass=\"");
+    assert!((mass - 1.0).abs() < 0.02, "{better}");
+    // All else stays as it is.
+    let mut restored = better.clone();
+    for (name, value) in [("frictionloss", friction), ("mass", mass)] {
+        let start = better.find(&format!("{name}=\"")).expect("the attribute");
+        let length = name.len() + 3 + better[start + name.len() + 2..].find('"').expect("an end");
+        let written = &better[start..start + length];
+        assert!(written.contains(&value.to_string()), "{written}");
+        let before = if name == "mass" { "mass=\"1\"" } else { "" };
+        restored = restored.replace(written, before);
+    }
+    assert_eq!(restored.replace(" />", "/>"), ROBOT);
+
+    folder.write(
+        "recording.toml",
+        &DESCRIPTION.replace("robot.xml", "better.xml"),
+    );
+    folder.done(&["diagnose", "--data", ".", "--json", "again.json"]);
+    let far = &serde_json::from_str::<Value>(&folder.read("again.json")).expect("JSON")["how_far"];
+    let [nominal, floor] =
+        ["nominal", "noise_floor"].map(|key| far[key].as_f64().expect("an error"));
+    assert!(nominal < 1.1 * floor, "{far}");
+}
+
+#[test]
+fn an_unknown_number_or_joint_of_a_robot_is_named_with_its_line() {
+    let folder = rig();
+    for (right, wrong, message) in [
+        (
+            "\"*.mass\"",
+            "\"cart.weight\"",
+            "the robot has no number `cart.weight`",
+        ),
+        ("measures = \"x\"", "measures = \"x.speed\"", "x.velocity"),
+        ("\"2 %\"", "\"2 m\"", "a share of the value"),
+    ] {
+        folder.write("recording.toml", &DESCRIPTION.replace(right, wrong));
+        folder.fails(3, &["recording", "."], &["recording.toml:", message]);
+    }
+}
+
+#[test]
+fn what_mjcf_cannot_express_stands_in_a_comment() {
+    let folder = rig();
+    let report = r#"{ "schema": "gap-report/1", "mechanism": "carriage", "which": [{
+        "effects": ["sensor_scale@x"], "probability": 1.0,
+        "parameters": [{ "name": "sensor_scale@x.scale", "value": 1.021, "std": 0.001, "unit": "1" }],
+        "changes": { "items": "", "inputs": [], "parameters": [], "beside": [] } }] }"#;
+    folder.write("report.json", report);
+    let apply = [
+        "apply",
+        "robot.xml",
+        "--report",
+        "report.json",
+        "-o",
+        "better.xml",
+    ];
+    let told = folder.done(&apply).stdout;
+    let line = "not in MJCF: sensor_scale@x = 1.02100: divide where the channel is read";
+    assert!(told.contains(line), "{told}");
+    let better = folder.read("better.xml");
+    assert!(
+        better.contains(&format!("<!-- appell: {line} -->")),
+        "{better}"
+    );
+
+    let nothing = report
+        .replace("[\"sensor_scale@x\"]", "[]")
+        .replace("sensor_scale@x.scale", "a");
+    folder.write("report.json", &nothing);
+    folder.done(&apply);
+    assert_eq!(folder.read("better.xml"), ROBOT);
+}

@@ -23,6 +23,7 @@ fn hypothesis(effect: &str, probability: f64, items: &str, value: Option<Value>)
         value: 1.25,
         std: Some(0.01),
         unit: "kg".to_owned(),
+        stated_std: Some(0.1),
     };
     Hypothesis {
         effects: (!effect.is_empty())
@@ -69,6 +70,7 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
             closed_ci95: [closed - 0.01, closed + 0.2],
             closed_vs_refitted: 0.0,
             budget,
+            channels: Vec::new(),
             before: None,
             bettered_ci95: [[0.0; 2]; 2],
             is_worse: false,
@@ -110,6 +112,9 @@ fn a_wrong_parameter_is_the_cause_and_not_of_no_weight() {
         value: 1.25,
         std: 0.01,
         unit: "kg".to_owned(),
+        without: Some(1.0),
+        is_determined: true,
+        yardstick: None,
     };
     let wrong = hypothesis("parameter_error@m", 0.96, "", Some(value));
     let budget = vec![
@@ -129,13 +134,17 @@ fn a_wrong_parameter_is_the_cause_and_not_of_no_weight() {
         change,
         applied,
         error,
+        ..
     } = Headline::of(&report);
     assert!(cause.starts_with("wrong value of m: "), "{cause}");
     assert!(!cause.contains("hardly"), "{cause}");
-    assert_eq!(sizes, ["m = 1.250 ± 0.020 kg (stated 1 kg)"]);
+    assert_eq!(
+        sizes,
+        ["m = 1.250 ± 0.020 kg (stated 1 kg, +2.5 stated deviations)"]
+    );
     assert_eq!(
         change,
-        "write the fitted parameters into the spec (`appell apply`)"
+        ["certain: parameter_error@m: write the fitted parameters into the spec (`appell apply`)"]
     );
     assert_eq!(applied, Some(1));
     let error = error.unwrap_or_default();
@@ -157,7 +166,7 @@ fn all_shares_of_a_sentence_are_parts_of_the_same_gap() {
     ];
     let told = sentence(&report(GapVerdict::Explained, vec![friction], budget));
     let says = "re-fitted parameters close 60.0 % of the gap; dry@x closes 30.0 % [20.0 %, 35.0 %] of the gap; 10.0 % \
-                stays";
+                stays, an error of 10.0 times the noise floor";
     assert!(told.starts_with(says), "{told}");
 }
 
@@ -178,14 +187,17 @@ fn what_the_library_lacks_does_not_hide_what_parameters_close() {
     let mut report = report(GapVerdict::Unexplained, which(), budget());
     report.left = Some(left("an error of x", 70.0));
     let told = Headline::of(&report);
-    let says = "re-fitted parameters close 99.6 % of the gap; no effect of the library explains the rest: an error of x";
+    let says = "re-fitted parameters close 99.6 % of the gap; 0.4 % stays, an error of 10.0 times the noise floor; no \
+                effect of the library explains the rest: an error of x";
     assert_eq!(told.cause, says);
-    assert_eq!(told.sizes, ["m = 1.250 ± 0.020 kg (stated 1 kg)"]);
+    assert_eq!(
+        told.sizes,
+        ["m = 1.250 ± 0.020 kg (stated 1 kg, +2.5 stated deviations)"]
+    );
+    let change = told.change.join("\n");
     assert!(
-        told.change
-            .contains("given hypothesis 2, writes the fitted"),
-        "{}",
-        told.change
+        change.contains("given hypothesis 2, writes the fitted"),
+        "{change}"
     );
     // Where the odds are small, it is left open.
     report.left = Some(left("an error of x", 0.5));
@@ -210,7 +222,7 @@ fn a_law_is_written_by_the_hypothesis_that_has_it_alone() {
     let change = |which: Vec<Hypothesis>| {
         let mut report = report(GapVerdict::Unexplained, which, budget());
         report.law = Some(law());
-        Headline::of(&report).change
+        Headline::of(&report).change.join("\n")
     };
     let unknown = |items: &str| hypothesis("unknown", 0.9, items, None);
     let measured = change(vec![unknown("[loads]")]);

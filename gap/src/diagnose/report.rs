@@ -3,9 +3,11 @@
 use nalgebra::DMatrix;
 use serde::Serialize;
 
+pub use super::advice::{Advice, Open};
 use super::calibration::TIED;
-use super::changes::Changes;
+use super::changes::{Changes, Refitted};
 pub use super::pictures::{ForceHistory, ForceLaw, MissingForce, Pictures, Trace};
+pub use super::yardstick::Yardstick;
 
 /// Name of the hypothesis that nothing in the library explains the gap.
 pub(super) const UNKNOWN: &str = "unknown";
@@ -29,6 +31,8 @@ pub enum GapVerdict {
     Unexplained,
 }
 
+/// The 97.5 % quantile of the normal distribution: half of a 95 % interval in standard deviations.
+pub const QUANTILE: f64 = 1.959_964;
 /// Largest unexplained part of an explained gap.
 const MOST: f64 = 0.5;
 
@@ -83,6 +87,25 @@ pub struct Value {
     pub std: f64,
     /// Unit.
     pub unit: String,
+    /// Value without the effect; `None` for a shape, which then has no meaning.
+    pub without: Option<f64>,
+    /// Whether the recordings determine it: the 95 % interval of a size does not reach the value without the effect, and
+    /// that of a shape is less than half of the prior one.
+    #[serde(rename = "determined")]
+    pub is_determined: bool,
+    /// Its size relative to a known quantity, where there is one.
+    pub yardstick: Option<Yardstick>,
+}
+
+impl Value {
+    /// Of a size, which has this value without the effect.
+    pub(super) fn of_size(mut self, without: f64) -> Self {
+        self.without = Some(without);
+        let interval = QUANTILE * self.std;
+        // At a limit there is no interval.
+        self.is_determined = self.std.is_nan() || (self.value - without).abs() > interval;
+        self
+    }
 }
 
 /// A hypothesis with its probability.
@@ -106,6 +129,24 @@ impl Hypothesis {
     /// Whether it is the hypothesis that no effect of the library explains the gap.
     pub fn is_unknown(&self) -> bool {
         self.effects == [UNKNOWN]
+    }
+
+    /// The values of an effect.
+    pub fn values_of<'h>(&'h self, effect: &'h str) -> impl Iterator<Item = &'h Value> {
+        let of = move |value: &&Value| {
+            value
+                .name
+                .rsplit_once('.')
+                .is_some_and(|own| own.0 == effect)
+        };
+        self.parameters.iter().filter(of)
+    }
+
+    /// The parameter whose wrong value an effect describes, if it is one.
+    pub fn wrong_parameter(&self, effect: &str) -> Option<&Refitted> {
+        let (_, site) = effect.split_once('@')?;
+        let mut parameters = self.changes.as_ref()?.parameters.iter();
+        parameters.find(|one| one.name == site)
     }
 }
 
@@ -237,10 +278,23 @@ pub struct HowFar {
     pub bettered_ci95: [[f64; 2]; 2],
     /// The shares of the gap.
     pub budget: Vec<Share>,
+    /// The same errors of each channel, or of each force, in its unit.
+    pub channels: Vec<ErrorOf>,
     /// Whether the leading hypothesis predicts significantly worse than the re-fitted model.
     #[serde(skip)]
     pub is_worse: bool,
     pub runs: Vec<String>,
+}
+
+/// Prediction errors of a channel, root of the mean square over the horizon.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the words of the contract")]
+pub struct ErrorOf {
+    pub name: String,
+    pub unit: String,
+    pub nominal: f64,
+    pub refitted: f64,
+    pub with_effect: f64,
 }
 
 /// The smallest detectable size of an effect.
@@ -469,6 +523,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// The most probable hypothesis of the library.
+    pub fn leading(&self) -> Option<&Hypothesis> {
+        self.which.iter().find(|one| !one.is_unknown())
+    }
+
     /// The tied hypotheses that are not equivalent, the most probable first.
     pub(super) fn rivals(&self) -> Vec<&[String]> {
         let says_its_own = |effects: &&Vec<String>| {
@@ -512,6 +571,7 @@ mod tests {
                 share("coulomb_friction@x", closed, is_material),
                 share(REST, 0.01, false),
             ],
+            channels: Vec::new(),
             before: None,
             bettered_ci95: [[0.9, 1.0]; 2],
             is_worse: false,
@@ -531,6 +591,9 @@ mod tests {
                 value: 0.2,
                 std: 0.01,
                 unit: "N".to_owned(),
+                without: Some(0.0),
+                is_determined: true,
+                yardstick: None,
             }],
             changes: None,
         }];

@@ -101,7 +101,13 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     for doubt in doubts(report) {
         let _ = writeln!(text, "  unit?     {doubt}");
     }
-    for group in &report.tied {
+    // Equivalent hypotheses are no rivals.
+    let is_rival = |effects: &&Vec<String>| {
+        let mut which = report.which.iter();
+        which.any(|one| one.effects == **effects && one.same_as.is_none())
+    };
+    let tied = report.tied.iter();
+    for group in tied.filter(|group| group.iter().filter(is_rival).count() > 1) {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
     }

@@ -77,6 +77,7 @@ mod traces;
 mod twins;
 mod unknown;
 mod unmodelled;
+mod value;
 mod whiteness;
 mod window_bench;
 mod windows;

@@ -9,7 +9,7 @@ use super::report::{Hypothesis, QUANTILE, Report, Share};
 /// The effects of the leading hypothesis, by what is known of them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Advice {
-    /// In every hypothesis that cannot be ruled out, with the same size within the uncertainties; it closes a
+    /// In every hypothesis that cannot be ruled out, with the same plausible size within the uncertainties; it closes a
     /// significant and material share of the gap.
     pub certain: Vec<String>,
     /// Of a determined size, but not certain.
@@ -27,9 +27,11 @@ pub struct Advice {
 pub struct Open {
     /// Its name.
     pub effect: String,
-    /// The hypotheses without it, or with another size, that cannot be ruled out; none if the held-out runs leave it open
-    /// whether it closes any of the gap.
+    /// The hypotheses without it, or with another size, that cannot be ruled out.
     pub instead: Vec<Vec<String>>,
+    /// Whether the held-out runs show that it closes a part of the gap.
+    #[serde(rename = "shown")]
+    pub is_shown: bool,
 }
 
 impl Advice {
@@ -51,14 +53,19 @@ impl Advice {
             let share = share(first, &effect, budget);
             let instead = rivals.iter().filter(|one| !agrees(first, one, &effect));
             let instead: Vec<Vec<String>> = instead.map(|one| one.effects.clone()).collect();
+            let is_shown = share.is_none_or(|share| share.interval[0] > 0.0);
             if !is_determined(first, &effect) {
                 advice.not_determined.push(effect);
             } else if share.is_some_and(|share| !share.is_material) {
                 advice.immaterial.push(effect);
-            } else if instead.is_empty() && share.is_none_or(|share| share.interval[0] > 0.0) {
+            } else if instead.is_empty() && is_shown && first.implausible(&effect).is_none() {
                 advice.certain.push(effect);
             } else {
-                advice.open.push(Open { effect, instead });
+                advice.open.push(Open {
+                    effect,
+                    instead,
+                    is_shown,
+                });
             }
         }
         let twins = report.which.iter();

@@ -361,14 +361,11 @@ fn values_of(
                 }
                 _ => told,
             },
-            (_, acts) => {
-                let yardstick = yardsticks.and_then(|own| own.of_signal(acts, value));
-                let without = if matches!(acts, Acts::Scale(_)) {
-                    1.0
-                } else {
-                    0.0
-                };
-                Value { yardstick, ..told }.of_size(without)
+            (_, Acts::Scale(_)) => told.of_size(1.0),
+            (_, Acts::Bias(_)) => told.of_size(0.0),
+            _ => {
+                let yardstick = Yardstick::of_time(value, bench.step);
+                Value { yardstick, ..told }.of_size(0.0)
             }
         });
     }

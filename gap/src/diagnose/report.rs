@@ -7,6 +7,7 @@ pub use super::advice::{Advice, Open};
 use super::calibration::TIED;
 use super::changes::{Changes, Refitted};
 pub use super::pictures::{ForceHistory, ForceLaw, MissingForce, Pictures, Trace};
+pub use super::value::{QUANTILE, Value};
 pub use super::yardstick::Yardstick;
 
 /// Name of the hypothesis that nothing in the library explains the gap.
@@ -31,8 +32,6 @@ pub enum GapVerdict {
     Unexplained,
 }
 
-/// The 97.5 % quantile of the normal distribution: half of a 95 % interval in standard deviations.
-pub const QUANTILE: f64 = 1.959_964;
 /// Largest unexplained part of an explained gap.
 const MOST: f64 = 0.5;
 
@@ -76,38 +75,6 @@ impl GapVerdict {
     }
 }
 
-/// An estimate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Value {
-    /// Effect and parameter.
-    pub name: String,
-    /// Most likely value.
-    pub value: f64,
-    /// Standard deviation; NaN if it is undefined, as at a limit, or where sensitivities diverge and there is no prior.
-    pub std: f64,
-    /// Unit.
-    pub unit: String,
-    /// Value without the effect; `None` for a shape, which then has no meaning.
-    pub without: Option<f64>,
-    /// Whether the recordings determine it: the 95 % interval of a size does not reach the value without the effect, and
-    /// that of a shape is less than half of the prior one.
-    #[serde(rename = "determined")]
-    pub is_determined: bool,
-    /// Its size relative to a known quantity, where there is one.
-    pub yardstick: Option<Yardstick>,
-}
-
-impl Value {
-    /// Of a size, which has this value without the effect.
-    pub(super) fn of_size(mut self, without: f64) -> Self {
-        self.without = Some(without);
-        let interval = QUANTILE * self.std;
-        // At a limit there is no interval.
-        self.is_determined = self.std.is_nan() || (self.value - without).abs() > interval;
-        self
-    }
-}
-
 /// A hypothesis with its probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Hypothesis {
@@ -132,7 +99,7 @@ impl Hypothesis {
     }
 
     /// The values of an effect.
-    pub fn values_of<'h>(&'h self, effect: &'h str) -> impl Iterator<Item = &'h Value> {
+    pub fn values_of(&self, effect: &str) -> impl Iterator<Item = &Value> {
         let of = move |value: &&Value| {
             value
                 .name
@@ -140,6 +107,13 @@ impl Hypothesis {
                 .is_some_and(|own| own.0 == effect)
         };
         self.parameters.iter().filter(of)
+    }
+
+    /// The size of an effect that is implausibly large, if one is.
+    pub fn implausible(&self, effect: &str) -> Option<&Yardstick> {
+        let determined = self.values_of(effect).filter(|value| value.is_determined);
+        let mut known = determined.filter_map(|value| value.yardstick.as_ref());
+        known.find(|known| known.is_large)
     }
 
     /// The parameter whose wrong value an effect describes, if it is one.

@@ -11,15 +11,16 @@ use serde::Serialize;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::scales;
-use crate::effects::{Acts, Candidate, Part};
+use crate::effects::{Candidate, Part};
 
 /// Number of motions along the recordings that are evaluated.
 const MOTIONS: usize = 100;
 /// A relative change below this is rounding.
 const ROUNDING: f64 = 1e-9;
-/// A parameter that is wrong by this factor is notable.
+/// A parameter that is wrong by this factor is hardly the one that was stated.
 const WRONG: f64 = 2.0;
+/// The inertia of a motor, reflected through its gear, may exceed that of a link, but hardly by this factor.
+const REFLECTED: f64 = 10.0;
 
 /// A size in units of a known quantity.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -28,23 +29,23 @@ pub struct Yardstick {
     pub ratio: f64,
     /// The quantity.
     pub of: String,
-    /// Whether it is larger than all that the stated model has of its kind; for a parameter, wrong by a factor of two.
+    /// Whether it is implausible: an added inertia ten times the stated one, a parameter that is wrong by a factor of two.
+    /// Forces have no such limit: a mechanism that coasts has friction and hardly any applied force.
     #[serde(rename = "large")]
     pub is_large: bool,
 }
 
 impl Yardstick {
-    /// Of an inertia or a force that is added to what the model has along a pseudo-velocity.
-    fn added(ratio: f64, of: String) -> Self {
-        Self {
+    fn new(ratio: f64, of: String, usual: std::ops::RangeInclusive<f64>) -> Option<Self> {
+        ratio.is_finite().then(|| Self {
             ratio,
             of,
-            is_large: ratio.abs() > 1.0,
-        }
+            is_large: !usual.contains(&ratio),
+        })
     }
 
-    /// Of the forces that are added along pseudo-velocities, against those applied by the stated model; both are sums
-    /// of squares, and the largest ratio counts.
+    /// Of forces that are added along pseudo-velocities, against those applied by the stated model; both are sums of
+    /// squares, and the largest ratio counts.
     pub(super) fn of_forces<'s>(
         squares: impl Iterator<Item = ([f64; 2], &'s str)>,
     ) -> Option<Self> {
@@ -53,30 +54,20 @@ impl Yardstick {
             is_there.then(|| ((added / applied).sqrt(), speed))
         });
         let (ratio, speed) = ratios.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        Some(Self::added(
-            ratio,
-            format!("the force applied along {speed} (rms)"),
-        ))
+        let of = format!("the rms force applied along {speed}");
+        Self::new(ratio, of, 0.0..=f64::INFINITY)
     }
 
     /// Of the value of a parameter.
     pub(super) fn of_parameter(value: f64, stated: f64) -> Option<Self> {
-        let ratio = value / stated;
-        ratio.is_finite().then(|| Self {
-            ratio,
-            of: "the stated value".to_owned(),
-            is_large: !(WRONG.recip()..WRONG).contains(&ratio),
-        })
+        let of = "the stated value".to_owned();
+        Self::new(value / stated, of, WRONG.recip()..=WRONG)
     }
 
-    /// Of a time or of the bias of a channel: neither adds to anything.
-    fn of_signal(value: f64, unit: f64, of: String) -> Option<Self> {
-        let ratio = value / unit;
-        ratio.is_finite().then_some(Self {
-            ratio,
-            of,
-            is_large: false,
-        })
+    /// Of a lag or a delay.
+    pub(super) fn of_time(value: f64, step: f64) -> Option<Self> {
+        let of = "the sampling interval".to_owned();
+        Self::new(value / step, of, 0.0..=f64::INFINITY)
     }
 }
 
@@ -112,24 +103,6 @@ impl<'b> Yardsticks<'b> {
             }
         }
         Ok(Self { bench, motions })
-    }
-
-    /// Of a fitted value of an effect on a signal.
-    pub(super) fn of_signal(&self, acts: Acts, value: f64) -> Option<Yardstick> {
-        match acts {
-            Acts::Bias(channel) => {
-                let measured = self.bench.set.measured(self.bench.effects.info());
-                let column = &measured.get(channel)?.0.column;
-                let mut channels = self.bench.set.channels.iter();
-                let place = channels.position(|own| own.column == *column)?;
-                let unit = scales::deviation(&self.bench.set, place);
-                Yardstick::of_signal(value, unit, format!("the standard deviation of {column}"))
-            }
-            Acts::Lag(_) | Acts::Delay(_) | Acts::Late(_) | Acts::Slow(_) => {
-                Yardstick::of_signal(value, self.bench.step, "the sampling interval".to_owned())
-            }
-            Acts::Items | Acts::Parameter(_) | Acts::Scale(_) => None,
-        }
     }
 
     /// Of the size with this index among the parameters. Members with other coordinates than the recorded ones have
@@ -170,21 +143,22 @@ impl<'b> Yardsticks<'b> {
     fn added(&self, model: &dyn Model, plain: &[f64], with: &[f64]) -> Option<Yardstick> {
         let names = model.info().speed_quantities();
         let speeds = names.len();
-        let [mut stated, mut more] = [0, 1].map(|_| Terms::new(speeds));
-        // Stated and added inertias, and squares of forces.
+        // Added and stated inertias, and squares of forces.
         let [mut inertias, mut squares] = [0, 1].map(|_| vec![[0.0; 2]; speeds]);
         for Motion { t, x, u } in &self.motions {
-            for (terms, p) in [(&mut stated, plain), (&mut more, with)] {
-                let at = At { t: *t, x, u, p };
-                model.appell(at, &mut terms.mass, &mut terms.bias, &mut terms.forces);
-            }
+            let [stated, more] = [plain, with].map(|p| {
+                let mut mass = vec![0.0; speeds * speeds];
+                let [mut bias, mut forces] = [0, 1].map(|_| vec![0.0; speeds]);
+                model.appell(At { t: *t, x, u, p }, &mut mass, &mut bias, &mut forces);
+                [mass, bias, forces]
+            });
             for i in 0..speeds {
-                let mass = stated.mass[i * (speeds + 1)];
-                inertias[i][0] += more.mass[i * (speeds + 1)] - mass;
-                inertias[i][1] += mass;
-                let added = (more.forces[i] - more.bias[i]) - (stated.forces[i] - stated.bias[i]);
-                squares[i][0] += added.powi(2);
-                squares[i][1] += stated.forces[i].powi(2);
+                let [from, to] = [&stated, &more].map(|[mass, ..]| mass[i * (speeds + 1)]);
+                inertias[i][0] += to - from;
+                inertias[i][1] += from;
+                let [from, to] = [&stated, &more].map(|[_, bias, forces]| forces[i] - bias[i]);
+                squares[i][0] += (to - from).powi(2);
+                squares[i][1] += stated[2][i].powi(2);
             }
         }
         let ratios = inertias.iter().map(|[added, stated]| added / stated);
@@ -192,26 +166,9 @@ impl<'b> Yardsticks<'b> {
         let (ratio, speed) = ratios.max_by(|a, b| a.0.abs().total_cmp(&b.0.abs()))?;
         if ratio.abs() > ROUNDING {
             let of = format!("the stated inertia of {}", speed.name);
-            return Some(Yardstick::added(ratio, of));
+            return Yardstick::new(ratio, of, -1.0..=REFLECTED);
         }
         let named = squares.into_iter().zip(names);
         Yardstick::of_forces(named.map(|(squares, speed)| (squares, &*speed.name)))
-    }
-}
-
-/// Terms of the equations of motion.
-struct Terms {
-    mass: Vec<f64>,
-    bias: Vec<f64>,
-    forces: Vec<f64>,
-}
-
-impl Terms {
-    fn new(speeds: usize) -> Self {
-        Self {
-            mass: vec![0.0; speeds * speeds],
-            bias: vec![0.0; speeds],
-            forces: vec![0.0; speeds],
-        }
     }
 }

@@ -2,15 +2,14 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{
-    Advice, ErrorOf, GapVerdict, HowFar, Hypothesis, Open, Report, Share, Value,
-};
+use appell_gap::diagnose::{Advice, ErrorOf, GapVerdict, HowFar, Hypothesis, Open, Report, Share};
 
 use super::law::written;
-use super::numbers::{compared, is_determined, percent, share, sized};
+use super::numbers::{compared, is_determined, percent, share};
+use super::shares::refitted;
 use super::words::{
-    NO_GAP, REFITTED, equivalent, first_of, joined, moved, name_of, needs_refit, percent_of,
-    refit_moves, refit_sentence, refitted, sentence,
+    NO_GAP, REFITTED, equivalents, first_of, joined, moved, name_of, needs_refit, percent_of,
+    refit_moves, refit_sentence, sentence, size,
 };
 use crate::text::{horizon, short, with_unit};
 
@@ -33,21 +32,14 @@ pub struct Headline {
 impl Headline {
     /// Of a report.
     pub fn of(report: &Report) -> Self {
-        let (sizes, mut refit) = (sizes(report), refit_moves(report));
-        if report.verdict == GapVerdict::NoGap {
-            // Significant ones are among the sizes.
-            let is_listed = |one: &String| {
-                let name = one.split(' ').next().unwrap_or_default();
-                sizes
-                    .iter()
-                    .any(|size| size.split(' ').next() == Some(name))
-            };
-            refit.retain(|one| !is_listed(one));
-        }
         Self {
             cause: cause(report),
-            refit,
-            sizes,
+            sizes: sizes(report),
+            // Without a gap these are the sizes.
+            refit: match report.verdict {
+                GapVerdict::NoGap => Vec::new(),
+                _ => refit_moves(report),
+            },
             change: change(report, applied(report)),
             applied: applied(report),
             error: report.how_far.as_ref().map(|far| error(report, far)),
@@ -94,7 +86,8 @@ fn sizes(report: &Report) -> Vec<String> {
         let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
         let is_slight = slight.iter().any(|part| part.name == effect);
         let slight = is_slight.then(|| "predictions hardly change with it".to_owned());
-        let remarks: Vec<String> = compared(value).into_iter().chain(slight).collect();
+        let known = value.yardstick.as_ref().filter(|_| value.is_determined);
+        let remarks: Vec<String> = known.map(compared).into_iter().chain(slight).collect();
         let mut text = size(first, value);
         if !remarks.is_empty() {
             // Writing to a string cannot fail.
@@ -106,24 +99,6 @@ fn sizes(report: &Report) -> Vec<String> {
     }
     sizes.extend(parameters);
     sizes
-}
-
-/// The values of a hypothesis, each with half of its 95 % interval.
-pub fn values(hypothesis: &Hypothesis) -> Vec<String> {
-    let values = hypothesis.parameters.iter();
-    values.map(|value| size(hypothesis, value)).collect()
-}
-
-/// `force = 0.412 ± 0.041 N`
-fn size(hypothesis: &Hypothesis, value: &Value) -> String {
-    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
-    let number = sized(value);
-    // Values of several effects may share a name.
-    let site = effect
-        .split_once('@')
-        .filter(|_| hypothesis.effects.len() > 1);
-    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
-    format!("{}{site} = {number}", short.replace('_', " "))
 }
 
 /// The changes that the verdict calls for.
@@ -196,8 +171,18 @@ fn advised(report: &Report, applied: Option<usize>) -> Vec<String> {
         let what = written_where(first, &advice.certain);
         vec![format!("certain: {}: {what}", advice.certain.join(", "))]
     };
-    let open = advice.open.iter().map(|open| opened(report, first, open));
-    let open: Vec<String> = open.collect();
+    // Effects that are open for the same reason.
+    let mut open: Vec<(String, Vec<&str>)> = Vec::new();
+    for one in &advice.open {
+        let why = opened(report, first, one);
+        match open.iter_mut().find(|(own, _)| *own == why) {
+            Some((_, effects)) => effects.push(&one.effect),
+            None => open.push((why, vec![&one.effect])),
+        }
+    }
+    let open: Vec<String> = (open.into_iter())
+        .map(|(why, effects)| format!("{} ({why})", effects.join(", ")))
+        .collect();
     if !open.is_empty() {
         lines.push(format!("open: {}", open.join("; ")));
     }
@@ -214,7 +199,7 @@ fn advised(report: &Report, applied: Option<usize>) -> Vec<String> {
     if !leave.is_empty() {
         lines.push(format!("do not change: {}", leave.join(", ")));
     }
-    lines.extend(advice.equivalent.iter().map(|group| equivalent(group)));
+    lines.extend(equivalents(report));
     let hypothesis = applied.and_then(|number| report.which.get(number - 1));
     let effects = hypothesis.map_or(&[][..], |hypothesis| &hypothesis.effects);
     let others = effects
@@ -230,7 +215,7 @@ fn advised(report: &Report, applied: Option<usize>) -> Vec<String> {
     lines
 }
 
-/// `lag@u (or delay@u, 12 %)`: an open effect with the hypotheses that do without it.
+/// `or delay@u, 12 %`: why an effect is open, with the hypotheses that do without it.
 fn opened(report: &Report, first: Option<&Hypothesis>, open: &Open) -> String {
     let effect = &open.effect;
     let names = open.instead.iter().map(|effects| {
@@ -247,10 +232,12 @@ fn opened(report: &Report, first: Option<&Hypothesis>, open: &Open) -> String {
         let sure = hypothesis.map_or(f64::NAN, |one| one.probability);
         format!("{other}, {}", percent_of(sure))
     });
-    match first_of(3, names.collect()) {
-        Some(names) => format!("{effect} (or {names})"),
-        None => format!("{effect} (the held-out runs leave it open whether it closes anything)"),
-    }
+    let other = first_of(3, names.collect()).map(|names| format!("or {names}"));
+    let implausible = first.and_then(|first| first.implausible(effect));
+    let implausible = implausible.map(|known| format!("{}: plausible?", compared(known)));
+    let unshown = (!open.is_shown).then(|| "not shown by the held-out runs".to_owned());
+    let why = other.into_iter().chain(implausible).chain(unshown);
+    why.collect::<Vec<_>>().join("; ")
 }
 
 /// Where changes are written: effects that a spec can hold, and those that belong elsewhere.
@@ -260,10 +247,6 @@ fn written_where(first: Option<&Hypothesis>, effects: &[String]) -> String {
     let is_elsewhere = |effect: &&String| {
         let mut signals = signals.iter().filter(|one| one.output.is_none());
         signals.any(|one| one.effect == **effect)
-    };
-    let is_parameter = |effect: &&String| {
-        let wrong = first.and_then(|first| first.wrong_parameter(effect));
-        wrong.is_some()
     };
     let (elsewhere, own): (Vec<&String>, Vec<&String>) = effects.iter().partition(is_elsewhere);
     let elsewhere: Vec<&str> = elsewhere.into_iter().map(String::as_str).collect();
@@ -278,12 +261,9 @@ fn written_where(first: Option<&Hypothesis>, effects: &[String]) -> String {
             "nothing in the equations; {listed} {belong} elsewhere, `appell apply` says where"
         ),
         (false, false) => format!(
-            "add to the spec the effects that it can express; {listed} {belong} elsewhere, `appell apply` says where"
+            "write into the spec what it can express; {listed} {belong} elsewhere, `appell apply` says where"
         ),
-        (false, true) if own.iter().all(is_parameter) => {
-            "write the fitted parameters into the spec (`appell apply`)".to_owned()
-        }
-        (false, true) => "add to the spec (`appell apply`)".to_owned(),
+        (false, true) => "write into the spec (`appell apply`)".to_owned(),
     }
 }
 

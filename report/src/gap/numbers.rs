@@ -1,6 +1,6 @@
 //! Values with their uncertainty, and shares.
 
-use appell_gap::diagnose::{QUANTILE, Value};
+use appell_gap::diagnose::{QUANTILE, Value, Yardstick};
 
 use crate::text::{exponent, short, with_unit};
 
@@ -41,10 +41,9 @@ pub(super) fn sized(value: &Value) -> String {
     )
 }
 
-/// `36.1 × the stated inertia of omega`, for a determined size.
-pub(super) fn compared(value: &Value) -> Option<String> {
-    let known = value.yardstick.as_ref().filter(|_| value.is_determined)?;
-    Some(format!("{} × {}", short(known.ratio), known.of))
+/// `36.1 × the stated inertia of omega`
+pub(super) fn compared(known: &Yardstick) -> String {
+    format!("{} × {}", short(known.ratio), known.of)
 }
 
 /// `97.6 % [94.0 %, 100.0 %]`: a share with its interval.

@@ -11,13 +11,13 @@ use super::budget::{budget, closes};
 use super::doubt::doubts;
 use super::elements::{bar, cells, code, figure, separated, table};
 use super::forces;
-use super::headline::{Headline, values};
+use super::headline::Headline;
 use super::law::law;
 use super::numbers::{is_determined, percent};
 use super::plots;
 use super::words::{
     alternatives, events, hints, imperfections, joined, left_out, next_best, percent_of, said,
-    statement,
+    statement, values,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;

@@ -2,11 +2,10 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{
-    Advice, Change, GapVerdict, HowFar, Hypothesis, Left, Refitted, Report, Share, Value,
-};
+use appell_gap::diagnose::{Advice, Change, GapVerdict, Hypothesis, Left, Refitted, Report, Value};
 
-use super::numbers::{bounded, compared, measured, part_of_all, percent, sized, small};
+use super::numbers::{bounded, measured, part_of_all, sized};
+use super::shares::{refitted, refitted_share, shares};
 use crate::text::{short, with_unit};
 
 /// The verdict where nothing is missing, and the condition for it.
@@ -26,7 +25,7 @@ pub fn sentence(report: &Report) -> String {
     if rivals.is_empty() {
         text.extend(next_best(report).map(|next| format!("; next: {next}")));
     } else {
-        text.extend(report.leading().map(values));
+        text.extend(report.leading().map(values_after));
     }
     text += ")";
     for phrase in same {
@@ -76,13 +75,29 @@ pub(super) fn name_of(effects: &[String]) -> String {
 }
 
 /// `, delay = 0.012 ± 0.001 s`
-fn values(hypothesis: &Hypothesis) -> String {
-    let values = hypothesis.parameters.iter().map(|value| {
-        let number = sized(value);
-        let name = value.name.rsplit('.').next().unwrap_or_default();
-        format!(", {} = {number}", name.replace('_', " "))
-    });
-    values.collect()
+fn values_after(hypothesis: &Hypothesis) -> String {
+    values(hypothesis)
+        .iter()
+        .map(|value| format!(", {value}"))
+        .collect()
+}
+
+/// The values of a hypothesis, each with half of its 95 % interval.
+pub fn values(hypothesis: &Hypothesis) -> Vec<String> {
+    let values = hypothesis.parameters.iter();
+    values.map(|value| size(hypothesis, value)).collect()
+}
+
+/// `force = 0.412 ± 0.041 N`
+pub(super) fn size(hypothesis: &Hypothesis, value: &Value) -> String {
+    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
+    let number = sized(value);
+    // Values of several effects may share a name.
+    let site = effect
+        .split_once('@')
+        .filter(|_| hypothesis.effects.len() > 1);
+    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
+    format!("{}{site} = {number}", short.replace('_', " "))
 }
 
 /// `m = 1.35 ± 0.02 kg (stated 1 kg)`: parameters that differ significantly from their stated values.
@@ -133,8 +148,9 @@ pub(super) fn refit_moves(report: &Report) -> Vec<String> {
     let by = |one: &Refitted| one.moved_by().map_or(0.0, f64::abs);
     far.sort_by(|a, b| by(b).total_cmp(&by(a)));
     let moves = far.into_iter().filter_map(|one| {
-        let to = with_unit(&short(one.value), &one.unit);
-        let (name, from) = (&one.name, as_written(one.stated));
+        let name = &one.name;
+        let [from, to] = [one.stated, one.value].map(short);
+        let to = with_unit(&to, &one.unit);
         Some(format!("{name} {from} -> {to} ({})", deviations(one)?))
     });
     moves.collect()
@@ -168,23 +184,23 @@ pub(super) fn alternatives(report: &Report) -> Option<(f64, Vec<String>, Vec<Str
     );
     let is_open = report.change.is_none() && is_named;
     let first = report.leading().filter(|_| is_open)?;
-    let advice = Advice::of(report);
-    let groups = advice.equivalent.iter();
-    let matters = |own: &str| {
-        let unsure = advice.not_determined.iter().chain(&advice.immaterial);
-        let mut effects = own.split('+');
-        effects.any(|effect| !unsure.clone().any(|one| one == effect))
-    };
-    let same = groups
-        .filter(|group| matters(&group[0]))
-        .map(|group| equivalent(group));
-    Some((first.probability, same.collect(), rivals(report)))
+    Some((first.probability, equivalents(report), rivals(report)))
 }
 
-/// `a or b: the recordings cannot tell, either may be changed`
-pub(super) fn equivalent(group: &[String]) -> String {
-    let names = group.join(" or ").replace('+', " + ");
-    format!("{names}: the recordings cannot tell, either may be changed")
+/// `a or b: the recordings cannot tell, either may be changed`, for effects that call for a change.
+pub(super) fn equivalents(report: &Report) -> Vec<String> {
+    let advice = Advice::of(report);
+    let idle = |effect: &str| {
+        let mut idle = advice.not_determined.iter().chain(&advice.immaterial);
+        idle.any(|one| one == effect)
+    };
+    let groups = advice.equivalent.iter();
+    let groups = groups.filter(|group| !group[0].split('+').all(idle));
+    let phrases = groups.map(|group| {
+        let names = group.join(" or ").replace('+', " + ");
+        format!("{names}: the recordings cannot tell, either may be changed")
+    });
+    phrases.collect()
 }
 
 /// The verdict in one sentence.
@@ -239,13 +255,6 @@ pub(super) fn statement(report: &Report) -> String {
     }
 }
 
-/// `re-fitted parameters close 98 % of the gap`, where they matter.
-fn refitted_share(report: &Report) -> Option<String> {
-    let refit = refitted(&report.how_far.as_ref()?.budget)?;
-    let closed = percent(refit.closed);
-    Some(format!("re-fitted parameters close {closed} of the gap"))
-}
-
 /// The part of the gap that no effect of the library explains, after the shares of the others.
 fn unnamed(report: &Report, shares: Option<String>) -> String {
     let left = report.left.as_ref();
@@ -273,157 +282,6 @@ fn law_share(report: &Report) -> Option<String> {
     let law = budget.find(|part| part.is_law() && part.is_material)?;
     let closed = part_of_all(law.closed);
     Some(format!("; measured, it closes {closed} of the gap"))
-}
-
-/// The part of the re-fitted parameters, where it matters.
-pub(super) fn refitted(budget: &[Share]) -> Option<&Share> {
-    let mut budget = budget.iter();
-    budget.find(|part| part.is_refit() && part.is_material)
-}
-
-/// The shares of the gap closed by re-fitted parameters and by the effects that matter, the largest first, and the rest:
-/// all relative to the gap of the model as stated. `None` if nothing closes a material share.
-fn shares(report: &Report) -> Option<String> {
-    let far = report.how_far.as_ref()?;
-    let budget = &far.budget;
-    let refit = refitted_share(report);
-    let effects: Vec<&Share> = budget.iter().filter(|part| part.is_effect()).collect();
-    let (mut named, others) = named(report, &effects);
-    named.sort_by(|a, b| b.closed.total_cmp(&a.closed));
-    if named.is_empty() && refit.is_none() {
-        return None;
-    }
-    let rest = budget.iter().find(|part| part.is_rest());
-    let is_most = |rest: &&Share| budget.iter().all(|part| part.closed <= rest.closed);
-    let most = rest.filter(is_most).map(|rest| {
-        let most = if rest.closed > 0.5 {
-            "most"
-        } else {
-            "the largest part"
-        };
-        let (closed, error) = (small(rest.closed), error_left(far).unwrap_or_default());
-        format!("{most} of the gap ({closed}{error}) has no known cause")
-    });
-    let most_stays = most.is_some();
-    let mut parts: Vec<String> = most.into_iter().chain(refit).collect();
-    parts.extend(effects_share(report, &named, &others));
-    for part in budget {
-        if part.is_law() && part.is_material {
-            parts.push(format!("a measured law {}", percent(part.closed)));
-        } else if part.is_rest() && !most_stays {
-            let error = error_left(far).unwrap_or_default();
-            parts.push(format!("{} stays{error}", small(part.closed)));
-        }
-    }
-    Some(parts.join("; "))
-}
-
-/// The effects of a headline, and the others. Those are named that close a material share, significantly if any does, with
-/// a size that the recordings determine.
-fn named<'s>(report: &Report, effects: &[&'s Share]) -> (Vec<&'s Share>, Vec<&'s Share>) {
-    let advice = Advice::of(report);
-    let is_sized = |part: &Share| part.is_material && !advice.not_determined.contains(&part.name);
-    let is_shown = |part: &Share| is_sized(part) && part.interval[0] > 0.0;
-    let any_shown = effects.iter().any(|part| is_shown(part));
-    let parts = effects.iter().copied();
-    parts.partition(|part| {
-        if any_shown {
-            is_shown(part)
-        } else {
-            is_sized(part)
-        }
-    })
-}
-
-/// What the named effects close, and what the others do together.
-fn effects_share(report: &Report, named: &[&Share], others: &[&Share]) -> Vec<String> {
-    /// A share of the others that is worth a word.
-    const NOTABLE: f64 = 0.005;
-    let about = |part: &&Share| {
-        let mut found = report.found.iter();
-        let found = found.find(|found| found.effect == part.name);
-        let about = found.map_or_else(|| part.name.clone(), |found| found.about.clone());
-        about + &large(report, &part.name).unwrap_or_default()
-    };
-    let listed = |parts: &[&Share]| parts.iter().map(about).collect::<Vec<_>>().join(" and ");
-    let sum = |parts: &[&Share]| parts.iter().map(|part| part.closed).sum::<f64>();
-    let (names, rest) = (listed(named), sum(others));
-    let mut parts = match named {
-        [] if others.is_empty() => Vec::new(),
-        [] => vec![unnoticed(report, others, &listed(others))],
-        [one] => {
-            let [low, high] = one.interval.map(percent);
-            let (closed, open) = (part_of_all(one.closed), unsettled(one.interval));
-            vec![format!(
-                "{names} closes {closed} [{low}, {high}] of the gap{open}"
-            )]
-        }
-        several => {
-            let each: Vec<String> = several.iter().map(|part| percent(part.closed)).collect();
-            let (all, each) = (part_of_all(sum(several)), each.join(", "));
-            vec![format!("{names} close {all} ({each}) of the gap")]
-        }
-    };
-    if !named.is_empty() && rest.abs() > NOTABLE {
-        parts.push(format!("other effects {}", percent(rest)));
-    }
-    parts
-}
-
-/// Effects none of which is named, and why.
-fn unnoticed(report: &Report, others: &[&Share], names: &str) -> String {
-    let refit = report
-        .how_far
-        .as_ref()
-        .and_then(|far| refitted(&far.budget));
-    let is_parameter = |part: &&Share| {
-        let first = report.leading();
-        first.is_some_and(|first| first.wrong_parameter(&part.name).is_some())
-    };
-    if let Some(refit) = refit.filter(|_| others.iter().all(is_parameter)) {
-        let closed = percent(refit.closed);
-        return format!(
-            "{names}: re-fitted together with the others it closes {closed} of the gap"
-        );
-    }
-    if others.iter().any(|part| part.is_material) {
-        return format!("the recordings do not determine the size of {names}");
-    }
-    let [are, them] = if others.len() > 1 {
-        ["are", "them"]
-    } else {
-        ["is", "it"]
-    };
-    format!(
-        "{names} {are} there as well, but predictions of the held-out runs hardly change with {them}"
-    )
-}
-
-/// A remark on an effect that is larger than all that the model has of its kind.
-fn large(report: &Report, effect: &str) -> Option<String> {
-    let first = report.leading()?;
-    let mut values = first.values_of(effect);
-    let is_large = |value: &&Value| value.yardstick.as_ref().is_some_and(|known| known.is_large);
-    let compared = compared(values.find(is_large)?)?;
-    Some(format!(" ({compared}: plausible?)"))
-}
-
-/// `, an error of 385 times the noise floor`: a small part of the gap of a model that diverges is a large error.
-fn error_left(far: &HowFar) -> Option<String> {
-    let times = far.with_effect / far.noise_floor;
-    let is_known = times.is_finite();
-    is_known.then(|| format!(", an error of {} times the noise floor", short(times)))
-}
-
-/// A remark on an interval that hardly bounds a share.
-fn unsettled([low, high]: [f64; 2]) -> &'static str {
-    if low <= 0.0 {
-        ", an interval in which the held-out runs leave it open whether it closes anything"
-    } else if high - low > 1.0 {
-        ", an interval so wide that the held-out runs hardly bound the share"
-    } else {
-        ""
-    }
 }
 
 /// The diagnosis of the previous recordings: effects that the model now has, and how many parameters.
@@ -498,7 +356,7 @@ fn rivals(report: &Report) -> Vec<String> {
         let mut hypotheses = report.which.iter();
         let hypothesis = hypotheses.find(|hypothesis| hypothesis.effects == *effects);
         let rival = hypothesis.filter(|hypothesis| hypothesis.same_as.is_none())?;
-        let (sure, values) = (percent_of(rival.probability), values(rival));
+        let (sure, values) = (percent_of(rival.probability), values_after(rival));
         Some(format!("{} ({sure}{values})", joined(effects)))
     };
     tied.filter(|effects| *effects != first)

@@ -29,6 +29,8 @@ pub(super) fn shares(report: &Report) -> Option<String> {
         format!("{most} of the gap ({closed}{error}) has no known cause")
     });
     let most_stays = most.is_some();
+    // Wrong parameters are named with what all re-fitted ones close.
+    let refit = refit.filter(|_| !(named.is_empty() && are_parameters(report, &others)));
     let mut parts: Vec<String> = most.into_iter().chain(refit).collect();
     parts.extend(effects_share(report, &named, &others));
     for part in budget {
@@ -94,17 +96,22 @@ fn effects_share(report: &Report, named: &[&Share], others: &[&Share]) -> Vec<St
     parts
 }
 
+/// Whether effects are wrong values of parameters, so that re-fitted parameters close their share.
+fn are_parameters(report: &Report, effects: &[&Share]) -> bool {
+    let is_parameter = |part: &&Share| {
+        let first = report.leading();
+        first.is_some_and(|first| first.wrong_parameter(&part.name).is_some())
+    };
+    !effects.is_empty() && effects.iter().all(is_parameter)
+}
+
 /// Effects none of which is named, and why.
 fn unnoticed(report: &Report, others: &[&Share], names: &str) -> String {
     let refit = report
         .how_far
         .as_ref()
         .and_then(|far| refitted(&far.budget));
-    let is_parameter = |part: &&Share| {
-        let first = report.leading();
-        first.is_some_and(|first| first.wrong_parameter(&part.name).is_some())
-    };
-    if let Some(refit) = refit.filter(|_| others.iter().all(is_parameter)) {
+    if let Some(refit) = refit.filter(|_| are_parameters(report, others)) {
         let closed = percent(refit.closed);
         return format!(
             "{names}: re-fitted together with the others it closes {closed} of the gap"

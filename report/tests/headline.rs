@@ -273,7 +273,7 @@ fn a_change_is_certain_if_no_hypothesis_that_may_be_true_does_without_it() {
     let change = Headline::of(&rivals(1.0, 0.1)).change.join("\n");
     for says in [
         "certain: a@x: write into the spec (`appell apply`)",
-        "open: b@x (or c@x, 20 %)",
+        "open: b@x (or c@x 20 %)",
         "`appell apply` also writes b@x",
     ] {
         assert!(change.contains(says), "{change}");

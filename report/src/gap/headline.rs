@@ -215,7 +215,7 @@ fn advised(report: &Report, applied: Option<usize>) -> Vec<String> {
     lines
 }
 
-/// `or delay@u, 12 %`: why an effect is open, with the hypotheses that do without it.
+/// `or delay@u 12 %`: why an effect is open, with the hypotheses that do without it.
 fn opened(report: &Report, first: Option<&Hypothesis>, open: &Open) -> String {
     let effect = &open.effect;
     let names = open.instead.iter().map(|effects| {
@@ -230,7 +230,7 @@ fn opened(report: &Report, first: Option<&Hypothesis>, open: &Open) -> String {
         let mut which = report.which.iter();
         let hypothesis = which.find(|one| one.effects == *effects);
         let sure = hypothesis.map_or(f64::NAN, |one| one.probability);
-        format!("{other}, {}", percent_of(sure))
+        format!("{other} {}", percent_of(sure))
     });
     let other = first_of(3, names.collect()).map(|names| format!("or {names}"));
     let implausible = first.and_then(|first| first.implausible(effect));
@@ -300,9 +300,12 @@ fn error(report: &Report, far: &HowFar) -> String {
     text
 }
 
-/// `phi 540 -> 34.2 rad, ...`: root mean square errors of channels.
+/// `phi 540 -> 34.2 rad, ...`: root mean square errors of channels, those that change most first.
 fn in_units(channels: &[ErrorOf]) -> Option<String> {
-    let channels = channels.iter().map(|channel| {
+    let mut channels: Vec<&ErrorOf> = channels.iter().collect();
+    let left = |channel: &ErrorOf| channel.with_effect / channel.nominal;
+    channels.sort_by(|a, b| left(a).total_cmp(&left(b)));
+    let channels = channels.into_iter().map(|channel| {
         let [before, after] = [channel.nominal, channel.with_effect].map(short);
         format!(
             "{} {before} -> {}",

@@ -76,10 +76,8 @@ pub(super) fn name_of(effects: &[String]) -> String {
 
 /// `, delay = 0.012 ± 0.001 s`
 fn values_after(hypothesis: &Hypothesis) -> String {
-    values(hypothesis)
-        .iter()
-        .map(|value| format!(", {value}"))
-        .collect()
+    let values = values(hypothesis);
+    values.iter().flat_map(|value| [", ", value]).collect()
 }
 
 /// The values of a hypothesis, each with half of its 95 % interval.

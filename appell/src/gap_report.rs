@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use appell_gap::diagnose::{Ahead, Change, Changes, ENGINE, Law, Report};
+use appell_gap::diagnose::{Advice, Ahead, Change, Changes, ENGINE, Law, Report};
 use serde::Deserialize;
 use serde_json::{Value, json};
 
@@ -51,6 +51,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         "where": report.place,
         "which": report.which,
         "tied": tied.collect::<Vec<_>>(),
+        "advice": Advice::of(report),
         "how_far": far,
         "experiment": experiment,
         "detectable": report.detectable,

@@ -1,8 +1,8 @@
 //! A gap report as a page, and its sentences.
 //!
-//! [`headline`] summarises the result, [`page()`] arranges [`words`], [`plots`] and [`elements`]; [`budget`] divides
-//! the gap, [`forces`] does so for recorded forces, [`law`] shows the measured law of the rest, [`doubt`] suspects unit
-//! errors, [`numbers`] writes values with their uncertainty.
+//! [`headline`] summarises the result, [`page()`] arranges [`words`], [`shares`], [`plots`] and [`elements`];
+//! [`budget`] divides the gap, [`forces`] does so for recorded forces, [`law`] shows the measured law of the rest,
+//! [`doubt`] suspects unit errors, [`numbers`] writes values with their uncertainty.
 
 mod budget;
 mod doubt;
@@ -13,17 +13,19 @@ mod law;
 mod numbers;
 mod page;
 mod plots;
+mod shares;
 mod words;
 
 pub use budget::divided;
 pub use doubt::doubts;
 pub use forces::left_of_forces;
-pub use headline::{Headline, values};
+pub use headline::Headline;
 pub use law::law_sentence;
 pub use numbers::{is_determined, percent, share};
 pub use page::page;
 pub use words::{
-    before_sentence, events, hints, imperfections, joined, left_out, refit_sentence, said, sentence,
+    before_sentence, events, hints, imperfections, joined, left_out, refit_sentence, said,
+    sentence, values,
 };
 
 pub use crate::text::short;

@@ -1,8 +1,8 @@
 //! What the first lines of a gap report say.
 
 use appell_gap::diagnose::{
-    Changes, Found, GapVerdict, HowFar, Hypothesis, Law, Left, Refitted, Report, Share, Value,
-    Where,
+    Advice, Changes, Found, GapVerdict, HowFar, Hypothesis, Law, Left, Refitted, Report, Share,
+    Value, Where, Yardstick,
 };
 use appell_report::gap::{Headline, sentence};
 
@@ -23,6 +23,7 @@ fn hypothesis(effect: &str, probability: f64, items: &str, value: Option<Value>)
         value: 1.25,
         std: Some(0.01),
         unit: "kg".to_owned(),
+        stated_std: Some(0.1),
     };
     Hypothesis {
         effects: (!effect.is_empty())
@@ -69,6 +70,7 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
             closed_ci95: [closed - 0.01, closed + 0.2],
             closed_vs_refitted: 0.0,
             budget,
+            channels: Vec::new(),
             before: None,
             bettered_ci95: [[0.0; 2]; 2],
             is_worse: false,
@@ -110,6 +112,9 @@ fn a_wrong_parameter_is_the_cause_and_not_of_no_weight() {
         value: 1.25,
         std: 0.01,
         unit: "kg".to_owned(),
+        without: Some(1.0),
+        is_determined: true,
+        yardstick: None,
     };
     let wrong = hypothesis("parameter_error@m", 0.96, "", Some(value));
     let budget = vec![
@@ -129,13 +134,17 @@ fn a_wrong_parameter_is_the_cause_and_not_of_no_weight() {
         change,
         applied,
         error,
+        ..
     } = Headline::of(&report);
     assert!(cause.starts_with("wrong value of m: "), "{cause}");
     assert!(!cause.contains("hardly"), "{cause}");
-    assert_eq!(sizes, ["m = 1.250 ± 0.020 kg (stated 1 kg)"]);
+    assert_eq!(
+        sizes,
+        ["m = 1.250 ± 0.020 kg (stated 1 kg, +2.5 stated deviations)"]
+    );
     assert_eq!(
         change,
-        "write the fitted parameters into the spec (`appell apply`)"
+        ["certain: parameter_error@m: write into the spec (`appell apply`)"]
     );
     assert_eq!(applied, Some(1));
     let error = error.unwrap_or_default();
@@ -157,7 +166,7 @@ fn all_shares_of_a_sentence_are_parts_of_the_same_gap() {
     ];
     let told = sentence(&report(GapVerdict::Explained, vec![friction], budget));
     let says = "re-fitted parameters close 60.0 % of the gap; dry@x closes 30.0 % [20.0 %, 35.0 %] of the gap; 10.0 % \
-                stays";
+                stays, an error of 10.0 times the noise floor";
     assert!(told.starts_with(says), "{told}");
 }
 
@@ -178,14 +187,17 @@ fn what_the_library_lacks_does_not_hide_what_parameters_close() {
     let mut report = report(GapVerdict::Unexplained, which(), budget());
     report.left = Some(left("an error of x", 70.0));
     let told = Headline::of(&report);
-    let says = "re-fitted parameters close 99.6 % of the gap; no effect of the library explains the rest: an error of x";
+    let says = "re-fitted parameters close 99.6 % of the gap; 0.4 % stays, an error of 10.0 times the noise floor; no \
+                effect of the library explains the rest: an error of x";
     assert_eq!(told.cause, says);
-    assert_eq!(told.sizes, ["m = 1.250 ± 0.020 kg (stated 1 kg)"]);
+    assert_eq!(
+        told.sizes,
+        ["m = 1.250 ± 0.020 kg (stated 1 kg, +2.5 stated deviations)"]
+    );
+    let change = told.change.join("\n");
     assert!(
-        told.change
-            .contains("given hypothesis 2, writes the fitted"),
-        "{}",
-        told.change
+        change.contains("given hypothesis 2, writes the fitted"),
+        "{change}"
     );
     // Where the odds are small, it is left open.
     report.left = Some(left("an error of x", 0.5));
@@ -210,7 +222,7 @@ fn a_law_is_written_by_the_hypothesis_that_has_it_alone() {
     let change = |which: Vec<Hypothesis>| {
         let mut report = report(GapVerdict::Unexplained, which, budget());
         report.law = Some(law());
-        Headline::of(&report).change
+        Headline::of(&report).change.join("\n")
     };
     let unknown = |items: &str| hypothesis("unknown", 0.9, items, None);
     let measured = change(vec![unknown("[loads]")]);
@@ -226,4 +238,122 @@ fn a_law_is_written_by_the_hypothesis_that_has_it_alone() {
     );
     // What holds no law is not said to be written.
     assert!(!change(vec![unknown("")]).contains("writes the measured"));
+}
+
+/// Hypotheses `A + B` and `A + C`, of which the second cannot be ruled out, with the given size of B.
+fn rivals(size: f64, std: f64) -> Report {
+    let value = |effect: &str, value, std| Value {
+        name: format!("{effect}.force"),
+        value,
+        std,
+        unit: "N".to_owned(),
+        without: Some(0.0),
+        is_determined: f64::abs(value) > 2.0 * std,
+        yardstick: None,
+    };
+    let of = |effects: [&str; 2], probability, other: Value| Hypothesis {
+        effects: effects.map(str::to_owned).to_vec(),
+        parameters: vec![value("a@x", 1.0, 0.1), other],
+        ..hypothesis("", probability, "[loads]", None)
+    };
+    let which = vec![
+        of(["a@x", "b@x"], 0.8, value("b@x", size, std)),
+        of(["a@x", "c@x"], 0.2, value("c@x", 1.0, 0.1)),
+    ];
+    let budget = vec![
+        part("a@x", 0.6, [0.5, 0.7]),
+        part("b@x", 0.3, [0.2, 0.4]),
+        part("unexplained", 0.1, [0.0, 0.2]),
+    ];
+    report(GapVerdict::Ambiguous, which, budget)
+}
+
+#[test]
+fn a_change_is_certain_if_no_hypothesis_that_may_be_true_does_without_it() {
+    let change = Headline::of(&rivals(1.0, 0.1)).change.join("\n");
+    for says in [
+        "certain: a@x: write into the spec (`appell apply`)",
+        "open: b@x (or c@x 20 %)",
+        "`appell apply` also writes b@x",
+    ] {
+        assert!(change.contains(says), "{change}");
+    }
+    // With another size in the other hypothesis nothing is certain, and nothing is written.
+    let mut other = rivals(1.0, 0.1);
+    other.which[1].parameters[0].value = 2.0;
+    let told = Headline::of(&other);
+    assert!(
+        told.change[0].starts_with("nothing yet"),
+        "{:?}",
+        told.change
+    );
+    assert_eq!(told.applied, None);
+}
+
+#[test]
+fn a_size_that_may_be_zero_is_not_determined_and_no_cause() {
+    let report = rivals(0.1, 0.1);
+    let told = Headline::of(&report);
+    assert!(
+        told.cause.starts_with("a@x closes 60.0 %"),
+        "{}",
+        told.cause
+    );
+    let size = "force (x) = not determined (-0.0960 to 0.296 N)";
+    assert!(told.sizes.contains(&size.to_owned()), "{:?}", told.sizes);
+    assert_eq!(Advice::of(&report).not_determined, ["b@x"]);
+    let change = told.change.join("\n");
+    assert!(
+        change.contains("do not change: b@x (not determined)"),
+        "{change}"
+    );
+}
+
+#[test]
+fn an_implausible_size_is_shown_with_its_yardstick_and_not_certain() {
+    let mut report = rivals(1.0, 0.1);
+    report.which.truncate(1);
+    report.which[0].parameters[1].yardstick = Some(Yardstick {
+        ratio: 36.0,
+        of: "the stated inertia of v".to_owned(),
+        is_large: true,
+    });
+    let told = Headline::of(&report);
+    let says = "b@x (36.0 × the stated inertia of v: plausible?)";
+    assert!(told.cause.contains(says), "{}", told.cause);
+    assert!(
+        told.change.contains(&format!("open: {says}")),
+        "{:?}",
+        told.change
+    );
+}
+
+#[test]
+fn equivalent_effects_are_one_finding() {
+    let mut report = rivals(1.0, 0.1);
+    report.which[1].same_as = Some(report.which[0].effects.clone());
+    let told = Headline::of(&report);
+    let says = "b@x or c@x: the recordings cannot tell, either may be changed";
+    assert!(told.cause.contains(says), "{}", told.cause);
+    assert!(
+        told.change[0].starts_with("certain: a@x, b@x"),
+        "{:?}",
+        told.change
+    );
+    assert_eq!(told.applied, Some(1));
+}
+
+#[test]
+fn the_largest_part_comes_first_if_it_has_no_cause() {
+    let mut report = rivals(1.0, 0.1);
+    let far = report.how_far.as_mut().expect("errors");
+    far.budget = vec![
+        part("a@x", 0.28, [0.2, 0.3]),
+        part("b@x", 0.1, [0.05, 0.2]),
+        part("unexplained", 0.62, [0.5, 0.7]),
+    ];
+    let says =
+        "most of the gap (62.0 %, an error of 10.0 times the noise floor) has no known cause; ";
+    let told = Headline::of(&report).cause;
+    assert!(told.starts_with(says), "{told}");
 }

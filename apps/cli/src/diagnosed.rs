@@ -57,6 +57,7 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     let Headline {
         cause,
         sizes,
+        refit,
         change,
         applied,
         error,
@@ -66,9 +67,12 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     if !sizes.is_empty() {
         let _ = writeln!(text, "  size      {} (± 95 %)", sizes.join(", "));
     }
-    let _ = writeln!(text, "  change    {change}");
+    if !refit.is_empty() {
+        let _ = writeln!(text, "  refit     without effects: {}", refit.join(", "));
+    }
+    let _ = writeln!(text, "  change    {}", change.join("\n            "));
     if let Some(number) = applied {
-        commands(&mut text, report, number, apply);
+        commands(&mut text, number, apply);
     }
     if let Some(error) = error {
         let _ = writeln!(text, "  error     {error}");
@@ -91,16 +95,19 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
             shares.join(", ")
         );
     }
-    if let Some(events) = events(report) {
-        let _ = writeln!(text, "  events    {events}");
-    }
     for hypothesis in report.which.iter().take(LISTED) {
         let _ = writeln!(text, "  which     {}", line(report, hypothesis));
     }
     for doubt in doubts(report) {
         let _ = writeln!(text, "  unit?     {doubt}");
     }
-    for group in &report.tied {
+    // Equivalent hypotheses are no rivals.
+    let is_rival = |effects: &&Vec<String>| {
+        let mut which = report.which.iter();
+        which.any(|one| one.effects == **effects && one.same_as.is_none())
+    };
+    let tied = report.tied.iter();
+    for group in tied.filter(|group| group.iter().filter(is_rival).count() > 1) {
         let names: Vec<String> = group.iter().map(|effects| joined(effects)).collect();
         let _ = writeln!(text, "  tied      {}", names.join(" | "));
     }
@@ -109,6 +116,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
     }
     for hint in hints(report) {
         let _ = writeln!(text, "  hint      {hint}");
+    }
+    if let Some(events) = events(report) {
+        let _ = writeln!(text, "  events    {events}");
     }
     if let Some(law) = law_sentence(report) {
         let _ = writeln!(text, "  left      {law}");
@@ -147,11 +157,9 @@ pub(crate) fn text(report: &Report, next: Option<&Path>, apply: &Apply) -> Strin
 }
 
 /// The commands that write a hypothesis into the spec.
-fn commands(text: &mut String, report: &Report, number: usize, apply: &Apply) {
-    let is_tied = report.verdict == GapVerdict::Ambiguous;
-    let before = apply.before.iter().filter(|_| !is_tied);
+fn commands(text: &mut String, number: usize, apply: &Apply) {
     // Writing to a string cannot fail.
-    for command in before {
+    if let Some(command) = &apply.before {
         let _ = writeln!(text, "            {command}");
     }
     let hypothesis = match number {

@@ -75,7 +75,7 @@ fn a_parameter_that_is_all_that_is_wrong_is_named_with_both_values() {
     assert_eq!(folder.json("report.json")["verdict"], "no_gap");
     for says in [
         "once parameters are re-fitted\n  size      m = ",
-        " kg (stated 1.1 kg) (± 95 %)\n",
+        " kg (stated 1.1 kg, -1.0 stated deviations) (± 95 %)\n",
         "take the parameters over (`appell apply`)\n            appell apply carriage --report report.json\n",
     ] {
         assert!(told.stdout.contains(says), "{}", told.stdout);

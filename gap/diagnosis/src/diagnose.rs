@@ -23,6 +23,7 @@
 //!          --force_history, traces, force_law--> data of the plots
 //!          --experiment--> an input that discriminates between tied hypotheses
 //!          --changes--> the changes of the spec under each hypothesis
+//!          --yardstick, advice--> sizes relative to known quantities; which changes are certain
 //! ```
 //!
 //! Decisions rest on the likelihood of the innovations of an extended Kalman filter whose process and measurement
@@ -30,6 +31,7 @@
 //! would ruin a simulation. Results are therefore validated by free-running predictions, without process noise, over
 //! windows of half a typical period. If they fail, these windows rank the hypotheses, and small differences do not count.
 
+mod advice;
 mod against;
 mod alternative;
 mod assembly;
@@ -75,9 +77,11 @@ mod traces;
 mod twins;
 mod unknown;
 mod unmodelled;
+mod value;
 mod whiteness;
 mod window_bench;
 mod windows;
+mod yardstick;
 
 use crate::effects::{Effect, EffectModel, candidates};
 use appell_recordings::{DataSet, Part};
@@ -88,9 +92,10 @@ pub use changes::{Changes, Refitted, SignalEffect};
 pub use error::{ChangeError, DiagnoseError};
 pub use options::Options;
 pub use report::{
-    Ahead, Before, Change, Detectable, Experiment, ForceHistory, ForceLaw, Form, Found, GapVerdict,
-    Hint, HowFar, Hypothesis, Interpolated, Law, Left, Limit, MissingForce, Pictures, Region,
-    Report, Share, ShareOf, Tolerances, Trace, Value, Where, Window,
+    Advice, Ahead, Before, Change, Detectable, ErrorOf, Experiment, ForceHistory, ForceLaw, Form,
+    Found, GapVerdict, Hint, HowFar, Hypothesis, Interpolated, Law, Left, Limit, MissingForce,
+    Open, Pictures, QUANTILE, Region, Report, Share, ShareOf, Tolerances, Trace, Value, Where,
+    Window, Yardstick,
 };
 
 use alternative::{Alternative, Rival};

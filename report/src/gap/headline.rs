@@ -2,12 +2,14 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{GapVerdict, HowFar, Hypothesis, Report, Share, Value};
+use appell_gap::diagnose::{Advice, ErrorOf, GapVerdict, HowFar, Hypothesis, Open, Report, Share};
 
 use super::law::written;
-use super::numbers::{bounded, is_determined, percent, share};
+use super::numbers::{compared, is_determined, percent, share};
+use super::shares::refitted;
 use super::words::{
-    NO_GAP, REFITTED, leading, moved, needs_refit, parameter, refit_sentence, refitted, sentence,
+    NO_GAP, REFITTED, equivalents, first_of, joined, moved, name_of, needs_refit, percent_of,
+    refit_moves, refit_sentence, sentence, size,
 };
 use crate::text::{horizon, short, with_unit};
 
@@ -17,8 +19,10 @@ pub struct Headline {
     pub cause: String,
     /// Sizes, each with its 95 % interval; parameters with their stated values.
     pub sizes: Vec<String>,
-    /// The recommended change.
-    pub change: String,
+    /// Parameters that re-fitting without effects moves by more than their tolerance, where this closes a part of the gap.
+    pub refit: Vec<String>,
+    /// The recommended changes: certain ones first, then those that are open, then what should stay as it is.
+    pub change: Vec<String>,
     /// The number of the hypothesis to apply, if one is.
     pub applied: Option<usize>,
     /// Errors of the model as stated and with the cause; nothing without held-out runs.
@@ -31,6 +35,11 @@ impl Headline {
         Self {
             cause: cause(report),
             sizes: sizes(report),
+            // Without a gap these are the sizes.
+            refit: match report.verdict {
+                GapVerdict::NoGap => Vec::new(),
+                _ => refit_moves(report),
+            },
             change: change(report, applied(report)),
             applied: applied(report),
             error: report.how_far.as_ref().map(|far| error(report, far)),
@@ -57,7 +66,7 @@ fn sizes(report: &Report) -> Vec<String> {
         // Effects named together with the part that the library does not explain.
         GapVerdict::Unexplained => !material.is_empty(),
     };
-    let first = leading(report).filter(|_| is_named);
+    let first = report.leading().filter(|_| is_named);
     let Some(first) = first else {
         return refit_sentence(report).into_iter().collect();
     };
@@ -68,16 +77,21 @@ fn sizes(report: &Report) -> Vec<String> {
         Vec::new()
     };
     let is_changed = |effect: &str| {
-        let name = parameter(first, effect).map(|name| format!("{name} = "));
+        let parameter = first.wrong_parameter(effect);
+        let name = parameter.map(|parameter| format!("{} = ", parameter.name));
         name.is_some_and(|name| parameters.iter().any(|one| one.starts_with(&name)))
     };
     let mut sizes = Vec::new();
     for value in &first.parameters {
         let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
         let is_slight = slight.iter().any(|part| part.name == effect);
+        let slight = is_slight.then(|| "predictions hardly change with it".to_owned());
+        let known = value.yardstick.as_ref().filter(|_| value.is_determined);
+        let remarks: Vec<String> = known.map(compared).into_iter().chain(slight).collect();
         let mut text = size(first, value);
-        if is_slight {
-            text += " (predictions hardly change with it)";
+        if !remarks.is_empty() {
+            // Writing to a string cannot fail.
+            let _ = write!(text, " ({})", remarks.join("; "));
         }
         if !is_changed(effect) {
             sizes.push(text);
@@ -87,61 +101,33 @@ fn sizes(report: &Report) -> Vec<String> {
     sizes
 }
 
-/// The values of a hypothesis, each with half of its 95 % interval.
-pub fn values(hypothesis: &Hypothesis) -> Vec<String> {
-    let values = hypothesis.parameters.iter();
-    values.map(|value| size(hypothesis, value)).collect()
-}
-
-/// `force = 0.412 ± 0.041 N`
-fn size(hypothesis: &Hypothesis, value: &Value) -> String {
-    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
-    let number = with_unit(&bounded(value.value, value.std), &value.unit);
-    // Values of several effects may share a name.
-    let site = effect
-        .split_once('@')
-        .filter(|_| hypothesis.effects.len() > 1);
-    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
-    format!("{}{site} = {number}", short.replace('_', " "))
-}
-
-/// The change that the verdict calls for.
-fn change(report: &Report, applied: Option<usize>) -> String {
+/// The changes that the verdict calls for.
+fn change(report: &Report, applied: Option<usize>) -> Vec<String> {
     let first = report.which.first();
     let is_alternative = |one: &Hypothesis| {
         let mut effects = one.effects.iter();
         effects.any(|effect| effect.starts_with("alternative:"))
     };
+    let only = |text: &str| vec![text.to_owned()];
     match report.verdict {
         _ if first.is_some_and(is_alternative) => {
-            "adopt the alternative model and repeat the diagnosis with it".to_owned()
+            only("adopt the alternative model and repeat the diagnosis with it")
         }
-        GapVerdict::NoGap if applied.is_some() => {
-            "take the parameters over (`appell apply`)".to_owned()
-        }
-        GapVerdict::NoGap => "nothing".to_owned(),
-        GapVerdict::Ambiguous => {
-            let motion = match report.experiment {
-                Some(_) => "the experiment below",
-                None => "other motions",
-            };
-            format!(
-                "nothing yet: record {motion}, and diagnose again with the recording before `appell apply`"
-            )
-        }
-        GapVerdict::Explained => explained(first),
+        GapVerdict::NoGap if applied.is_some() => only("take the parameters over (`appell apply`)"),
+        GapVerdict::NoGap => only("nothing"),
+        GapVerdict::Explained | GapVerdict::Ambiguous => advised(report, applied),
         GapVerdict::Unexplained => {
             let own = "describe the missing effect yourself, and diagnose with it";
             let command = match applied {
-                None => return own.to_owned(),
+                None => return only(own),
                 Some(1) => "`appell apply`".to_owned(),
                 Some(number) => format!("`appell apply`, given hypothesis {number},"),
             };
-            if written(report) == applied {
+            vec![if written(report) == applied {
                 format!("{command} writes the measured force into the spec; look for its cause")
             } else {
                 format!("{command} writes the fitted parameters into the spec; {own}")
-            }
+            }]
         }
     }
 }
@@ -149,8 +135,18 @@ fn change(report: &Report, applied: Option<usize>) -> String {
 /// The number of the hypothesis that `appell apply` should write, if it should write one.
 fn applied(report: &Report) -> Option<usize> {
     let refits = refit_sentence(report).is_some();
+    let is_written = |number: &usize| {
+        let hypothesis = report.which.get(number - 1);
+        hypothesis.is_some_and(|one| one.changes.is_some())
+    };
     match report.verdict {
-        GapVerdict::Explained | GapVerdict::Ambiguous => Some(1),
+        GapVerdict::Explained | GapVerdict::Ambiguous => {
+            let advice = Advice::of(report);
+            let whole = (!advice.certain.is_empty()).then_some(1);
+            whole
+                .map(|whole| advice.hypothesis(report).unwrap_or(whole))
+                .filter(is_written)
+        }
         GapVerdict::NoGap => refits.then_some(1),
         GapVerdict::Unexplained => written(report).or_else(|| {
             let is_plain = |one: &Hypothesis| one.effects.is_empty() && one.changes.is_some();
@@ -160,27 +156,114 @@ fn applied(report: &Report) -> Option<usize> {
     }
 }
 
-/// Effects that a spec can hold are written, the others belong elsewhere.
-fn explained(first: Option<&Hypothesis>) -> String {
-    let Some(changes) = first.and_then(|first| first.changes.as_ref()) else {
-        return "add the effect to the spec (`appell apply`)".to_owned();
+/// The changes by effect: those that are certain, those that are open with what they compete with, and the others.
+fn advised(report: &Report, applied: Option<usize>) -> Vec<String> {
+    let (advice, first) = (Advice::of(report), report.leading());
+    let motion = match report.experiment {
+        Some(_) => "the experiment below",
+        None => "other motions",
     };
-    let adds = !(changes.items.trim().is_empty() && changes.inputs.is_empty());
-    let elsewhere = changes.signal_effects.iter();
-    let elsewhere = elsewhere.filter(|one| one.output.is_none());
-    let mut names: Vec<&str> = elsewhere.map(|one| one.effect.as_str()).collect();
-    names.dedup();
-    let what = match (adds, names.is_empty()) {
-        (true, true) => "add the effect to the spec (`appell apply`)",
-        (false, true) => "write the fitted parameters into the spec (`appell apply`)",
-        (true, false) => "add to the spec the effects that it can express",
-        (false, false) => "nothing in the equations",
+    let mut lines = if advice.certain.is_empty() {
+        vec![format!(
+            "nothing yet: record {motion}, and diagnose again with the recording before `appell apply`"
+        )]
+    } else {
+        let what = written_where(first, &advice.certain);
+        vec![format!("certain: {}: {what}", advice.certain.join(", "))]
     };
-    let listed = names.join(", ");
-    match names.len() {
-        0 => what.to_owned(),
-        1 => format!("{what}; {listed} belongs elsewhere, `appell apply` says where"),
-        _ => format!("{what}; {listed} belong elsewhere, `appell apply` says where"),
+    // Effects that are open for the same reason.
+    let mut open: Vec<(String, Vec<&str>)> = Vec::new();
+    for one in &advice.open {
+        let why = opened(report, first, one);
+        match open.iter_mut().find(|(own, _)| *own == why) {
+            Some((_, effects)) => effects.push(&one.effect),
+            None => open.push((why, vec![&one.effect])),
+        }
+    }
+    let open: Vec<String> = (open.into_iter())
+        .map(|(why, effects)| format!("{} ({why})", effects.join(", ")))
+        .collect();
+    if !open.is_empty() {
+        lines.push(format!("open: {}", open.join("; ")));
+    }
+    let [not_determined, immaterial] = [
+        (&advice.not_determined, "not determined"),
+        (&advice.immaterial, "immaterial"),
+    ]
+    .map(|(effects, why)| {
+        effects
+            .iter()
+            .map(move |effect| format!("{effect} ({why})"))
+    });
+    let leave: Vec<String> = not_determined.chain(immaterial).collect();
+    if !leave.is_empty() {
+        lines.push(format!("do not change: {}", leave.join(", ")));
+    }
+    lines.extend(equivalents(report));
+    let hypothesis = applied.and_then(|number| report.which.get(number - 1));
+    let effects = hypothesis.map_or(&[][..], |hypothesis| &hypothesis.effects);
+    let others = effects
+        .iter()
+        .filter(|effect| !advice.certain.contains(effect));
+    let others: Vec<&str> = others.map(String::as_str).collect();
+    if !others.is_empty() {
+        lines.push(format!(
+            "`appell apply` also writes {}, fitted together with the others: remove what you do not want",
+            others.join(", ")
+        ));
+    }
+    lines
+}
+
+/// `or delay@u 12 %`: why an effect is open, with the hypotheses that do without it.
+fn opened(report: &Report, first: Option<&Hypothesis>, open: &Open) -> String {
+    let effect = &open.effect;
+    let names = open.instead.iter().map(|effects| {
+        let is_new = |one: &&String| !first.is_some_and(|first| first.effects.contains(one));
+        let new: Vec<String> = effects.iter().filter(is_new).cloned().collect();
+        let other = match (effects.contains(effect), new.is_empty()) {
+            (true, true) => "another size".to_owned(),
+            (true, false) => format!("another size with {}", joined(&new)),
+            (false, true) => "without it".to_owned(),
+            (false, false) => name_of(&new),
+        };
+        let mut which = report.which.iter();
+        let hypothesis = which.find(|one| one.effects == *effects);
+        let sure = hypothesis.map_or(f64::NAN, |one| one.probability);
+        format!("{other} {}", percent_of(sure))
+    });
+    let other = first_of(3, names.collect()).map(|names| format!("or {names}"));
+    let implausible = first.and_then(|first| first.implausible(effect));
+    let implausible = implausible.map(|known| format!("{}: plausible?", compared(known)));
+    let unshown = (!open.is_shown).then(|| "not shown by the held-out runs".to_owned());
+    let why = other.into_iter().chain(implausible).chain(unshown);
+    why.collect::<Vec<_>>().join("; ")
+}
+
+/// Where changes are written: effects that a spec can hold, and those that belong elsewhere.
+fn written_where(first: Option<&Hypothesis>, effects: &[String]) -> String {
+    let signals = first.and_then(|first| first.changes.as_ref());
+    let signals = signals.map_or(&[][..], |changes| &changes.signal_effects);
+    let is_elsewhere = |effect: &&String| {
+        let mut signals = signals.iter().filter(|one| one.output.is_none());
+        signals.any(|one| one.effect == **effect)
+    };
+    let (elsewhere, own): (Vec<&String>, Vec<&String>) = effects.iter().partition(is_elsewhere);
+    let elsewhere: Vec<&str> = elsewhere.into_iter().map(String::as_str).collect();
+    let listed = elsewhere.join(", ");
+    let belong = if elsewhere.len() == 1 {
+        "belongs"
+    } else {
+        "belong"
+    };
+    match (own.is_empty(), elsewhere.is_empty()) {
+        (true, _) => format!(
+            "nothing in the equations; {listed} {belong} elsewhere, `appell apply` says where"
+        ),
+        (false, false) => format!(
+            "write into the spec what it can express; {listed} {belong} elsewhere, `appell apply` says where"
+        ),
+        (false, true) => "write into the spec (`appell apply`)".to_owned(),
     }
 }
 
@@ -192,7 +275,11 @@ fn error(report: &Report, far: &HowFar) -> String {
         format!("{} ahead on held-out runs", horizon(far.horizon_s))
     };
     let [before, after, floor] = [far.nominal, far.with_effect, far.noise_floor].map(short);
-    let mut text = format!("{what}: {before} -> {after} times the noise (floor {floor})");
+    let in_noise = format!("{before} -> {after} times the noise");
+    let mut text = match in_units(&far.channels) {
+        Some(channels) => format!("{what}: {channels} ({in_noise}, floor {floor})"),
+        None => format!("{what}: {in_noise} (floor {floor})"),
+    };
     if is_determined(far.closed, far.closed_ci95) {
         let closed = share(far.closed, far.closed_ci95);
         // Writing to a string cannot fail.
@@ -211,4 +298,20 @@ fn error(report: &Report, far: &HowFar) -> String {
         text += "; worse than with re-fitted parameters alone";
     }
     text
+}
+
+/// `phi 540 -> 34.2 rad, ...`: root mean square errors of channels, those that change most first.
+fn in_units(channels: &[ErrorOf]) -> Option<String> {
+    let mut channels: Vec<&ErrorOf> = channels.iter().collect();
+    let left = |channel: &ErrorOf| channel.with_effect / channel.nominal;
+    channels.sort_by(|a, b| left(a).total_cmp(&left(b)));
+    let channels = channels.into_iter().map(|channel| {
+        let [before, after] = [channel.nominal, channel.with_effect].map(short);
+        format!(
+            "{} {before} -> {}",
+            channel.name,
+            with_unit(&after, &channel.unit)
+        )
+    });
+    first_of(3, channels.collect())
 }

@@ -1,6 +1,11 @@
 //! Values with their uncertainty, and shares.
 
-use crate::text::{exponent, short};
+use appell_gap::diagnose::{QUANTILE, Value, Yardstick};
+
+use crate::text::{exponent, short, with_unit};
+
+/// Half of the last digit of a share.
+const ROUNDING: f64 = 5e-4;
 
 /// A value with two digits of its standard deviation.
 pub(super) fn measured(value: f64, std: f64) -> String {
@@ -20,9 +25,25 @@ pub(super) fn measured(value: f64, std: f64) -> String {
 
 /// A value with half of its 95 % interval.
 pub(super) fn bounded(value: f64, std: f64) -> String {
-    /// The 97.5 % quantile of the normal distribution.
-    const QUANTILE: f64 = 1.959_964;
     measured(value, QUANTILE * std)
+}
+
+/// `0.412 ± 0.041 N`, or `not determined (-0.02 to 0.31 N)`.
+pub(super) fn sized(value: &Value) -> String {
+    if value.is_determined {
+        return with_unit(&bounded(value.value, value.std), &value.unit);
+    }
+    let half = QUANTILE * value.std;
+    let [low, high] = [value.value - half, value.value + half].map(short);
+    format!(
+        "not determined ({low} to {})",
+        with_unit(&high, &value.unit)
+    )
+}
+
+/// `36.1 × the stated inertia of omega`
+pub(super) fn compared(known: &Yardstick) -> String {
+    format!("{} × {}", short(known.ratio), known.of)
 }
 
 /// `97.6 % [94.0 %, 100.0 %]`: a share with its interval.
@@ -51,13 +72,19 @@ pub fn is_determined(part: f64, [low, high]: [f64; 2]) -> bool {
 
 /// The same as a sentence part, with `nothing` and `all` for shares within rounding of 0 and 1.
 pub(super) fn part_of_all(part: f64) -> String {
-    /// Half of the last digit.
-    const LEAST: f64 = 5e-4;
     match part {
-        part if part < LEAST => "nothing".to_owned(),
-        part if part > 1.0 - LEAST => "all".to_owned(),
+        part if part < ROUNDING => "nothing".to_owned(),
+        part if part > 1.0 - ROUNDING => "all".to_owned(),
         part => percent(part),
     }
+}
+
+/// `12.7 %`, or `under 0.1 %` for a part that is small but there.
+pub(super) fn small(part: f64) -> String {
+    if part < ROUNDING {
+        return "under 0.1 %".to_owned();
+    }
+    percent(part)
 }
 
 #[cfg(test)]

@@ -11,13 +11,13 @@ use super::budget::{budget, closes};
 use super::doubt::doubts;
 use super::elements::{bar, cells, code, figure, separated, table};
 use super::forces;
-use super::headline::{Headline, values};
+use super::headline::Headline;
 use super::law::law;
 use super::numbers::{is_determined, percent};
 use super::plots;
 use super::words::{
     alternatives, events, hints, imperfections, joined, left_out, next_best, percent_of, said,
-    statement,
+    statement, values,
 };
 use crate::drawing::marked;
 use crate::page_shell::PageShell;
@@ -55,20 +55,22 @@ pub fn page(set: &DataSet, report: &Report) -> String {
 /// Below the verdict: size, change, error, and how sure it is.
 fn reading(report: &Report) -> Markup {
     let headline = Headline::of(report);
-    let change = headline.change.replace('`', "");
     html! {
         ul class="reading" {
             @if !headline.sizes.is_empty() {
                 li { b { "Size" } " (± 95 %): " (headline.sizes.join(", ")) "." }
             }
-            li { b { "What to change" } ": " (change) "." }
+            @if !headline.refit.is_empty() {
+                li { b { "Re-fitted without effects" } ": " (headline.refit.join(", ")) "." }
+            }
+            li { b { "What to change" } ": " (in_sentences(&headline.change)) }
             @if let Some(error) = headline.error {
                 li { b { "Error" } ", " (error) "." }
             }
             @if let Some((probability, same, rivals)) = alternatives(report) {
                 li { "Probability " (percent_of(probability)) "."
                 @if let Some(next) = next_best(report).filter(|_| report.verdict == GapVerdict::Explained) { " Next: " (next) "." }
-                @if !same.is_empty() { " The same in every motion: " (codes(&same)) "." }
+                @for phrase in same { " " (capitalised(&phrase)) "." }
                 @if !rivals.is_empty() { " Not ruled out: " (codes(&rivals)) "." } }
             }
             @if let Some(far) = &report.how_far {
@@ -76,6 +78,13 @@ fn reading(report: &Report) -> Markup {
             }
         }
     }
+}
+
+/// Lines as sentences.
+fn in_sentences(lines: &[String]) -> String {
+    let lines = lines.iter();
+    let lines = lines.map(|line| format!("{}.", capitalised(&line.replace('`', ""))));
+    lines.collect::<Vec<_>>().join(" ")
 }
 
 fn codes(names: &[String]) -> Markup {
@@ -393,7 +402,7 @@ fn closed(far: &HowFar) -> Markup {
 fn next(set: &DataSet, report: &Report) -> Markup {
     html! {
         h2 { "Next" }
-        p { (capitalised(&Headline::of(report).change.replace('`', ""))) "." }
+        p { (in_sentences(&Headline::of(report).change)) }
         @if report.verdict == GapVerdict::NoGap && !report.detectable.is_empty() {
             p { "The table below tells how small an effect these recordings would have shown." }
         }

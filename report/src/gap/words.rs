@@ -2,9 +2,10 @@
 
 use std::fmt::Write as _;
 
-use appell_gap::diagnose::{Change, GapVerdict, HowFar, Hypothesis, Left, Report, Share};
+use appell_gap::diagnose::{Advice, Change, GapVerdict, Hypothesis, Left, Refitted, Report, Value};
 
-use super::numbers::{bounded, measured, part_of_all, percent};
+use super::numbers::{bounded, measured, part_of_all, sized};
+use super::shares::{refitted, refitted_share, shares};
 use crate::text::{short, with_unit};
 
 /// The verdict where nothing is missing, and the condition for it.
@@ -20,23 +21,18 @@ pub fn sentence(report: &Report) -> String {
     let Some((probability, same, rivals)) = alternatives(report) else {
         return statement;
     };
-    if report.verdict == GapVerdict::Explained {
-        let next = next_best(report).map(|next| format!("; next: {next}"));
-        let (sure, next) = (percent_of(probability), next.unwrap_or_default());
-        return format!("{statement} (probability {sure}{next})");
-    }
     let mut text = format!("{statement} (probability {}", percent_of(probability));
-    text.extend(leading(report).map(values));
+    if rivals.is_empty() {
+        text.extend(next_best(report).map(|next| format!("; next: {next}")));
+    } else {
+        text.extend(report.leading().map(values_after));
+    }
     text += ")";
-    if !same.is_empty() {
-        // Writing to a string cannot fail.
-        let _ = write!(
-            text,
-            "; {} would be the same in every motion",
-            same.join(", ")
-        );
+    for phrase in same {
+        text = text + "; " + &phrase;
     }
     if !rivals.is_empty() {
+        // Writing to a string cannot fail.
         let _ = write!(text, "; {} cannot be ruled out", rivals.join(", "));
     }
     text
@@ -52,7 +48,7 @@ fn not_found(failed: &[(Vec<String>, String)]) -> String {
 }
 
 /// The first items of a list, and how many more there are; a page shows all.
-fn first_of(most: usize, mut items: Vec<String>) -> Option<String> {
+pub(super) fn first_of(most: usize, mut items: Vec<String>) -> Option<String> {
     let more = items.split_off(items.len().min(most)).len();
     let shown = items.join(", ");
     match more {
@@ -63,25 +59,43 @@ fn first_of(most: usize, mut items: Vec<String>) -> Option<String> {
 
 /// The hypothesis after the leading one, with its probability.
 pub(super) fn next_best(report: &Report) -> Option<String> {
-    let first = &leading(report)?.effects;
+    let first = &report.leading()?.effects;
     let mut others = report.which.iter();
     let next = others.find(|one| one.same_as.is_none() && one.effects != *first)?;
-    let name = if next.is_unknown() {
-        "none of the library".to_owned()
-    } else {
-        joined(&next.effects)
-    };
+    let name = name_of(&next.effects);
     Some(format!("{name}, {}", percent_of(next.probability)))
 }
 
+/// The effects of a hypothesis in a sentence.
+pub(super) fn name_of(effects: &[String]) -> String {
+    if effects == ["unknown"] {
+        return "none of the library".to_owned();
+    }
+    joined(effects)
+}
+
 /// `, delay = 0.012 ± 0.001 s`
-fn values(hypothesis: &Hypothesis) -> String {
-    let values = hypothesis.parameters.iter().map(|value| {
-        let number = with_unit(&bounded(value.value, value.std), &value.unit);
-        let name = value.name.rsplit('.').next().unwrap_or_default();
-        format!(", {} = {number}", name.replace('_', " "))
-    });
-    values.collect()
+fn values_after(hypothesis: &Hypothesis) -> String {
+    let values = values(hypothesis);
+    values.iter().flat_map(|value| [", ", value]).collect()
+}
+
+/// The values of a hypothesis, each with half of its 95 % interval.
+pub fn values(hypothesis: &Hypothesis) -> Vec<String> {
+    let values = hypothesis.parameters.iter();
+    values.map(|value| size(hypothesis, value)).collect()
+}
+
+/// `force = 0.412 ± 0.041 N`
+pub(super) fn size(hypothesis: &Hypothesis, value: &Value) -> String {
+    let (effect, short) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
+    let number = sized(value);
+    // Values of several effects may share a name.
+    let site = effect
+        .split_once('@')
+        .filter(|_| hypothesis.effects.len() > 1);
+    let site = site.map_or_else(String::new, |(_, site)| format!(" ({site})"));
+    format!("{}{site} = {number}", short.replace('_', " "))
 }
 
 /// `m = 1.35 ± 0.02 kg (stated 1 kg)`: parameters that differ significantly from their stated values.
@@ -96,10 +110,48 @@ pub(super) fn moved(hypothesis: Option<&Hypothesis>) -> Vec<String> {
         has_moved.then(|| {
             let value = with_unit(&bounded(one.value, std), &one.unit);
             let stated = with_unit(&as_written(one.stated), &one.unit);
-            format!("{} = {value} (stated {stated})", one.name)
+            let by = deviations(one).map(|by| format!(", {by}"));
+            format!(
+                "{} = {value} (stated {stated}{})",
+                one.name,
+                by.unwrap_or_default()
+            )
         })
     });
     moved.collect()
+}
+
+/// `+2.6 stated deviations`
+fn deviations(parameter: &Refitted) -> Option<String> {
+    let by = parameter.moved_by()?;
+    Some(format!("{by:+.1} stated deviations"))
+}
+
+/// `J 0.00012 -> 0.000151 kg*m^2 (+2.6 stated deviations)`: the parameters that the re-fit without effects moves by more
+/// than one stated deviation, where it closes a material share of the gap.
+pub(super) fn refit_moves(report: &Report) -> Vec<String> {
+    let is_material = report
+        .how_far
+        .iter()
+        .any(|far| refitted(&far.budget).is_some());
+    let plain = report.which.iter().find(|one| one.effects.is_empty());
+    let changes = plain.and_then(|one| one.changes.as_ref());
+    let parameters = changes
+        .filter(|_| is_material)
+        .map_or(&[][..], |one| &one.parameters);
+    let far = parameters.iter();
+    let mut far: Vec<&Refitted> = far
+        .filter(|one| one.moved_by().is_some_and(|by| by.abs() > 1.0))
+        .collect();
+    let by = |one: &Refitted| one.moved_by().map_or(0.0, f64::abs);
+    far.sort_by(|a, b| by(b).total_cmp(&by(a)));
+    let moves = far.into_iter().filter_map(|one| {
+        let name = &one.name;
+        let [from, to] = [one.stated, one.value].map(short);
+        let to = with_unit(&to, &one.unit);
+        Some(format!("{name} {from} -> {to} ({})", deviations(one)?))
+    });
+    moves.collect()
 }
 
 /// A stated value as it was written, without the rounding of units.
@@ -121,24 +173,32 @@ pub(super) fn needs_refit(report: &Report) -> bool {
     far.is_none_or(|far| refitted(&far.budget).is_some())
 }
 
-/// The parameter whose wrong value the effect describes, if it is one.
-pub(super) fn parameter<'e>(hypothesis: &Hypothesis, effect: &'e str) -> Option<&'e str> {
-    let (_, site) = effect.split_once('@')?;
-    let changes = hypothesis.changes.as_ref()?;
-    let mut parameters = changes.parameters.iter();
-    parameters.any(|one| one.name == site).then_some(site)
-}
-
-/// Where several hypotheses may be true: the probability of the leading one, those indistinguishable from it, and
-/// those that cannot be ruled out.
+/// Where several hypotheses may be true: the probability of the leading one, equivalents of its material effects, and the
+/// hypotheses that cannot be ruled out.
 pub(super) fn alternatives(report: &Report) -> Option<(f64, Vec<String>, Vec<String>)> {
     let is_named = matches!(
         report.verdict,
         GapVerdict::Explained | GapVerdict::Ambiguous
     );
     let is_open = report.change.is_none() && is_named;
-    let first = leading(report).filter(|_| is_open)?;
-    Some((first.probability, twins(report), rivals(report)))
+    let first = report.leading().filter(|_| is_open)?;
+    Some((first.probability, equivalents(report), rivals(report)))
+}
+
+/// `a or b: the recordings cannot tell, either may be changed`, for effects that call for a change.
+pub(super) fn equivalents(report: &Report) -> Vec<String> {
+    let advice = Advice::of(report);
+    let idle = |effect: &str| {
+        let mut idle = advice.not_determined.iter().chain(&advice.immaterial);
+        idle.any(|one| one == effect)
+    };
+    let groups = advice.equivalent.iter();
+    let groups = groups.filter(|group| !group[0].split('+').all(idle));
+    let phrases = groups.map(|group| {
+        let names = group.join(" or ").replace('+', " + ");
+        format!("{names}: the recordings cannot tell, either may be changed")
+    });
+    phrases.collect()
 }
 
 /// The verdict in one sentence.
@@ -175,7 +235,7 @@ pub(super) fn statement(report: &Report) -> String {
             }
         }
         GapVerdict::Unexplained if names_effects(report) => match shares(report) {
-            Some(shares) => format!("most of the gap stays: {shares}"),
+            Some(shares) => shares,
             None => format!("there is a gap; {names} explains a part of it, most stays"),
         },
         GapVerdict::Unexplained => {
@@ -187,17 +247,10 @@ pub(super) fn statement(report: &Report) -> String {
                     format!("{shares}; the law, which no effect of the library has, is {left}")
                 }
                 Some(shares) => unnamed(report, Some(shares)),
-                None => unnamed(report, refitted_share(report)) + &law,
+                None => unnamed(report, None) + &law,
             }
         }
     }
-}
-
-/// `re-fitted parameters close 98 % of the gap`, where they matter.
-fn refitted_share(report: &Report) -> Option<String> {
-    let refit = refitted(&report.how_far.as_ref()?.budget)?;
-    let closed = percent(refit.closed);
-    Some(format!("re-fitted parameters close {closed} of the gap"))
 }
 
 /// The part of the gap that no effect of the library explains, after the shares of the others.
@@ -227,97 +280,6 @@ fn law_share(report: &Report) -> Option<String> {
     let law = budget.find(|part| part.is_law() && part.is_material)?;
     let closed = part_of_all(law.closed);
     Some(format!("; measured, it closes {closed} of the gap"))
-}
-
-/// The part of the re-fitted parameters, where it matters.
-pub(super) fn refitted(budget: &[Share]) -> Option<&Share> {
-    let mut budget = budget.iter();
-    budget.find(|part| part.is_refit() && part.is_material)
-}
-
-/// The shares of the gap closed by re-fitted parameters and by the material effects, the largest first, and the
-/// rest: all relative to the gap of the model as stated.
-fn shares(report: &Report) -> Option<String> {
-    let budget = &report.how_far.as_ref()?.budget;
-    let (mut material, others): (Vec<&Share>, Vec<&Share>) =
-        (budget.iter().filter(|part| part.is_effect())).partition(|part| part.is_material);
-    material.sort_by(|a, b| b.closed.total_cmp(&a.closed));
-    let refit = refitted(budget);
-    let about = |part: &&Share| {
-        let mut found = report.found.iter();
-        let found = found.find(|found| found.effect == part.name);
-        found.map_or_else(|| part.name.clone(), |found| found.about.clone())
-    };
-    let names: Vec<String> = material.iter().map(about).collect();
-    let (names, all) = (names.join(" and "), material.iter().chain(&others));
-    let sum = part_of_all(all.map(|part| part.closed).sum());
-    let before = refitted_share(report).map_or_else(String::new, |share| share + "; ");
-    let mut text = match material.as_slice() {
-        [] if others.is_empty() || before.is_empty() => return None,
-        [] => {
-            let names: Vec<String> = others.iter().map(about).collect();
-            let names = names.join(" and ");
-            let is_parameter = |part: &&Share| {
-                leading(report).is_some_and(|first| parameter(first, &part.name).is_some())
-            };
-            if let Some(refit) = refit.filter(|_| others.iter().all(is_parameter)) {
-                let closed = percent(refit.closed);
-                return Some(format!(
-                    "{names}: re-fitted together with the others it closes {closed} of the gap"
-                ));
-            }
-            let [are, them] = if others.len() > 1 {
-                ["are", "them"]
-            } else {
-                ["is", "it"]
-            };
-            return Some(format!(
-                "{before}{names} {are} there as well, but predictions of the held-out runs hardly change with {them}"
-            ));
-        }
-        [one] if others.is_empty() => {
-            let [low, high] = one.interval.map(percent);
-            let open = unsettled(one.interval);
-            format!("{before}{names} closes {sum} [{low}, {high}] of the gap{open}")
-        }
-        [_] => format!("{before}{names} closes {sum} of the gap"),
-        several => {
-            let each: Vec<String> = several.iter().map(|part| percent(part.closed)).collect();
-            let each = each.join(", ");
-            format!("{before}{names} close {sum} ({each}) of the gap")
-        }
-    };
-    for part in budget {
-        if part.is_law() && part.is_material {
-            let _ = write!(text, "; a measured law {}", percent(part.closed));
-        } else if part.is_rest() {
-            let _ = write!(text, "; {} stays", part_of_all(part.closed));
-        }
-    }
-    text.extend(report.how_far.as_ref().and_then(far_from_floor));
-    Some(text)
-}
-
-/// A small part of the gap may still be a large error, if the model without the effects diverges.
-fn far_from_floor(far: &HowFar) -> Option<String> {
-    /// Share of the gap that prints as nothing, and the multiple of the floor that is notable.
-    const SMALL: f64 = 5e-4;
-    const MANY: f64 = 2.0;
-    let rest = far.budget.iter().find(|part| part.is_rest())?;
-    let times = far.with_effect / far.noise_floor;
-    let is_far = rest.closed < SMALL && times > MANY && times.is_finite();
-    is_far.then(|| format!(", yet errors are {times:.1} times the noise floor"))
-}
-
-/// A remark on an interval that hardly bounds a share.
-fn unsettled([low, high]: [f64; 2]) -> &'static str {
-    if low <= 0.0 {
-        ", an interval in which the held-out runs leave it open whether it closes anything"
-    } else if high - low > 1.0 {
-        ", an interval so wide that the held-out runs hardly bound the share"
-    } else {
-        ""
-    }
 }
 
 /// The diagnosis of the previous recordings: effects that the model now has, and how many parameters.
@@ -373,14 +335,9 @@ pub(super) fn percent_of(probability: f64) -> String {
     }
 }
 
-/// The most probable hypothesis of the library.
-pub(super) fn leading(report: &Report) -> Option<&Hypothesis> {
-    report.which.iter().find(|one| one.effects != ["unknown"])
-}
-
 /// Names of the hypotheses indistinguishable from the leading one.
 fn twins(report: &Report) -> Vec<String> {
-    let first = leading(report).map(|first| &first.effects);
+    let first = report.leading().map(|first| &first.effects);
     let which = report.which.iter();
     let same = which.filter(|one| one.same_as.is_some() && one.same_as.as_ref() == first);
     same.map(|one| joined(&one.effects)).collect()
@@ -388,7 +345,7 @@ fn twins(report: &Report) -> Vec<String> {
 
 /// The hypotheses that are tied with the leading one, with their probabilities.
 fn rivals(report: &Report) -> Vec<String> {
-    let Some(first) = leading(report).map(|first| &first.effects) else {
+    let Some(first) = report.leading().map(|first| &first.effects) else {
         return Vec::new();
     };
     let groups = report.tied.iter();
@@ -397,7 +354,7 @@ fn rivals(report: &Report) -> Vec<String> {
         let mut hypotheses = report.which.iter();
         let hypothesis = hypotheses.find(|hypothesis| hypothesis.effects == *effects);
         let rival = hypothesis.filter(|hypothesis| hypothesis.same_as.is_none())?;
-        let (sure, values) = (percent_of(rival.probability), values(rival));
+        let (sure, values) = (percent_of(rival.probability), values_after(rival));
         Some(format!("{} ({sure}{values})", joined(effects)))
     };
     tied.filter(|effects| *effects != first)

@@ -130,6 +130,9 @@ impl<'a> Rival<'a> {
             value: one.value,
             std: one.std.unwrap_or(0.0),
             unit: one.unit,
+            without: None,
+            is_determined: true,
+            yardstick: None,
         });
         Ok(values.collect())
     }

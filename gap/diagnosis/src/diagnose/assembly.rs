@@ -15,6 +15,7 @@ use super::report::{
 use super::screen::Screen;
 use super::twins;
 use super::unknown;
+use super::yardstick::{Yardstick, Yardsticks};
 use crate::effects::{Acts, Candidate, EffectModel, Part};
 use appell_estimate::{Along, Unknown};
 
@@ -57,7 +58,9 @@ pub(super) fn assemble(
     place: Where,
     rivals: &[Rival<'_>],
 ) -> Result<Report, DiagnoseError> {
-    let mut which = which(bench, comparison)?;
+    // A size without a yardstick is a size nevertheless.
+    let yardsticks = Yardsticks::new(bench, comparison.best()).ok();
+    let mut which = which(bench, comparison, yardsticks.as_ref())?;
     join(&mut which, rivals, bench, comparison)?;
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     beside_their_twins(&mut which);
@@ -136,7 +139,11 @@ pub(super) fn shortened(which: &[Hypothesis]) -> Option<Vec<Hypothesis>> {
 }
 
 /// The hypotheses of the library, and `unknown`.
-fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, DiagnoseError> {
+fn which(
+    bench: &Bench<'_>,
+    comparison: &Comparison,
+    yardsticks: Option<&Yardsticks<'_>>,
+) -> Result<Vec<Hypothesis>, DiagnoseError> {
     // If the comparison fails, no hypothesis counts as equivalent.
     let twins = twins::of_best(bench, comparison).unwrap_or_default();
     let base = comparison.nominal().evidence.log();
@@ -162,7 +169,7 @@ fn which(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Hypothesis>, 
             effects,
             probability: if is_twin { 0.0 } else { probability * known },
             log_bayes_factor: Some(fitted.evidence.log() - base),
-            parameters: values(bench, fitted),
+            parameters: values(bench, fitted, yardsticks),
             changes: Some(Changes::of(bench, fitted)?),
         });
     }
@@ -265,10 +272,10 @@ pub(super) fn tied(which: &[Hypothesis]) -> Vec<Vec<Vec<String>>> {
 }
 
 /// Values of the members of a hypothesis.
-fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
+fn values(bench: &Bench<'_>, fitted: &Fitted, yardsticks: Option<&Yardsticks<'_>>) -> Vec<Value> {
     let members = fitted.members.iter().map(|&member| bench.candidate(member));
     members
-        .flat_map(|candidate| values_of(candidate, bench, fitted))
+        .flat_map(|candidate| values_of(candidate, bench, fitted, yardsticks))
         .collect()
 }
 
@@ -276,12 +283,17 @@ fn values(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
 fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
     let candidates = bench.imperfect_candidates();
     candidates
-        .flat_map(|candidate| values_of(candidate, bench, fitted))
+        .flat_map(|candidate| values_of(candidate, bench, fitted, None))
         .collect()
 }
 
 /// Values of a candidate.
-fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
+fn values_of(
+    candidate: &Candidate,
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    yardsticks: Option<&Yardsticks<'_>>,
+) -> Vec<Value> {
     let info = bench.effects.info();
     let deviation = |place: usize| match fitted.fit.deviation(place) {
         Ok(deviation) if !fitted.fit.at_limit[place] && has_deviation(&fitted.fit, place) => {
@@ -289,12 +301,9 @@ fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<V
         }
         _ => f64::NAN,
     };
-    let own: Vec<usize> = bench
-        .own(candidate)
-        .into_iter()
-        .filter(|(_, part)| *part != Part::Switch)
-        .map(|(index, _)| index)
-        .collect();
+    let mut own = bench.own(candidate);
+    own.retain(|(_, part)| *part != Part::Switch);
+    let part_of = |index: usize| own.iter().find(|(own, _)| *own == index);
     let setup = bench.setup(&fitted.members);
     let of_signal = bench.of_signal(candidate.acts, &setup);
     let of_signal = of_signal.map(|free| free.unknown);
@@ -302,7 +311,7 @@ fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<V
     for (place, free) in fitted.fit.free.iter().enumerate() {
         let value = free.to_value(fitted.fit.coordinates[place]);
         let (short, unit) = match (free.unknown, candidate.acts) {
-            (Unknown::Parameter(index), Acts::Items) if own.contains(&index) => {
+            (Unknown::Parameter(index), Acts::Items) if part_of(index).is_some() => {
                 let quantity = &info.parameters[index];
                 (candidate.short(&quantity.name), quantity.unit.to_string())
             }
@@ -327,11 +336,37 @@ fn values_of(candidate: &Candidate, bench: &Bench<'_>, fitted: &Fitted) -> Vec<V
             appell_estimate::Coordinate::Plain => 1.0,
             appell_estimate::Coordinate::Logarithm => value,
         };
-        values.push(Value {
+        let told = Value {
             name: format!("{}.{short}", candidate.name()),
             value: value / scale,
             std: deviation(place) * stretch / scale,
             unit,
+            without: None,
+            is_determined: !free
+                .prior
+                .is_some_and(|[_, std]| deviation(place) > 0.5 * std),
+            yardstick: None,
+        };
+        values.push(match (free.unknown, candidate.acts) {
+            (Unknown::Parameter(index), Acts::Parameter(_)) => {
+                let stated = bench.set.parameters[index].value;
+                let yardstick = Yardstick::of_parameter(value, stated);
+                Value { yardstick, ..told }.of_size(stated / scale)
+            }
+            (Unknown::Parameter(index), _) => match part_of(index) {
+                Some((_, part)) if !part.is_shape() => {
+                    let yardstick =
+                        yardsticks.and_then(|own| own.of_size(fitted, candidate, index));
+                    Value { yardstick, ..told }.of_size(0.0)
+                }
+                _ => told,
+            },
+            (_, Acts::Scale(_)) => told.of_size(1.0),
+            (_, Acts::Bias(_)) => told.of_size(0.0),
+            _ => {
+                let yardstick = Yardstick::of_time(value, bench.step);
+                Value { yardstick, ..told }.of_size(0.0)
+            }
         });
     }
     values

@@ -40,6 +40,9 @@ pub struct Refitted {
     pub name: String,
     /// Value that the data set states.
     pub stated: f64,
+    /// Its stated standard deviation, if there is one.
+    #[serde(default)]
+    pub stated_std: Option<f64>,
     /// Most likely value.
     pub value: f64,
     /// Standard deviation; `None` if the parameter was not free.
@@ -77,6 +80,14 @@ fn write_added<S: Serializer>(inputs: &[(String, String)], to: S) -> Result<S::O
 fn read_added<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
     let added: Vec<Added> = Deserialize::deserialize(from)?;
     Ok(added.into_iter().map(|one| (one.input, one.adds)).collect())
+}
+
+impl Refitted {
+    /// Its difference from the stated value in stated standard deviations, if there is a tolerance.
+    pub fn moved_by(&self) -> Option<f64> {
+        let std = self.stated_std.filter(|std| *std > 0.0)?;
+        Some((self.value - self.stated) / std)
+    }
 }
 
 impl Changes {
@@ -239,6 +250,7 @@ impl Equations<'_> {
                 Refitted {
                     name: label.name.clone(),
                     stated: 0.0,
+                    stated_std: None,
                     value: in_unit(self.values[index]),
                     std: self.deviations[index].map(in_unit),
                     unit: label.unit.text.clone(),
@@ -269,6 +281,7 @@ impl Equations<'_> {
             told.push(Refitted {
                 name: parameter.label.name.clone(),
                 stated: unit.from_si(rig.value),
+                stated_std: rig.std.map(|std| unit.from_si(std)),
                 value: unit.from_si(value),
                 std: free.map(|std| unit.from_si(std)),
                 unit: unit.text.clone(),

@@ -6,6 +6,7 @@
 use appell_estimate::Recording;
 
 use super::DiagnoseError;
+use super::alternative::columns;
 use super::bench::Bench;
 use super::budget::{self, Ends};
 use super::calibration::IMMATERIAL;
@@ -14,7 +15,7 @@ use super::evidence::Fitted;
 use super::law::FittedLaw;
 use super::options::Options;
 use super::prediction::{self, Errors, Paired, noise, stated};
-use super::report::{HowFar, Share};
+use super::report::{ErrorOf, HowFar, Share};
 use appell_recordings::{DataSet, Part};
 
 /// Horizon at which the gap is reported, in s and in steps at least, but no more than half of a run.
@@ -139,8 +140,10 @@ impl HeldOut {
             })?
         };
         let runs = self.names.clone();
+        let channels = ErrorOf::all([&stated, &refit, &effect], bench, leader, &noise);
         Ok(Some(HowFar {
             before: before.transpose()?,
+            channels,
             ..HowFar::of(&paired, horizon, floor, budget, runs)
         }))
     }
@@ -153,6 +156,37 @@ impl HeldOut {
         horizon: f64,
     ) -> Result<Errors, DiagnoseError> {
         prediction::errors(&self.recordings, bench, fitted, noise, horizon, ORIGINS)
+    }
+}
+
+impl ErrorOf {
+    /// Of all channels that are compared, in the units of the recordings: of the stated model, the re-fitted one and the
+    /// leading hypothesis, whose model may measure more channels.
+    fn all(
+        errors: [&Errors; 3],
+        bench: &Bench<'_>,
+        leader: &Leader<'_>,
+        noise: &[f64],
+    ) -> Vec<Self> {
+        let of_leader = columns(leader.bench);
+        let measured = bench.set.measured(bench.effects.info());
+        let compared = measured.iter().zip(noise).enumerate();
+        let compared = compared.filter(|(_, (_, noise))| noise.is_finite());
+        let all = compared.map(|(place, ((channel, _), noise))| {
+            let of_leader = of_leader.iter().position(|own| *own == channel.column);
+            let of_leader = of_leader.unwrap_or(place);
+            let in_unit =
+                |errors: &Errors, place| channel.unit.from_si(errors.rms_of(place) * noise);
+            let [stated, refit, effect] = errors;
+            Self {
+                name: channel.column.clone(),
+                unit: channel.unit.text.clone(),
+                nominal: in_unit(stated, place),
+                refitted: in_unit(refit, place),
+                with_effect: in_unit(effect, of_leader),
+            }
+        });
+        all.collect()
     }
 }
 
@@ -178,6 +212,7 @@ impl HowFar {
             closed_ci95: paired.interval95(|means| closed(means[0], means[2])),
             closed_vs_refitted: closed(means[1], means[2]),
             budget,
+            channels: Vec::new(),
             before: None,
             bettered_ci95: [0, 1].map(bettered),
             is_worse: paired.interval95(|means| means[1] - means[2])[1] < 0.0,

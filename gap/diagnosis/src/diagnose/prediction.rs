@@ -27,21 +27,34 @@ const BLOCK: f64 = 1.0;
 /// The same in s for predictions of one step and of whole runs.
 const BLOCK_S: f64 = 2.0;
 
-/// Sums of squared errors with their counts, by run and block.
+/// Sums of squared errors with their counts.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Errors(BTreeMap<(usize, usize), (f64, f64)>);
+pub(super) struct Errors {
+    /// By run and block.
+    blocks: BTreeMap<[usize; 2], (f64, f64)>,
+    /// By channel.
+    channels: BTreeMap<usize, (f64, f64)>,
+}
 
 impl Errors {
-    /// Adds a squared error of a block of a run.
-    pub(super) fn add(&mut self, run: usize, block: usize, square: f64) {
-        let (sum, count) = self.0.entry((run, block)).or_default();
-        *sum += square;
-        *count += 1.0;
+    /// Adds a squared error of a channel, in a block of a run.
+    pub(super) fn add(&mut self, block: [usize; 2], channel: usize, square: f64) {
+        let block = self.blocks.entry(block).or_default();
+        for (sum, count) in [block, self.channels.entry(channel).or_default()] {
+            *sum += square;
+            *count += 1.0;
+        }
+    }
+
+    /// Root of the mean square of a channel.
+    pub(super) fn rms_of(&self, channel: usize) -> f64 {
+        let sums = self.channels.get(&channel);
+        sums.map_or(f64::NAN, |(sum, count)| (sum / count).sqrt())
     }
 
     /// Mean square.
     pub(super) fn mean(&self) -> f64 {
-        let (sum, count) = (self.0.values()).fold((0.0, 0.0), |(sum, count), (square, n)| {
+        let (sum, count) = (self.blocks.values()).fold((0.0, 0.0), |(sum, count), (square, n)| {
             (sum + square, count + n)
         });
         sum / f64::max(count, 1.0)
@@ -60,9 +73,9 @@ pub(super) struct Paired {
 
 impl Paired {
     pub(super) fn of(models: &[&Errors]) -> Self {
-        let blocks = models.first().map(|first| first.0.iter());
+        let blocks = models.first().map(|first| first.blocks.iter());
         let blocks: Vec<_> = blocks.into_iter().flatten().collect();
-        let sum = |place, model: &&Errors| model.0.get(place).map_or(0.0, |(sum, _)| *sum);
+        let sum = |place, model: &&Errors| model.blocks.get(place).map_or(0.0, |(sum, _)| *sum);
         Self {
             sums: (blocks.iter())
                 .map(|(place, _)| models.iter().map(|model| sum(*place, model)).collect())
@@ -147,7 +160,8 @@ pub(super) fn errors(
             // A count of blocks in memory.
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let block = block as usize;
-            errors.add(run, block, (one.residual / noise[one.channel]).powi(2));
+            let square = (one.residual / noise[one.channel]).powi(2);
+            errors.add([run, block], one.channel, square);
         }
     }
     Ok(errors)

@@ -3,9 +3,12 @@
 use nalgebra::DMatrix;
 use serde::Serialize;
 
+pub use super::advice::{Advice, Open};
 use super::calibration::TIED;
-use super::changes::Changes;
+use super::changes::{Changes, Refitted};
 pub use super::pictures::{ForceHistory, ForceLaw, MissingForce, Pictures, Trace};
+pub use super::value::{QUANTILE, Value};
+pub use super::yardstick::Yardstick;
 
 /// Name of the hypothesis that nothing in the library explains the gap.
 pub(super) const UNKNOWN: &str = "unknown";
@@ -72,19 +75,6 @@ impl GapVerdict {
     }
 }
 
-/// An estimate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct Value {
-    /// Effect and parameter.
-    pub name: String,
-    /// Most likely value.
-    pub value: f64,
-    /// Standard deviation; NaN if it is undefined, as at a limit, or where sensitivities diverge and there is no prior.
-    pub std: f64,
-    /// Unit.
-    pub unit: String,
-}
-
 /// A hypothesis with its probability.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Hypothesis {
@@ -106,6 +96,31 @@ impl Hypothesis {
     /// Whether it is the hypothesis that no effect of the library explains the gap.
     pub fn is_unknown(&self) -> bool {
         self.effects == [UNKNOWN]
+    }
+
+    /// The values of an effect.
+    pub fn values_of(&self, effect: &str) -> impl Iterator<Item = &Value> {
+        let of = move |value: &&Value| {
+            value
+                .name
+                .rsplit_once('.')
+                .is_some_and(|own| own.0 == effect)
+        };
+        self.parameters.iter().filter(of)
+    }
+
+    /// The size of an effect that is implausibly large, if one is.
+    pub fn implausible(&self, effect: &str) -> Option<&Yardstick> {
+        let determined = self.values_of(effect).filter(|value| value.is_determined);
+        let mut known = determined.filter_map(|value| value.yardstick.as_ref());
+        known.find(|known| known.is_large)
+    }
+
+    /// The parameter whose wrong value an effect describes, if it is one.
+    pub fn wrong_parameter(&self, effect: &str) -> Option<&Refitted> {
+        let (_, site) = effect.split_once('@')?;
+        let mut parameters = self.changes.as_ref()?.parameters.iter();
+        parameters.find(|one| one.name == site)
     }
 }
 
@@ -237,10 +252,23 @@ pub struct HowFar {
     pub bettered_ci95: [[f64; 2]; 2],
     /// The shares of the gap.
     pub budget: Vec<Share>,
+    /// The same errors of each channel, or of each force, in its unit.
+    pub channels: Vec<ErrorOf>,
     /// Whether the leading hypothesis predicts significantly worse than the re-fitted model.
     #[serde(skip)]
     pub is_worse: bool,
     pub runs: Vec<String>,
+}
+
+/// Prediction errors of a channel, root of the mean square over the horizon.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[expect(missing_docs, reason = "the words of the contract")]
+pub struct ErrorOf {
+    pub name: String,
+    pub unit: String,
+    pub nominal: f64,
+    pub refitted: f64,
+    pub with_effect: f64,
 }
 
 /// The smallest detectable size of an effect.
@@ -469,6 +497,11 @@ pub struct Report {
 }
 
 impl Report {
+    /// The most probable hypothesis of the library.
+    pub fn leading(&self) -> Option<&Hypothesis> {
+        self.which.iter().find(|one| !one.is_unknown())
+    }
+
     /// The tied hypotheses that are not equivalent, the most probable first.
     pub(super) fn rivals(&self) -> Vec<&[String]> {
         let says_its_own = |effects: &&Vec<String>| {
@@ -512,6 +545,7 @@ mod tests {
                 share("coulomb_friction@x", closed, is_material),
                 share(REST, 0.01, false),
             ],
+            channels: Vec::new(),
             before: None,
             bettered_ci95: [[0.9, 1.0]; 2],
             is_worse: false,
@@ -531,6 +565,9 @@ mod tests {
                 value: 0.2,
                 std: 0.01,
                 unit: "N".to_owned(),
+                without: Some(0.0),
+                is_determined: true,
+                yardstick: None,
             }],
             changes: None,
         }];

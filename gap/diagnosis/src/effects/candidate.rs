@@ -207,7 +207,7 @@ impl Candidate {
     }
 
     /// Whether it replaces rolling of a contact by creep.
-    pub(super) fn creeps(&self) -> bool {
+    pub(crate) fn creeps(&self) -> bool {
         self.family == Family::Constraint
     }
 

@@ -12,7 +12,8 @@ use super::super::localise::force_unit;
 use super::super::prediction::{Errors, Paired};
 use super::super::prior::names;
 use super::super::report::{
-    Detectable, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, UNKNOWN, Value, Where,
+    Detectable, ErrorOf, GapVerdict, HowFar, Hypothesis as Told, Report, ShareOf, UNKNOWN, Value,
+    Where, Yardstick,
 };
 use super::super::{DiagnoseError, Options};
 use super::hypothesis::Hypothesis;
@@ -161,15 +162,45 @@ fn values(
         for (index, short) in own {
             let quantity = &info.parameters[index];
             let (change, deviation) = change(fitted, motions, index);
-            values.push(Value {
+            let stated = set.parameters[index].value;
+            let value = stated + change;
+            let told = Value {
                 name: format!("{}.{short}", candidate.name()),
-                value: (set.parameters[index].value + change) / quantity.scale,
+                value: value / quantity.scale,
                 std: deviation.unwrap_or(f64::NAN) / quantity.scale,
                 unit: quantity.unit.to_string(),
-            });
+                without: None,
+                is_determined: true,
+                yardstick: match candidate.acts {
+                    Acts::Parameter(_) => Yardstick::of_parameter(value, stated),
+                    _ => yardstick(model, motions, index, change),
+                },
+            };
+            values.push(told.of_size(stated / quantity.scale));
         }
     }
     values
+}
+
+/// The forces of a size, relative to those of the inputs.
+fn yardstick(
+    model: &EffectModel,
+    motions: &Motions,
+    parameter: usize,
+    size: f64,
+) -> Option<Yardstick> {
+    let names = model.info().speed_quantities();
+    let mut parameters = motions.parameters.iter();
+    let column = parameters.position(|own| *own == parameter)?;
+    let mut squares = vec![[0.0; 2]; names.len()];
+    for motion in motions.all() {
+        for (equation, [added, driven]) in squares.iter_mut().enumerate() {
+            *added += (size * motion.slopes[(equation, column)]).powi(2);
+            *driven += motion.driven[equation].powi(2);
+        }
+    }
+    let named = squares.into_iter().zip(names);
+    Yardstick::of_forces(named.map(|(squares, speed)| (squares, &*speed.name)))
 }
 
 /// The changes of the spec under a hypothesis.
@@ -302,7 +333,21 @@ fn how_far(
     })?;
     let mut runs: Vec<String> = test.stretches.iter().map(|(run, _)| run.clone()).collect();
     runs.dedup();
-    Ok(HowFar::of(&paired, 0.0, floor, budget, runs))
+    let speeds = model.info().speed_quantities().iter().enumerate();
+    let channels = speeds.map(|(equation, speed)| {
+        let rms = |errors: &Errors| errors.rms_of(equation) * found.noise[equation];
+        ErrorOf {
+            name: speed.name.to_string(),
+            unit: force_unit(&model.mechanism, equation),
+            nominal: rms(&stated),
+            refitted: rms(&refit),
+            with_effect: rms(&effect),
+        }
+    });
+    Ok(HowFar {
+        channels: channels.collect(),
+        ..HowFar::of(&paired, 0.0, floor, budget, runs)
+    })
 }
 
 /// Mean squares of the residual forces, by blocks of time.
@@ -315,8 +360,8 @@ fn errors(motions: &Motions, changes: &DVector<f64>, noise: &DVector<f64>) -> Er
             #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
             let block = ((motion.t - start) / BLOCK_S) as usize;
             let left = motion.left(changes).component_div(noise);
-            for force in left.iter() {
-                errors.add(stretch, block, force * force);
+            for (equation, force) in left.iter().enumerate() {
+                errors.add([stretch, block], equation, force * force);
             }
         }
     }

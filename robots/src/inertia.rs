@@ -8,6 +8,8 @@ pub(crate) type Tensor = [f64; 6];
 
 /// Rounding error of vanishing entries, relative to the largest one.
 const ROUNDING: f64 = 1e-15;
+/// Rounding error of numbers of twelve digits, with a margin.
+const TWELVE_DIGITS: f64 = 1e-11;
 /// How far the largest moment may exceed the sum of the others by the rounding of a file.
 const WRITTEN: f64 = 1e-4;
 
@@ -214,6 +216,21 @@ impl Inertia {
         }
         None
     }
+}
+
+/// The tensor with all moments raised by so much that the largest principal one is less than the sum of the others after
+/// rounding to twelve digits; the same tensor where it is so, or where more than rounding is missing.
+pub(crate) fn within_triangle(tensor: Tensor) -> Tensor {
+    let [small, middle, large] = sorted(principal(tensor).0);
+    let missing = large * (1.0 + TWELVE_DIGITS) - small - middle;
+    let raised = if (0.0..WRITTEN * large).contains(&missing) {
+        missing
+    } else {
+        0.0
+    };
+    let [xx, yy, zz, products @ ..] = tensor;
+    let [xy, xz, yz] = products;
+    [xx + raised, yy + raised, zz + raised, xy, xz, yz]
 }
 
 /// Principal moments, and the rotation to their axes, by Jacobi's rotations.

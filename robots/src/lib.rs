@@ -12,6 +12,7 @@
 //! | `format.rs` | the formats |
 //! | `xml.rs` | elements and numbers with their places, and findings about them |
 //! | `urdf.rs`, `mjcf.rs` | the formats, each to a `Robot` |
+//! | `mjcf/corrected.rs` | the text of an MJCF file with changes of its numbers |
 //! | `model.rs` | a robot: links in a tree, joints with their properties |
 //! | `rotation.rs`, `inertia.rs` | rotations as successive turns; inertias rotated, shifted, combined |
 //! | `tree.rs` | links that are fixed together are merged into one body |

@@ -7,6 +7,7 @@
 //! | `corrected/actuator.rs` | gains, biases, lags, delays, limits of actuators |
 //! | `corrected/law.rs` | the law of an actuator, as its classes and shortcuts define it |
 //! | `corrected/option.rs` | gravity |
+//! | `corrected/keyframe.rs` | states of new joints and filters in keyframes |
 //! | `corrected/play.rs` | backlash: a second joint |
 //! | `corrected/sheet.rs` | attributes that are to be written, element by element |
 //! | `corrected/bytes.rs` | replacements of ranges of the text |
@@ -15,6 +16,7 @@ mod actuator;
 mod body;
 mod bytes;
 mod joint;
+mod keyframe;
 mod law;
 mod option;
 mod play;
@@ -29,6 +31,7 @@ use crate::options::Options;
 use crate::rotation::Vector;
 use crate::xml::{self, Findings, Span, parse};
 
+use bytes::Edits;
 use sheet::Sheet;
 
 /// A change of a number, in SI.
@@ -83,21 +86,23 @@ pub enum Change {
         /// The change.
         amount: Amount,
     },
-    /// The mass of a body, with all that is fixed to it. Its centre of mass, and its inertia about that, stay.
+    /// The mass of a body, together with all bodies that are fixed to it. Its centre of mass and its inertia about that
+    /// stay.
     Mass {
         /// The body.
         body: String,
         /// The change.
         amount: Amount,
     },
-    /// The centre of mass of a body, with all that is fixed to it, in its frame. The inertia about it stays.
+    /// The centre of mass of a body, together with all bodies that are fixed to it, in its frame. The inertia about it
+    /// stays.
     Centre {
         /// The body.
         body: String,
         /// The change of each component.
         amounts: [Amount; 3],
     },
-    /// The inertia of a body about its centre of mass, with all that is fixed to it.
+    /// The inertia of a body about its centre of mass, together with all bodies that are fixed to it.
     Inertia {
         /// The body.
         body: String,
@@ -271,6 +276,14 @@ pub fn corrected(
             help,
         )]));
     }
+    let mut edits = Edits::default();
+    edits.remark(text, remarks);
+    if changes.is_empty() {
+        return Ok(Corrected {
+            text: edits.applied(text),
+            edits: Vec::new(),
+        });
+    }
     let findings = Findings::default();
     let robot = super::read(root, &findings, &whole, &Options::default());
     if findings.has_errors() {
@@ -281,8 +294,9 @@ pub fn corrected(
         sheet.change(change).map_err(|error| fail(vec![*error]))?;
     }
     sheet.finish().map_err(|error| fail(vec![*error]))?;
-    let (mut edits, said) = sheet.edits().map_err(|error| fail(vec![*error]))?;
-    edits.remark(text, remarks);
+    let said = sheet
+        .write(&mut edits)
+        .map_err(|error| fail(vec![*error]))?;
     Ok(Corrected {
         text: edits.applied(text),
         edits: said,
@@ -290,6 +304,13 @@ pub fn corrected(
 }
 
 impl Sheet<'_, '_> {
+    /// Writes what depends on all changes of an element.
+    fn finish(&mut self) -> Result<(), Refused> {
+        self.write_plays()?;
+        self.write_groups()?;
+        self.write_keyframes()
+    }
+
     fn change(&mut self, change: &Change) -> Result<(), Refused> {
         match change {
             Change::Joint {

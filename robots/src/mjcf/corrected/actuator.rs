@@ -31,9 +31,10 @@ impl<'x> Sheet<'x, '_> {
     /// The element of an actuator.
     fn actuator(&self, name: &str) -> Result<Element<'x>, Refused> {
         let all = || children(self.root, "actuator").flat_map(elements);
-        let found = all().find(|one| one.attribute("name") == Some(name));
+        let found = all().find(|one| called(*one) == name);
         found.ok_or_else(|| {
-            let known = all().filter_map(|one| one.attribute("name"));
+            let known: Vec<String> = all().map(called).collect();
+            let known = known.iter().map(String::as_str);
             refused(
                 Code::UnknownReference,
                 tag(self.root),
@@ -45,6 +46,16 @@ impl<'x> Sheet<'x, '_> {
 
     /// The law of an actuator, and that of its class alone.
     fn law(&self, actuator: Element<'x>) -> Result<(Law, Law), Refused> {
+        let own = |key: &str| self.own(actuator, key);
+        self.law_with(actuator, self.kind(actuator), &own)
+    }
+
+    fn law_with(
+        &self,
+        actuator: Element<'x>,
+        kind: &str,
+        own: &dyn Fn(&str) -> Option<String>,
+    ) -> Result<(Law, Law), Refused> {
         let mut law = Law::default();
         for default in self.defaults.elements(Self::class(actuator)) {
             let kind = default.tag_name().name();
@@ -54,9 +65,7 @@ impl<'x> Sheet<'x, '_> {
             }
         }
         let class = law.clone();
-        law.add(actuator, self.kind(actuator), &|key| {
-            self.own(actuator, key)
-        })?;
+        law.add(actuator, kind, own)?;
         Ok((law, class))
     }
 
@@ -265,7 +274,7 @@ impl<'x> Sheet<'x, '_> {
         let (delay, samples) = if is_near {
             (whole * step, whole)
         } else {
-            (seconds, (seconds / step).ceil() + 1.0)
+            (seconds, (seconds / step).ceil())
         };
         self.set(actuator, "delay", number(delay))?;
         let given = self.numbers(actuator, ACTUATORS, "nsample")?;
@@ -280,7 +289,7 @@ impl<'x> Sheet<'x, '_> {
     }
 
     pub(super) fn force_limit(&mut self, name: &str, limit: f64) -> Result<(), Refused> {
-        let actuator = self.actuator(name)?;
+        let (actuator, ..) = self.affine(name)?;
         let limit = self.at_least_zero(name, "limit", limit);
         let range = [-limit, limit];
         let before = self.numbers(actuator, ACTUATORS, "forcerange")?;
@@ -297,6 +306,38 @@ impl<'x> Sheet<'x, '_> {
             return Ok(());
         }
         self.set(actuator, "forcelimited", "true")
+    }
+
+    /// The actuators with their activations: before the changes, and after them.
+    pub(super) fn activations(&self) -> Result<Vec<[bool; 2]>, Refused> {
+        let all = children(self.root, "actuator").flat_map(elements);
+        let both = all.map(|actuator| {
+            let own = |key: &str| actuator.attribute(key).map(str::to_owned);
+            let (before, _) = self.law_with(actuator, actuator.tag_name().name(), &own)?;
+            let (after, _) = self.law(actuator)?;
+            Ok([before, after].map(|law| law.dyntype != "none"))
+        });
+        both.collect()
+    }
+
+    /// What actuators of a joint add to its inertia, and to the damping of its rate.
+    pub(super) fn drives_of(&self, joint: &str) -> Result<[f64; 2], Refused> {
+        let mut sums = [0.0; 2];
+        for actuator in children(self.root, "actuator").flat_map(elements) {
+            let named = ["joint", "jointinparent"].map(|key| actuator.attribute(key));
+            if !named.contains(&Some(joint)) {
+                continue;
+            }
+            let number = |key: &str, other: f64| -> Result<f64, Refused> {
+                let all = self.numbers(actuator, ACTUATORS, key)?;
+                Ok(all.and_then(|all| all.first().copied()).unwrap_or(other))
+            };
+            let square = number("gear", 1.0)?.powi(2);
+            let feedback = self.law(actuator)?.0.acting_bias()[2];
+            sums[0] += square * number("armature", 0.0)?;
+            sums[1] += square * (number("damping", 0.0)? - feedback.min(0.0));
+        }
+        Ok(sums)
     }
 
     /// Writes the law of an actuator, as a `general` one with all its numbers.
@@ -383,4 +424,15 @@ impl<'x> Sheet<'x, '_> {
             numbers(&[middle - half, middle + half]),
         )
     }
+}
+
+/// The name of an actuator; one without a name is called by its kind and what it drives.
+fn called(actuator: Element<'_>) -> String {
+    let kind = actuator.tag_name().name();
+    let drives = ["joint", "jointinparent", "tendon"];
+    let drives = drives.iter().find_map(|key| actuator.attribute(*key));
+    let unnamed = || format!("{kind}_{}", drives.unwrap_or_default());
+    actuator
+        .attribute("name")
+        .map_or_else(unnamed, str::to_owned)
 }

@@ -2,9 +2,11 @@
 
 use appell_spec::{Code, did_you_mean};
 
-use crate::inertia::Inertia;
+use crate::inertia::{Inertia, within_triangle};
+use crate::model::Robot;
+use crate::options::Options;
 use crate::rotation::{Pose, Vector};
-use crate::xml::{Element, children, tag};
+use crate::xml::{Element, Findings, children, tag};
 
 use super::super::compiler::InertiaFrom;
 use super::bytes::{number, numbers, same};
@@ -13,6 +15,12 @@ use super::{Amount, Refused, refused};
 
 /// Orientations of an inertia.
 const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];
+
+/// Attributes of `<compiler>` and `<inertial>`.
+const TOTAL: &str = "settotalmass";
+const FROM_GEOMS: &str = "inertiafromgeom";
+const DIAGONAL: &str = "diaginertia";
+const FULL: &str = "fullinertia";
 
 /// Bodies that are fixed to each other: one mass, one centre, one inertia.
 pub(super) struct Group {
@@ -154,15 +162,15 @@ impl<'x> Sheet<'x, '_> {
         }
         let element = self.body(self.link(name)?)?;
         let payload = self.free_name("body", "payload");
+        self.use_inertials()?;
         let (own, place) = (number(mass / self.scale()?), numbers(&at));
-        let text = format!(
-            "<body name=\"{payload}\" pos=\"{place}\"><inertial pos=\"0 0 0\" mass=\"{own}\" diaginertia=\"0 0 0\"/></body>"
-        );
-        let words = format!(
+        self.said.push(format!(
             "body {payload}: new in {name} at {place}, mass {}",
             number(mass)
-        );
-        self.said.push(words);
+        ));
+        let inertial = format!("<inertial pos=\"0 0 0\" mass=\"{own}\" diaginertia=\"0 0 0\"/>");
+        let text = format!("<body name=\"{payload}\" pos=\"{place}\">{inertial}</body>");
+        self.add_to_total(mass)?;
         self.insert_into(element, &text, false)
     }
 
@@ -183,112 +191,144 @@ impl<'x> Sheet<'x, '_> {
 
     /// Masses over those that are written, where `settotalmass` scales them.
     fn scale(&self) -> Result<f64, Refused> {
-        match self.compiler.total_mass {
-            None => Ok(1.0),
-            Some(_) => Err(refused(
-                Code::NotAllowedHere,
-                tag(self.root),
-                "masses are scaled by `settotalmass`",
-                "write the scaled masses out, and remove `settotalmass`",
-            )),
+        if self.compiler.total_mass.is_none() {
+            return Ok(1.0);
+        }
+        // The same file without `settotalmass`, with all places as they are.
+        let mut text = self.root.document().input_text().to_owned();
+        for compiler in children(self.root, "compiler") {
+            if let Some(total) = compiler.attribute_node(TOTAL) {
+                let place = total.range();
+                text.replace_range(place.clone(), &" ".repeat(place.len()));
+            }
+        }
+        let document = crate::xml::parse(&text).map_err(Box::new)?;
+        let options = Options {
+            floating: true,
+            ..Options::default()
+        };
+        let findings = Findings::default();
+        let written = super::super::read(document.root_element(), &findings, self.whole, &options);
+        let sum = |robot: &Robot| -> f64 { robot.links.iter().map(|link| link.inertia.mass).sum() };
+        Ok(sum(&self.robot) / sum(&written))
+    }
+
+    /// Adds a mass to the one to which all masses are scaled.
+    fn add_to_total(&mut self, mass: f64) -> Result<(), Refused> {
+        let with = children(self.root, "compiler").filter(|one| one.has_attribute(TOTAL));
+        let Some(compiler) = with.last().filter(|_| self.compiler.total_mass.is_some()) else {
+            return Ok(());
+        };
+        let total = self.numbers(compiler, "", TOTAL)?.unwrap_or_default();
+        let total: f64 = total.iter().sum();
+        self.set(compiler, TOTAL, number(total + mass))
+    }
+
+    /// Lets `<inertial>` count where all inertias come from geoms.
+    fn use_inertials(&mut self) -> Result<(), Refused> {
+        if self.compiler.inertia_from != InertiaFrom::Geoms {
+            return Ok(());
+        }
+        let mut all = self.root.descendants();
+        if let Some(inertial) = all.find(|one| one.has_tag_name("inertial")) {
+            let message =
+                "`inertial` is not read, as inertias are those of geoms by `inertiafromgeom`";
+            let help = "remove every `<inertial>`, or write `inertiafromgeom=\"auto\"`";
+            return Err(refused(Code::NotAllowedHere, tag(inertial), message, help));
+        }
+        let with = children(self.root, "compiler").filter(|one| one.has_attribute(FROM_GEOMS));
+        match with.last() {
+            Some(compiler) => self.set(compiler, FROM_GEOMS, "auto"),
+            None => Ok(()),
         }
     }
 
     /// Writes masses and inertias of all groups that were changed.
-    pub(super) fn finish(&mut self) -> Result<(), Refused> {
+    pub(super) fn write_groups(&mut self) -> Result<(), Refused> {
         for group in std::mem::take(&mut self.groups) {
             if group.before != group.after {
-                self.write(&group)?;
+                self.use_inertials()?;
+                self.write_group(&group)?;
+                self.add_to_total(group.after.mass - group.before.mass)?;
             }
         }
         Ok(())
     }
 
-    fn write(&mut self, group: &Group) -> Result<(), Refused> {
-        let scale = self.scale()?;
+    fn write_group(&mut self, group: &Group) -> Result<(), Refused> {
         let members = self.members(group.head);
+        let others = members.iter().skip(1);
+        let others = others.filter(|(link, _)| !self.robot.links[*link].inertia.is_nothing());
+        let others: Vec<(usize, Pose)> = others.copied().collect();
         let body = self.body(group.head)?;
         let inertial = children(body, "inertial").last();
-        let from = self.compiler.inertia_from;
-        self.refuse_geoms(body)?;
-        let alone = members
-            .iter()
-            .skip(1)
-            .all(|(link, _)| self.robot.links[*link].inertia.is_nothing());
-        match inertial {
-            Some(inertial) if alone && !group.reshaped && from != InertiaFrom::Geoms => {
-                self.write_numbers(inertial, group)
-            }
-            _ => {
-                let others = members.iter().skip(1);
-                let own = others.fold(group.after, |own, (link, pose)| {
-                    own.with(&negative(self.robot.links[*link].inertia.placed(*pose)))
-                });
-                self.write_whole(body, inertial, own, scale)
-            }
+        let from_geoms = self.compiler.inertia_from == InertiaFrom::Geoms;
+        if let Some(inertial) = inertial.filter(|_| !from_geoms && !group.reshaped)
+            && others.is_empty()
+        {
+            return self.write_numbers(inertial, group);
         }
-    }
-
-    fn refuse_geoms(&self, body: Element<'x>) -> Result<(), Refused> {
-        if self.compiler.inertia_from != InertiaFrom::Geoms {
-            return Ok(());
+        let own = others.iter().fold(group.after, |own, (link, pose)| {
+            own.with(&negative(self.robot.links[*link].inertia.placed(*pose)))
+        });
+        if is_possible(&own) {
+            return self.write_whole(group.head, own);
         }
-        let message = "masses of bodies are those of their geoms by `inertiafromgeom`";
-        let help = "write `inertiafromgeom=\"auto\"`";
-        Err(refused(Code::NotAllowedHere, tag(body), message, help))
+        if !is_possible(&group.after) {
+            let name = &self.robot.links[group.head].name;
+            let why = group.after.impossible();
+            let why = why.unwrap_or_else(|| "its mass is not positive".to_owned());
+            let message = format!("no body can have the inertia of `{name}`: {why}");
+            let help = "the changes of this body are larger than it is";
+            return Err(refused(Code::NotPhysical, tag(body), message, help));
+        }
+        // What is fixed to the body is heavier than all of them are now: the body has it all.
+        for (link, _) in others {
+            self.write_whole(link, Inertia::NONE)?;
+        }
+        self.write_whole(group.head, group.after)
     }
 
     /// Changes numbers of `<inertial>`, in its own axes.
     fn write_numbers(&mut self, inertial: Element<'x>, group: &Group) -> Result<(), Refused> {
         let (before, after) = (group.before, group.after);
         if !same(before.mass, after.mass) {
-            self.set(inertial, "mass", number(after.mass))?;
+            self.set(inertial, "mass", number(after.mass / self.scale()?))?;
         }
         if numbers(&before.centre) != numbers(&after.centre) {
             self.set(inertial, "pos", numbers(&after.centre))?;
         }
-        if !same(group.factor, 1.0) {
-            for key in ["diaginertia", "fullinertia"] {
-                if let Some(all) = self.numbers(inertial, "inertial", key)? {
-                    let all: Vec<f64> = all.iter().map(|one| one * group.factor).collect();
-                    self.set(inertial, key, numbers(&all))?;
-                }
+        if same(group.factor, 1.0) {
+            return Ok(());
+        }
+        for key in [DIAGONAL, FULL] {
+            let Some(all) = self.numbers(inertial, "", key)? else {
+                continue;
+            };
+            let mut tensor = [0.0; 6];
+            for (entry, given) in tensor.iter_mut().zip(&all) {
+                *entry = given * group.factor;
             }
+            let tensor = within_triangle(tensor);
+            let count = all.len().min(tensor.len());
+            self.set(inertial, key, numbers(&tensor[..count]))?;
         }
         Ok(())
     }
 
     /// Writes all numbers of `<inertial>`, in the axes of the body.
-    fn write_whole(
-        &mut self,
-        body: Element<'x>,
-        inertial: Option<Element<'x>>,
-        own: Inertia,
-        scale: f64,
-    ) -> Result<(), Refused> {
-        if own.mass < 0.0 || own.impossible().is_some() {
-            let name = body.attribute("name").unwrap_or_default();
-            let message = format!(
-                "no body can have the inertia that is left for `{name}`: {}",
-                own.impossible()
-                    .unwrap_or_else(|| "its mass is negative".to_owned())
-            );
-            let help = "change the bodies that are fixed to it by hand";
-            return Err(refused(Code::NotPhysical, tag(body), message, help));
-        }
-        let [xx, yy, zz, products @ ..] = own.tensor.map(|entry| entry / scale);
+    fn write_whole(&mut self, link: usize, own: Inertia) -> Result<(), Refused> {
+        let body = self.body(link)?;
+        let scale = self.scale()?;
+        let [xx, yy, zz, products @ ..] = within_triangle(own.tensor.map(|entry| entry / scale));
         let (key, other, moments) = if products.iter().all(|entry| *entry == 0.0) {
-            ("diaginertia", "fullinertia", numbers(&[xx, yy, zz]))
+            (DIAGONAL, FULL, numbers(&[xx, yy, zz]))
         } else {
             let [xy, xz, yz] = products;
-            (
-                "fullinertia",
-                "diaginertia",
-                numbers(&[xx, yy, zz, xy, xz, yz]),
-            )
+            (FULL, DIAGONAL, numbers(&[xx, yy, zz, xy, xz, yz]))
         };
         let (mass, place) = (number(own.mass / scale), numbers(&own.centre));
-        if let Some(inertial) = inertial {
+        if let Some(inertial) = children(body, "inertial").last() {
             for key in ORIENTATIONS {
                 self.remove(inertial, key)?;
             }
@@ -297,13 +337,18 @@ impl<'x> Sheet<'x, '_> {
             self.set(inertial, "mass", mass)?;
             return self.set(inertial, key, moments);
         }
-        let name = body.attribute("name").unwrap_or_default();
+        let name = &self.robot.links[link].name;
         self.said.push(format!(
             "body {name}: inertial written out, mass {mass} at {place}, {key} {moments}"
         ));
         let text = format!("<inertial pos=\"{place}\" mass=\"{mass}\" {key}=\"{moments}\"/>");
         self.insert_into(body, &text, true)
     }
+}
+
+/// Whether a body can have an inertia.
+fn is_possible(inertia: &Inertia) -> bool {
+    inertia.mass > 0.0 && inertia.impossible().is_none()
 }
 
 /// What, added to a body, takes another one away from it.

@@ -16,7 +16,7 @@ use super::{Refused, body, refused};
 /// Elements with changed attributes.
 pub(super) struct Sheet<'x, 'f> {
     pub(super) root: Element<'x>,
-    whole: &'f Whole<'f>,
+    pub(super) whole: &'f Whole<'f>,
     /// The text of the file, without includes.
     original: &'f str,
     pub(super) compiler: Compiler,
@@ -24,6 +24,8 @@ pub(super) struct Sheet<'x, 'f> {
     pub(super) robot: Robot,
     pending: Vec<Pending<'x>>,
     pub(super) groups: Vec<body::Group>,
+    /// Joints with backlash, and its size.
+    pub(super) plays: Vec<(String, f64)>,
     /// Texts that are inserted into the file, with their places.
     inserted: Vec<(usize, String)>,
     /// Elements without contents that get some: the end of their tag, by its start, with the contents.
@@ -62,6 +64,7 @@ impl<'x, 'f> Sheet<'x, 'f> {
             robot,
             pending: Vec::new(),
             groups: Vec::new(),
+            plays: Vec::new(),
             inserted: Vec::new(),
             filled: BTreeMap::new(),
             named: BTreeSet::new(),
@@ -296,13 +299,12 @@ impl<'x, 'f> Sheet<'x, 'f> {
         })
     }
 
-    /// Replacements in the file, and sentences on them.
-    pub(super) fn edits(self) -> Result<(Edits, Vec<String>), Refused> {
-        let mut edits = Edits::default();
+    /// Adds the replacements in the file; the result is a sentence on each.
+    pub(super) fn write(self, edits: &mut Edits) -> Result<Vec<String>, Refused> {
         let mut said = Vec::new();
         for one in &self.pending {
             let shift = self.place(one.element)?.start;
-            one.write(shift, &mut edits);
+            one.write(shift, edits);
             said.extend(one.sentence(&self));
         }
         for (at, text) in &self.inserted {
@@ -316,7 +318,7 @@ impl<'x, 'f> Sheet<'x, 'f> {
             edits.replace(end - 2..*end, format!(">{contents}{separator}</{name}>"));
         }
         said.extend(self.said);
-        Ok((edits, said))
+        Ok(said)
     }
 }
 

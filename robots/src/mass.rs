@@ -3,7 +3,7 @@
 use crate::assembly::Configuration;
 use crate::inertia::Inertia;
 use crate::kinematics::{Freedom, Twist};
-use crate::model::{Link, Tendon};
+use crate::model::{Drive, Law, Link, On, Tendon};
 use crate::rotation::{Pose, Vector, add, cross, dot, scaled};
 
 /// Largest number of freedoms for which the mass matrix is computed.
@@ -188,6 +188,41 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
         first = next;
     }
     true
+}
+
+/// Computes the damping of position servos from their damping ratios, which are positive factors of the rate in the bias.
+pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) {
+    let by_ratio = |drive: &Drive| drive.law() == Law::Position && drive.bias[2] > 0.0;
+    if !drives.iter().any(by_ratio) {
+        return;
+    }
+    let drawn = Configuration::new(links, |_| 0.0).poses(links);
+    let entries = matrix(links, tendons, &drawn).entries;
+    let freedoms = Freedom::all(links);
+    for drive in drives.iter_mut().filter(|drive| by_ratio(drive)) {
+        let terms = match &drive.on {
+            On::Joint(name) => vec![(name.clone(), 1.0)],
+            On::Tendon(name) => {
+                let tendon = tendons.iter().find(|tendon| tendon.name == *name);
+                tendon.map_or_else(Vec::new, |tendon| tendon.length.terms.clone())
+            }
+        };
+        // As in MuJoCo 4.0: the sum of the inertias of all joints.
+        let reflected = freedoms.iter().enumerate().map(|(row, freedom)| {
+            let joint = links[freedom.link].joint.as_ref();
+            let own = terms
+                .iter()
+                .filter(|(name, _)| joint.is_some_and(|joint| joint.name == *name));
+            let factor = drive.gear * own.map(|(_, factor)| factor).sum::<f64>();
+            if factor == 0.0 {
+                0.0
+            } else {
+                entries[row][row] / (factor * factor)
+            }
+        });
+        let inertia: f64 = reflected.sum();
+        drive.bias[2] *= -2.0 * (drive.gain[0] * inertia).sqrt();
+    }
 }
 
 /// The first freedom without inertia along it, from the leaves of the tree inwards.

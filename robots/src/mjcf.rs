@@ -145,7 +145,7 @@ pub(crate) fn read(
         reader.scale_to(total);
     }
     let mut tendons = reader.tendons();
-    let drives = reader.drives(&mut tendons);
+    let mut drives = reader.drives(&mut tendons);
     if !mass::settle(&mut reader.links, &tendons) {
         findings.error(
             Code::LimitExceeded,
@@ -156,6 +156,9 @@ pub(crate) fn read(
             ),
             "write `stiffness` and `damping`",
         );
+    }
+    if let Some(drives) = &mut drives {
+        mass::damp(drives, &reader.links, &tendons);
     }
     let is_off = |flag: &str| schema::disabled(root, flag);
     let free = is_off("equality") || is_off("constraint");

@@ -272,10 +272,15 @@ pub(crate) enum Law {
     Position,
     /// kv (command − rate) + bias
     Velocity,
-    /// gain · command
+    /// gain · command, plus a spring and a damper
     Force,
-    /// Any other.
-    General,
+    /// Any other: the gain depends on length and rate.
+    Modulated,
+}
+
+/// Whether a number is another one, as computed from the same numbers of a file.
+pub(crate) fn is(a: f64, b: f64) -> bool {
+    a.total_cmp(&b).is_eq() || a - b == 0.0
 }
 
 impl Drive {
@@ -291,19 +296,19 @@ impl Drive {
                 "timeconst",
                 "delay",
             ],
-            Law::Velocity => &["kv", "gear", "bias", "forcerange", "timeconst", "delay"],
-            Law::Force | Law::General => {
-                &["gear", "gain", "bias", "forcerange", "timeconst", "delay"]
+            Law::Force => &["gear", "gain", "bias", "forcerange", "timeconst", "delay"],
+            Law::Velocity | Law::Modulated => {
+                &["kv", "gear", "bias", "forcerange", "timeconst", "delay"]
             }
         }
     }
 
     pub(crate) fn law(&self) -> Law {
         match (self.gain, self.bias) {
-            ([kp, 0.0, 0.0], [_, back, _]) if kp != 0.0 && back == -kp => Law::Position,
-            ([kv, 0.0, 0.0], [_, 0.0, back]) if kv != 0.0 && back == -kv => Law::Velocity,
-            ([_, 0.0, 0.0], [_, 0.0, 0.0]) => Law::Force,
-            _ => Law::General,
+            ([kp, 0.0, 0.0], [_, back, _]) if kp != 0.0 && is(back, -kp) => Law::Position,
+            ([kv, 0.0, 0.0], [_, 0.0, back]) if kv != 0.0 && is(back, -kv) => Law::Velocity,
+            ([_, 0.0, 0.0], _) => Law::Force,
+            _ => Law::Modulated,
         }
     }
 }

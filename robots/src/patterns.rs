@@ -55,7 +55,7 @@ fn is_attribute_of(name: &str, attribute: &str) -> bool {
 /// Names and patterns, and the names that exist.
 #[derive(Debug)]
 pub(crate) struct Patterns<'a> {
-    patterns: &'a [String],
+    all: &'a [String],
     known: BTreeSet<String>,
     /// By body: those that are fixed to it.
     fixed_to: BTreeMap<String, Vec<String>>,
@@ -64,7 +64,7 @@ pub(crate) struct Patterns<'a> {
 impl<'a> Patterns<'a> {
     pub(crate) fn new(patterns: &'a [String]) -> Self {
         Self {
-            patterns,
+            all: patterns,
             known: BTreeSet::new(),
             fixed_to: BTreeMap::new(),
         }
@@ -98,7 +98,7 @@ impl<'a> Patterns<'a> {
     }
 
     fn any(&self, element: &str, attribute: &str, is: impl Fn(&str, &str) -> bool) -> bool {
-        if attribute.is_empty() || self.patterns.is_empty() {
+        if attribute.is_empty() || self.all.is_empty() {
             return false;
         }
         let mut all = names(element, attribute);
@@ -106,7 +106,7 @@ impl<'a> Patterns<'a> {
             let others = self.fixed_to.get(element).into_iter().flatten();
             all.extend(others.flat_map(|other| names(other, attribute)));
         }
-        let mut patterns = self.patterns.iter();
+        let mut patterns = self.all.iter();
         patterns.any(|pattern| all.iter().any(|name| is(pattern, name)))
     }
 
@@ -120,7 +120,7 @@ impl<'a> Patterns<'a> {
                 self.known.contains(*pattern)
             }
         };
-        let unknown = self.patterns.iter().filter(|pattern| !is_known(pattern));
+        let unknown = self.all.iter().filter(|pattern| !is_known(pattern));
         unknown.map(String::as_str).collect()
     }
 

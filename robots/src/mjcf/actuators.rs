@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use appell_spec::{Code, did_you_mean};
 use roxmltree::Attribute;
 
-use crate::model::{Drive, On, Tendon};
+use crate::model::{Drive, LeftOut, On, Tendon};
 use crate::rotation::is_zero;
 use crate::xml::{Element, Findings, children, elements, exactly, numbers, tag};
 
 use super::Reader;
-use super::schema::ACTUATORS;
+use super::schema::{self, ACTUATORS};
 
 /// Attributes of all kinds of actuators that drive a joint or a tendon, and those of each kind.
 const COMMON: &str = "armature class cranklength cranksite ctrllimited ctrlrange damping delay forcelimited forcerange \
@@ -26,11 +26,37 @@ const OWN: &[(&str, &str)] = &[
     ("velocity", "kv"),
     ("damper", "kv"),
     ("cylinder", "area bias diameter timeconst"),
+    (
+        "dcmotor",
+        "cogging controller inductance input lugre motorconst nominal resistance saturation thermal",
+    ),
+];
+/// What makes a `dcmotor` another one than a gain and a back-EMF, and the words with which it does not.
+const NO_MERE_MOTOR: &[&str] = &[
+    "cogging",
+    "controller",
+    "inductance",
+    "input",
+    "lugre",
+    "thermal",
 ];
 /// Kinds that follow no law of the form gain × command + bias.
 const OTHER_LAW: &str = "its law has no counterpart, and it exerts no force";
 /// Other transmissions, and drives of joints without an axis.
 const OTHER_WAY: &str = "it drives no hinge, slide or fixed tendon, and exerts no force";
+const SHARED: &str = "the sum of the forces of several actuators on the tendon is not bounded";
+
+/// Attributes that are read together with actuators.
+const READ: &[&str] = &[
+    "joint/actuatorfrcrange",
+    "joint/actuatorfrclimited",
+    "fixed/actuatorfrcrange",
+    "fixed/actuatorfrclimited",
+    "tendon/actuatorfrcrange",
+    "tendon/actuatorfrclimited",
+    "flag/actuation",
+    "option/actuatorgroupdisable",
+];
 
 /// The law of an actuator as its element and the defaults of its class build it up.
 #[derive(Debug, Clone)]
@@ -44,8 +70,51 @@ struct Built {
     damping_ratio: Option<f64>,
     /// Whether commands are bounded whatever `ctrllimited` says.
     bounded: bool,
+    /// The motor of `dcmotor`.
+    motor: Motor,
     /// An element whose law is of another kind.
     other: bool,
+}
+
+/// A direct-current motor.
+#[derive(Debug, Clone, Copy, Default)]
+struct Motor {
+    resistance: f64,
+    /// Constants of torque and of back-EMF.
+    constants: [f64; 3],
+    /// Voltage, stall torque and speed without load.
+    nominal: [f64; 3],
+    /// Bounds of torque and of current.
+    saturation: [f64; 3],
+}
+
+impl Motor {
+    /// Its constant and its resistance.
+    fn constants(&self) -> (f64, f64) {
+        let [torque, back, _] = self.constants;
+        let [voltage, stall, speed] = self.nominal;
+        let constant = match (torque > 0.0, back > 0.0) {
+            (true, true) => (torque * back).sqrt(),
+            (false, false) => voltage / speed,
+            _ => torque.max(back),
+        };
+        if self.resistance > 0.0 {
+            (constant, self.resistance)
+        } else {
+            (constant, constant * voltage / stall)
+        }
+    }
+
+    /// The largest torque, if it is bounded.
+    fn bound(&self) -> Option<f64> {
+        let [torque, current, _] = self.saturation;
+        let bound = if torque > 0.0 {
+            torque
+        } else {
+            current * self.constants().0
+        };
+        (bound > 0.0).then_some(bound)
+    }
 }
 
 impl Built {
@@ -59,6 +128,7 @@ impl Built {
             time: 1.0,
             damping_ratio: None,
             bounded: false,
+            motor: Motor::default(),
             other: false,
         }
     }
@@ -72,7 +142,7 @@ impl Built {
         }
     }
 
-    /// Applies an element, as MuJoCo's functions `mjs_setTo…` do.
+    /// Applies an element, as the functions `mjs_setTo…` of `MuJoCo` do.
     fn apply(&mut self, element: Element<'_>, findings: &Findings) {
         let number = |key: &str| {
             let given = element.attribute_node(key)?;
@@ -143,6 +213,19 @@ impl Built {
                 }
                 self.types("fixed", "affine", Some("filter"));
             }
+            "dcmotor" => {
+                self.motor.resistance = number("resistance").unwrap_or(self.motor.resistance);
+                some("motorconst", &mut self.motor.constants);
+                some("nominal", &mut self.motor.nominal);
+                some("saturation", &mut self.motor.saturation);
+                let acts = |key: &&str| {
+                    let given = element.attribute(*key).unwrap_or_default();
+                    let mut words = given.split_ascii_whitespace();
+                    words.any(|word| word != "voltage" && word.parse() != Ok(0.0))
+                };
+                self.other = NO_MERE_MOTOR.iter().any(acts);
+                self.types("dcmotor", "none", Some("none"));
+            }
             _ => self.other = true,
         }
     }
@@ -150,6 +233,12 @@ impl Built {
     /// Gain and bias with the terms that act; `None` for another law.
     fn law(&self) -> Option<([f64; 3], [f64; 3])> {
         let gain = match self.gain_type.as_str() {
+            "dcmotor" if !self.other => {
+                let (constant, resistance) = self.motor.constants();
+                let gain = constant / resistance;
+                let law = ([gain, 0.0, 0.0], [0.0, 0.0, -gain * constant]);
+                return (gain.is_finite() && gain > 0.0).then_some(law);
+            }
             "fixed" => [self.gain[0], 0.0, 0.0],
             "affine" => self.gain,
             _ => return None,
@@ -249,7 +338,25 @@ impl<'x> Reader<'x, '_> {
                 None => self.leave_out_of("actuator", element),
             }
         }
-        self.actuators.then_some(drives)
+        if !self.actuators {
+            return None;
+        }
+        // What these say is read, except of spatial tendons.
+        self.left_out
+            .retain(|one| !READ.contains(&one.what.as_str()));
+        for tendon in tendons {
+            let on = On::Tendon(tendon.name.clone());
+            let count = drives.iter().filter(|drive| drive.on == on).count();
+            if count > 1 && tendon.drive_range.take().is_some() {
+                self.left_out.push(LeftOut {
+                    what: "fixed/actuatorfrcrange".to_owned(),
+                    name: Some(tendon.name.clone()),
+                    effect: Some(SHARED),
+                    place: tendon.place.clone(),
+                });
+            }
+        }
+        Some(drives)
     }
 
     /// Lists an actuator, with its effect where actuators are read.
@@ -279,6 +386,13 @@ impl<'x> Reader<'x, '_> {
             self.leave_out_drive(element, OTHER_LAW);
             return None;
         };
+        if self.switched_off(element, class) {
+            self.leave_out_of("actuator", element);
+            if let Some(last) = self.left_out.last_mut() {
+                last.effect = None;
+            }
+            return None;
+        }
         let attribute = |key: &str| {
             let own = element.attribute_node(key);
             own.or_else(|| self.defaults.of_any(ACTUATORS, class, key))
@@ -299,9 +413,12 @@ impl<'x> Reader<'x, '_> {
             gear,
             gain,
             bias,
-            ctrl_range: self.bounds(&attribute, "ctrlrange", "ctrllimited"),
+            ctrl_range: self.commands(&attribute, &built, &on),
             act_range: self.bounds(&attribute, "actrange", "actlimited"),
-            force_range: self.bounds(&attribute, "forcerange", "forcelimited"),
+            force_range: match built.motor.bound() {
+                Some(bound) => Some([-bound, bound]),
+                None => self.bounds(&attribute, "forcerange", "forcelimited"),
+            },
             lag: built.lag(),
             delay: number("delay").unwrap_or_default(),
             place: tag(element),
@@ -309,6 +426,43 @@ impl<'x> Reader<'x, '_> {
         };
         self.refuse_twice("actuators", &drive.name, tag(element));
         Some(drive)
+    }
+
+    /// Bounds of the command: those of its own, or those of its joint.
+    fn commands(
+        &self,
+        attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
+        built: &Built,
+        on: &On,
+    ) -> Option<[f64; 2]> {
+        if schema::disabled(self.root, "clampctrl") {
+            return None;
+        }
+        let share = attribute("inheritrange")
+            .and_then(|given| exactly::<1>(self.findings, &given, "`inheritrange`"));
+        if let (Some([share]), On::Joint(joint)) = (share.filter(|[share]| *share > 0.0), on) {
+            let [from, to] = self.joint(joint)?.range?;
+            let (middle, half) = (f64::midpoint(from, to), share * (to - from) / 2.0);
+            return Some([middle - half, middle + half]);
+        }
+        if built.bounded {
+            let given = attribute("ctrlrange")?;
+            return exactly(self.findings, &given, "a range, from to,");
+        }
+        self.bounds(attribute, "ctrlrange", "ctrllimited")
+    }
+
+    /// Whether actuators, or those of its group, are switched off in `option`.
+    fn switched_off(&self, element: Element<'x>, class: Option<&'x str>) -> bool {
+        let own = element.attribute("group");
+        let of_class = self.defaults.of_any(ACTUATORS, class, "group");
+        let group = own.or(of_class.map(|given| given.value())).unwrap_or("0");
+        let off = children(self.root, "option")
+            .filter_map(|option| option.attribute("actuatorgroupdisable"));
+        schema::disabled(self.root, "actuation")
+            || off
+                .last()
+                .is_some_and(|groups| groups.split_ascii_whitespace().any(|one| one == group))
     }
 
     /// Refuses attributes that the kind does not have.

@@ -2,7 +2,7 @@
 
 use crate::dictionary::{ActuatorName, Entry};
 use crate::letters::{Number, quantity};
-use crate::model::{Drive, Law, On, Robot, Tendon};
+use crate::model::{Drive, Law, On, Robot, Tendon, is};
 use crate::names::short;
 use crate::table::Item;
 
@@ -29,6 +29,7 @@ pub(super) struct Exerted {
 /// A product; a factor of 1 is not written.
 fn times(factor: &str, expression: &str) -> String {
     match (factor, expression) {
+        ("0", _) | (_, "0") => "0".to_owned(),
         ("1", _) => expression.to_owned(),
         (_, "1") => factor.to_owned(),
         ("-1", _) => format!("-{}", single(expression)),
@@ -86,7 +87,7 @@ impl Writer<'_> {
         self.torques = vec![Exerted::default(); self.tree.bodies.len()];
         for drive in drives {
             if let Some(way) = self.way(drive, &robot.tendons) {
-                self.drive_of(drive, robot, &way);
+                self.drive_of(drive, robot, way);
                 self.mark(&drive.place);
             }
         }
@@ -144,50 +145,28 @@ impl Writer<'_> {
         self.numbers.write(number, &mut self.quantities)
     }
 
-    /// A linear function of length and rate: constant, and the two factors.
-    fn affine(
-        &self,
-        constant: &str,
-        factors: [f64; 2],
-        way: [&str; 2],
-        units: [&'static str; 2],
-    ) -> String {
-        let terms = factors.into_iter().zip(way).zip(units);
-        terms.fold(constant.to_owned(), |sum, ((factor, of), unit)| {
-            if factor == 0.0 {
-                sum
-            } else {
-                plus(&sum, &times(&quantity(factor, unit), of))
-            }
-        })
-    }
-
     /// The input and the load of an actuator.
-    fn drive_of(&mut self, drive: &Drive, robot: &Robot, way: &Way) {
+    fn drive_of(&mut self, drive: &Drive, robot: &Robot, way: Way) {
         let name = short(&drive.name);
         let called = self.quantities.free_one(&name, &format!("ctrl_{name}"));
         let units = &way.units;
-        let law = drive.law();
-        let unit = match law {
+        let unit = match drive.law() {
             Law::Position => units.coordinate,
             Law::Velocity => units.rate,
             Law::Force => units.force,
-            Law::General if drive.gain[1..] == [0.0; 2] => units.force,
-            Law::General => "1",
+            Law::Modulated => "1",
         };
-        let about = sentence(&format!(
-            "command of the actuator {} ({})",
-            drive.name, drive.kind
-        ));
-        let input = Item::default().text("unit", unit).text("about", &about);
-        self.inputs.add(&called, &input);
+        let about = format!("command of the actuator {} ({})", drive.name, drive.kind);
+        let input = Item::default().text("unit", unit);
+        self.inputs
+            .add(&called, &input.text("about", &sentence(&about)));
         let mut command = called.clone();
         for range in [drive.ctrl_range, drive.act_range].into_iter().flatten() {
             command = limited(&command, &range.map(|end| bound(end, unit)));
         }
         let own = (drive, called.as_str());
         // Patterns choose gears that are there: those of motors, and others than 1.
-        let geared = drive.gear != 1.0
+        let geared = !is(drive.gear, 1.0)
             || drive.kind == "motor"
             || self.numbers.patterns.names(&drive.name, "gear");
         let gear = if geared {
@@ -195,69 +174,79 @@ impl Writer<'_> {
         } else {
             "1".to_owned()
         };
-        let length = times(&gear, &way.length);
-        let rate = times(&gear, &way.rate);
-        let bias = match law {
-            Law::Force if !self.numbers.patterns.names(&drive.name, "bias") => "0".to_owned(),
-            _ => self.of_drive(own, "bias", "constant force", drive.bias[0], units.force),
+        let along = way.along.clone();
+        let way = Way {
+            length: times(&gear, &way.length),
+            rate: times(&gear, &way.rate),
+            ..way
         };
-        let force = match law {
-            Law::Position => {
-                let kp = self.of_drive(own, "kp", "stiffness", drive.gain[0], units.stiffness[0]);
-                let kv = self.of_drive(own, "kv", "damping", -drive.bias[2], units.damping[0]);
-                let servo = times(&kp, &minus(&command, &length));
-                let damped = if kv == "0" {
-                    servo
-                } else {
-                    minus(&servo, &times(&kv, &rate))
-                };
-                plus(&damped, &bias)
-            }
-            Law::Velocity => {
-                let kv = self.of_drive(own, "kv", "damping", drive.gain[0], units.damping[0]);
-                plus(&times(&kv, &minus(&command, &rate)), &bias)
-            }
-            Law::Force | Law::General => {
-                let dimensions = [units.stiffness[0], units.damping[0]];
-                let gains = [drive.gain[1], drive.gain[2]];
-                let of_command = if unit == "1" {
-                    let gain = quantity(drive.gain[0], units.force);
-                    self.affine(&gain, gains, [&length, &rate], dimensions)
-                } else {
-                    let is_motor = drive.kind == "motor";
-                    let attribute = if is_motor { "" } else { "gain" };
-                    self.of_drive(own, attribute, "gain", drive.gain[0], "1")
-                };
-                let driven = match of_command.as_str() {
-                    "0" => "0".to_owned(),
-                    gain => times(gain, &command),
-                };
-                let [_, back @ ..] = drive.bias;
-                let passive = self.affine("0", back, [&length, &rate], dimensions);
-                plus(&plus(&driven, &passive), &bias)
-            }
-        };
-        let force = self.bounded(own, force, units);
-        let on_tendon = matches!(drive.on, On::Tendon(_));
-        let shared = self
-            .shared(drive, robot)
-            .map(|range| range.map(|end| bound(end, units.force)));
-        let force = match &shared {
-            Some(range) if on_tendon => times(&gear, &limited(&force, range)),
-            Some(range) => limited(&times(&gear, &force), range),
-            None => times(&gear, &force),
+        let force = self.force(own, &command, &way);
+        let force = self.bounded(own, force, &way.units);
+        let shared = self.shared(drive, robot);
+        let range = shared.map(|range| range.map(|end| bound(end, way.units.force)));
+        let force = match (range, &drive.on) {
+            (Some(range), On::Tendon(_)) => times(&gear, &limited(&force, &range)),
+            (Some(range), On::Joint(_)) => limited(&times(&gear, &force), &range),
+            (None, _) => times(&gear, &force),
         };
         let about = sentence(&format!("force of the actuator {}", drive.name));
         let item = Item::default()
             .text("kind", "generalized")
-            .text(way.along.0, &way.along.1)
+            .text(along.0, &along.1)
             .text("force", &force)
             .text("about", &about);
         let load = self.loads.add(&called, &item);
         self.exerts(drive, &robot.tendons, &load, shared.is_some());
+        self.record(drive, called, load);
+    }
+
+    /// The force of an actuator before its bounds and its gear.
+    fn force(&mut self, own: (&Drive, &str), command: &str, way: &Way) -> String {
+        let (drive, _) = own;
+        let (length, rate) = (&way.length, &way.rate);
+        let [by_length, by_rate] = [way.units.stiffness[0], way.units.damping[0]];
+        let [gain, gains @ ..] = drive.gain;
+        let [bias, back @ ..] = drive.bias;
+        let affine = |constant: &str, [length_factor, rate_factor]: [f64; 2]| {
+            let elastic = times(&quantity(length_factor, by_length), length);
+            let viscous = times(&quantity(rate_factor, by_rate), rate);
+            plus(&plus(constant, &elastic), &viscous)
+        };
+        let force = match drive.law() {
+            Law::Position => {
+                let kp = self.of_drive(own, "kp", "stiffness", gain, by_length);
+                let kv = self.of_drive(own, "kv", "damping", -back[1], by_rate);
+                let elastic = times(&kp, &minus(command, length));
+                minus(&elastic, &times(&kv, rate))
+            }
+            Law::Velocity => {
+                let kv = self.of_drive(own, "kv", "damping", gain, by_rate);
+                times(&kv, &minus(command, rate))
+            }
+            Law::Force => {
+                let attribute = if drive.kind == "motor" { "" } else { "gain" };
+                let gain = self.of_drive(own, attribute, "gain", gain, "1");
+                plus(&times(&gain, command), &affine("0", back))
+            }
+            Law::Modulated if drive.kind == "damper" => {
+                let kv = self.of_drive(own, "kv", "damping", -gains[1], by_rate);
+                let driven = times(&times(&kv, command), rate);
+                plus(&minus("0", &driven), &affine("0", back))
+            }
+            Law::Modulated => {
+                let gain = affine(&quantity(gain, way.units.force), gains);
+                plus(&times(&gain, command), &affine("0", back))
+            }
+        };
+        let bias = self.of_drive(own, "bias", "constant force", bias, way.units.force);
+        plus(&force, &bias)
+    }
+
+    /// Records the names of an actuator, and its times that are not in the spec.
+    fn record(&mut self, drive: &Drive, input: String, load: String) {
         self.dictionary.actuators.push(ActuatorName {
             name: drive.name.clone(),
-            input: called,
+            input,
             load,
             joint: match &drive.on {
                 On::Joint(joint) => Some(joint.clone()),
@@ -265,7 +254,7 @@ impl Writer<'_> {
             },
             lag: drive.lag,
             delay: drive.delay,
-            is_servo: matches!(law, Law::Position | Law::Velocity),
+            is_servo: matches!(drive.law(), Law::Position | Law::Velocity),
         });
         for (attribute, value) in [("timeconst", drive.lag), ("delay", drive.delay)] {
             if self.numbers.patterns.choose(&drive.name, attribute, value) {
@@ -299,7 +288,7 @@ impl Writer<'_> {
             ..Number::default()
         };
         let written = |value: f64| bound(value, units.force);
-        if from == -to {
+        if is(from, -to) {
             let to = self.numbers.write(number, &mut self.quantities);
             return limited(&force, &[format!("-{to}"), to]);
         }

@@ -164,18 +164,20 @@ impl Wanted {
                 actuator: element,
                 limit: one.value,
             },
-            _ => match JOINT_NUMBERS.iter().find(|(word, _)| *word == attribute) {
-                Some((_, attribute)) => Change::Joint {
+            _ => {
+                let known = JOINT_NUMBERS.iter().find(|(word, _)| *word == attribute);
+                let Some((_, attribute)) = known else {
+                    let value = number(one.value);
+                    self.remarks
+                        .push(format!("not written: {} = {value}", one.name));
+                    return;
+                };
+                Change::Joint {
                     joint: element,
                     attribute: *attribute,
                     amount: to,
-                },
-                None => {
-                    self.remarks
-                        .push(format!("not written: {} = {}", one.name, number(one.value)));
-                    return;
                 }
-            },
+            }
         };
         self.changes.push(change);
     }

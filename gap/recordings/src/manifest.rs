@@ -204,23 +204,17 @@ fn parameters(fields: &mut Fields<'_>, table: &DeTable<'_>, named: Named<'_>) ->
     for (key, value) in entries {
         let name = key.get_ref().as_ref();
         let found = named.parameters(name);
-        if found.is_empty()
-            && !named
-                .robot
-                .is_some_and(|robot| robot.numbers(name).next().is_some())
-        {
-            let known = || {
-                named
-                    .mechanism
-                    .parameters
-                    .iter()
-                    .map(|p| p.label.name.as_str())
-            };
+        if found.is_empty() {
             match named.robot {
+                // A time constant or a delay of an actuator is no parameter of the spec.
+                Some(robot) if robot.numbers(name).next().is_some() => {}
                 Some(robot) => unknown_number(fields, robot, name, key.span()),
-                None => unknown(fields, "parameter", name, key.span(), known()),
+                None => {
+                    let own = named.mechanism.parameters.iter();
+                    let known = own.map(|parameter| parameter.label.name.as_str());
+                    unknown(fields, "parameter", name, key.span(), known);
+                }
             }
-            continue;
         }
         for (index, one) in found {
             let own = &named.mechanism.parameters[ParameterId::new(index)];

@@ -190,15 +190,19 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
     true
 }
 
-/// Computes the damping of position servos from their damping ratios, which are positive factors of the rate in the bias.
-pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) {
+/// Computes the damping of position servos from their damping ratios, which are positive factors of the rate in the bias,
+/// with the inertia as drawn. False if the robot is too large for that.
+pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) -> bool {
     let by_ratio = |drive: &Drive| drive.law() == Law::Position && drive.bias[2] > 0.0;
     if !drives.iter().any(by_ratio) {
-        return;
+        return true;
+    }
+    let freedoms = Freedom::all(links);
+    if freedoms.len() > MOST_FREEDOMS {
+        return false;
     }
     let drawn = Configuration::new(links, |_| 0.0).poses(links);
-    let entries = matrix(links, tendons, &drawn).entries;
-    let freedoms = Freedom::all(links);
+    let mobility = inverse(matrix(links, tendons, &drawn).entries);
     for drive in drives.iter_mut().filter(|drive| by_ratio(drive)) {
         let terms = match &drive.on {
             On::Joint(name) => vec![(name.clone(), 1.0)],
@@ -207,22 +211,22 @@ pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) {
                 tendon.map_or_else(Vec::new, |tendon| tendon.length.terms.clone())
             }
         };
-        // As in MuJoCo 4.0: the sum of the inertias of all joints.
-        let reflected = freedoms.iter().enumerate().map(|(row, freedom)| {
+        // As in MuJoCo 4.0: m = (J M⁻¹ Jᵀ)⁻¹.
+        let along = freedoms.iter().map(|freedom| {
             let joint = links[freedom.link].joint.as_ref();
             let own = terms
                 .iter()
                 .filter(|(name, _)| joint.is_some_and(|joint| joint.name == *name));
-            let factor = drive.gear * own.map(|(_, factor)| factor).sum::<f64>();
-            if factor == 0.0 {
-                0.0
-            } else {
-                entries[row][row] / (factor * factor)
-            }
+            drive.gear * own.map(|(_, factor)| factor).sum::<f64>()
         });
-        let inertia: f64 = reflected.sum();
-        drive.bias[2] *= -2.0 * (drive.gain[0] * inertia).sqrt();
+        let along: Vec<f64> = along.collect();
+        let rows = mobility.iter().zip(&along);
+        let sum: f64 = rows
+            .map(|(row, own)| own * row.iter().zip(&along).map(|(a, b)| a * b).sum::<f64>())
+            .sum();
+        drive.bias[2] *= -2.0 * (drive.gain[0] / sum).sqrt();
     }
+    true
 }
 
 /// The first freedom without inertia along it, from the leaves of the tree inwards.

@@ -146,19 +146,24 @@ pub(crate) fn read(
     }
     let mut tendons = reader.tendons();
     let mut drives = reader.drives(&mut tendons);
-    if !mass::settle(&mut reader.links, &tendons) {
-        findings.error(
-            Code::LimitExceeded,
-            tag(root),
-            format!(
-                "`springdamper` is read of robots with at most {} freedoms",
-                mass::MOST_FREEDOMS
-            ),
-            "write `stiffness` and `damping`",
-        );
-    }
-    if let Some(drives) = &mut drives {
-        mass::damp(drives, &reader.links, &tendons);
+    let settled = mass::settle(&mut reader.links, &tendons);
+    let servos = drives.as_deref_mut().unwrap_or_default();
+    let damped = mass::damp(servos, &reader.links, &tendons);
+    for (done, what, help) in [
+        (settled, "springdamper", "write `stiffness` and `damping`"),
+        (damped, "dampratio", "write `kv`"),
+    ] {
+        if !done {
+            findings.error(
+                Code::LimitExceeded,
+                tag(root),
+                format!(
+                    "`{what}` is read of robots with at most {} freedoms",
+                    mass::MOST_FREEDOMS
+                ),
+                help,
+            );
+        }
     }
     let is_off = |flag: &str| schema::disabled(root, flag);
     let free = is_off("equality") || is_off("constraint");

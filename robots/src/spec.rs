@@ -379,14 +379,34 @@ fn plus(expression: &str, number: &str) -> String {
 
 /// The difference of two expressions.
 fn minus(expression: &str, other: &str) -> String {
-    match (expression, other) {
-        (_, "0") => expression.to_owned(),
-        ("0", other) => format!("-{other}"),
-        _ => other.strip_prefix('-').map_or_else(
-            || format!("{expression} - {other}"),
-            |other| format!("{expression} + {other}"),
-        ),
+    if other == "0" {
+        return expression.to_owned();
     }
+    let (sign, other) = match other.strip_prefix('-') {
+        Some(other) if !is_sum(other) => ('+', other.to_owned()),
+        _ if is_sum(other) => ('-', format!("({other})")),
+        _ => ('-', other.to_owned()),
+    };
+    match (expression, sign) {
+        ("0", '+') => other,
+        ("0", _) => format!("-{other}"),
+        _ => format!("{expression} {sign} {other}"),
+    }
+}
+
+/// Whether an expression has several terms.
+fn is_sum(expression: &str) -> bool {
+    let mut depth = 0_i32;
+    let signs = expression.match_indices(|c| "()[]+-".contains(c));
+    signs.into_iter().any(|(at, sign)| {
+        match sign {
+            "(" | "[" => depth += 1,
+            ")" | "]" => depth -= 1,
+            // A sign between blanks, other than that of an exponent.
+            _ => return depth == 0 && expression[..at].ends_with(' '),
+        }
+        false
+    })
 }
 
 /// An expression that can be a factor or a base: a name or the rate of one as it is, all else in brackets.

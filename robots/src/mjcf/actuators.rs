@@ -67,7 +67,6 @@ struct Built {
     bias: [f64; 3],
     filter_type: String,
     time: f64,
-    damping_ratio: Option<f64>,
     /// Whether commands are bounded whatever `ctrllimited` says.
     bounded: bool,
     /// The motor of `dcmotor`.
@@ -126,7 +125,6 @@ impl Built {
             bias: [0.0; 3],
             filter_type: "none".to_owned(),
             time: 1.0,
-            damping_ratio: None,
             bounded: false,
             motor: Motor::default(),
             other: false,
@@ -180,10 +178,9 @@ impl Built {
             "position" => {
                 self.gain[0] = number("kp").unwrap_or(self.gain[0]);
                 self.bias[1] = -self.gain[0];
-                if let Some(kv) = number("kv") {
-                    (self.bias[2], self.damping_ratio) = (-kv, None);
-                }
-                self.damping_ratio = number("dampratio").or(self.damping_ratio);
+                // A positive factor of the rate is a damping ratio.
+                let kv = number("kv").map(|kv| -kv);
+                self.bias[2] = number("dampratio").or(kv).unwrap_or(self.bias[2]);
                 match number("timeconst") {
                     Some(0.0) => "none".clone_into(&mut self.filter_type),
                     Some(time) => {

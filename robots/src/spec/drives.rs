@@ -27,7 +27,7 @@ pub(super) struct Exerted {
 }
 
 /// A product; a factor of 1 is not written.
-fn times(factor: &str, expression: &str) -> String {
+pub(super) fn times(factor: &str, expression: &str) -> String {
     match (factor, expression) {
         ("0", _) | (_, "0") => "0".to_owned(),
         ("1", _) => expression.to_owned(),
@@ -50,11 +50,8 @@ fn single(expression: &str) -> String {
             depth >= 0
         })
     });
-    // A number, with its unit.
-    let number = expression
-        .split_once(" [")
-        .map_or(expression, |(number, _)| number);
-    let is_number = number.parse::<f64>().is_ok();
+    let (number, unit) = expression.split_once(" [").unwrap_or((expression, "]"));
+    let is_number = number.parse::<f64>().is_ok() && unit.find(']') == Some(unit.len() - 1);
     let is_name = expression.chars().all(|c| c.is_alphanumeric() || c == '_');
     if is_call || is_number || is_name {
         expression.to_owned()
@@ -224,13 +221,16 @@ impl Writer<'_> {
                 times(&kv, &minus(command, rate))
             }
             Law::Force => {
-                let attribute = if drive.kind == "motor" { "" } else { "gain" };
-                let gain = self.of_drive(own, attribute, "gain", gain, "1");
+                let gain = if drive.kind == "motor" {
+                    quantity(gain, "1")
+                } else {
+                    self.of_drive(own, "gain", "gain", gain, "1")
+                };
                 plus(&times(&gain, command), &affine("0", back))
             }
             Law::Modulated if drive.kind == "damper" => {
                 let kv = self.of_drive(own, "kv", "damping", -gains[1], by_rate);
-                let driven = times(&times(&kv, command), rate);
+                let driven = format!("{}*{}", times(&kv, command), single(rate));
                 plus(&minus("0", &driven), &affine("0", back))
             }
             Law::Modulated => {

@@ -1,9 +1,11 @@
 //! Centres of mass and inertias whose numbers patterns select: they are those of the file's frames.
 
+use crate::inertia::position_without_rounding;
 use crate::letters::{Kind, Number, plain, quantity};
 use crate::model::Motion;
-use crate::rotation::{Vector, add};
+use crate::rotation::add;
 
+use super::drives::times;
 use super::{Writer, plus};
 
 /// Entries of a rotation that count as zero.
@@ -59,7 +61,7 @@ impl Writer<'_> {
             })
             .collect();
         let turned = body.own.inverse();
-        let shift: Vector = turned.of(anchor);
+        let shift = position_without_rounding(turned.of(anchor));
         (turned.0.iter().zip(shift))
             .map(|(row, shift)| {
                 let terms = row
@@ -67,15 +69,7 @@ impl Writer<'_> {
                     .zip(&own)
                     .filter(|(factor, _)| factor.abs() > ROUNDING);
                 let sum = terms.fold("0".to_owned(), |sum, (factor, of)| {
-                    let term = match (plain(*factor).as_str(), of.as_str()) {
-                        (_, "0") => return sum,
-                        ("1", of) => of.to_owned(),
-                        ("-1", of) => of
-                            .strip_prefix('-')
-                            .map_or_else(|| format!("-{of}"), str::to_owned),
-                        (factor, of) => format!("{factor}*({of})"),
-                    };
-                    plus(&sum, &term)
+                    plus(&sum, &times(&plain(*factor), of))
                 });
                 plus(&sum, &quantity(-shift, "m"))
             })

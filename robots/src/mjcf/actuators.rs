@@ -44,6 +44,8 @@ const NO_MERE_MOTOR: &[&str] = &[
 const OTHER_LAW: &str = "its law has no counterpart, and it exerts no force";
 /// Other transmissions, and drives of joints without an axis.
 const OTHER_WAY: &str = "it drives no hinge, slide or fixed tendon, and exerts no force";
+const COMPENSATION: &str =
+    "its gravity compensation is no force of actuators, and not bounded together with them";
 const SHARED: &str = "the sum of the forces of several actuators on the tendon is not bounded";
 
 /// Attributes that are read together with actuators.
@@ -353,7 +355,31 @@ impl<'x> Reader<'x, '_> {
                 });
             }
         }
+        self.leave_out_compensation();
         Some(drives)
+    }
+
+    /// Lists gravity compensation that counts as a force of actuators.
+    fn leave_out_compensation(&mut self) {
+        let all = |tag: &'static str| {
+            self.root
+                .descendants()
+                .filter(move |one| one.has_tag_name(tag))
+        };
+        if !all("body").any(|body| body.attribute("gravcomp").is_some()) {
+            return;
+        }
+        let given =
+            all("joint").filter(|joint| joint.attribute("actuatorgravcomp") == Some("true"));
+        let given: Vec<LeftOut> = given
+            .map(|joint| LeftOut {
+                what: "joint/actuatorgravcomp".to_owned(),
+                name: joint.attribute("name").map(str::to_owned),
+                effect: Some(COMPENSATION),
+                place: tag(joint),
+            })
+            .collect();
+        self.left_out.extend(given);
     }
 
     /// Lists an actuator, with its effect where actuators are read.
@@ -374,6 +400,13 @@ impl<'x> Reader<'x, '_> {
     ) -> Option<Drive> {
         let kind = element.tag_name().name();
         self.check_attributes(element);
+        if self.switched_off(element, class) {
+            self.leave_out_of("actuator", element);
+            if let Some(last) = self.left_out.last_mut() {
+                last.effect = None;
+            }
+            return None;
+        }
         let mut built = Built::new();
         for one in self.defaults.chain(ACTUATORS, class) {
             built.apply(one, self.findings);
@@ -383,13 +416,7 @@ impl<'x> Reader<'x, '_> {
             self.leave_out_drive(element, OTHER_LAW);
             return None;
         };
-        if self.switched_off(element, class) {
-            self.leave_out_of("actuator", element);
-            if let Some(last) = self.left_out.last_mut() {
-                last.effect = None;
-            }
-            return None;
-        }
+        let name = self.drive_name(element, &on);
         let attribute = |key: &str| {
             let own = element.attribute_node(key);
             own.or_else(|| self.defaults.of_any(ACTUATORS, class, key))
@@ -398,20 +425,16 @@ impl<'x> Reader<'x, '_> {
             let given = attribute(key)?;
             exactly::<1>(self.findings, &given, &format!("`{key}`")).map(|[number]| number)
         };
-        let name = element.attribute("name").map_or_else(
-            || match &on {
-                On::Joint(name) | On::Tendon(name) => format!("{kind}_{name}"),
-            },
-            str::to_owned,
-        );
-        let drive = Drive {
+        Some(Drive {
             name,
             kind: kind.to_owned(),
             gear,
             gain,
             bias,
             ctrl_range: self.commands(&attribute, &built, &on),
-            act_range: self.bounds(&attribute, "actrange", "actlimited"),
+            act_range: self
+                .bounds(&attribute, "actrange", "actlimited")
+                .filter(|_| built.filter_type != "none"),
             force_range: match built.motor.bound() {
                 Some(bound) => Some([-bound, bound]),
                 None => self.bounds(&attribute, "forcerange", "forcelimited"),
@@ -420,9 +443,24 @@ impl<'x> Reader<'x, '_> {
             delay: number("delay").unwrap_or_default(),
             place: tag(element),
             on,
-        };
-        self.refuse_twice("actuators", &drive.name, tag(element));
-        Some(drive)
+        })
+    }
+
+    /// The name of an actuator, or one made from that of its joint or tendon.
+    fn drive_name(&mut self, element: Element<'x>, on: &On) -> String {
+        if let Some(name) = element.attribute("name") {
+            self.refuse_twice("actuators", name, tag(element));
+            return name.to_owned();
+        }
+        let kind = element.tag_name().name();
+        let (On::Joint(driven) | On::Tendon(driven)) = on;
+        let mut name = format!("{kind}_{driven}");
+        let mut count = 1;
+        while !self.names.insert(("actuators", name.clone())) {
+            count += 1;
+            name = format!("{kind}_{driven}_{count}");
+        }
+        name
     }
 
     /// Bounds of the command: those of its own, or those of its joint.

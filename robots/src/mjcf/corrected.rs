@@ -10,11 +10,13 @@
 //! | `corrected/keyframe.rs` | states of new joints and filters in keyframes |
 //! | `corrected/play.rs` | backlash: a second joint |
 //! | `corrected/sheet.rs` | attributes that are to be written, element by element |
+//! | `corrected/change.rs` | the changes, and why one cannot be made |
 //! | `corrected/bytes.rs` | replacements of ranges of the text |
 
 mod actuator;
 mod body;
 mod bytes;
+mod change;
 mod joint;
 mod keyframe;
 mod law;
@@ -28,180 +30,12 @@ use crate::Failure;
 use crate::format::Format;
 use crate::includes::Whole;
 use crate::options::Options;
-use crate::rotation::Vector;
-use crate::xml::{self, Findings, Span, parse};
+use crate::xml::{self, Findings, parse};
 
 use bytes::Edits;
+pub use change::{Amount, Change, JointNumber};
+use change::{Refused, refused};
 use sheet::Sheet;
-
-/// A change of a number, in SI.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Amount {
-    /// The new value.
-    To(f64),
-    /// A summand.
-    Add(f64),
-    /// A factor.
-    Times(f64),
-}
-
-impl Amount {
-    /// The changed value of a number.
-    pub fn of(self, value: f64) -> f64 {
-        match self {
-            Self::To(new) => new,
-            Self::Add(summand) => value + summand,
-            Self::Times(factor) => value * factor,
-        }
-    }
-}
-
-/// A number of a joint.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum JointNumber {
-    /// Damping: the factor of the rate.
-    Damping,
-    /// Dry friction.
-    Frictionloss,
-    /// Reflected inertia of the drive, as written at the joint: without that of its actuators.
-    Armature,
-    /// Stiffness of the spring: the factor of its elongation.
-    Stiffness,
-    /// Where the spring is relaxed.
-    Springref,
-    /// The position in the pose of the file. Neither the range nor the spring moves along, as they do with
-    /// [`Change::Reading`].
-    Ref,
-}
-
-/// A change of a file; names are those of the file, numbers are in SI.
-#[derive(Debug, Clone, PartialEq)]
-pub enum Change {
-    /// A number of a joint.
-    Joint {
-        /// The joint.
-        joint: String,
-        /// Its number.
-        attribute: JointNumber,
-        /// The change.
-        amount: Amount,
-    },
-    /// The mass of a body, together with all bodies that are fixed to it. Its centre of mass and its inertia about that
-    /// stay.
-    Mass {
-        /// The body.
-        body: String,
-        /// The change.
-        amount: Amount,
-    },
-    /// The centre of mass of a body, together with all bodies that are fixed to it, in its frame. The inertia about it
-    /// stays.
-    Centre {
-        /// The body.
-        body: String,
-        /// The change of each component.
-        amounts: [Amount; 3],
-    },
-    /// The inertia of a body about its centre of mass, together with all bodies that are fixed to it.
-    Inertia {
-        /// The body.
-        body: String,
-        /// The factor of all moments of inertia.
-        factor: f64,
-    },
-    /// A point mass that is fixed to a body.
-    Payload {
-        /// The body.
-        body: String,
-        /// Its mass.
-        mass: f64,
-        /// Its position in the frame of the body.
-        at: Vector,
-    },
-    /// The gain of a position servo, and the equal one of its feedback.
-    Kp {
-        /// The actuator.
-        actuator: String,
-        /// The change.
-        amount: Amount,
-    },
-    /// The gain of the rate of a servo.
-    Kv {
-        /// The actuator.
-        actuator: String,
-        /// The change.
-        amount: Amount,
-    },
-    /// The transmission ratio of an actuator.
-    Gear {
-        /// The actuator.
-        actuator: String,
-        /// The change.
-        amount: Amount,
-    },
-    /// A factor of all the force of an actuator: the `gear` of a motor, gains and bounds of any other one.
-    Gain {
-        /// The actuator.
-        actuator: String,
-        /// The factor.
-        factor: f64,
-    },
-    /// A summand of the force of an actuator, before its gear.
-    Bias {
-        /// The actuator.
-        actuator: String,
-        /// The summand.
-        add: f64,
-    },
-    /// The time constant of a first-order lag of the command of an actuator, which replaces one that it has.
-    Lag {
-        /// The actuator.
-        actuator: String,
-        /// The time constant, in s.
-        seconds: f64,
-    },
-    /// The delay of the command of an actuator, which replaces one that it has.
-    Delay {
-        /// The actuator.
-        actuator: String,
-        /// The delay, in s.
-        seconds: f64,
-    },
-    /// The largest force of an actuator in both directions, before its gear.
-    ForceLimit {
-        /// The actuator.
-        actuator: String,
-        /// The limit.
-        limit: f64,
-    },
-    /// A spring in addition to that of a joint.
-    Spring {
-        /// The joint.
-        joint: String,
-        /// Its stiffness.
-        stiffness: f64,
-        /// Where it is relaxed.
-        relaxed_at: f64,
-    },
-    /// The acceleration of gravity, x, y and z.
-    Gravity(Vector),
-    /// Backlash behind the drive of a joint: a second joint after it, in the same body and along the same axis. The
-    /// drive, its armature and its friction, and the encoder stay at the first one.
-    Play {
-        /// The joint.
-        joint: String,
-        /// The whole way from one flank to the other.
-        gap: f64,
-    },
-    /// An encoder that reads the position of a joint with a bias: the range and the spring move along, and the robot
-    /// stays where it is.
-    Reading {
-        /// The joint.
-        joint: String,
-        /// What the encoder reads in addition.
-        bias: f64,
-    },
-}
 
 /// A file with changes.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -210,18 +44,6 @@ pub struct Corrected {
     pub text: String,
     /// What was changed, a sentence for each element.
     pub edits: Vec<String>,
-}
-
-/// Why a change cannot be made.
-type Refused = Box<Diagnostic>;
-
-#[allow(
-    clippy::unnecessary_box_returns,
-    reason = "all refusals are boxed, as errors of results"
-)]
-fn refused(code: Code, at: Span, message: impl Into<String>, help: impl Into<String>) -> Refused {
-    let error = Diagnostic::error(code, message).at(at, "");
-    Box::new(error.help(help))
 }
 
 /// The text of an MJCF file with changes of its numbers, and with remarks as comments at its head. All other bytes are

@@ -6,9 +6,9 @@ use crate::xml::{Element, children, elements, tag};
 
 use super::super::schema::ACTUATORS;
 use super::bytes::{number, numbers, same};
+use super::change::{Amount, Refused, refused};
 use super::law::Law;
 use super::sheet::Sheet;
-use super::{Amount, Refused, refused};
 
 /// Attributes of shortcuts that `general` does not have.
 const OF_SHORTCUTS: [&str; 9] = [

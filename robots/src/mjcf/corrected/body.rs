@@ -10,8 +10,8 @@ use crate::xml::{Element, Findings, children, tag};
 
 use super::super::compiler::InertiaFrom;
 use super::bytes::{number, numbers, same};
+use super::change::{Amount, Refused, refused};
 use super::sheet::Sheet;
-use super::{Amount, Refused, refused};
 
 /// Orientations of an inertia.
 const ORIENTATIONS: [&str; 5] = ["quat", "axisangle", "euler", "xyaxes", "zaxis"];

@@ -6,8 +6,8 @@ use crate::model::{Joint, Motion};
 use crate::xml::{Element, tag};
 
 use super::bytes::{number, numbers, same};
+use super::change::{Amount, JointNumber, Refused, refused};
 use super::sheet::Sheet;
-use super::{Amount, JointNumber, Refused, refused};
 
 /// The name of joints in classes.
 const JOINT: &str = "joint";

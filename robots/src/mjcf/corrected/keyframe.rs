@@ -3,8 +3,8 @@
 use crate::model::Motion;
 use crate::xml::{Element, children};
 
-use super::Refused;
 use super::bytes::numbers;
+use super::change::Refused;
 use super::sheet::{Sheet, read};
 
 /// One coordinate of a list.

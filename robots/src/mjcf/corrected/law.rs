@@ -2,7 +2,7 @@
 
 use crate::xml::Element;
 
-use super::Refused;
+use super::change::Refused;
 use super::sheet::read;
 
 /// Numbers of each list.

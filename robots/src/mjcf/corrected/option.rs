@@ -6,8 +6,8 @@ use crate::rotation::Vector;
 use crate::xml::{Element, children, elements, tag};
 
 use super::bytes::numbers;
+use super::change::{Refused, refused};
 use super::sheet::{Sheet, read};
-use super::{Refused, refused};
 
 use super::super::GRAVITY;
 use super::super::schema::disabled;

@@ -5,8 +5,8 @@ use crate::kinematics::Freedom;
 use crate::mass;
 use crate::xml::Element;
 
-use super::Refused;
 use super::bytes::{escaped, number, numbers};
+use super::change::Refused;
 use super::sheet::{Sheet, read};
 
 /// Attributes of a joint that its second one shares.

@@ -10,8 +10,9 @@ use crate::xml::{Element, Findings, Span, elements, inside, parse, tag};
 
 use super::super::compiler::Compiler;
 use super::super::defaults::Defaults;
+use super::body;
 use super::bytes::{Edits, escaped, line_end};
-use super::{Refused, body, refused};
+use super::change::{Refused, refused};
 
 /// Elements with changed attributes.
 pub(super) struct Sheet<'x, 'f> {

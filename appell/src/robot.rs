@@ -3,8 +3,11 @@
 use std::path::{Path, PathBuf};
 
 use appell_files::FileError;
+pub use appell_robots::{
+    ActuatorName, BodyName, Dictionary, Entry, Format, Imported, JointName, LeftOut, Letters, Lock,
+    Options, SNAP, Without,
+};
 use appell_robots::{Failure, MAX_FILE};
-pub use appell_robots::{Format, Imported, LeftOut, Letters, Lock, Options, SNAP, Without};
 use serde_json::{Value, json};
 use walkdir::WalkDir;
 

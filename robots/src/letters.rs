@@ -2,7 +2,9 @@
 
 use std::collections::BTreeSet;
 
+use crate::dictionary::Entry;
 use crate::names::Names;
+use crate::patterns::{self, Patterns};
 
 /// Which numbers become parameters of the spec. The others are written out, so that zeros simplify the equations.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -16,10 +18,15 @@ pub enum Letters {
     All,
     /// Those of links, joints or parameters with these names.
     Of(Vec<String>),
+    /// Those with these names or patterns `ELEMENT.ATTRIBUTE`, where `*` stands for any characters: `elbow.damping`,
+    /// `*.mass`, `hand.com`, `hand.com.x`, `gravity`. The [dictionary](crate::Dictionary) has the parameters. A pattern
+    /// leaves zeros alone, except those of a centre of mass.
+    Matching(Vec<String>),
 }
 
 impl Letters {
-    /// Reads `none`, `inertias`, `all` or names separated by commas.
+    /// Reads `none`, `inertias`, `all` or names separated by commas: all of them names of links, joints and parameters,
+    /// or some of them names and patterns `ELEMENT.ATTRIBUTE`.
     pub fn read(text: &str) -> Self {
         match text.trim() {
             "none" => Self::None,
@@ -30,30 +37,38 @@ impl Letters {
                     .split(',')
                     .map(str::trim)
                     .filter(|name| !name.is_empty());
-                Self::Of(names.map(str::to_owned).collect())
+                let names: Vec<String> = names.map(str::to_owned).collect();
+                if names.iter().any(|name| patterns::has_attribute(name)) {
+                    Self::Matching(names)
+                } else {
+                    Self::Of(names)
+                }
             }
         }
     }
 }
 
 /// Kind of a number, which decides whether it becomes a parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub(crate) enum Kind {
     /// Of a mass, a centre of mass or an inertia.
     Inertial,
     /// Anything else.
+    #[default]
     Other,
 }
 
 /// A number of the robot.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct Number<'a> {
     pub(crate) value: f64,
     pub(crate) unit: &'static str,
     /// The name that it has as a parameter.
     pub(crate) letter: &'a str,
-    /// The link or joint that it belongs to, as the file calls it.
+    /// The link, joint or actuator that it belongs to, as the file calls it.
     pub(crate) of: &'a str,
+    /// The attribute of that element that it is, as far as patterns select it.
+    pub(crate) attribute: &'static str,
     pub(crate) about: &'a str,
     pub(crate) kind: Kind,
     pub(crate) never_negative: bool,
@@ -78,6 +93,10 @@ pub(crate) struct Numbers<'a> {
     used: BTreeSet<String>,
     /// All names that can be matched.
     known: BTreeSet<String>,
+    /// The patterns of [`Letters::Matching`].
+    pub(crate) patterns: Patterns<'a>,
+    /// Parameters that are attributes of the file.
+    pub(crate) entries: Vec<Entry>,
 }
 
 impl<'a> Numbers<'a> {
@@ -87,14 +106,27 @@ impl<'a> Numbers<'a> {
             parameters: Vec::new(),
             used: BTreeSet::new(),
             known: BTreeSet::new(),
+            patterns: Patterns::new(match letters {
+                Letters::Matching(patterns) => patterns,
+                _ => &[],
+            }),
+            entries: Vec::new(),
         }
     }
 
     /// The expression of a number.
     pub(crate) fn write(&mut self, number: Number<'_>, names: &mut Names) -> String {
-        let names_of = [number.letter, number.of];
+        let of = if number.attribute.starts_with("gravity") {
+            "gravity"
+        } else {
+            number.of
+        };
+        let names_of = [number.letter, of];
         self.known.extend(names_of.map(str::to_owned));
         let chosen = match self.letters {
+            Letters::Matching(_) => {
+                (self.patterns).choose(number.of, number.attribute, number.value)
+            }
             Letters::None => false,
             Letters::Inertias => number.kind == Kind::Inertial,
             Letters::All => number.kind == Kind::Inertial || number.value != 0.0,
@@ -113,6 +145,15 @@ impl<'a> Numbers<'a> {
             return quantity(number.value, number.unit);
         }
         let name = names.new_one(number.letter);
+        if matches!(self.letters, Letters::Matching(_)) {
+            self.entries.push(Entry {
+                element: number.of.to_owned(),
+                attribute: number.attribute,
+                parameter: name.clone(),
+                value: number.value,
+                relative: false,
+            });
+        }
         self.parameters.push(Parameter {
             name: name.clone(),
             value: number.value,
@@ -123,9 +164,29 @@ impl<'a> Numbers<'a> {
         name
     }
 
+    /// A factor of a property of an element, 1 as the file has it; `None` if the property is not selected.
+    pub(crate) fn factor(&mut self, number: Number<'_>, names: &mut Names) -> Option<String> {
+        if !self.patterns.choose(number.of, number.attribute, 1.0) {
+            return None;
+        }
+        let name = self.write(
+            Number {
+                value: 1.0,
+                unit: "1",
+                ..number
+            },
+            names,
+        );
+        if let Some(entry) = self.entries.last_mut() {
+            entry.relative = true;
+        }
+        Some(name)
+    }
+
     /// Names that matched nothing.
     pub(crate) fn unused(&self) -> Vec<&str> {
         match self.letters {
+            Letters::Matching(_) => self.patterns.unknown(),
             Letters::Of(chosen) => {
                 let unused = chosen.iter().filter(|one| !self.used.contains(*one));
                 unused.map(String::as_str).collect()
@@ -136,7 +197,11 @@ impl<'a> Numbers<'a> {
 
     /// Names that would have matched.
     pub(crate) fn known(&self) -> impl Iterator<Item = &str> {
-        self.known.iter().map(String::as_str)
+        let known = match self.letters {
+            Letters::Matching(_) => self.patterns.known(),
+            _ => &self.known,
+        };
+        known.iter().map(String::as_str)
     }
 }
 

@@ -19,11 +19,13 @@
 //! | `kinematics.rs`, `mass.rs` | poses and partial velocities of links; the mass matrix |
 //! | `loops.rs`, `elimination.rs` | constraints of loops and couplings; independent constraints and dependent coordinates |
 //! | `assembly.rs` | positions of joints that satisfy the constraints |
-//! | `names.rs`, `letters.rs` | valid names; numbers written out or as parameters |
+//! | `names.rs`, `letters.rs`, `patterns.rs` | valid names; numbers written out or as parameters, also by patterns |
+//! | `dictionary.rs` | names of the file in the spec |
 //! | `options.rs`, `without.rs`, `lock.rs`, `snap.rs` | options; omitted properties; joints made rigid; nearly right angles |
 //! | `spec.rs`, `table.rs` | the sections of the spec, and their text |
 
 mod assembly;
+mod dictionary;
 mod elimination;
 mod format;
 mod includes;
@@ -37,6 +39,7 @@ mod mjcf;
 mod model;
 mod names;
 mod options;
+mod patterns;
 mod rotation;
 mod snap;
 mod spec;
@@ -51,6 +54,7 @@ use appell_spec::{Code, Diagnostic, Report, Severity, did_you_mean};
 use appell_spec::limits::MAX_ITEMS;
 use includes::Whole;
 
+pub use dictionary::{ActuatorName, BodyName, Dictionary, Entry, JointName};
 pub use format::Format;
 pub use includes::MAX_FILE;
 pub use letters::Letters;
@@ -79,6 +83,8 @@ pub struct Imported {
     pub left_out: Vec<LeftOut>,
     /// Orientations and axes that are nearly along the axes of their parents.
     pub nearly_right: usize,
+    /// The names of the file and of its numbers in the spec.
+    pub dictionary: Dictionary,
 }
 
 /// Elements of one kind that have no counterpart in a spec.
@@ -289,6 +295,7 @@ pub fn import_with(
             .count(),
         left_out,
         nearly_right,
+        dictionary: written.dictionary,
         warnings: whole.reports(findings),
     })
 }

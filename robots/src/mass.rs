@@ -3,7 +3,7 @@
 use crate::assembly::Configuration;
 use crate::inertia::Inertia;
 use crate::kinematics::{Freedom, Twist};
-use crate::model::{Link, Tendon};
+use crate::model::{Drive, Law, Link, On, Tendon};
 use crate::rotation::{Pose, Vector, add, cross, dot, scaled};
 
 /// Largest number of freedoms for which the mass matrix is computed.
@@ -186,6 +186,45 @@ pub(crate) fn settle(links: &mut [Link], tendons: &[Tendon]) -> bool {
             joint.stiffness = [inertia / (time * time * ratio * ratio), 0.0, 0.0];
         }
         first = next;
+    }
+    true
+}
+
+/// Computes the damping of position servos from their damping ratios, which are positive factors of the rate in the bias,
+/// with the inertia as drawn. False if the robot is too large for that.
+pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) -> bool {
+    let by_ratio = |drive: &Drive| drive.law() == Law::Position && drive.bias[2] > 0.0;
+    if !drives.iter().any(by_ratio) {
+        return true;
+    }
+    let freedoms = Freedom::all(links);
+    if freedoms.len() > MOST_FREEDOMS {
+        return false;
+    }
+    let drawn = Configuration::new(links, |_| 0.0).poses(links);
+    let mobility = inverse(matrix(links, tendons, &drawn).entries);
+    for drive in drives.iter_mut().filter(|drive| by_ratio(drive)) {
+        let terms = match &drive.on {
+            On::Joint(name) => vec![(name.clone(), 1.0)],
+            On::Tendon(name) => {
+                let tendon = tendons.iter().find(|tendon| tendon.name == *name);
+                tendon.map_or_else(Vec::new, |tendon| tendon.length.terms.clone())
+            }
+        };
+        // As in MuJoCo 4.0: m = (J M⁻¹ Jᵀ)⁻¹.
+        let along = freedoms.iter().map(|freedom| {
+            let joint = links[freedom.link].joint.as_ref();
+            let own = terms
+                .iter()
+                .filter(|(name, _)| joint.is_some_and(|joint| joint.name == *name));
+            drive.gear * own.map(|(_, factor)| factor).sum::<f64>()
+        });
+        let along: Vec<f64> = along.collect();
+        let rows = mobility.iter().zip(&along);
+        let sum: f64 = rows
+            .map(|(row, own)| own * row.iter().zip(&along).map(|(a, b)| a * b).sum::<f64>())
+            .sum();
+        drive.bias[2] *= -2.0 * (drive.gain[0] / sum).sqrt();
     }
     true
 }

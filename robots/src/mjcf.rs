@@ -1,5 +1,6 @@
 //! MJCF: bodies within bodies, with joints and geoms, and defaults by class.
 
+mod actuators;
 mod compiler;
 mod corrected;
 mod defaults;
@@ -71,6 +72,8 @@ pub(crate) struct Reader<'x, 'f> {
     touching: Vec<Span>,
     /// Whether masses of static bodies count as well.
     all_count: bool,
+    /// Whether actuators are read.
+    actuators: bool,
     root: Element<'x>,
     /// The file with its includes.
     whole: &'f Whole<'f>,
@@ -111,6 +114,7 @@ pub(crate) fn read(
         left_out: Vec::new(),
         touching: Vec::new(),
         all_count: options.floating,
+        actuators: options.actuators,
         root,
         whole,
     };
@@ -141,17 +145,25 @@ pub(crate) fn read(
         reader.scale_to(total);
     }
     let mut tendons = reader.tendons();
-    reader.drives(&mut tendons);
-    if !mass::settle(&mut reader.links, &tendons) {
-        findings.error(
-            Code::LimitExceeded,
-            tag(root),
-            format!(
-                "`springdamper` is read of robots with at most {} freedoms",
-                mass::MOST_FREEDOMS
-            ),
-            "write `stiffness` and `damping`",
-        );
+    let mut drives = reader.drives(&mut tendons);
+    let settled = mass::settle(&mut reader.links, &tendons);
+    let servos = drives.as_deref_mut().unwrap_or_default();
+    let damped = mass::damp(servos, &reader.links, &tendons);
+    for (done, what, help) in [
+        (settled, "springdamper", "write `stiffness` and `damping`"),
+        (damped, "dampratio", "write `kv`"),
+    ] {
+        if !done {
+            findings.error(
+                Code::LimitExceeded,
+                tag(root),
+                format!(
+                    "`{what}` is read of robots with at most {} freedoms",
+                    mass::MOST_FREEDOMS
+                ),
+                help,
+            );
+        }
     }
     let is_off = |flag: &str| schema::disabled(root, flag);
     let free = is_off("equality") || is_off("constraint");
@@ -178,6 +190,7 @@ pub(crate) fn read(
         tendons,
         connections,
         driven: driven(root),
+        drives,
         left_out: reader.left_out,
     };
     for one in switched_off(&is_off) {

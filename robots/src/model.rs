@@ -18,6 +18,8 @@ pub(crate) struct Robot {
     pub(crate) connections: Vec<Connection>,
     /// Actuated joints.
     pub(crate) driven: BTreeSet<String>,
+    /// Actuators that are inputs; `None` where the joints themselves have inputs.
+    pub(crate) drives: Option<Vec<Drive>>,
     pub(crate) left_out: Vec<LeftOut>,
 }
 
@@ -127,6 +129,8 @@ pub(crate) struct Joint {
     pub(crate) relaxed: f64,
     /// Time constant and damping ratio from which its stiffness and damping are computed.
     pub(crate) settles: Option<[f64; 2]>,
+    /// Bounds of the sum of all forces of actuators on it.
+    pub(crate) drive_range: Option<[f64; 2]>,
     pub(crate) place: Span,
 }
 
@@ -162,6 +166,7 @@ impl Joint {
             stiffness: [0.0; 3],
             relaxed: 0.0,
             settles: None,
+            drive_range: None,
             place: 0..0,
         }
     }
@@ -226,7 +231,86 @@ pub(crate) struct Tendon {
     pub(crate) relaxed: [f64; 2],
     pub(crate) friction: f64,
     pub(crate) armature: f64,
+    /// Bounds of the sum of all forces of actuators on it.
+    pub(crate) drive_range: Option<[f64; 2]>,
     pub(crate) place: Span,
+}
+
+/// An actuator: a force along a length, which is `gear` times a coordinate or a sum of coordinates.
+#[derive(Debug, Clone)]
+pub(crate) struct Drive {
+    pub(crate) name: String,
+    /// Its element, such as `position`.
+    pub(crate) kind: String,
+    /// What it drives: a joint with an axis or a fixed tendon.
+    pub(crate) on: On,
+    pub(crate) gear: f64,
+    /// The force is `gain` times the command plus `bias`; each is a constant, a factor of the length and one of its rate.
+    pub(crate) gain: [f64; 3],
+    pub(crate) bias: [f64; 3],
+    /// Bounds of the command, of its filtered value, and of the force before the gear.
+    pub(crate) ctrl_range: Option<[f64; 2]>,
+    pub(crate) act_range: Option<[f64; 2]>,
+    pub(crate) force_range: Option<[f64; 2]>,
+    /// Time constant of the filter, and delay of the command, in s.
+    pub(crate) lag: f64,
+    pub(crate) delay: f64,
+    pub(crate) place: Span,
+}
+
+/// What an actuator drives, by its name.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) enum On {
+    Joint(String),
+    Tendon(String),
+}
+
+/// The law of an actuator.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Law {
+    /// kp (command − length) − kv rate + bias
+    Position,
+    /// kv (command − rate) + bias
+    Velocity,
+    /// gain · command, plus a spring and a damper
+    Force,
+    /// Any other: the gain depends on length and rate.
+    Modulated,
+}
+
+/// Whether a number is another one, as computed from the same numbers of a file.
+pub(crate) fn is(a: f64, b: f64) -> bool {
+    a.total_cmp(&b).is_eq() || a - b == 0.0
+}
+
+impl Drive {
+    /// Its numbers that can be parameters.
+    pub(crate) fn attributes(&self) -> &'static [&'static str] {
+        match self.law() {
+            Law::Position => &[
+                "kp",
+                "kv",
+                "gear",
+                "bias",
+                "forcerange",
+                "timeconst",
+                "delay",
+            ],
+            Law::Force => &["gear", "gain", "bias", "forcerange", "timeconst", "delay"],
+            Law::Velocity | Law::Modulated => {
+                &["kv", "gear", "bias", "forcerange", "timeconst", "delay"]
+            }
+        }
+    }
+
+    pub(crate) fn law(&self) -> Law {
+        match (self.gain, self.bias) {
+            ([kp, 0.0, 0.0], [_, back, _]) if kp != 0.0 && is(back, -kp) => Law::Position,
+            ([kv, 0.0, 0.0], [_, 0.0, back]) if kv != 0.0 && is(back, -kv) => Law::Velocity,
+            ([_, 0.0, 0.0], _) => Law::Force,
+            _ => Law::Modulated,
+        }
+    }
 }
 
 /// A connection of two links that closes a loop of the tree.

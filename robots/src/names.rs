@@ -37,6 +37,13 @@ impl Names {
         }
         candidate
     }
+
+    /// The same, or one close to `otherwise` if the name is taken.
+    pub(crate) fn free_one(&mut self, name: &str, otherwise: &str) -> String {
+        let valid = legal(name);
+        let is_free = !appell_spec::is_reserved(&valid) && !self.taken.contains(&valid);
+        self.new_one(if is_free { name } else { otherwise })
+    }
 }
 
 /// The valid characters of a name.

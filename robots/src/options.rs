@@ -17,4 +17,7 @@ pub struct Options {
     pub snap: bool,
     /// Gives the root of a URDF a free joint; an MJCF file declares free joints itself.
     pub floating: bool,
+    /// Makes the actuators of an MJCF file inputs, with their laws as loads. Joints without an actuator then have no
+    /// input; otherwise every joint has one, a torque or a force. Without effect on a URDF.
+    pub actuators: bool,
 }

@@ -2,23 +2,27 @@
 
 mod bodies;
 mod connections;
+mod drives;
 mod joints;
 mod remarks;
 mod resistances;
+mod selected;
 mod tendons;
 mod units;
 
 use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 
 use crate::assembly::Configuration;
+use crate::dictionary::{BodyName, Dictionary, JointName};
 use crate::format::Format;
 use crate::letters::{Numbers, Parameter};
 use crate::loops::Equations;
 use crate::model::{Link, Motion, Robot};
 use crate::names::{Names, short};
 use crate::options::Options;
+use crate::patterns;
 use crate::table::{Item, Section, quoted};
-use crate::tree::{Body, Tree};
+use crate::tree::{Body, Part, Tree};
 use crate::without::Without;
 use crate::xml::Span;
 
@@ -50,6 +54,11 @@ pub(crate) struct Writer<'a> {
     weightless: Vec<(String, String, String)>,
     /// The initial configuration, if it differs from that of the file.
     start: Option<&'a Configuration>,
+    /// Whether joints have inputs of their own, since actuators are not read.
+    driven: bool,
+    /// What actuators exert, by body.
+    torques: Vec<drives::Exerted>,
+    dictionary: Dictionary,
     coordinates: Section,
     inputs: Section,
     frames: Section,
@@ -68,6 +77,7 @@ pub(crate) struct Written {
     pub(crate) lines: Vec<(usize, Span)>,
     pub(crate) unused: Vec<String>,
     pub(crate) known: Vec<String>,
+    pub(crate) dictionary: Dictionary,
 }
 
 /// Writes the spec of a robot.
@@ -83,6 +93,7 @@ pub(crate) fn write(
     let file = file.rsplit('/').next().unwrap_or(file);
     let mut writer = Writer::new(robot, tree, options);
     writer.start = equations.start.as_ref();
+    writer.declare(robot);
     let letters = writer.gravity(robot.gravity);
     writer.mark(&(0..0));
     for (index, body) in tree.bodies.iter().enumerate() {
@@ -110,6 +121,7 @@ pub(crate) fn write(
     writer.speeds(equations);
     writer.carried(robot.gravity, &letters);
     writer.tendons(&robot.tendons);
+    writer.drives(robot);
     writer.ends();
     writer.mark(&(0..0));
     let name = Names::default().new_one(&robot.name);
@@ -117,6 +129,8 @@ pub(crate) fn write(
     let mut lines = Vec::new();
     writer.mechanism(&name, &robot.name, file, &mut text, &mut lines);
     remarks::left_out(&robot.left_out, options, &mut text);
+    remarks::late(robot, &mut text);
+    writer.dictionary.entries = std::mem::take(&mut writer.numbers.entries);
     Written {
         text,
         lines,
@@ -127,6 +141,7 @@ pub(crate) fn write(
             .map(str::to_owned)
             .collect(),
         known: writer.numbers.known().map(str::to_owned).collect(),
+        dictionary: writer.dictionary,
     }
 }
 
@@ -171,6 +186,9 @@ impl<'a> Writer<'a> {
             numbers: Numbers::new(&options.letters),
             weightless: Vec::new(),
             start: None,
+            driven: robot.drives.is_none(),
+            torques: Vec::new(),
+            dictionary: Dictionary::default(),
             coordinates: Section::default(),
             inputs: Section::default(),
             frames: Section::default(),
@@ -227,9 +245,58 @@ impl<'a> Writer<'a> {
                 let item = Item::default().text("value", &format!("dot({q})"));
                 let rate = units::Units::of(body.joint.motion).rate;
                 self.speeds.add(&name, &item.text("unit", rate));
+                self.joint_name(index, name);
+            } else {
+                let rate = format!("dot({})", self.called.coordinates[index]);
+                self.joint_name(index, rate);
             }
             self.mark(&body.joint.place);
         }
+    }
+
+    /// Records the names of a joint with an axis.
+    fn joint_name(&mut self, index: usize, velocity: String) {
+        self.dictionary.joints.push(JointName {
+            name: self.tree.bodies[index].joint.name.clone(),
+            coordinate: self.called.coordinates[index].clone(),
+            velocity,
+            torque: None,
+        });
+    }
+
+    /// Records the names of bodies, and declares the names of all numbers that patterns can select.
+    fn declare(&mut self, robot: &Robot) {
+        for (index, link) in robot.links.iter().enumerate() {
+            let body = self.tree.body_of[index].map(|body| self.tree.bodies[body].link);
+            let body = body.map_or("ground", |body| &self.called.links[body]);
+            if link.written {
+                self.dictionary.bodies.push(BodyName {
+                    name: link.name.clone(),
+                    body: body.to_owned(),
+                });
+            }
+        }
+        let patterns = &mut self.numbers.patterns;
+        let names = |parts: &[Part]| -> Vec<String> {
+            let parts = parts.iter().filter(|part| robot.links[part.link].written);
+            parts
+                .map(|part| robot.links[part.link].name.clone())
+                .collect()
+        };
+        for name in names(&self.tree.ground) {
+            patterns.declare(&name, patterns::OF_BODIES);
+        }
+        for body in &self.tree.bodies {
+            let link = &robot.links[body.link];
+            if link.written {
+                patterns.declare_body(&link.name, names(&body.parts));
+            }
+            patterns.declare(&body.joint.name, patterns::OF_JOINTS);
+        }
+        for drive in robot.drives.iter().flatten() {
+            patterns.declare(&drive.name, drive.attributes());
+        }
+        patterns.declare(patterns::OPTION, &["gravity.x", "gravity.y", "gravity.z"]);
     }
 
     fn mechanism(
@@ -308,6 +375,38 @@ fn plus(expression: &str, number: &str) -> String {
             |number| format!("{expression} - {number}"),
         ),
     }
+}
+
+/// The difference of two expressions.
+fn minus(expression: &str, other: &str) -> String {
+    if other == "0" {
+        return expression.to_owned();
+    }
+    let (sign, other) = match other.strip_prefix('-') {
+        Some(other) if !is_sum(other) => ('+', other.to_owned()),
+        _ if is_sum(other) => ('-', format!("({other})")),
+        _ => ('-', other.to_owned()),
+    };
+    match (expression, sign) {
+        ("0", '+') => other,
+        ("0", _) => format!("-{other}"),
+        _ => format!("{expression} {sign} {other}"),
+    }
+}
+
+/// Whether an expression has several terms.
+fn is_sum(expression: &str) -> bool {
+    let mut depth = 0_i32;
+    let signs = expression.match_indices(|c| "()[]+-".contains(c));
+    signs.into_iter().any(|(at, sign)| {
+        match sign {
+            "(" | "[" => depth += 1,
+            ")" | "]" => depth -= 1,
+            // A sign between blanks, other than that of an exponent.
+            _ => return depth == 0 && expression[..at].ends_with(' '),
+        }
+        false
+    })
 }
 
 /// An expression that can be a factor or a base: a name or the rate of one as it is, all else in brackets.

@@ -65,10 +65,11 @@ pub(crate) fn list(values: &[String]) -> String {
 }
 
 impl Section {
-    /// Adds an item; a number is appended to its name if that is taken.
-    pub(crate) fn add(&mut self, name: &str, item: &Item) {
+    /// Adds an item, and returns its name; a number is appended to it if it is taken.
+    pub(crate) fn add(&mut self, name: &str, item: &Item) -> String {
         let name = self.names.new_one(name);
-        self.items.push((name, item.table()));
+        self.items.push((name.clone(), item.table()));
+        name
     }
 
     /// Adds a key whose value is no table.

@@ -76,6 +76,7 @@ pub(crate) fn read(root: Element<'_>, findings: &Findings, options: &Options) ->
         tendons: Vec::new(),
         connections: Vec::new(),
         driven: BTreeSet::new(),
+        drives: None,
         left_out,
     }
 }

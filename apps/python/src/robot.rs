@@ -21,6 +21,7 @@ pub(crate) fn import_robot(
     lock: Vec<(String, Option<f64>)>,
     snap: bool,
     floating: bool,
+    actuators: bool,
     root: Option<PathBuf>,
 ) -> PyResult<(String, String)> {
     let without = without.iter().map(|word| Without::from_str(word));
@@ -35,6 +36,7 @@ pub(crate) fn import_robot(
             .collect(),
         snap,
         floating,
+        actuators,
     };
     let name = file.to_string_lossy().into_owned();
     let robot = watched(py, None, move |_| {

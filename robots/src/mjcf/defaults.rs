@@ -80,18 +80,6 @@ impl<'x> Defaults<'x> {
         self.of_any(kind, class, key)
     }
 
-    /// The elements of a class and of those around it, from the outermost inwards.
-    pub(super) fn elements(&self, class: Option<&str>) -> Vec<Element<'x>> {
-        let mut name = class.or(self.main);
-        let mut all = Vec::new();
-        while let Some(class) = name.and_then(|name| self.classes.get(name)) {
-            all.extend(class.elements.iter().rev());
-            name = class.parent.filter(|parent| Some(*parent) != name);
-        }
-        all.reverse();
-        all
-    }
-
     /// The default of a class for an attribute of any of several kinds of elements, separated by blanks.
     pub(super) fn of_any(
         &self,
@@ -114,5 +102,22 @@ impl<'x> Defaults<'x> {
             }
             name = class.parent.filter(|parent| *parent != name)?;
         }
+    }
+
+    /// The defaults of a class for any of several kinds of elements, from those of the outermost class on.
+    pub(super) fn chain(&self, kinds: &str, class: Option<&str>) -> Vec<Element<'x>> {
+        let mut name = class.or(self.main);
+        let mut chain = Vec::new();
+        // Classes are nested in the text, so that this ends.
+        while let Some(class) = name.and_then(|name| self.classes.get(name)) {
+            let own = class.elements.iter().rev().filter(|element| {
+                let word = element.tag_name().name();
+                kinds.split_ascii_whitespace().any(|kind| kind == word)
+            });
+            chain.extend(own.copied());
+            name = class.parent.filter(|parent| Some(*parent) != name);
+        }
+        chain.reverse();
+        chain
     }
 }

@@ -111,6 +111,7 @@ impl<'x> Reader<'x, '_> {
         Some(Joint {
             motion,
             axis,
+            drive_range: self.bounds(&attribute, "actuatorfrcrange", "actuatorfrclimited"),
             anchor: vector("pos", "a position, x y z,").unwrap_or_default(),
             zero: angle(number("ref").unwrap_or_default()),
             range: range

@@ -1,15 +1,12 @@
-//! Tendons that are sums of coordinates, and properties of joints and tendons that actuators add.
-
-use std::collections::BTreeMap;
+//! Tendons that are sums of coordinates.
 
 use appell_spec::{Code, did_you_mean};
 use roxmltree::Attribute;
 
 use crate::model::{Joint, LeftOut, Polynomial, Sum, Tendon};
-use crate::rotation::is_zero;
 use crate::xml::{Element, children, elements, exactly, numbers, tag};
 
-use super::schema::{ACTUATORS, effect};
+use super::schema::effect;
 use super::{Equality, Reader};
 
 /// Value of an attribute that means the length at which all springs are relaxed.
@@ -96,6 +93,7 @@ impl<'x> Reader<'x, '_> {
             relaxed,
             friction: number("frictionloss").unwrap_or_default(),
             armature: number("armature").unwrap_or_default(),
+            drive_range: self.bounds(&attribute, "actuatorfrcrange", "actuatorfrclimited"),
             place: tag(element),
         };
         self.left_out.extend(range);
@@ -158,59 +156,6 @@ impl<'x> Reader<'x, '_> {
             *factor = read;
         }
         polynomial
-    }
-
-    /// Lists the actuators, and adds the inertia and the damping of their drives to joints and tendons.
-    pub(super) fn drives(&mut self, tendons: &mut [Tendon]) {
-        let by_name: BTreeMap<String, usize> = (tendons.iter().enumerate())
-            .map(|(index, one)| (one.name.clone(), index))
-            .collect();
-        for element in children(self.root, "actuator").flat_map(elements) {
-            let class = self.class(element, "class");
-            let attribute = |key: &str| {
-                let own = element.attribute_node(key);
-                own.or_else(|| self.defaults.of_any(ACTUATORS, class, key))
-            };
-            let gear = attribute("gear").and_then(|given| numbers(self.findings, &given));
-            let gear = gear.and_then(|all| all.first().copied()).unwrap_or(1.0);
-            let armature = attribute("armature")
-                .and_then(|given| exactly::<1>(self.findings, &given, "`armature`"));
-            let armature = armature.map_or(0.0, |[one]| one * gear * gear);
-            let damping = self
-                .polynomial(attribute("damping"))
-                .map(|one| one * gear * gear);
-            let joint = ["joint", "jointinparent"]
-                .iter()
-                .find_map(|key| element.attribute(*key));
-            let link = joint.and_then(|name| self.joint_links.get(name).copied());
-            let tendon = element
-                .attribute("tendon")
-                .and_then(|name| by_name.get(name).copied());
-            let (inertia, resistance) = if let Some(link) = link
-                && let Some(joint) = &mut self.links[link].joint
-            {
-                (&mut joint.armature, &mut joint.damping)
-            } else if let Some(tendon) = tendon {
-                let tendon = &mut tendons[tendon];
-                (&mut tendon.armature, &mut tendon.damping)
-            } else {
-                if armature != 0.0 || !is_zero(damping) {
-                    self.findings.warning(
-                        Code::NotAllowedHere,
-                        tag(element),
-                        "inertia and damping of this drive are left out",
-                        "they are read where it drives a hinge, a slide or a fixed tendon",
-                    );
-                }
-                self.leave_out_of("actuator", element);
-                continue;
-            };
-            *inertia += armature;
-            for (own, more) in resistance.iter_mut().zip(damping) {
-                *own += more;
-            }
-            self.leave_out_of("actuator", element);
-        }
     }
 
     /// `equality/tendon`: the length of a tendon is a polynomial of another one, or constant.

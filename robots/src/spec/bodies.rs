@@ -4,11 +4,12 @@ use std::collections::BTreeSet;
 
 use crate::letters::{Kind, Number, quantity};
 use crate::model::Motion;
+use crate::patterns;
 use crate::rotation::{Vector, dot, is_zero, right_angles};
 use crate::table::{Item, list};
 use crate::tree::Part;
 
-use super::{Writer, operand, plus};
+use super::{Writer, minus, operand, plus};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -35,6 +36,26 @@ impl Writer<'_> {
         self.numbers.write(number, &mut self.quantities)
     }
 
+    /// The displacement of a joint from its zero in the file's drawing, as an expression.
+    fn displacement(&mut self, index: usize, unit: &'static str) -> String {
+        let body = self.at(index);
+        let q = self.called.coordinates[index].clone();
+        let joint = &body.joint;
+        if !(self.numbers.patterns).choose(&joint.name, "ref", joint.zero) {
+            return plus(&q, &quantity(body.offset, unit));
+        }
+        let zero = self.number(Number {
+            value: joint.zero,
+            unit,
+            letter: &format!("ref_{q}"),
+            of: &joint.name,
+            attribute: "ref",
+            about: &format!("value of joint {} as drawn in its file", joint.name),
+            ..Number::default()
+        });
+        plus(&minus(&q, &zero), &quantity(body.offset + joint.zero, unit))
+    }
+
     /// Components of a vector, in m.
     fn components(
         &mut self,
@@ -54,7 +75,7 @@ impl Writer<'_> {
                     of,
                     about: &about,
                     kind,
-                    never_negative: false,
+                    ..Number::default()
                 },
                 &mut self.quantities,
             )
@@ -81,10 +102,14 @@ impl Writer<'_> {
                 value: component.abs(),
                 unit: "m/s^2",
                 letter: &letter,
-                of: "gravity",
+                of: patterns::OPTION,
+                attribute: if count == 1 {
+                    "gravity"
+                } else {
+                    ["gravity.x", "gravity.y", "gravity.z"][index]
+                },
                 about: "gravitational acceleration",
-                kind: Kind::Other,
-                never_negative: false,
+                ..Number::default()
             });
             let down = if component < 0.0 {
                 format!("-{axis}")
@@ -118,10 +143,7 @@ impl Writer<'_> {
         let mut turns = self.constant_turns(index, &parent);
         if turning {
             let sign = if body.axis.backwards { "-" } else { "" };
-            let by = plus(
-                &self.called.coordinates[index],
-                &quantity(body.offset, "rad"),
-            );
+            let by = self.displacement(index, "rad");
             turns.push((format!("{sign}{}", AXES[body.axis.index]), by));
         }
         let item = turned(&parent, &turns);
@@ -180,8 +202,7 @@ impl Writer<'_> {
                     letter: &format!("angle_{called}_{}", count + 1),
                     of: &link,
                     about: &format!("angle between the frames of {called} and {parent}"),
-                    kind: Kind::Other,
-                    never_negative: false,
+                    ..Number::default()
                 })
             };
             turns.push((axis, by));
@@ -232,7 +253,7 @@ impl Writer<'_> {
                 at = vec!["0".to_owned(); 3];
             }
             frame = own;
-            let way = plus(&self.called.coordinates[index], &quantity(body.offset, "m"));
+            let way = self.displacement(index, "m");
             let component = &mut at[body.axis.index];
             *component = match (component.as_str(), body.axis.backwards) {
                 ("0", false) => way,
@@ -265,13 +286,17 @@ impl Writer<'_> {
         let called = self.called.links[body.link].clone();
         let frame = self.called.frames[index].clone();
         let about = format!("centre of mass of {called}");
-        let at = self.components(
-            inertia.centre,
-            &format!("c#_{called}"),
-            &link,
-            &about,
-            Kind::Inertial,
-        );
+        let at = if self.centre_is_selected(index) {
+            self.centre_in_link(index)
+        } else {
+            self.components(
+                inertia.centre,
+                &format!("c#_{called}"),
+                &link,
+                &about,
+                Kind::Inertial,
+            )
+        };
         let centre = if at.iter().all(|one| one == "0") {
             self.called.points[index].clone()
         } else {
@@ -293,6 +318,7 @@ impl Writer<'_> {
                     of: &link,
                     about: &format!("{about} of {called}"),
                     kind: Kind::Inertial,
+                    attribute: if unit == "kg" { "mass" } else { "" },
                     never_negative: unit == "kg",
                 },
                 &mut self.quantities,
@@ -307,6 +333,7 @@ impl Writer<'_> {
             inertial(value, "kg*m^2", format!("I{entry}_{called}"), &about)
         });
         let entries: Vec<String> = entries.collect();
+        let entries = self.scaled(index, entries);
         let item = if entries.iter().all(|entry| entry == "0") {
             Item::default()
                 .text("centre", &centre)

@@ -21,7 +21,9 @@ impl Writer<'_> {
         let units = Units::of(joint.motion);
         let rate = format!("dot({q})");
         self.coordinate(index, &q, &units);
-        self.drive(joint, &q, &units);
+        if self.driven {
+            self.drive(joint, &q, &units);
+        }
         let owner = Owner {
             called: &q,
             of: &joint.name,
@@ -32,7 +34,7 @@ impl Writer<'_> {
         self.damping(&owner, joint.damping, &rate);
         self.spring(&owner, joint.stiffness, joint.relaxed);
         self.friction(&owner, joint.friction, &rate);
-        if joint.armature != 0.0 {
+        if joint.armature != 0.0 || self.numbers.patterns.names(&joint.name, "armature") {
             self.armature(joint, &q, &units);
         }
     }
@@ -135,7 +137,7 @@ impl Writer<'_> {
             let item = Item::default().text("kind", "generalized");
             item.text("velocity", speed).text("force", force)
         };
-        if joint.motion == Motion::Ball {
+        if joint.motion == Motion::Ball && self.driven {
             let input = self.quantities.new_one(&format!("tau_{q}_{axis}"));
             let about = sentence(&format!("torque at joint {}, {axis}", joint.name));
             let declared = Item::default().text("unit", units.force);
@@ -163,6 +165,7 @@ impl Writer<'_> {
             value: joint.armature,
             unit,
             letter,
+            attribute: letter,
             about: "inertia of the drive",
         };
         let inertia = self.of_owner(&q, &joint.name, "joint", number("kg*m^2", "armature"));
@@ -214,6 +217,7 @@ impl Writer<'_> {
             value: joint.armature,
             unit: units.inertia,
             letter: "armature",
+            attribute: "armature",
             about: "inertia of the drive",
         };
         let inertia = self.of_owner(q, &joint.name, "joint", number);

@@ -3,6 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 
+use crate::letters::plain;
 use crate::model::{LeftOut, Robot};
 use crate::options::Options;
 use crate::tree::Tree;
@@ -70,6 +71,29 @@ pub(super) fn left_out(left_out: &[LeftOut], options: &Options, text: &mut Strin
             "# - {count} {}{}{effect}",
             line(&one.what),
             line(&names)
+        );
+    }
+}
+
+/// Lags and delays of actuators, which are not in the spec.
+pub(super) fn late(robot: &Robot, text: &mut String) {
+    let late = robot.drives.iter().flatten();
+    let late: Vec<String> = late
+        .filter(|drive| drive.lag != 0.0 || drive.delay != 0.0)
+        .map(|drive| {
+            let lag = [("lags by", drive.lag), ("is delayed by", drive.delay)];
+            let lag = lag.iter().filter(|(_, time)| *time != 0.0);
+            let lag: Vec<String> = lag
+                .map(|(what, time)| format!("{what} {} s", plain(*time)))
+                .collect();
+            format!("# - {} {}", line(&drive.name), lag.join(" and "))
+        })
+        .collect();
+    if !late.is_empty() {
+        let _ = writeln!(
+            text,
+            "\n# Forces of actuators follow their inputs at once; in the file, the command of\n{}",
+            late.join("\n")
         );
     }
 }

@@ -32,6 +32,8 @@ pub(super) struct Property<'a> {
     pub(super) unit: &'static str,
     /// The beginning of its name as a parameter.
     pub(super) letter: &'a str,
+    /// The attribute of a joint that it is, as far as patterns select it.
+    pub(super) attribute: &'static str,
     /// Its description, without the joint or tendon.
     pub(super) about: &'a str,
 }
@@ -50,11 +52,21 @@ impl Writer<'_> {
             unit: property.unit,
             letter: &format!("{}_{called}", property.letter),
             of,
+            attribute: if kind == "joint" {
+                property.attribute
+            } else {
+                ""
+            },
             about: &format!("{} of {kind} {of}", property.about),
             kind: Kind::Other,
             never_negative: property.value >= 0.0 && !property.letter.starts_with("relaxed"),
         };
         self.numbers.write(number, &mut self.quantities)
+    }
+
+    /// Whether a number of a joint is selected by its name, also where it is zero.
+    fn chosen(&self, owner: &Owner<'_>, attribute: &str) -> bool {
+        owner.kind == "joint" && self.numbers.patterns.names(owner.of, attribute)
     }
 
     /// Adds a load along the coordinate, speed or tendon.
@@ -89,6 +101,11 @@ impl Writer<'_> {
                 value: factor,
                 unit: units[index],
                 letter: &letter,
+                attribute: match (index, word) {
+                    (0, "damping") => "damping",
+                    (0, "stiffness") => "stiffness",
+                    _ => "",
+                },
                 about: word,
             };
             let factor = self.of_owner(owner.called, owner.of, owner.kind, number);
@@ -119,11 +136,12 @@ impl Writer<'_> {
             }
             return;
         };
-        if linear != 0.0 {
+        if linear != 0.0 || self.chosen(owner, "damping") {
             let number = Property {
                 value: linear,
                 unit: owner.units.damping[0],
                 letter: "damping",
+                attribute: "damping",
                 about: "damping",
             };
             let damping = self.of_owner(owner.called, owner.of, owner.kind, number);
@@ -137,13 +155,14 @@ impl Writer<'_> {
 
     /// A spring of a coordinate, a x + b x² + c x³.
     pub(super) fn spring(&mut self, owner: &Owner<'_>, stiffness: Polynomial, relaxed: f64) {
-        if is_zero(stiffness) {
+        if is_zero(stiffness) && !self.chosen(owner, "stiffness") {
             return;
         }
-        let relaxed_at = |value: f64| Property {
+        let relaxed_at = |value: f64, attribute: &'static str| Property {
             value,
             unit: owner.units.coordinate,
             letter: "relaxed",
+            attribute,
             about: "coordinate of the relaxed spring",
         };
         if let [linear, 0.0, 0.0] = stiffness {
@@ -151,10 +170,16 @@ impl Writer<'_> {
                 value: linear,
                 unit: owner.units.stiffness[0],
                 letter: "stiffness",
+                attribute: "stiffness",
                 about: "stiffness of the spring",
             };
             let stiffness = self.of_owner(owner.called, owner.of, owner.kind, number);
-            let relaxed = self.of_owner(owner.called, owner.of, owner.kind, relaxed_at(relaxed));
+            let relaxed = self.of_owner(
+                owner.called,
+                owner.of,
+                owner.kind,
+                relaxed_at(relaxed, "springref"),
+            );
             let item = Item::default()
                 .text("kind", "spring")
                 .text("coordinate", owner.along.1)
@@ -167,7 +192,7 @@ impl Writer<'_> {
             self.loads.add(&format!("spring_{}", owner.called), &item);
             return;
         }
-        let relaxed = self.of_owner(owner.called, owner.of, owner.kind, relaxed_at(-relaxed));
+        let relaxed = self.of_owner(owner.called, owner.of, owner.kind, relaxed_at(-relaxed, ""));
         let x = plus(owner.along.1, &relaxed);
         self.elastic(owner, stiffness, &x);
     }
@@ -182,13 +207,14 @@ impl Writer<'_> {
 
     /// Dry friction.
     pub(super) fn friction(&mut self, owner: &Owner<'_>, friction: f64, rate: &str) {
-        if friction == 0.0 {
+        if friction == 0.0 && !self.chosen(owner, "frictionloss") {
             return;
         }
         let number = Property {
             value: friction,
             unit: owner.units.force,
             letter: "friction",
+            attribute: "frictionloss",
             about: "dry friction",
         };
         let friction = self.of_owner(owner.called, owner.of, owner.kind, number);

@@ -12,7 +12,7 @@ use super::{Writer, operand, plus};
 
 impl Writer<'_> {
     /// The units of a sum: those of a length if one of its joints slides.
-    fn units(&self, sum: &Sum) -> Units {
+    pub(super) fn units(&self, sum: &Sum) -> Units {
         let slides = |name: &String| {
             let body = self.tree.by_joint.get(name);
             body.is_some_and(|body| self.tree.bodies[*body].joint.motion == Motion::Sliding)
@@ -26,7 +26,7 @@ impl Writer<'_> {
     }
 
     /// A sum over coordinates, each written by `each`.
-    fn sum(&self, sum: &Sum, units: &Units, each: impl Fn(&str) -> String) -> String {
+    pub(super) fn sum(&self, sum: &Sum, units: &Units, each: impl Fn(&str) -> String) -> String {
         let mut written = "0".to_owned();
         for (name, factor) in &sum.terms {
             let Some(&body) = self.tree.by_joint.get(name) else {
@@ -92,6 +92,7 @@ impl Writer<'_> {
                     value: tendon.armature,
                     unit: units.inertia,
                     letter: "armature",
+                    attribute: "",
                     about: "inertia",
                 };
                 let inertia = self.of_owner(&called, &tendon.name, "tendon", number);

@@ -16,12 +16,14 @@ const MOST_LINES: usize = 6;
 /// Turns a robot file, URDF or MJCF, into a spec.
 ///
 /// Links and joints keep their names. Links that are fixed together become one body, each joint a coordinate with
-/// its range, its damping, spring, dry friction and armature, and an input that drives it. What has no counterpart in a
-/// spec is listed with its lines, and with how the motion differs without it.
+/// its range, its damping, spring, dry friction and armature, and an input that drives it: a torque or a force, or with
+/// `--actuators` the commands of the file's actuators. What has no counterpart in a spec is listed with its lines, and
+/// with how the motion differs without it.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
   appell import robot/arm.urdf -o arm.toml
+  appell import robot/arm.xml -o servos.toml --actuators --parameters '*.mass,*.kp,elbow.damping'
   appell import robot/arm.xml -o arm_to_identify.toml --parameters inertias --without limits
   appell import robot/arm.xml -o stiff.toml --lock elbow=0.5 --lock reach")]
 pub(crate) struct Import {
@@ -36,7 +38,8 @@ pub(crate) struct Import {
     out: Option<PathBuf>,
     /// Numbers that become parameters: `none`, `inertias`, `all`, or names of links, joints and parameters
     ///
-    /// The other numbers are written out, so that zeros and right angles simplify the equations.
+    /// The other numbers are written out, so that zeros and right angles simplify the equations. Names and patterns
+    /// ELEMENT.ATTRIBUTE choose single numbers of the file: `*.mass`, `elbow.damping`, `hand.com.x`, `gravity`.
     #[arg(long, value_name = "WHICH", default_value = "none")]
     parameters: String,
     /// Items to omit, separated by commas
@@ -56,6 +59,11 @@ pub(crate) struct Import {
     /// Let the root of a URDF float; an MJCF states its floating bodies
     #[arg(long)]
     floating: bool,
+    /// Make the actuators of an MJCF inputs, with their laws: gains, gear, limits
+    ///
+    /// Without it every joint has an input, a torque or a force.
+    #[arg(long)]
+    actuators: bool,
 }
 
 impl Import {
@@ -80,6 +88,7 @@ impl Import {
             lock: self.lock.clone(),
             snap: self.snap,
             floating: self.floating,
+            actuators: self.actuators,
         };
         let robot = robot::read(&self.robot, self.root.as_deref(), &options)?;
         if self.out.is_none()

@@ -61,19 +61,21 @@ def import_robot(
     lock: Mapping[str, float | None] | Iterable[str] = (),
     snap: bool = False,
     floating: bool = False,
+    actuators: bool = False,
     root: str | Path | None = None,
 ) -> Robot:
     """A URDF or an MJCF file as a spec, with the files that it includes.
 
-    `parameters` are the numbers that become parameters: `none`, `inertias`, `all`, or names of links, joints and
-    parameters. `without` leaves out `damping`, `armature`, `springs`, `friction`, `limits`, `couplings`,
-    `compensation` or `points`. `lock` makes joints rigid, at values by their names or as the
-    file draws them. `snap` makes angles right that are so within 1e-4 rad, `floating` frees the root of a URDF. Included
-    files and meshes lie below the folder `root`, which is that of the file unless it is given.
+    `parameters` are the numbers that become parameters: `none`, `inertias`, `all`, names of links, joints and
+    parameters, or names and patterns of numbers such as `elbow.damping` and `*.mass`. `without` leaves out `damping`,
+    `armature`, `springs`, `friction`, `limits`, `couplings`, `compensation` or `points`. `lock` makes joints rigid, at
+    values by their names or as the file draws them. `snap` makes angles right that are so within 1e-4 rad, `floating`
+    frees the root of a URDF, `actuators` makes the actuators of an MJCF inputs, with their laws. Included files and
+    meshes lie below the folder `root`, which is that of the file unless it is given.
     """
     chosen = ",".join(many(parameters))
     values = lock.items() if isinstance(lock, Mapping) else ((joint, None) for joint in many(lock))
-    spec, fields = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating, root and Path(root))
+    spec, fields = _appell.import_robot(Path(file), chosen, many(without), list(values), snap, floating, actuators, root and Path(root))
     fields = json.loads(fields)
     return Robot(
         spec=spec,

@@ -1,0 +1,74 @@
+//! Names of the file and of its numbers in the spec.
+
+/// How the names of a robot file and its numbers are called in the spec.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Dictionary {
+    /// Numbers that are parameters, chosen by [`Letters::Matching`](crate::Letters::Matching).
+    pub entries: Vec<Entry>,
+    /// Actuators that are inputs ([`Options::actuators`](crate::Options)), in the order of the file.
+    pub actuators: Vec<ActuatorName>,
+    /// Joints with an axis, in the order of the tree.
+    pub joints: Vec<JointName>,
+    /// Bodies of the file, in its order.
+    pub bodies: Vec<BodyName>,
+}
+
+/// A number of the file that is a parameter of the spec.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entry {
+    /// The element that has it: a body, a joint, an actuator, or `option`. Of bodies that are fixed to each other, the one
+    /// with the joint.
+    pub element: String,
+    /// Its attribute: `mass`, `com.x`, `com.y`, `com.z`, `inertia`, `damping`, `armature`, `frictionloss`, `stiffness`,
+    /// `springref`, `ref`, `kp`, `kv`, `gear`, `gain`, `bias`, `forcerange`, `timeconst`, `delay`, `gravity` (`gravity.x`
+    /// … where it has several components).
+    pub attribute: &'static str,
+    /// The parameter of the spec; empty for `timeconst` and `delay`, which are not in the spec.
+    pub parameter: String,
+    /// Its value in SI as the file has it, together with what is fixed to the body, or with what actuators add to the
+    /// armature and the damping of a joint. Of gravity, the magnitude of a component.
+    pub value: f64,
+    /// Whether the parameter is a factor of what the file has, 1 at first.
+    pub relative: bool,
+}
+
+/// An actuator that is an input of the spec.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ActuatorName {
+    /// Its name in the file, or a name made from its joint or tendon.
+    pub name: String,
+    /// The input: its command (`ctrl`).
+    pub input: String,
+    /// The load: its force, after gear and limits.
+    pub load: String,
+    /// Its joint, unless it drives a tendon.
+    pub joint: Option<String>,
+    /// Time constant of its filter in s, 0 without one. The filter is not in the spec: its force follows the input at once.
+    pub lag: f64,
+    /// Delay of its command in s. It is not in the spec either.
+    pub delay: f64,
+    /// Whether its command is a position or a velocity, in the unit of its joint.
+    pub is_servo: bool,
+}
+
+/// A joint with an axis.
+#[derive(Debug, Clone, PartialEq)]
+pub struct JointName {
+    /// Its name in the file.
+    pub name: String,
+    /// Its coordinate.
+    pub coordinate: String,
+    /// Its rate: a pseudo-velocity, or `dot(COORDINATE)` if it depends on others.
+    pub velocity: String,
+    /// The output of the spec that is the torque or force of all actuators on it; `None` without actuators.
+    pub torque: Option<String>,
+}
+
+/// A body of the file.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BodyName {
+    /// Its name in the file.
+    pub name: String,
+    /// The body of the spec of which it is a part; `ground` if it does not move.
+    pub body: String,
+}

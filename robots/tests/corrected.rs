@@ -246,6 +246,55 @@ fn gains_are_those_of_the_actuator_and_not_of_its_class() {
 }
 
 #[test]
+fn what_follows_from_the_inertias_of_the_file_stays_where_these_change() {
+    // 2 kg m² about the axis: kv = 2 · 0.5 · √(18 · 2) = 6; the spring has 2/0.5² = 8, its damper 2 · 2/0.5 = 8.
+    let text = r#"<mujoco><worldbody><body name="arm">
+      <inertial pos="0 0 1" mass="1" diaginertia="1 1 1"/>
+      <joint name="elbow" axis="0 1 0" springdamper="0.5 1"/>
+    </body></worldbody><actuator>
+      <position name="servo" joint="elbow" kp="18" dampratio="0.5"/>
+    </actuator></mujoco>"#;
+    let stiffer = Change::Kp {
+        actuator: "servo".to_owned(),
+        amount: Amount::To(20.0),
+    };
+    let servo = text.replace("kp=\"18\" dampratio=\"0.5\"", "kp=\"20\" kv=\"6\"");
+    assert_eq!(change(text, &[stiffer]).unwrap().text, servo);
+    let heavier = Change::Inertia {
+        body: "arm".to_owned(),
+        factor: 2.0,
+    };
+    let expected = text
+        .replace("\"1 1 1\"", "\"2 2 2\"")
+        .replace(
+            " springdamper=\"0.5 1\"/>",
+            " stiffness=\"8\" damping=\"8\"/>",
+        )
+        .replace(" dampratio=\"0.5\"", " kv=\"6\"");
+    assert_eq!(change(text, &[heavier]).unwrap().text, expected);
+}
+
+#[test]
+fn scaled_masses_and_those_of_geoms_become_inertials() {
+    let text = r#"<mujoco>
+  <compiler inertiafromgeom="true" settotalmass="3"/>
+  <worldbody><body name="arm"><joint axis="0 1 0"/><geom size="0.1" mass="1"/>
+    <body name="hand" pos="0 0 1"><joint axis="0 1 0"/><geom size="0.1" mass="0.5"/></body>
+  </body></worldbody>
+</mujoco>"#;
+    let heavier = Change::Mass {
+        body: "hand".to_owned(),
+        amount: Amount::Add(1.0),
+    };
+    let better = change(text, &[heavier]).unwrap().text;
+    let compiler = "<compiler inertiafromgeom=\"auto\" settotalmass=\"4\"/>";
+    assert!(better.contains(compiler), "{better}");
+    // The hand has half of the mass now: as much as the arm, which keeps its geom.
+    let hand = "<inertial pos=\"0 0 0\" mass=\"1\" diaginertia=\"0.002 0.002 0.002\"/>";
+    assert!(better.contains(hand), "{better}");
+}
+
+#[test]
 fn what_a_shortcut_cannot_say_is_said_by_a_general_actuator() {
     let bias = |actuator: &str| Change::Bias {
         actuator: actuator.to_owned(),

@@ -100,6 +100,11 @@ impl Compiler {
         }
     }
 
+    /// Whether masses and inertias of bodies can differ from those that are written.
+    pub(super) fn adjusts(&self) -> bool {
+        self.balance || self.least_mass > 0.0 || self.least_moment > 0.0
+    }
+
     /// Mass and inertia of a body after the adjustments.
     pub(super) fn corrected(&self, inertia: Inertia) -> Inertia {
         let mut inertia = inertia;

@@ -130,6 +130,7 @@ impl Sheet<'_, '_> {
     fn finish(&mut self) -> Result<(), Refused> {
         self.write_plays()?;
         self.write_groups()?;
+        self.write_settled()?;
         self.write_keyframes()
     }
 

@@ -80,18 +80,6 @@ impl<'x> Defaults<'x> {
         self.of_any(kind, class, key)
     }
 
-    /// The elements of a class and of those around it, from the outermost inwards.
-    pub(super) fn elements(&self, class: Option<&str>) -> Vec<Element<'x>> {
-        let mut name = class.or(self.main);
-        let mut all = Vec::new();
-        while let Some(class) = name.and_then(|name| self.classes.get(name)) {
-            all.extend(class.elements.iter().rev());
-            name = class.parent.filter(|parent| Some(*parent) != name);
-        }
-        all.reverse();
-        all
-    }
-
     /// The default of a class for an attribute of any of several kinds of elements, separated by blanks.
     pub(super) fn of_any(
         &self,

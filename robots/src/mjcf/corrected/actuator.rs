@@ -2,7 +2,8 @@
 
 use appell_spec::{Code, did_you_mean};
 
-use crate::xml::{Element, children, elements, tag};
+use crate::options::Options;
+use crate::xml::{Element, Findings, children, elements, tag};
 
 use super::super::schema::ACTUATORS;
 use super::bytes::{number, numbers, same};
@@ -57,12 +58,9 @@ impl<'x> Sheet<'x, '_> {
         own: &dyn Fn(&str) -> Option<String>,
     ) -> Result<(Law, Law), Refused> {
         let mut law = Law::default();
-        for default in self.defaults.elements(Self::class(actuator)) {
-            let kind = default.tag_name().name();
-            if ACTUATORS.split_ascii_whitespace().any(|one| one == kind) {
-                let own = |key: &str| default.attribute(key).map(str::to_owned);
-                law.add(default, kind, &own)?;
-            }
+        for default in self.defaults.chain(ACTUATORS, Self::class(actuator)) {
+            let own = |key: &str| default.attribute(key).map(str::to_owned);
+            law.add(default, default.tag_name().name(), &own)?;
         }
         let class = law.clone();
         law.add(actuator, kind, own)?;
@@ -72,7 +70,10 @@ impl<'x> Sheet<'x, '_> {
     /// An actuator, its law, and the law of its class; refuses those with another law than gain and affine bias.
     fn affine(&self, name: &str) -> Result<(Element<'x>, Law, Law), Refused> {
         let actuator = self.actuator(name)?;
-        let (law, class) = self.law(actuator)?;
+        let (mut law, class) = self.law(actuator)?;
+        if law.has_damping_ratio() {
+            law.bias[2] = -self.damping(actuator, name)?;
+        }
         if law.is_affine() {
             return Ok((actuator, law, class));
         }
@@ -93,6 +94,50 @@ impl<'x> Sheet<'x, '_> {
         refused(Code::NotAllowedHere, tag(actuator), message, help)
     }
 
+    /// The damping of a servo that `MuJoCo` computes from its damping ratio and the inertias of the file.
+    fn damping(&self, actuator: Element<'x>, name: &str) -> Result<f64, Refused> {
+        let options = Options {
+            actuators: true,
+            ..Options::default()
+        };
+        let findings = Findings::default();
+        let robot = super::super::read(self.root, &findings, self.whole, &options);
+        let drives = robot.drives.unwrap_or_default();
+        let found = drives.iter().find(|drive| drive.name == name);
+        let found = found.filter(|drive| drive.bias[2] <= 0.0);
+        found.map(|drive| -drive.bias[2]).ok_or_else(|| {
+            let message = format!("the damping of `{name}` is not known");
+            let help = "write the `kv` that MuJoCo computes from `dampratio`";
+            refused(Code::NotAllowedHere, tag(actuator), message, help)
+        })
+    }
+
+    /// Writes the factor of the rate of a position servo where it changes, in the place of a damping ratio.
+    fn write_damping(&mut self, actuator: Element<'x>, law: &Law) -> Result<(), Refused> {
+        let (before, _) = self.law(actuator)?;
+        if same(before.bias[2], law.bias[2]) {
+            return Ok(());
+        }
+        self.remove(actuator, "dampratio")?;
+        self.set(actuator, "kv", number(-law.bias[2]))
+    }
+
+    /// Writes out the damping of servos that have a damping ratio.
+    pub(super) fn write_damping_ratios(&mut self) -> Result<(), Refused> {
+        let all = children(self.root, "actuator").flat_map(elements);
+        for actuator in all.collect::<Vec<Element<'x>>>() {
+            if !self.law(actuator)?.0.has_damping_ratio() {
+                continue;
+            }
+            let (_, law, class) = self.affine(&called(actuator))?;
+            match self.kind(actuator) {
+                "general" => self.write_law(actuator, &law, &class)?,
+                _ => self.write_damping(actuator, &law)?,
+            }
+        }
+        Ok(())
+    }
+
     pub(super) fn kp(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let (actuator, mut law, class) = self.affine(name)?;
         let before = law.gain[0];
@@ -101,7 +146,10 @@ impl<'x> Sheet<'x, '_> {
             return Ok(());
         }
         match self.kind(actuator) {
-            "position" | "intvelocity" => self.set(actuator, "kp", number(after)),
+            "position" | "intvelocity" => {
+                self.set(actuator, "kp", number(after))?;
+                self.write_damping(actuator, &law)
+            }
             "general" if law.acting_bias()[1] != 0.0 => {
                 law.bias[1] = if same(law.bias[1], -before) {
                     -after
@@ -124,11 +172,6 @@ impl<'x> Sheet<'x, '_> {
             "damper" => -law.gain[2],
             _ => return Err(self.no_such_gain(actuator, name, "kv")),
         };
-        if before < 0.0 && !matches!(amount, Amount::To(_)) {
-            let message = format!("`{kind}` `{name}` has a damping ratio for its `kv`");
-            let help = "write the `kv` that MuJoCo computes from it";
-            return Err(refused(Code::NotAllowedHere, tag(actuator), message, help));
-        }
         let after = self.at_least_zero(name, "kv", amount.of(before));
         if same(after, before) {
             return Ok(());
@@ -189,15 +232,9 @@ impl<'x> Sheet<'x, '_> {
         let constant = law.acting_bias()[0] != 0.0;
         match kind {
             "position" | "intvelocity" if !constant => {
+                law.bias[2] *= factor;
                 self.set(actuator, "kp", number(law.gain[0] * factor))?;
-                if law.bias[2] < 0.0 {
-                    self.set(actuator, "kv", number(-law.bias[2] * factor))?;
-                } else if law.bias[2] > 0.0 {
-                    // The damping is the ratio times the root of the stiffness.
-                    let ratio = law.bias[2] * factor.sqrt();
-                    self.set(actuator, "dampratio", number(ratio))?;
-                }
-                Ok(())
+                self.write_damping(actuator, &law)
             }
             "velocity" => self.set(actuator, "kv", number(law.gain[0] * factor)),
             "damper" => self.set(actuator, "kv", number(-law.gain[2] * factor)),

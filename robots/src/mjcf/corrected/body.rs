@@ -148,8 +148,9 @@ impl<'x> Sheet<'x, '_> {
             return Ok(());
         }
         let (index, pose) = self.group(name)?;
-        if mass < 0.0 {
-            // A body has no negative mass: the payload is taken away from the body itself.
+        self.reshaped = true;
+        if mass < 0.0 || self.compiler.adjusts() {
+            // A body of its own has no negative mass, and its mass and inertia would be raised to their bounds.
             let point = Inertia {
                 mass,
                 centre: pose.of(at),
@@ -247,6 +248,7 @@ impl<'x> Sheet<'x, '_> {
     pub(super) fn write_groups(&mut self) -> Result<(), Refused> {
         for group in std::mem::take(&mut self.groups) {
             if group.before != group.after {
+                self.reshaped = true;
                 self.use_inertials()?;
                 self.write_group(&group)?;
                 self.add_to_total(group.after.mass - group.before.mass)?;
@@ -263,7 +265,8 @@ impl<'x> Sheet<'x, '_> {
         let body = self.body(group.head)?;
         let inertial = children(body, "inertial").last();
         let from_geoms = self.compiler.inertia_from == InertiaFrom::Geoms;
-        if let Some(inertial) = inertial.filter(|_| !from_geoms && !group.reshaped)
+        let by_numbers = !from_geoms && !group.reshaped && !self.compiler.adjusts();
+        if let Some(inertial) = inertial.filter(|_| by_numbers)
             && others.is_empty()
         {
             return self.write_numbers(inertial, group);

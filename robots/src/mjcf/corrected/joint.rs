@@ -114,6 +114,7 @@ impl<'x> Sheet<'x, '_> {
         if same(after, before) {
             return Ok(());
         }
+        self.reshaped |= attribute == JointNumber::Armature;
         all.resize(all.len().max(1), 0.0);
         all[0] = after;
         self.set(element, key, numbers(&all))
@@ -126,6 +127,21 @@ impl<'x> Sheet<'x, '_> {
             self.said.push(words);
         }
         wanted.max(0.0)
+    }
+
+    /// Writes out the numbers that are computed from the inertias of the file, where these change.
+    pub(super) fn write_settled(&mut self) -> Result<(), Refused> {
+        if !self.reshaped {
+            return Ok(());
+        }
+        let joints = (self.robot.links.iter()).filter_map(|link| link.joint.as_ref());
+        let settled = joints.filter(|joint| joint.settles.is_some());
+        for joint in settled.cloned().collect::<Vec<Joint>>() {
+            if let Some(element) = self.at(&joint.place) {
+                self.write_out_springdamper(&joint, element)?;
+            }
+        }
+        self.write_damping_ratios()
     }
 
     /// Replaces `springdamper` of a joint by the stiffness and the damping that are computed from it.

@@ -140,6 +140,12 @@ impl Law {
         gains && ["none", "affine"].contains(&self.biastype.as_str())
     }
 
+    /// Whether a positive factor of the rate stands for a damping ratio.
+    pub(super) fn has_damping_ratio(&self) -> bool {
+        let is_servo = self.biastype == "affine" && super::bytes::same(self.gain[0], -self.bias[1]);
+        self.gaintype == "fixed" && is_servo && self.bias[2] > 0.0
+    }
+
     /// The bias that acts.
     pub(super) fn acting_bias(&self) -> [f64; NUMBERS] {
         if self.biastype == "none" {

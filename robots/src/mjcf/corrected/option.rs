@@ -3,7 +3,7 @@
 use appell_spec::Code;
 
 use crate::rotation::Vector;
-use crate::xml::{Element, children, elements, tag};
+use crate::xml::{Element, children, tag};
 
 use super::bytes::numbers;
 use super::change::{Refused, refused};
@@ -50,13 +50,17 @@ impl<'x> Sheet<'x, '_> {
             return Ok(());
         }
         let words = numbers(&gravity);
-        if let Some(option) = option {
+        if let Some(option) = option.filter(|option| self.is_in_file(*option)) {
             return self.set(option, "gravity", words);
         }
         self.said.push(format!("option: gravity {words}"));
         let text = format!("<option gravity=\"{words}\"/>");
-        let compiler = elements(self.root).find(|one| one.has_tag_name("compiler"));
-        match compiler {
+        if option.is_some() {
+            // Later elements add to those of an included file.
+            return self.insert_into(self.root, &text, false);
+        }
+        let compiler = children(self.root, "compiler").next();
+        match compiler.filter(|compiler| self.is_in_file(*compiler)) {
             Some(compiler) => self.insert_after(compiler, &text),
             None => self.insert_into(self.root, &text, true),
         }

@@ -108,6 +108,7 @@ impl<'x> Sheet<'x, '_> {
             number(light)
         );
         self.said.push(words);
+        self.reshaped = true;
         self.set(element, "armature", number(light))
     }
 }

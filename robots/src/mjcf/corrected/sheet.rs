@@ -25,6 +25,8 @@ pub(super) struct Sheet<'x, 'f> {
     pub(super) robot: Robot,
     pending: Vec<Pending<'x>>,
     pub(super) groups: Vec<body::Group>,
+    /// Whether masses, inertias or armatures change.
+    pub(super) reshaped: bool,
     /// Joints with backlash, and its size.
     pub(super) plays: Vec<(String, f64)>,
     /// Texts that are inserted into the file, with their places.
@@ -65,6 +67,7 @@ impl<'x, 'f> Sheet<'x, 'f> {
             robot,
             pending: Vec::new(),
             groups: Vec::new(),
+            reshaped: false,
             plays: Vec::new(),
             inserted: Vec::new(),
             filled: BTreeMap::new(),
@@ -219,6 +222,11 @@ impl<'x, 'f> Sheet<'x, 'f> {
             return Err(refused(Code::NotAllowedHere, tag, message, help));
         }
         Ok(place)
+    }
+
+    /// Whether an element is in the file itself.
+    pub(super) fn is_in_file(&self, element: Element<'x>) -> bool {
+        self.place(element).is_ok()
     }
 
     /// The blanks before an element on its line; none where something else stands before it.

@@ -242,7 +242,7 @@ pub(crate) struct Drive {
     pub(crate) name: String,
     /// Its element, such as `position`.
     pub(crate) kind: String,
-    /// What it drives: a joint with an axis or a fixed tendon.
+    /// Its transmission: a joint with an axis or a fixed tendon.
     pub(crate) on: On,
     pub(crate) gear: f64,
     /// The force is `gain` times the command plus `bias`; each is a constant, a factor of the length and one of its rate.
@@ -258,7 +258,7 @@ pub(crate) struct Drive {
     pub(crate) place: Span,
 }
 
-/// What an actuator drives, by its name.
+/// The transmission of an actuator, by name.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(crate) enum On {
     Joint(String),

@@ -110,7 +110,7 @@ impl<'a> Patterns<'a> {
         patterns.any(|pattern| all.iter().any(|name| is(pattern, name)))
     }
 
-    /// Names of what does not exist, and patterns of no attribute.
+    /// Names without an element, and patterns without an attribute.
     pub(crate) fn unknown(&self) -> Vec<&str> {
         let is_known = |pattern: &&String| {
             if pattern.contains('*') {

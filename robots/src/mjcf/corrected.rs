@@ -42,7 +42,7 @@ use sheet::Sheet;
 pub struct Corrected {
     /// Its text.
     pub text: String,
-    /// What was changed, a sentence for each element.
+    /// The changes, a sentence for each element.
     pub edits: Vec<String>,
 }
 

@@ -9,7 +9,7 @@ use crate::table::Item;
 use super::units::Units;
 use super::{Writer, minus, plus, sentence};
 
-/// What an actuator acts along, as expressions.
+/// The transmission of an actuator, as expressions.
 struct Way {
     /// The key and the value that give the direction of the load.
     along: (&'static str, String),

@@ -463,7 +463,7 @@ impl<'x> Sheet<'x, '_> {
     }
 }
 
-/// The name of an actuator; one without a name is called by its kind and what it drives.
+/// The name of an actuator, or its kind and transmission.
 fn called(actuator: Element<'_>) -> String {
     let kind = actuator.tag_name().name();
     let drives = ["joint", "jointinparent", "tendon"];

@@ -285,7 +285,7 @@ impl<'x> Sheet<'x, '_> {
             let help = "the changes of this body are larger than it is";
             return Err(refused(Code::NotPhysical, tag(body), message, help));
         }
-        // What is fixed to the body is heavier than all of them are now: the body has it all.
+        // The fixed bodies alone are heavier than the new mass: the body has all of it.
         for (link, _) in others {
             self.write_whole(link, Inertia::NONE)?;
         }

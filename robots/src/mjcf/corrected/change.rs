@@ -169,7 +169,7 @@ pub enum Change {
     Reading {
         /// The joint.
         joint: String,
-        /// What the encoder reads in addition.
+        /// The reading less the position.
         bias: f64,
     },
 }

@@ -42,7 +42,7 @@ fn overwrite(list: &mut [f64; NUMBERS], by: &[f64]) {
 }
 
 impl Law {
-    /// Adds what an element says; `own` reads its attributes.
+    /// Adds the attributes of an element, which `own` reads.
     pub(super) fn add(
         &mut self,
         element: Element<'_>,

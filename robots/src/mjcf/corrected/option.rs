@@ -1,4 +1,4 @@
-//! Gravity, and what the solver is given.
+//! Gravity, and options of the solver.
 
 use appell_spec::Code;
 

@@ -54,6 +54,7 @@ mod manifest;
 mod mcap;
 pub mod motion_capture;
 mod motive;
+mod named;
 mod noise;
 mod observed;
 #[cfg(feature = "parquet")]

@@ -34,6 +34,7 @@ use toml::de::DeTable;
 use crate::channel::{Channel, Measured, Role};
 use crate::fields::{Fields, Tolerance, Value};
 use crate::limits::MAX_RUNS;
+use crate::named::Named;
 use crate::robot::Robot;
 use crate::time::{self, Stated, TIME, may_be_time};
 use crate::{DataError, Library, Parameter, Part, Spec};
@@ -122,30 +123,6 @@ pub(crate) fn read(
         channels,
         runs,
     })
-}
-
-/// The names that a description may use: those of the spec, or those of a robot file.
-#[derive(Clone, Copy)]
-struct Named<'m> {
-    mechanism: &'m Mechanism,
-    robot: Option<&'m Robot>,
-}
-
-impl Named<'_> {
-    /// The parameters that a key names, each with the value that is one in the spec: of a factor the number that it
-    /// multiplies.
-    fn parameters(self, key: &str) -> Vec<(usize, f64)> {
-        let parameters = &self.mechanism.parameters;
-        let index = |name: &str| parameters.iter().position(|own| own.label.name == name);
-        let Some(robot) = self.robot else {
-            return index(key).map(|index| (index, 1.0)).into_iter().collect();
-        };
-        let numbers = robot.numbers(key).filter_map(|number| {
-            let one = if number.relative { number.value } else { 1.0 };
-            Some((index(&number.parameter)?, one))
-        });
-        numbers.collect()
-    }
 }
 
 /// The keys of `[parameters]`.

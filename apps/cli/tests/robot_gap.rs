@@ -119,6 +119,21 @@ fn an_unknown_number_or_joint_of_a_robot_is_named_with_its_line() {
 }
 
 #[test]
+fn an_actuator_may_have_the_name_of_its_joint() {
+    let folder = rig();
+    folder.write("robot.xml", &ROBOT.replace("name=\"F\"", "name=\"x\""));
+    folder.write(
+        "recording.toml",
+        &DESCRIPTION.replace("input = \"F\"", "input = \"x\""),
+    );
+    let asked = ["diagnose", "--data", ".", "--json", "report.json"];
+    folder.done(&asked);
+    let report = folder.read("report.json");
+    assert!(report.contains("coulomb_friction@x"), "{report}");
+    assert!(!report.contains("ctrl_x"), "{report}");
+}
+
+#[test]
 fn what_mjcf_cannot_express_stands_in_a_comment() {
     let folder = rig();
     let report = r#"{ "schema": "gap-report/1", "mechanism": "carriage", "which": [{

@@ -10,6 +10,8 @@ use appell_spec::mechanism::Interpolation;
 use crate::channel::{Channel, Role};
 use crate::{DataError, Run, Spec};
 
+/// Times that differ by less, in s, are equal.
+const ROUNDING: f64 = 1e-9;
 /// Largest mesh, in bytes.
 const MAX_MESH: u64 = 1 << 28;
 
@@ -154,11 +156,11 @@ impl Robot {
         named.flatten().collect()
     }
 
-    /// A text with the parameters of the spec under the names of their numbers in the file. Names of elements with
-    /// other characters than letters, digits, `_`, `-`, `.` and `/` stay, for they may mean something in the text.
+    /// A text with the names of the file for those of the spec. Names with other characters than letters, digits, `_`,
+    /// `-`, `.` and `/` stay, for they may mean something in the text.
     pub fn named(&self, text: &str) -> String {
         let is_part = |c: char| c.is_alphanumeric() || c == '_';
-        let is_plain = |c: char| is_part(c) || "-./".contains(c);
+        let is_plain = |name: &String| name.chars().all(|c| is_part(c) || "-./".contains(c));
         let mut named = String::with_capacity(text.len());
         let mut rest = text;
         while let Some(start) = rest.find(is_part) {
@@ -166,18 +168,28 @@ impl Robot {
             let word = &rest[start..];
             let end = word.find(|c| !is_part(c)).unwrap_or(word.len());
             let (word, after) = word.split_at(end);
-            let mut entries = self.dictionary.entries.iter();
-            match entries.find(|entry| entry.parameter == word) {
-                Some(entry) if entry.element.chars().all(is_plain) => {
-                    named.push_str(&entry.element);
-                    named.push('.');
-                    named.push_str(entry.attribute);
-                }
-                _ => named.push_str(word),
-            }
+            let own = self.name_of(word).filter(is_plain);
+            named.push_str(own.as_deref().unwrap_or(word));
             rest = after;
         }
         named + rest
+    }
+
+    /// The name in the file of a parameter, an input or a coordinate.
+    fn name_of(&self, word: &str) -> Option<String> {
+        let Dictionary {
+            entries,
+            actuators,
+            joints,
+            ..
+        } = &self.dictionary;
+        let number = entries.iter().find(|entry| entry.parameter == word);
+        let number = number.map(|entry| format!("{}.{}", entry.element, entry.attribute));
+        let actuator = || actuators.iter().find(|actuator| actuator.input == word);
+        let joint = || joints.iter().find(|joint| joint.coordinate == word);
+        number
+            .or_else(|| actuator().map(|actuator| actuator.name.clone()))
+            .or_else(|| joint().map(|joint| joint.name.clone()))
     }
 }
 
@@ -187,7 +199,7 @@ pub(crate) fn followed(times: &[f64], command: &[f64], lag: f64, delay: f64) -> 
     let held: Vec<f64> = times
         .iter()
         .map(|time| {
-            let since = times.partition_point(|own| *own <= time - delay);
+            let since = times.partition_point(|own| *own <= time - delay + ROUNDING);
             command[since.saturating_sub(1)]
         })
         .collect();

@@ -179,7 +179,7 @@ impl Built {
             }
             "position" => {
                 self.gain[0] = number("kp").unwrap_or(self.gain[0]);
-                self.bias[1] = -self.gain[0];
+                self.bias[..2].copy_from_slice(&[0.0, -self.gain[0]]);
                 // A positive factor of the rate is a damping ratio.
                 let kv = number("kv").map(|kv| -kv);
                 self.bias[2] = number("dampratio").or(kv).unwrap_or(self.bias[2]);
@@ -300,13 +300,22 @@ impl<'x> Reader<'x, '_> {
             let damping = self
                 .polynomial(attribute("damping"))
                 .map(|one| one * gear * gear);
-            let joint = ["joint", "jointinparent"]
-                .iter()
-                .find_map(|key| element.attribute(*key));
-            let link = joint.and_then(|name| self.joint_links.get(name).copied());
-            let tendon = element
-                .attribute("tendon")
-                .and_then(|name| by_name.get(name).copied());
+            // Of several transmissions, the last one holds.
+            let ways = [
+                "joint",
+                "jointinparent",
+                "tendon",
+                "cranksite",
+                "site",
+                "body",
+            ];
+            let given = ways.iter().rev();
+            let way = given.copied().find(|key| element.attribute(*key).is_some());
+            let target = way.and_then(|key| element.attribute(key));
+            let link = target.filter(|_| matches!(way, Some("joint" | "jointinparent")));
+            let link = link.and_then(|name| self.joint_links.get(name).copied());
+            let tendon = target.filter(|_| way == Some("tendon"));
+            let tendon = tendon.and_then(|name| by_name.get(name).copied());
             let (on, inertia, resistance) = if let Some(link) = link
                 && let Some(joint) = &mut self.links[link].joint
             {

@@ -275,3 +275,30 @@ fn attributes_that_an_actuator_does_not_have_are_refused() {
         other => panic!("{other:?}"),
     }
 }
+
+#[test]
+fn of_several_transmissions_the_last_one_holds_as_in_mujoco() {
+    let options = Options {
+        actuators: true,
+        ..Options::default()
+    };
+    let text = file(r#"<motor name="m" tendon="sum" joint="shoulder"/>"#);
+    let arm = import("arm.xml", &text, &options).unwrap();
+    assert_eq!(arm.dictionary.actuators[0].joint, None);
+}
+
+#[test]
+fn a_position_servo_has_no_constant_force_whatever_its_class_says() {
+    let options = Options {
+        actuators: true,
+        ..Options::default()
+    };
+    let text = file(r#"<position name="p" class="servo" joint="shoulder"/>"#);
+    let text = text.replace(
+        r#"<position kp="20" kv="1""#,
+        r#"<general biastype="affine" biasprm="7 0 0"/><position kp="20" kv="1""#,
+    );
+    let arm = import("arm.xml", &text, &options).unwrap();
+    let law = "min(max(20 [N*m]*(p - shoulder) - 1 [N*m*s]*dot(shoulder), -3 [N*m]), 3 [N*m])";
+    assert!(arm.spec.contains(law), "{}", arm.spec);
+}

@@ -224,6 +224,7 @@ fn masses_that_only_a_tolerance_tells_do_not_hold_a_fit_up() {
     let effort = Effort {
         gain: 0.02,
         steps: 60,
+        ..Effort::default()
     };
     let fit = Fit::quick(&estimation, &start, &free, effort).unwrap();
     assert!(fit.steps <= 30, "{} steps", fit.steps);

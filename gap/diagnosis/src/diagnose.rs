@@ -68,6 +68,7 @@ mod prediction;
 mod prior;
 mod report;
 mod scales;
+mod scan;
 mod screen;
 mod search;
 mod sets;
@@ -109,11 +110,13 @@ use screen::Screen;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
 /// calibration can state the version to which they belong.
-pub const ENGINE: u32 = 13;
+pub const ENGINE: u32 = 14;
 
 /// Largest number of rows and of measured values in a fit: with more, statistical errors are far below modelling errors.
 const MOST_ROWS: usize = 4000;
 const MOST_VALUES: usize = 20_000;
+/// The same for robots, which are judged over windows.
+const ROBOT_VALUES: usize = 4_000;
 
 /// Diagnoses a data set with a library of effects. `stage` is called with the name of each stage.
 pub fn diagnose(
@@ -135,7 +138,7 @@ fn diagnosed(
 ) -> Result<Report, DiagnoseError> {
     stage("deriving the mechanism with all effects");
     let whole = set.only(Part::Fit);
-    let fitted = whole.stretches(most_rows(set));
+    let fitted = whole.stretches(most_rows(set, options));
     if fitted.runs.is_empty() {
         return Err(DiagnoseError::NothingToFit);
     }
@@ -179,9 +182,9 @@ fn by_filter(
     mut stage: impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
     let whole = training.whole;
-    let first = judged(training, model, &mut stage)?;
+    let first = judged(training, model, options, &mut stage)?;
     let training_runs = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
-    let (judged, rest) = without_events(first, whole, model, &mut stage)?;
+    let (judged, rest) = without_events(first, whole, model, options, &mut stage)?;
     let (fitted, rest) =
         (rest.as_ref()).map_or((training.segments, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
@@ -287,27 +290,33 @@ fn without_events<'m>(
     first: Judged<'m>,
     whole: &DataSet,
     model: &'m EffectModel,
+    options: &Options,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
     let Some(rest) = outside::rest(&first, whole)? else {
         return Ok((first, None));
     };
-    let fitted = rest.stretches(most_rows(&rest));
+    let fitted = rest.stretches(most_rows(&rest, options));
     stage("fitting without the windows that no hypothesis predicts");
     let training = Training {
         whole: &rest,
         segments: &fitted,
     };
-    Ok(match judged(training, model, stage) {
+    Ok(match judged(training, model, options, stage) {
         Ok(again) => (again.without_events(), Some((fitted, rest))),
         Err(_) => (first, None),
     })
 }
 
 /// Largest number of rows in a fit.
-fn most_rows(set: &DataSet) -> usize {
+fn most_rows(set: &DataSet, options: &Options) -> usize {
     let measured = set.channels.iter().filter(|channel| channel.is_measured());
-    MOST_ROWS.min(MOST_VALUES / measured.count().max(1))
+    let most = if by_forces::applies(set, options) {
+        ROBOT_VALUES
+    } else {
+        MOST_VALUES
+    };
+    MOST_ROWS.min(most / measured.count().max(1))
 }
 
 /// Data of the plots.
@@ -333,6 +342,7 @@ fn pictures(
 fn judged<'m>(
     training: Training<'_>,
     model: &'m EffectModel,
+    options: &Options,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
     let whole = training.whole.bound_to(&model.mechanism);
@@ -340,7 +350,7 @@ fn judged<'m>(
         whole: &whole,
         segments: training.segments,
     };
-    let mut judged = judged_beside(training, &[], None, model, stage)?;
+    let mut judged = judged_beside(training, &[], None, model, options, stage)?;
     loop {
         let more = immaterial(&judged).unwrap_or_default();
         if more.is_empty() {
@@ -348,7 +358,14 @@ fn judged<'m>(
         }
         stage("fitting imperfections of channels in every hypothesis");
         let imperfections = [judged.bench.imperfections.clone(), more].concat();
-        match judged_beside(training, &imperfections, Some(&judged), model, stage) {
+        match judged_beside(
+            training,
+            &imperfections,
+            Some(&judged),
+            model,
+            options,
+            stage,
+        ) {
             Ok(again) => judged = again,
             Err(_) => return Ok(judged),
         }
@@ -361,11 +378,13 @@ fn judged_beside<'m>(
     imperfections: &[Imperfection],
     before: Option<&Judged<'m>>,
     model: &'m EffectModel,
+    options: &Options,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Judged<'m>, DiagnoseError> {
     let whole = training.whole;
     let mut bench = Bench::new(training.segments, model, imperfections)?;
     bench.whole.clone_from(&whole.runs);
+    bench.is_of_robot = by_forces::applies(whole, options);
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");

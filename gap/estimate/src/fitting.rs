@@ -2,6 +2,7 @@
 //!
 //! | file | idea |
 //! |---|---|
+//! | `levels.rs` | steps of levels of noise |
 //! | `level_scaling.rs` | levels of process noise relative to the inertia |
 //! | `curvature.rs` | expected, observed and updated curvature |
 //! | `fit.rs` | quasi-Newton fits |
@@ -14,6 +15,7 @@ pub(crate) mod curvature;
 pub(crate) mod fit;
 pub(crate) mod free;
 pub(crate) mod level_scaling;
+mod levels;
 pub(crate) mod posterior;
 pub(crate) mod regression;
 pub(crate) mod scoring;

@@ -146,6 +146,7 @@ fn split(runs: &mut Vec<Run>, findings: &mut Vec<Finding>) {
             .iter()
             .map(|values| values[rows.clone()].to_vec())
             .collect(),
+        earlier: Vec::new(),
     };
     *runs = vec![
         piece(0..fitted, Part::Fit),

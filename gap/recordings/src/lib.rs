@@ -79,7 +79,7 @@ pub use format::columns_of as columns;
 pub use frame::Frame;
 pub use level::{Noise, NoiseSource};
 pub use robot::Robot;
-pub use set::{DataSet, Parameter, Part, Run, Spec};
+pub use set::{DataSet, Parameter, Part, Row, Run, Spec};
 
 use frame::Source;
 use manifest::Manifest;

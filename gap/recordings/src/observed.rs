@@ -102,7 +102,13 @@ impl DataSet {
             });
             let seen = rows.flat_map(|row| measured.iter().map(move |&c| run.values[c][row]));
             let recording = Recording::new(run.times.clone(), commanded.collect(), seen.collect())?;
-            recording.interpolated(&between)
+            let times: Vec<f64> = run.earlier.iter().map(|row| row.t).collect();
+            let earlier = run.earlier.iter().flat_map(|row| {
+                let values = inputs.iter();
+                values.map(|column| column.map_or(0.0, |column| row.values[column]))
+            });
+            let earlier: Vec<f64> = earlier.collect();
+            Ok(recording.interpolated(&between)?.after(&times, &earlier))
         })
         .collect()
     }

@@ -59,6 +59,7 @@ pub(crate) fn read(
         times: table.times,
         values,
         sampling,
+        earlier: Vec::new(),
     }
 }
 

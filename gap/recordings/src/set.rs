@@ -82,6 +82,18 @@ pub struct Run {
     pub values: Vec<Vec<f64>>,
     /// Steps and gaps.
     pub sampling: Sampling,
+    /// Rows before its first one, of a window of a run: inputs that are delayed act later. Measurements of them do not
+    /// count.
+    pub earlier: Vec<Row>,
+}
+
+/// A row: its time, and a value for each channel.
+#[derive(Debug, Clone)]
+pub struct Row {
+    /// Time in s.
+    pub t: f64,
+    /// Values in SI for each channel.
+    pub values: Vec<f64>,
 }
 
 impl Run {

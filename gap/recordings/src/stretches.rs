@@ -7,12 +7,14 @@ use appell_estimate::EstimateError;
 use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
-use crate::{DataSet, Run};
+use crate::{DataSet, Row, Run};
 
 /// Least number of rows of a segment, as its initial state is unknown; fewer if they contain this many measured
 /// values, which determine it.
 const LENGTH: usize = 1000;
 const VALUES: usize = 4000;
+/// Time in s before a window of which inputs are kept.
+const BEFORE: f64 = 0.5;
 /// Least number of rows of a piece of an interrupted run.
 const SHORTEST: usize = 10;
 
@@ -189,12 +191,27 @@ fn pieces(rows: usize, kept: usize, least: usize) -> Vec<Range<usize>> {
     (0..count).map(piece).collect()
 }
 
+/// The last rows before one of a run.
+fn earlier(run: &Run, row: usize) -> Vec<Row> {
+    let begin = run.times.get(row).map_or(f64::INFINITY, |t| t - BEFORE);
+    let first = run.times.partition_point(|t| *t < begin);
+    let rows = first.min(row)..row;
+    rows.map(|row| Row {
+        t: run.times[row],
+        values: run.values.iter().map(|column| column[row]).collect(),
+    })
+    .collect()
+}
+
 fn cut(run: &Run, rows: Range<usize>) -> Run {
     let values = run.values.iter();
     Run {
+        name: run.name.clone(),
+        part: run.part,
+        sampling: run.sampling.clone(),
         times: run.times[rows.clone()].to_vec(),
         values: values.map(|column| column[rows.clone()].to_vec()).collect(),
-        ..run.clone()
+        earlier: earlier(run, rows.start),
     }
 }
 
@@ -212,6 +229,7 @@ mod tests {
             sampling: Sampling::of(&times),
             values: vec![times.clone()],
             times: times.clone(),
+            earlier: Vec::new(),
         };
         let runs = [run("a"), run("b")];
         let windows = [

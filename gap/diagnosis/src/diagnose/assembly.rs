@@ -287,6 +287,15 @@ fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
         .collect()
 }
 
+/// The name of a size; of an effect at all drives, with the drive.
+fn named(candidate: &Candidate, short: &str) -> String {
+    let name = candidate.name();
+    match candidate.sites().as_slice() {
+        [drive] if candidate.is_of_drives() => format!("{name}.{drive}_{short}"),
+        _ => format!("{name}.{short}"),
+    }
+}
+
 /// Values of a candidate.
 fn values_of(
     candidate: &Candidate,
@@ -337,7 +346,7 @@ fn values_of(
             appell_estimate::Coordinate::Logarithm => value,
         };
         let told = Value {
-            name: format!("{}.{short}", candidate.name()),
+            name: named(candidate, short),
             value: value / scale,
             std: deviation(place) * stretch / scale,
             unit,

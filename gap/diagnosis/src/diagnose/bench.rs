@@ -31,21 +31,25 @@ const LAG_OF_CHANNEL: [f64; 2] = [0.2, 500.0];
 const EFFORT: Effort = Effort {
     gain: 0.05,
     steps: 60,
+    floor: f64::NEG_INFINITY,
 };
 /// The same over windows, whose likelihood is coarsened.
 const COARSE: Effort = Effort {
     gain: 0.3,
     steps: 20,
+    floor: f64::NEG_INFINITY,
 };
 /// The same for shares of a gap, which are needed to a hundredth.
 const SHARES: Effort = Effort {
     gain: 0.5,
     steps: 12,
+    floor: f64::NEG_INFINITY,
 };
 /// The same for noise levels that are re-estimated in the next step.
 const ROUGHLY: Effort = Effort {
     gain: 10.0,
     steps: 30,
+    floor: f64::NEG_INFINITY,
 };
 /// Largest number of tenfold increases of the process noise if the filter diverges.
 const LOST: usize = 4;
@@ -87,6 +91,8 @@ pub(super) struct Bench<'a> {
     pub(super) hardware: Hardware,
     /// Nuisance parameters of channels, fitted in every hypothesis.
     pub(super) imperfections: Vec<Imperfection>,
+    /// Whether every coordinate is driven and measured, so that simulations over windows are stable.
+    pub(super) is_of_robot: bool,
 }
 
 impl<'a> Bench<'a> {
@@ -149,6 +155,7 @@ impl<'a> Bench<'a> {
             predicting: Vec::new(),
             told: f64::INFINITY,
             imperfections: imperfections.to_vec(),
+            is_of_robot: false,
         })
     }
 
@@ -423,6 +430,20 @@ impl<'a> Bench<'a> {
         fitted
     }
 
+    /// The model as stated, with the noise levels that fit.
+    pub(super) fn stated(&self) -> Result<Fitted, DiagnoseError> {
+        let setup = self.setup(&[]);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let mut start = self.problem.start.clone();
+        self.loosen(&estimation, &mut start)?;
+        let levels = Fit::quick(&estimation, &start, &self.problem.levels, ROUGHLY)?.values;
+        let as_it_is = Effort {
+            steps: 0,
+            ..ROUGHLY
+        };
+        self.fit_by(Fit::quick, as_it_is, &[], &estimation, &levels)
+    }
+
     fn nominal_from(
         &self,
         estimation: &Estimation<'_>,
@@ -468,6 +489,21 @@ impl<'a> Bench<'a> {
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
         self.fit_by(Fit::quick, self.effort(), members, estimation, start)
+    }
+
+    /// The same; given up where it stays far below a log posterior.
+    pub(super) fn fit_above(
+        &self,
+        floor: f64,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let effort = Effort {
+            floor,
+            ..self.effort()
+        };
+        self.fit_by(Fit::quick, effort, members, estimation, start)
     }
 
     /// Fits some values.
@@ -545,6 +581,7 @@ impl Bench<'_> {
         });
         let effort = Effort {
             gain: effort.gain / self.weight,
+            floor: effort.floor / self.weight,
             ..effort
         };
         let fit = search(estimation, start, &firm.collect::<Vec<_>>(), effort)?;

@@ -138,7 +138,7 @@ impl Changes {
             Some(SignalEffect {
                 effect: candidate.name(),
                 acts: acts.to_owned(),
-                on: candidate.site.clone(),
+                on: candidate.sites().concat(),
                 output: None,
             })
         });

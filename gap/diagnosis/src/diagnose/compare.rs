@@ -12,7 +12,7 @@ use super::calibration::{
 };
 use super::evidence::Fitted;
 use super::prior::{NO_GAP, names, prior};
-use super::search::{Look, Search};
+use super::search::{Look, SLACK, Search};
 use super::unknown::{Leftover, leftover};
 use super::whiteness::independent;
 
@@ -214,8 +214,19 @@ impl Comparison {
 
     /// The result of a search.
     fn found(bench: &Bench<'_>, mut search: Search<'_, '_>) -> Result<Self, DiagnoseError> {
-        let ended_early = search.fits.iter().filter(|own| !own.fit.is_optimum());
-        let ended_early = ended_early.map(|own| (own.members.clone(), ended(&own.fit)));
+        // Searches that were given up need no word.
+        let log = |own: &Fitted| search.log_posterior(own);
+        let best = search
+            .fits
+            .iter()
+            .map(log)
+            .fold(f64::NEG_INFINITY, f64::max);
+        let ended_early = search.fits.iter();
+        let ended_early =
+            ended_early.filter(|own| !own.fit.is_optimum() && log(own) > best - SLACK);
+        let ended_early: Vec<(Vec<usize>, String)> = ended_early
+            .map(|own| (own.members.clone(), ended(&own.fit)))
+            .collect();
         let unfitted = |(members, _): &(Vec<usize>, String)| {
             !search.fits.iter().any(|own| own.members == *members)
         };

@@ -12,6 +12,7 @@ use super::bench::{Bench, WRONG};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::prior::{names, prior};
+use super::scan::scanned;
 use super::screen::quieten;
 use super::sets::{Set, Sets, SizeEstimates, is_fixed};
 use crate::effects::{Acts, Part};
@@ -19,6 +20,8 @@ use crate::effects::{Acts, Part};
 /// Number of sets that are fitted before the next linearisation, and of rivals that are fitted about the best one.
 const LEADING: usize = 2;
 const RIVALS: usize = 6;
+/// The same for a robot, whose fits take long.
+const FEW_RIVALS: usize = 3;
 /// Number of single effects about which sets are also evaluated.
 const SINGLES: usize = 6;
 /// Largest number of linearisations.
@@ -29,6 +32,8 @@ const WORTH: f64 = 1.5 * TIED;
 const BY_SLOPES: f64 = 0.5;
 /// Largest initial delay relative to the longest one.
 const BELOW: f64 = 0.9;
+/// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
+pub(super) const SLACK: f64 = 40.0;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters are not identifiable";
 
@@ -80,9 +85,15 @@ impl<'b, 'a> Search<'b, 'a> {
     ) -> Result<bool, DiagnoseError> {
         let mut first: Vec<Set> = Vec::new();
         let mut referred: BTreeSet<Vec<usize>> = BTreeSet::new();
+        let rivals = if self.bench.is_of_robot {
+            FEW_RIVALS
+        } else {
+            RIVALS
+        };
+        let is_stated = self.bench.is_of_robot && self.start_from_stated().is_ok();
         for round in 0..ROUNDS {
             // The first linearisation is about the nominal model, even with other known fits.
-            let next = if round == 0 {
+            let next = if round == 0 && !is_stated {
                 0
             } else {
                 self.best().unwrap_or(0)
@@ -95,7 +106,7 @@ impl<'b, 'a> Search<'b, 'a> {
                 search.fits[best].members == members
             };
             let mut leading = self.worth_a_fit(&sets, LEADING, None);
-            if round == 0 {
+            if round == 0 && !is_stated {
                 // The best single effects and pairs too: to first order they may not be among the best sets.
                 for effects in [1, 2] {
                     leading.extend(self.worth_a_fit(&sets, LEADING, Some(effects)));
@@ -106,14 +117,14 @@ impl<'b, 'a> Search<'b, 'a> {
             }
             // Rivals are compared by a linearisation about the best set.
             if is_best(self) || round + 1 == ROUNDS {
-                for set in self.worth_a_fit(&sets, RIVALS, None) {
+                for set in self.worth_a_fit(&sets, rivals, None) {
                     self.take(next, set);
                 }
                 let promised = first.first().map_or(0.0, |set| set.log_posterior);
                 let own = first
                     .iter()
                     .filter(|set| set.log_posterior > promised - WORTH);
-                for set in own.take(RIVALS) {
+                for set in own.take(rivals) {
                     self.take(0, set);
                 }
             }
@@ -132,6 +143,21 @@ impl<'b, 'a> Search<'b, 'a> {
         }
         self.drop_idle();
         Ok(true)
+    }
+
+    /// Fits sets about the model as stated: refitted parameters may imitate a large effect, far from its optimum.
+    fn start_from_stated(&mut self) -> Result<(), DiagnoseError> {
+        let stated = self.bench.stated()?;
+        for set in scanned(self.bench, &stated)? {
+            self.take_from(&stated, &set);
+        }
+        let sets = Sets::about(self.bench, &stated, self.log_posterior(&stated))?;
+        for effects in [None, Some(1), Some(2)] {
+            for set in self.worth_a_fit(&sets, LEADING, effects) {
+                self.take_from(&stated, &set);
+            }
+        }
+        Ok(())
     }
 
     /// Adds the most promising effects to the best hypothesis while that improves it, and fits the rivals of the result.
@@ -245,6 +271,11 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Fits a set from the optimum of another hypothesis.
     fn take(&mut self, from: usize, set: &Set) {
+        let from = self.fits[from].clone();
+        self.take_from(&from, set);
+    }
+
+    fn take_from(&mut self, from: &Fitted, set: &Set) {
         let members = set.members.clone();
         if self.settled.contains(&members) {
             return;
@@ -275,9 +306,8 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    fn fitted(&self, from: usize, set: &Set) -> Result<Fitted, DiagnoseError> {
+    fn fitted(&self, from: &Fitted, set: &Set) -> Result<Fitted, DiagnoseError> {
         let bench = self.bench;
-        let from = &self.fits[from];
         let setup = bench.setup(&set.members);
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut start = bench.carried(from, &estimation);
@@ -308,11 +338,20 @@ impl<'b, 'a> Search<'b, 'a> {
                 start[place] = value;
             }
             bench.hide(&new, &estimation, &mut start)?;
-            bench.fit(&set.members, &estimation, &start)
+            bench.fit_above(self.floor(&set.members), &set.members, &estimation, &start)
         });
         let mut fitted = best_fit(fits)?;
         self.count_late(&mut fitted)?;
         Ok(fitted)
+    }
+
+    /// The log posterior of the values of the best hypothesis, less what others may make up for by fewer values; that of
+    /// a delayed channel refers to fewer rows.
+    fn floor(&self, members: &[usize]) -> f64 {
+        let is_late = |&member: &usize| matches!(self.bench.candidate(member).acts, Acts::Late(_));
+        let mut best = (self.best().map(|best| &self.fits[best])).into_iter();
+        let comparable = best.find(|best| !best.members.iter().chain(members).any(is_late));
+        comparable.map_or(f64::NEG_INFINITY, |best| best.fit.log_posterior - SLACK)
     }
 
     /// Resets the values of a member of a fit.
@@ -362,7 +401,9 @@ impl<'b, 'a> Search<'b, 'a> {
             .filter(|&best| self.fits[best].members.len() > 1)
         {
             let whole = self.fits[best].clone();
-            for &idle in &whole.members {
+            // What acts at all drives has no idle part.
+            let is_whole = |member: usize| !self.bench.candidate(member).is_of_drives();
+            for &idle in whole.members.iter().filter(|&&member| is_whole(member)) {
                 if let Ok(fitted) = self.fitted_without(&whole, idle) {
                     self.keep(fitted);
                 }
@@ -433,7 +474,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let estimation = Estimation::new(&setup, &bench.recordings)?;
         let mut start = bench.carried(whole, &estimation);
         self.take_away(idle, whole, &estimation, &mut start);
-        let mut fitted = bench.fit(&members, &estimation, &start)?;
+        let mut fitted = bench.fit_above(self.floor(&members), &members, &estimation, &start)?;
         self.count_late(&mut fitted)?;
         Ok(fitted)
     }
@@ -475,7 +516,7 @@ fn best_fit(
 }
 
 /// Writes the best sizes as initial values, none of them at a bound.
-fn place(
+pub(super) fn place(
     bench: &Bench<'_>,
     estimation: &Estimation<'_>,
     sizes: &SizeEstimates,

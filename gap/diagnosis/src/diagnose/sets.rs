@@ -29,6 +29,8 @@ const LEVELS: [f64; 3] = [1.0, 0.1, 0.01];
 const TOGETHER: usize = 3;
 /// Smallest expected ratio of the residual deviations, the limit of the linearisation.
 const LEAST_SPREAD: f64 = 0.1;
+/// Largest first-order delay relative to the longest one.
+const BEYOND: f64 = 1.5;
 /// Number of choices of which all triples are evaluated: the best ones alone or in a pair.
 const MOST_CHOICES: usize = 60;
 /// Largest number of components of a vector whose subsets are evaluated.
@@ -76,6 +78,8 @@ struct Column {
     /// Index among the directions of its candidate.
     direction: usize,
     is_positive: bool,
+    /// Its largest size.
+    most: f64,
     /// The value to which it is the sensitivity, if it is one.
     unknown: Option<Unknown>,
     /// Prior standard deviation of its size, if any.
@@ -251,10 +255,14 @@ impl<'b, 'a> Sets<'b, 'a> {
             }
         }
         for (name, components) in vectors {
-            let some = 1..1_u32 << components.len().min(MOST_COMPONENTS);
-            for some in some.filter(|some| some.count_ones() as usize <= TOGETHER) {
-                let own = (0..components.len()).filter(|place| some >> place & 1 == 1);
-                let own = own.map(|place| &components[place]);
+            let is_of_drives = |(own, _): &(usize, _)| self.bench.candidate(*own).is_of_drives();
+            let subsets: Vec<Vec<usize>> = if components.iter().all(is_of_drives) {
+                vec![(0..components.len()).collect()]
+            } else {
+                subsets(components.len())
+            };
+            for some in subsets {
+                let own = some.iter().map(|&place| &components[place]);
                 choices.push(Choice {
                     name: name.clone(),
                     counts: counts(self.bench.effects, &name),
@@ -374,11 +382,13 @@ impl<'b, 'a> Sets<'b, 'a> {
     }
 
     /// Log posterior of some columns up to a constant, and their best sizes;
-    /// `None` if a one-sided size has the wrong sign, or if the columns are linearly dependent.
+    /// `None` if a one-sided size has the wrong sign, if a size is too large, or if the columns are linearly dependent.
     fn value(&self, level: &Level, columns: &[usize], log_prior: f64) -> Option<(f64, Solved)> {
         let mut solved = level.gram.solved(columns)?;
         let is_wrong = |(place, &column): (usize, &usize)| {
-            self.columns[column].is_positive && solved.sizes[place] <= 0.0
+            let own = &self.columns[column];
+            let size = solved.sizes[place];
+            own.is_positive && size <= 0.0 || size > own.most
         };
         if columns.iter().enumerate().any(is_wrong) {
             return None;
@@ -443,6 +453,18 @@ impl<'b, 'a> Sets<'b, 'a> {
     }
 }
 
+/// Subsets of the components of a vector.
+fn subsets(components: usize) -> Vec<Vec<usize>> {
+    let some = 1..1_u32 << components.min(MOST_COMPONENTS);
+    some.filter(|some| some.count_ones() as usize <= TOGETHER)
+        .map(|some| {
+            (0..components)
+                .filter(|place| some >> place & 1 == 1)
+                .collect()
+        })
+        .collect()
+}
+
 fn most_counts(bench: &Bench<'_>) -> usize {
     let counts = bench.effects.candidates.iter().map(|own| own.counts);
     counts.max().unwrap_or(1)
@@ -500,6 +522,10 @@ fn columns(
                 candidate,
                 direction: place,
                 is_positive: sides.get(place).copied().unwrap_or(false),
+                most: match own.acts {
+                    Acts::Delay(_) | Acts::Late(_) => BEYOND * bench.longest_delay(),
+                    _ => f64::INFINITY,
+                },
                 unknown: match direction {
                     Direction::Value(unknown) => Some(unknown),
                     _ => None,

@@ -72,6 +72,7 @@ impl Bench<'_> {
         });
         bench.weight = (bench.told / values.sum::<usize>().max(1) as f64).min(1.0);
         bench.predicting = levels.to_vec();
+        bench.is_of_robot = from.is_of_robot;
         Ok(bench)
     }
 

@@ -83,7 +83,7 @@ pub struct Candidate {
     pub kind: String,
     /// Name of the site.
     pub site: String,
-    /// The drives, where it acts at all of them.
+    /// The drives on which it acts, where it is an effect at all of them; of a component one of them.
     pub(super) drives: Vec<String>,
     /// Family of the effect.
     pub family: Family,
@@ -278,13 +278,13 @@ impl Candidate {
         Ok(candidates)
     }
 
-    /// An effect at all drives, with sizes for each of them.
+    /// An effect at all drives, with sizes for each of them; of signals, a component for each drive.
     fn together(
         effect: &Effect,
         mechanism: &Mechanism,
         sites: &Sites<'_>,
-    ) -> Result<Option<Self>, EffectError> {
-        let drives = sites.drives();
+    ) -> Result<Vec<Self>, EffectError> {
+        let drives = sites.drives(effect.site);
         let mut places = sites.of(effect.site);
         places.retain(|site| drives.contains(&site.name.as_str()));
         let stem = unused(format!("{}_{DRIVES}", effect.name), mechanism);
@@ -294,22 +294,33 @@ impl Candidate {
         });
         let own = own.collect::<Result<Vec<Self>, _>>()?;
         let [first, _, ..] = own.as_slice() else {
-            return Ok(None);
+            return Ok(Vec::new());
         };
+        let about = effect.about.replace("{site}", "every drive");
+        if first.acts != Acts::Items {
+            let component = |one: Self| Self {
+                drives: vec![one.site],
+                site: DRIVES.to_owned(),
+                about: about.clone(),
+                is_component: true,
+                ..one
+            };
+            return Ok(own.into_iter().map(component).collect());
+        }
         let parts = own.iter().map(|one| one.items.parse());
         let mut items = DocumentMut::new();
         for part in parts.filter_map(Result::<DocumentMut, _>::ok) {
             merge(&mut items, &part);
         }
-        Ok(Some(Self {
+        Ok(vec![Self {
             site: DRIVES.to_owned(),
             drives: places.iter().map(|place| place.name.clone()).collect(),
-            about: effect.about.replace("{site}", "every drive"),
+            about,
             parameters: own.iter().flat_map(|one| one.parameters.clone()).collect(),
             stem,
             items: items.to_string(),
             ..first.clone()
-        }))
+        }])
     }
 
     fn new(

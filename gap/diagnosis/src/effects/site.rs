@@ -296,11 +296,15 @@ impl<'m> Sites<'m> {
         speeds.iter().enumerate().filter_map(of).collect()
     }
 
-    /// The names of driven coordinates, where there are many, as in a robot.
-    pub(super) fn drives(&self) -> Vec<&str> {
+    /// The names of driven coordinates, or of the inputs, where there are many, as in a robot.
+    pub(super) fn drives(&self, kind: SiteKind) -> Vec<&str> {
         let driven = driven(self.mechanism);
         if driven.len() < MANY_DRIVES {
             return Vec::new();
+        }
+        if kind == SiteKind::Input {
+            let inputs = self.mechanism.inputs.iter();
+            return inputs.map(|input| input.label.name.as_str()).collect();
         }
         let name = |q: &CoordinateId| self.mechanism.coordinates[*q].label.name.as_str();
         driven.iter().map(name).collect()

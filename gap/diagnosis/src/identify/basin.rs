@@ -28,6 +28,7 @@ const SMALL: [f64; 2] = [1e-3, 1e-4];
 const START: Effort = Effort {
     gain: EFFORT.gain,
     steps: 40,
+    floor: f64::NEG_INFINITY,
 };
 
 /// A search for the free values of a problem.

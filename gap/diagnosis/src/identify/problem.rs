@@ -21,6 +21,7 @@ const PARTS: [f64; 5] = [1e-4, 1e-3, 1e-2, 1e-1, 1.0];
 pub(super) const EFFORT: Effort = Effort {
     gain: 5e-5,
     steps: 200,
+    floor: f64::NEG_INFINITY,
 };
 /// Limits of process noise, relative to the forces.
 const DISTURBANCE_RANGE: [f64; 2] = [1e-7, 1e3];

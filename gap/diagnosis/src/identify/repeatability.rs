@@ -17,6 +17,7 @@ use super::problem::begin;
 const EFFORT: Effort = Effort {
     gain: 1e-3,
     steps: 50,
+    floor: f64::NEG_INFINITY,
 };
 
 /// A parameter in the single runs.

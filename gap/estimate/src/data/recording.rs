@@ -21,6 +21,24 @@ pub struct Recording {
     interpolation: Vec<Interpolation>,
     /// Second derivatives at the rows of each input that is a spline, nothing for others.
     curvatures: Vec<Vec<f64>>,
+    /// Inputs before its first row, held from row to row: delayed ones arrive later.
+    earlier: Earlier,
+}
+
+/// A row of inputs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) enum Row {
+    /// Of the recording.
+    Own(usize),
+    /// Before it.
+    Earlier(usize),
+}
+
+/// Inputs before a recording, row by row.
+#[derive(Debug, Clone, Default, PartialEq)]
+struct Earlier {
+    times: Vec<f64>,
+    inputs: Vec<f64>,
 }
 
 impl Recording {
@@ -76,8 +94,60 @@ impl Recording {
             measurements,
             interpolation: vec![Interpolation::Hold; columns[0]],
             curvatures: vec![Vec::new(); columns[0]],
+            earlier: Earlier::default(),
             columns,
         })
+    }
+
+    /// The same recording with inputs of rows before its first one; those that are not finite, or not in order, are
+    /// ignored.
+    #[must_use]
+    pub fn after(mut self, times: &[f64], inputs: &[f64]) -> Self {
+        let count = self.columns[0];
+        for (&t, row) in times.iter().zip(inputs.chunks_exact(count.max(1))) {
+            let is_next = self.earlier.times.last().is_none_or(|last| t > *last);
+            if is_next && t < self.times[0] && row.iter().all(|value| value.is_finite()) {
+                self.earlier.times.push(t);
+                self.earlier.inputs.extend_from_slice(row);
+            }
+        }
+        self
+    }
+
+    /// Number of rows of inputs before the first one.
+    pub(crate) fn earlier_len(&self) -> usize {
+        self.earlier.times.len()
+    }
+
+    /// The time of a row.
+    pub(crate) fn time_of(&self, row: Row) -> f64 {
+        match row {
+            Row::Own(row) => self.times[row],
+            Row::Earlier(row) => self.earlier.times[row],
+        }
+    }
+
+    /// An input from the time of a row to that of the next, as [`Recording::polynomial`].
+    pub(crate) fn command(&self, row: Row, input: usize) -> [f64; 4] {
+        match row {
+            Row::Own(row) => self.polynomial(row, input),
+            Row::Earlier(row) => [
+                self.earlier.inputs[row * self.columns[0] + input],
+                0.0,
+                0.0,
+                0.0,
+            ],
+        }
+    }
+
+    /// An input at a time that may be before the first row; then the first known value if it is before all others.
+    pub(crate) fn input_before(&self, input: usize, t: f64) -> f64 {
+        let rows = self.earlier.times.partition_point(|earlier| *earlier <= t);
+        match rows.checked_sub(1) {
+            _ if t >= self.times[0] => self.inputs(0)[input],
+            None if self.earlier_len() == 0 => self.inputs(0)[input],
+            row => self.command(Row::Earlier(row.unwrap_or(0)), input)[0],
+        }
     }
 
     /// Times in s.
@@ -171,6 +241,7 @@ impl Recording {
             curvatures: (self.curvatures.iter())
                 .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
                 .collect(),
+            earlier: Earlier::default(),
         }
     }
 
@@ -180,6 +251,7 @@ impl Recording {
         Ok(Self {
             interpolation: self.interpolation.clone(),
             curvatures: self.curvatures.clone(),
+            earlier: self.earlier.clone(),
             ..same
         })
     }

@@ -34,6 +34,8 @@ pub struct Effort {
     pub gain: f64,
     /// Largest number of steps.
     pub steps: usize,
+    /// Log-posterior of interest: [`Fit::quick`] gives up an optimum far below it.
+    pub floor: f64,
 }
 
 impl Default for Effort {
@@ -42,6 +44,7 @@ impl Default for Effort {
         Self {
             gain: 5e-7,
             steps: 200,
+            floor: f64::NEG_INFINITY,
         }
     }
 }

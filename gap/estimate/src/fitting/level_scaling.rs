@@ -5,6 +5,7 @@
 
 use nalgebra::{DMatrix, DVector};
 
+use super::levels;
 use super::posterior::{Point, Posterior};
 use crate::EstimateError;
 use crate::data::setup::Disturbance;
@@ -12,6 +13,9 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::motion::command;
 use crate::motion::plant::Place;
+
+/// Largest change of the logarithm of a level by the other coordinates.
+const FARTHEST: f64 = 1.0;
 
 /// Changes of levels with steps of the other coordinates, to first order.
 pub(crate) struct LevelScaling {
@@ -54,7 +58,7 @@ impl LevelScaling {
         Ok(Self { slopes })
     }
 
-    /// The step of [`Posterior::step`] in coordinates with levels scaled to accelerations.
+    /// The step of [`levels::step`] in coordinates with levels scaled to accelerations.
     pub(crate) fn step(
         &self,
         posterior: &Posterior<'_, '_>,
@@ -67,8 +71,10 @@ impl LevelScaling {
             gradient,
             ..point.clone()
         };
-        let (step, gain) = posterior.step(&turned, curvature, damping);
-        (&step + &self.slopes * &step, gain)
+        let (step, gain) = levels::step(posterior, &turned, curvature, damping);
+        // To first order only: a level does not follow a step far beyond that.
+        let scaled = (&self.slopes * &step).map(|change| change.clamp(-FARTHEST, FARTHEST));
+        (step + scaled, gain)
     }
 }
 

@@ -154,7 +154,7 @@ impl Point {
 }
 
 /// The damped step of the coordinates that are not held.
-fn free_step(
+pub(super) fn free_step(
     point: &Point,
     curvature: &DMatrix<f64>,
     damping: f64,

@@ -2,15 +2,15 @@
 //! of the filter ([`information`](crate::gradient::information)). For many fits of models that are
 //! nearly correct.
 
-use nalgebra::{DMatrix, DVector};
+use nalgebra::DVector;
 
 use super::fit::{Effort, Fit};
-use super::free::{Coordinate, Free, Selection};
+use super::free::{Free, Selection};
 use super::level_scaling::LevelScaling;
-use super::posterior::{Point, Posterior, SUFFICIENT_DECREASE};
+use super::levels::Levels;
+use super::posterior::{Posterior, SUFFICIENT_DECREASE};
 use crate::EstimateError;
 use crate::estimation::Estimation;
-use crate::gradient::information::is_level;
 
 /// Damping after an undamped step failed, relative to the curvature; small, for narrow valleys.
 const DAMPING: f64 = 1e-4;
@@ -23,9 +23,9 @@ const DAMPED: [f64; 2] = [2e-5, 1e6];
 /// Predicted gain, in units of [`Effort::gain`], that may remain when no step succeeds.
 const FLAT: f64 = 10.0;
 /// Number of steps that together must gain more than [`Effort::gain`].
-const LAST: usize = 4;
-/// Change of the logarithm of a level up to which its information is reused.
-const NEAR: f64 = 0.3;
+const LAST: usize = 3;
+/// A search is given up after this many steps if this many times the last gains do not reach [`Effort::floor`].
+const GIVEN_UP: (usize, f64) = (8, 10.0);
 
 impl Fit {
     /// Searches for an optimum from `start` as [`Fit::of`] does, by scoring. The curvature of the
@@ -52,7 +52,9 @@ impl Fit {
             let (step, gain) = scaling.step(&posterior, &point, &information, damping);
             let promises_little = (0.0..=effort.gain).contains(&gain);
             let gains_little = gained.iter().sum::<f64>() < effort.gain;
-            let ends = steps >= effort.steps || damping > DAMPED[1];
+            let reach = point.objective + GIVEN_UP.1 * gained.iter().sum::<f64>();
+            let is_given_up = steps >= GIVEN_UP.0 && reach < effort.floor;
+            let ends = is_given_up || steps >= effort.steps || damping > DAMPED[1];
             let is_over = promises_little && (damping <= 0.0 || gains_little);
             if is_over || ends {
                 let (mut promised, mut gain) = (DVector::zeros(free.len()), gain);
@@ -101,52 +103,5 @@ impl Fit {
                 None => damping = (MORE * damping).max(DAMPING),
             }
         }
-    }
-}
-
-/// The information of levels, and the point at which it was computed.
-#[derive(Default)]
-struct Levels {
-    known: Option<(Vec<f64>, DMatrix<f64>)>,
-}
-
-impl Levels {
-    /// Expected curvature at a point. The information of logarithms of levels hardly depends on the
-    /// levels.
-    fn information(
-        &mut self,
-        posterior: &Posterior<'_, '_>,
-        point: &Point,
-    ) -> Result<DMatrix<f64>, EstimateError> {
-        let (estimation, selection) = (posterior.estimation, posterior.selection);
-        let free = selection.free;
-        let all = free.iter().zip(point.coordinates.iter());
-        let levels: Vec<f64> = all
-            .filter(|(free, _)| is_level(free))
-            .map(|(_, &coordinate)| coordinate)
-            .collect();
-        let is_near = |old: &[f64]| {
-            let mut moved = old.iter().zip(&levels).map(|(old, new)| (old - new).abs());
-            moved.all(|moved| moved < NEAR)
-        };
-        let of_levels = match self.known.take().filter(|(old, _)| is_near(old)) {
-            Some(known) => known,
-            None => (
-                levels,
-                estimation.information_of_levels(&point.values, free)?,
-            ),
-        };
-        let mut information = estimation.information_of_means(&point.values, free)?;
-        information += &of_levels.1;
-        information += DMatrix::from_diagonal(&selection.prior_information());
-        self.known = Some(of_levels);
-        for (i, free) in free.iter().enumerate() {
-            // Far below the optimum of a level, the curvature of the likelihood is as large as its
-            // slope, and much larger than expected at the optimum.
-            if free.coordinate == Coordinate::Logarithm {
-                information[(i, i)] += point.gradient[i].abs();
-            }
-        }
-        Ok(information)
     }
 }

@@ -14,6 +14,9 @@ use crate::kalman::tape::{Record, SampleTape};
 use crate::matrix::{add_scaled, multiply};
 use crate::motion::timeline::{Action, Advance};
 
+/// Largest residual that counts, in standard deviations.
+const LARGEST: f64 = 3.0;
+
 /// Fisher information of some levels, in SI, from the innovations of a recording.
 pub(crate) fn information(
     estimation: &Estimation<'_>,
@@ -156,11 +159,10 @@ impl Forward<'_> {
     fn measure(&mut self, index: usize) {
         let (n, lanes) = (self.pass.sizes.n, self.levels.len());
         let sample = self.pass.samples[index];
-        let (channel, e, s) = (
-            sample.innovation.channel,
-            sample.innovation.white_residual,
-            sample.innovation.white_variance,
-        );
+        let (channel, s) = (sample.innovation.channel, sample.innovation.white_variance);
+        // Residuals of a wrong model say nothing of the expected information.
+        let most = LARGEST * s.sqrt();
+        let e = sample.innovation.white_residual.clamp(-most, most);
         let SampleTape { c, a, .. } = self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
         self.by_a.fill(0.0);
         self.by_s.fill(0.0);

@@ -564,7 +564,8 @@ fn is_parameter(direction: &Direction) -> bool {
 
 fn recording_time(recording: &crate::Recording, action: Action) -> f64 {
     match action {
-        Action::Switch { row, .. } | Action::Measure { row, .. } => recording.times()[row],
+        Action::Switch { row, .. } => recording.time_of(row),
+        Action::Measure { row, .. } => recording.times()[row],
         Action::Advance(advance) => advance.t,
     }
 }

@@ -195,7 +195,7 @@ impl<'a> Pass<'a> {
                 let switch = Switch { row, input, first };
                 switch.apply(&mut self.held, setup, layout, self.values, recording);
                 if first {
-                    self.close(recording.times()[row])?;
+                    self.close(recording.time_of(row))?;
                 }
                 Ok(())
             }

@@ -3,7 +3,7 @@
 //! On tapes an input is the time from which it counts, and the coefficients of the powers of the time since then.
 
 use crate::data::layout::Layout;
-use crate::data::recording::Recording;
+use crate::data::recording::{Recording, Row};
 use crate::data::setup::Setup;
 
 /// Numbers of an input.
@@ -53,7 +53,7 @@ pub(crate) fn by_time(commands: &[f64], by_inputs: &[f64], t: f64) -> f64 {
 /// A change of one delayed input, or of all others, at a row.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Switch {
-    pub(crate) row: usize,
+    pub(crate) row: Row,
     pub(crate) input: Option<usize>,
     /// Whether it is the first of the run: then delayed inputs have their first value.
     pub(crate) first: bool,
@@ -68,15 +68,16 @@ impl Switch {
         values: &[f64],
         recording: &Recording,
     ) {
-        let t = recording.times()[self.row];
+        let t = recording.time_of(self.row);
         for (input, own) in commands.chunks_exact_mut(NUMBERS).enumerate() {
             let delay = setup.delayed.iter().position(|&delayed| delayed == input);
             if self.input.map_or(delay.is_none(), |only| only == input) {
                 let late = delay.map_or(0.0, |index| values[layout.input_delay(index)]);
                 own[0] = t + late;
-                own[1..].copy_from_slice(&recording.polynomial(self.row, input));
+                own[1..].copy_from_slice(&recording.command(self.row, input));
             } else if self.first && self.input.is_none() {
-                let value = recording.inputs(self.row)[input];
+                let late = delay.map_or(0.0, |index| values[layout.input_delay(index)]);
+                let value = recording.input_before(input, t - late);
                 own.copy_from_slice(&[t, value, 0.0, 0.0, 0.0]);
             }
         }

@@ -1,7 +1,7 @@
 //! The order of steps, changes of inputs and samples along a recording.
 
 use crate::data::layout::Layout;
-use crate::data::recording::Recording;
+use crate::data::recording::{Recording, Row};
 use crate::data::setup::Setup;
 
 /// An action of the filter.
@@ -10,7 +10,7 @@ pub(crate) enum Action {
     /// A step of the motion.
     Advance(Advance),
     /// One delayed input, or all others, take the values of a row.
-    Switch { row: usize, input: Option<usize> },
+    Switch { row: Row, input: Option<usize> },
     /// One delayed channel, or all others, were sampled for a row.
     Measure { row: usize, channel: Option<usize> },
 }
@@ -102,6 +102,7 @@ fn stops(
     let (start, end) = (times[0], times[times.len() - 1]);
     let is_delayed = |input: usize| setup.delayed.contains(&input);
     let mut stops = Vec::with_capacity(2 * times.len());
+    arrivals(setup, layout, recording, values, &mut stops);
     let mut before: Option<&[f64]> = None;
     for (row, &t) in times.iter().enumerate() {
         let now = recording.inputs(row);
@@ -113,17 +114,24 @@ fn stops(
             stops.push(Stop {
                 t,
                 moved_by: None,
-                action: Some(Action::Switch { row, input: None }),
+                action: Some(Action::Switch {
+                    row: Row::Own(row),
+                    input: None,
+                }),
             });
         }
         for (index, &input) in setup.delayed.iter().enumerate() {
-            if changes(input) && (row > 0 || recording.is_joined(input)) {
+            let arrives = row > 0 || recording.is_joined(input) || recording.earlier_len() > 0;
+            if changes(input) && arrives {
                 let delay = layout.input_delay(index);
                 let input = Some(input);
                 stops.push(Stop {
                     t: t + values[delay],
                     moved_by: Some((delay, 1.0)),
-                    action: Some(Action::Switch { row, input }),
+                    action: Some(Action::Switch {
+                        row: Row::Own(row),
+                        input,
+                    }),
                 });
             }
         }
@@ -157,6 +165,32 @@ fn stops(
     // Stable: actions at equal times keep their order.
     stops.sort_by(|a, b| a.t.total_cmp(&b.t));
     stops
+}
+
+/// Changes of delayed inputs before the recording that arrive during it.
+fn arrivals(
+    setup: &Setup<'_>,
+    layout: &Layout,
+    recording: &Recording,
+    values: &[f64],
+    stops: &mut Vec<Stop>,
+) {
+    for (index, &input) in setup.delayed.iter().enumerate() {
+        let delay = layout.input_delay(index);
+        for earlier in 0..recording.earlier_len() {
+            let t = recording.time_of(Row::Earlier(earlier)) + values[delay];
+            if t > recording.times()[0] {
+                stops.push(Stop {
+                    t,
+                    moved_by: Some((delay, 1.0)),
+                    action: Some(Action::Switch {
+                        row: Row::Earlier(earlier),
+                        input: Some(input),
+                    }),
+                });
+            }
+        }
+    }
 }
 
 type End = (f64, Option<(usize, f64)>);

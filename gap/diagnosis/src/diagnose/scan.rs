@@ -1,0 +1,108 @@
+//! Initial delays and lags of all drives.
+//!
+//! A delay shifts the motion, which is far from linear in it where it is as long as the motion of a servo takes, and
+//! other effects imitate its linear part. A few values are therefore tried with the model as stated.
+
+use appell_estimate::Estimation;
+
+use super::DiagnoseError;
+use super::bench::Bench;
+use super::evidence::Fitted;
+use super::search::place;
+use super::sets::{Set, SizeEstimates};
+use crate::effects::Acts;
+
+/// Values that are tried, in s.
+const TRIED: [f64; 7] = [0.002, 0.005, 0.012, 0.025, 0.045, 0.08, 0.13];
+/// Factors on the best of them, tried in turn.
+const FINER: [f64; 3] = [1.4, 1.2, 1.1];
+/// Factors on the noise levels of the model without them.
+const QUIETER: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
+
+/// Effects on the signals of all drives, each with the most likely common value.
+pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, DiagnoseError> {
+    let mut sets = Vec::new();
+    for members in groups(bench) {
+        let of = |value: f64| likelihood(bench, stated, &members, value);
+        let [mut value, mut log_posterior] = [TRIED[0], f64::NEG_INFINITY];
+        let mut best = |tried: f64| -> Result<f64, DiagnoseError> {
+            let likelihood = of(tried)?;
+            if likelihood > log_posterior {
+                [value, log_posterior] = [tried, likelihood];
+            }
+            Ok(value)
+        };
+        let mut centre = TRIED[0];
+        for tried in TRIED {
+            centre = best(tried)?;
+        }
+        for factor in FINER {
+            for tried in [centre / factor, centre * factor] {
+                best(tried)?;
+            }
+            centre = best(centre)?;
+        }
+        sets.push(Set {
+            sizes: sizes(&members, value),
+            members,
+            log_posterior,
+            levels: 1.0,
+            starts: vec![Vec::new()],
+        });
+    }
+    Ok(sets)
+}
+
+/// The delays, and the lags, of all drives.
+fn groups(bench: &Bench<'_>) -> Vec<Vec<usize>> {
+    let of = |is_own: fn(Acts) -> bool| -> Vec<usize> {
+        (0..bench.effects.candidates.len())
+            .filter(|&member| {
+                bench.candidate(member).is_of_drives() && is_own(bench.candidate(member).acts)
+            })
+            .collect()
+    };
+    let groups = [
+        of(|acts| matches!(acts, Acts::Delay(_))),
+        of(|acts| matches!(acts, Acts::Lag(_))),
+    ];
+    groups.into_iter().filter(|own| !own.is_empty()).collect()
+}
+
+fn sizes(members: &[usize], value: f64) -> Vec<SizeEstimates> {
+    let size = |&candidate: &usize| SizeEstimates {
+        candidate,
+        values: vec![value],
+        deviations: vec![value],
+    };
+    members.iter().map(size).collect()
+}
+
+/// The log likelihood with a common value, at the best of some noise levels.
+fn likelihood(
+    bench: &Bench<'_>,
+    stated: &Fitted,
+    members: &[usize],
+    value: f64,
+) -> Result<f64, DiagnoseError> {
+    let setup = bench.setup(members);
+    let estimation = Estimation::new(&setup, &bench.recordings)?;
+    let mut values = bench.carried(stated, &estimation);
+    for sizes in sizes(members, value) {
+        place(bench, &estimation, &sizes, &mut values)?;
+    }
+    let mut most = f64::NEG_INFINITY;
+    for factor in QUIETER {
+        let mut quieter = values.clone();
+        for free in &bench.problem.levels {
+            quieter[estimation.layout().place(free.unknown)?] *= factor;
+        }
+        // With too little noise the filter may diverge.
+        most = most.max(
+            estimation
+                .log_likelihood(&quieter)
+                .unwrap_or(f64::NEG_INFINITY),
+        );
+    }
+    Ok(most)
+}

@@ -343,7 +343,7 @@ fn delays_are_whole_steps_where_these_are_near() {
     }
     let limit = Change::ForceLimit {
         actuator: "hip_servo".to_owned(),
-        limit: 8.0,
+        range: [-8.0, 8.0],
     };
     let after = "joint=\"hip\" forcerange=\"-8 8\"/>";
     replaces(&[limit], &[("joint=\"hip\"/>", after)]);

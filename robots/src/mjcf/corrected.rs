@@ -5,7 +5,6 @@
 //! | `corrected/joint.rs` | numbers of joints, springs, readings |
 //! | `corrected/body.rs` | masses, centres of mass, inertias, payloads |
 //! | `corrected/actuator.rs` | gains, biases, lags, delays, limits of actuators |
-//! | `corrected/law.rs` | the law of an actuator, as its classes and shortcuts define it |
 //! | `corrected/option.rs` | gravity |
 //! | `corrected/keyframe.rs` | states of new joints and filters in keyframes |
 //! | `corrected/play.rs` | backlash: a second joint |
@@ -19,7 +18,6 @@ mod bytes;
 mod change;
 mod joint;
 mod keyframe;
-mod law;
 mod option;
 mod play;
 mod sheet;
@@ -107,7 +105,11 @@ pub fn corrected(
         });
     }
     let findings = Findings::default();
-    let robot = super::read(root, &findings, &whole, &Options::default());
+    let options = Options {
+        actuators: true,
+        ..Options::default()
+    };
+    let robot = super::read(root, &findings, &whole, &options);
     if findings.has_errors() {
         return Err(fail(findings.into_inner()));
     }
@@ -131,6 +133,7 @@ impl Sheet<'_, '_> {
         self.write_plays()?;
         self.write_groups()?;
         self.write_settled()?;
+        self.write_laws()?;
         self.write_keyframes()
     }
 
@@ -159,7 +162,8 @@ impl Sheet<'_, '_> {
             Change::Bias { actuator, add } => self.bias(actuator, *add),
             Change::Lag { actuator, seconds } => self.lag(actuator, *seconds),
             Change::Delay { actuator, seconds } => self.delay(actuator, *seconds),
-            Change::ForceLimit { actuator, limit } => self.force_limit(actuator, *limit),
+            Change::ForceRange { actuator, amount } => self.force_range_by(actuator, *amount),
+            Change::ForceLimit { actuator, range } => self.force_limit(actuator, *range),
             Change::Gravity(gravity) => self.gravity(*gravity),
         }
     }

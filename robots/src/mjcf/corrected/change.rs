@@ -138,12 +138,20 @@ pub enum Change {
         /// The delay, in s.
         seconds: f64,
     },
-    /// The largest force of an actuator in both directions, before its gear.
+    /// The bounds of the force of an actuator, before its gear: the same in both directions, or those of the file times a
+    /// factor.
+    ForceRange {
+        /// The actuator.
+        actuator: String,
+        /// The change of the upper bound.
+        amount: Amount,
+    },
+    /// Bounds of the force of an actuator, before its gear, in addition to those that it has.
     ForceLimit {
         /// The actuator.
         actuator: String,
-        /// The limit.
-        limit: f64,
+        /// Least and largest force.
+        range: [f64; 2],
     },
     /// A spring in addition to that of a joint.
     Spring {

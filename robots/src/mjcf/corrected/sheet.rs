@@ -10,6 +10,7 @@ use crate::xml::{Element, Findings, Span, elements, inside, parse, tag};
 
 use super::super::compiler::Compiler;
 use super::super::defaults::Defaults;
+use super::super::law::Law;
 use super::body;
 use super::bytes::{Edits, escaped, line_end};
 use super::change::{Refused, refused};
@@ -24,6 +25,8 @@ pub(super) struct Sheet<'x, 'f> {
     pub(super) defaults: Defaults<'x>,
     pub(super) robot: Robot,
     pending: Vec<Pending<'x>>,
+    /// Laws of actuators, where they change.
+    pub(super) laws: Vec<(Element<'x>, Law)>,
     pub(super) groups: Vec<body::Group>,
     /// Whether masses, inertias or armatures change.
     pub(super) reshaped: bool,
@@ -66,6 +69,7 @@ impl<'x, 'f> Sheet<'x, 'f> {
             defaults: Defaults::new(root, findings),
             robot,
             pending: Vec::new(),
+            laws: Vec::new(),
             groups: Vec::new(),
             reshaped: false,
             plays: Vec::new(),
@@ -96,12 +100,6 @@ impl<'x, 'f> Sheet<'x, 'f> {
 
     fn pending(&self, element: Element<'x>) -> Option<&Pending<'x>> {
         self.pending.iter().find(|one| one.element == element)
-    }
-
-    /// The name of an element, as it is to be written.
-    pub(super) fn kind(&self, element: Element<'x>) -> &'x str {
-        let renamed = self.pending(element).and_then(|one| one.renamed);
-        renamed.unwrap_or_else(|| element.tag_name().name())
     }
 
     /// An attribute of an element itself, as it is to be written.

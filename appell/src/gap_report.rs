@@ -37,7 +37,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "about": one.about,
         })
     });
-    json!({
+    let mut json = json!({
         "schema": SCHEMA,
         "engine": ENGINE,
         "mechanism": report.mechanism,
@@ -63,7 +63,11 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
         "data": findings,
-    })
+    });
+    if let Some(format) = report.robot {
+        json["robot"] = format.into();
+    }
+    json
 }
 
 /// A measured law: its curve with standard deviations, and the closest analytic forms.
@@ -105,6 +109,9 @@ pub struct GapReport {
     schema: String,
     /// Name of the mechanism.
     pub mechanism: String,
+    /// The format of the robot file that was diagnosed, `URDF` or `MJCF`.
+    #[serde(default)]
+    pub(crate) robot: Option<String>,
     which: Vec<Hypothesis>,
     #[serde(default)]
     tied: Vec<Vec<String>>,

@@ -20,6 +20,8 @@ const MAX_MESH: u64 = 1 << 28;
 pub struct Robot {
     /// Path of the file.
     pub file: String,
+    /// Its format.
+    pub format: Format,
     /// Its names in the spec.
     pub dictionary: Dictionary,
 }
@@ -68,8 +70,12 @@ impl Robot {
             file: file.clone(),
             text: imported.spec,
         };
-        let dictionary = imported.dictionary;
-        Ok(Some((spec, Self { file, dictionary })))
+        let robot = Self {
+            file,
+            format: imported.format,
+            dictionary: imported.dictionary,
+        };
+        Ok(Some((spec, robot)))
     }
 
     /// The numbers that a key names: one, the components of one, or with `*` those of all elements.

@@ -109,15 +109,15 @@ impl<'x> Reader<'x, '_> {
             let link = link.and_then(|name| self.joint_links.get(name).copied());
             let tendon = target.filter(|_| way == Some("tendon"));
             let tendon = tendon.and_then(|name| by_name.get(name).copied());
-            let (on, inertia, resistance) = if let Some(link) = link
+            let (on, range, inertia, resistance) = if let Some(link) = link
                 && let Some(joint) = &mut self.links[link].joint
             {
                 let on = On::Joint(joint.name.clone());
-                (Some(on), &mut joint.armature, &mut joint.damping)
+                (on, joint.range, &mut joint.armature, &mut joint.damping)
             } else if let Some(tendon) = tendon {
                 let tendon = &mut tendons[tendon];
                 let on = On::Tendon(tendon.name.clone());
-                (Some(on), &mut tendon.armature, &mut tendon.damping)
+                (on, tendon.range, &mut tendon.armature, &mut tendon.damping)
             } else {
                 if armature != 0.0 || !is_zero(damping) {
                     self.findings.warning(
@@ -134,9 +134,10 @@ impl<'x> Reader<'x, '_> {
             for (own, more) in resistance.iter_mut().zip(damping) {
                 *own += more;
             }
-            match on.filter(|_| self.actuators) {
-                Some(on) => drives.extend(self.drive(element, class, on, gear)),
-                None => self.leave_out_of("actuator", element),
+            if self.actuators {
+                drives.extend(self.drive(element, class, on, gear, range));
+            } else {
+                self.leave_out_of("actuator", element);
             }
         }
         if !self.actuators {
@@ -199,6 +200,7 @@ impl<'x> Reader<'x, '_> {
         class: Option<&'x str>,
         on: On,
         gear: f64,
+        range: Option<[f64; 2]>,
     ) -> Option<Drive> {
         let kind = element.tag_name().name();
         self.check_attributes(element);
@@ -229,7 +231,7 @@ impl<'x> Reader<'x, '_> {
             gear,
             gain,
             bias,
-            ctrl_range: self.commands(&attribute, &law, &on),
+            ctrl_range: self.commands(&attribute, &law, range),
             act_range: self
                 .bounds(&attribute, "actrange", "actlimited")
                 .filter(|_| law.filter_type != "none"),
@@ -261,20 +263,20 @@ impl<'x> Reader<'x, '_> {
         name
     }
 
-    /// Bounds of the command: those of its own, or those of its joint.
+    /// Bounds of the command: those of its own, or those of its joint or tendon.
     fn commands(
         &self,
         attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
         law: &Law,
-        on: &On,
+        length_range: Option<[f64; 2]>,
     ) -> Option<[f64; 2]> {
         if schema::disabled(self.root, "clampctrl") {
             return None;
         }
         let share = attribute("inheritrange")
             .and_then(|given| exactly::<1>(self.findings, &given, "`inheritrange`"));
-        if let (Some([share]), On::Joint(joint)) = (share.filter(|[share]| *share > 0.0), on) {
-            let [from, to] = self.joint(joint)?.range?;
+        if let Some([share]) = share.filter(|[share]| *share > 0.0) {
+            let [from, to] = length_range?;
             let (middle, half) = (f64::midpoint(from, to), share * (to - from) / 2.0);
             return Some([middle - half, middle + half]);
         }

@@ -83,6 +83,7 @@ pub(super) fn assemble(
     };
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
+        robot: bench.set.robot.as_ref().map(|robot| robot.format.word()),
         verdict,
         is_by_simulation: bench.is_over_windows(),
         is_by_forces: false,

@@ -178,15 +178,29 @@ impl<'x> Sheet<'x, '_> {
 
     pub(super) fn gear(&mut self, name: &str, amount: Amount) -> Result<(), Refused> {
         let actuator = self.actuator(name)?;
-        let given = self.numbers(actuator, ACTUATORS, "gear")?;
-        let mut gear = given.unwrap_or_default();
-        gear.resize(gear.len().max(1), 1.0);
-        let after = amount.of(gear[0]);
-        if same(after, gear[0]) {
+        let before = self.number_of(actuator, "gear")?.unwrap_or(1.0);
+        let after = amount.of(before);
+        if same(after, before) {
             return Ok(());
         }
-        gear[0] = after;
-        self.set(actuator, "gear", numbers(&gear))
+        if before == 0.0 {
+            return self.set(actuator, "gear", number(after));
+        }
+        self.gear_times(actuator, after / before)
+    }
+
+    /// Multiplies the gear of an actuator; its inertia and damping, which act with the square of the gear, stay.
+    fn gear_times(&mut self, actuator: Element<'x>, factor: f64) -> Result<(), Refused> {
+        let gear = self.numbers(actuator, ACTUATORS, "gear")?;
+        let gear = gear.unwrap_or_else(|| vec![1.0]);
+        self.set(actuator, "gear", numbers(&scaled(gear, factor)))?;
+        for key in ["armature", "damping"] {
+            if let Some(all) = self.numbers(actuator, ACTUATORS, key)? {
+                let all = scaled(all, 1.0 / (factor * factor));
+                self.set(actuator, key, numbers(&all))?;
+            }
+        }
+        Ok(())
     }
 
     pub(super) fn gain(&mut self, name: &str, factor: f64) -> Result<(), Refused> {
@@ -194,24 +208,11 @@ impl<'x> Sheet<'x, '_> {
             return Ok(());
         }
         let (actuator, mut law) = self.affine(name)?;
-        let times = |all: Vec<f64>, factor: f64| -> String {
-            let all: Vec<f64> = all.into_iter().map(|one| one * factor).collect();
-            numbers(&all)
-        };
         if actuator.has_tag_name("motor") {
-            let gear = self.numbers(actuator, ACTUATORS, "gear")?;
-            let gear = times(gear.unwrap_or_else(|| vec![1.0]), factor);
-            self.set(actuator, "gear", gear)?;
-            // Inertia and damping of the drive act with the square of the gear.
-            for key in ["armature", "damping"] {
-                if let Some(all) = self.numbers(actuator, ACTUATORS, key)? {
-                    self.set(actuator, key, times(all, 1.0 / (factor * factor)))?;
-                }
-            }
-            return Ok(());
+            return self.gear_times(actuator, factor);
         }
         if let Some(range) = self.numbers(actuator, ACTUATORS, "forcerange")? {
-            self.set(actuator, "forcerange", times(range, factor))?;
+            self.set(actuator, "forcerange", numbers(&scaled(range, factor)))?;
         }
         law.gain = law.gain.map(|one| one * factor);
         law.bias = law.bias.map(|one| one * factor);
@@ -358,24 +359,54 @@ impl<'x> Sheet<'x, '_> {
         both.collect()
     }
 
-    /// What actuators of a joint add to its inertia, and to the damping of its rate.
-    pub(super) fn drives_of(&self, joint: &str) -> Result<[f64; 2], Refused> {
-        let mut sums = [0.0; 2];
-        for actuator in children(self.root, "actuator").flat_map(elements) {
+    /// The actuators of a joint, each with its gear.
+    fn drives_of(&self, joint: &str) -> Result<Vec<(Element<'x>, f64)>, Refused> {
+        let all = children(self.root, "actuator").flat_map(elements);
+        let own = all.filter(|actuator| {
             let named = ["joint", "jointinparent"].map(|key| actuator.attribute(key));
-            if !named.contains(&Some(joint)) {
-                continue;
-            }
-            let number = |key: &str, other: f64| -> Result<f64, Refused> {
-                let all = self.numbers(actuator, ACTUATORS, key)?;
-                Ok(all.and_then(|all| all.first().copied()).unwrap_or(other))
-            };
-            let square = number("gear", 1.0)?.powi(2);
-            let feedback = self.law(actuator).acting_bias()[2];
-            sums[0] += square * number("armature", 0.0)?;
-            sums[1] += square * (number("damping", 0.0)? - feedback.min(0.0));
+            named.contains(&Some(joint))
+        });
+        own.map(|actuator| Ok((actuator, self.number_of(actuator, "gear")?.unwrap_or(1.0))))
+            .collect()
+    }
+
+    /// The first number of an attribute of an actuator.
+    fn number_of(&self, actuator: Element<'x>, key: &str) -> Result<Option<f64>, Refused> {
+        let all = self.numbers(actuator, ACTUATORS, key)?;
+        Ok(all.and_then(|all| all.first().copied()))
+    }
+
+    /// What actuators of a joint add to its armature or damping by attributes of this name.
+    pub(super) fn carried(&self, joint: &str, key: &str) -> Result<f64, Refused> {
+        let mut sum = 0.0;
+        for (actuator, gear) in self.drives_of(joint)? {
+            sum += gear * gear * self.number_of(actuator, key)?.unwrap_or_default();
         }
-        Ok(sums)
+        Ok(sum)
+    }
+
+    /// Multiplies what actuators of a joint add to its armature or damping.
+    pub(super) fn scale_carried(
+        &mut self,
+        joint: &str,
+        key: &'static str,
+        factor: f64,
+    ) -> Result<(), Refused> {
+        for (actuator, _) in self.drives_of(joint)? {
+            if let Some(all) = self.numbers(actuator, ACTUATORS, key)? {
+                self.set(actuator, key, numbers(&scaled(all, factor)))?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The damping of a joint by the laws of its actuators.
+    pub(super) fn feedback(&self, joint: &str) -> Result<f64, Refused> {
+        let all = self.drives_of(joint)?.into_iter();
+        let damping = all.map(|(actuator, gear)| {
+            -gear * gear * self.law(actuator).acting_bias()[2].min(0.0)
+        });
+        Ok(damping.sum())
     }
 
     /// Writes the laws of actuators: in the words of their elements, or as a `general` one.
@@ -473,6 +504,17 @@ impl<'x> Sheet<'x, '_> {
         Ok(())
     }
 
+    /// Writes out the ranges of commands that servos have from a joint.
+    pub(super) fn write_inherited_ranges(&mut self, joint: &str) -> Result<(), Refused> {
+        for (actuator, _) in self.drives_of(joint)? {
+            if self.own(actuator, "inheritrange").is_some() {
+                self.write_inherited_range(actuator)?;
+                self.remove(actuator, "inheritrange")?;
+            }
+        }
+        Ok(())
+    }
+
     /// Writes out the range of the command that a servo has from its joint or tendon.
     fn write_inherited_range(&mut self, actuator: Element<'x>) -> Result<(), Refused> {
         let given = self.numbers(actuator, ACTUATORS, "inheritrange")?;
@@ -483,6 +525,11 @@ impl<'x> Sheet<'x, '_> {
             None => Ok(()),
         }
     }
+}
+
+/// Numbers times a factor.
+fn scaled(all: Vec<f64>, factor: f64) -> Vec<f64> {
+    all.into_iter().map(|one| one * factor).collect()
 }
 
 /// The name of an actuator, or its kind and transmission.

@@ -30,11 +30,11 @@ impl Amount {
 /// A number of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointNumber {
-    /// Damping: the factor of the rate.
+    /// Damping: the factor of the rate, together with that of its actuators.
     Damping,
     /// Dry friction.
     Frictionloss,
-    /// Reflected inertia of the drive, as written at the joint: without that of its actuators.
+    /// Reflected inertia of the drive, together with that of its actuators.
     Armature,
     /// Stiffness of the spring: the factor of its elongation.
     Stiffness,

@@ -41,7 +41,7 @@ pub fn correct(
         let message = format!("the report is about a file of {diagnosed}, and this one is {format}");
         return Err(Error::data(&path.to_string_lossy(), message));
     }
-    let (parts, mut remarks) = Wanted::of(path, text, hypothesis)?;
+    let (parts, mut remarks) = Wanted::of(path, text, hypothesis, &report.locked)?;
     let whole = |parts: &[Part], remarks: &[String]| {
         let changes: Vec<Change> = parts.iter().flat_map(|part| part.changes.clone()).collect();
         robot::corrected(path, text, &changes, remarks)

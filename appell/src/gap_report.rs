@@ -67,6 +67,9 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
     if let Some(format) = report.robot {
         json["robot"] = format.into();
     }
+    if !report.locked.is_empty() {
+        json["locked"] = report.locked.clone().into();
+    }
     json
 }
 
@@ -112,6 +115,9 @@ pub struct GapReport {
     /// The format of the robot file that was diagnosed, `URDF` or `MJCF`.
     #[serde(default)]
     pub(crate) robot: Option<String>,
+    /// Joints of that robot that were rigid.
+    #[serde(default)]
+    pub(crate) locked: Vec<String>,
     which: Vec<Hypothesis>,
     #[serde(default)]
     tied: Vec<Vec<String>>,

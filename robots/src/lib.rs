@@ -234,6 +234,12 @@ pub fn import_with(
     if options.floating {
         float(&mut robot);
     }
+    if options.grounded {
+        for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
+            let joint = link.joint.take();
+            link.joint = joint.filter(|joint| joint.motion != model::Motion::Free);
+        }
+    }
     for one in &options.without {
         one.apply(&mut robot);
     }

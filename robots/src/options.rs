@@ -17,6 +17,8 @@ pub struct Options {
     pub snap: bool,
     /// Gives the root of a URDF a free joint; an MJCF file declares free joints itself.
     pub floating: bool,
+    /// Makes free joints of roots rigid.
+    pub grounded: bool,
     /// Makes the actuators of an MJCF file inputs, with their laws as loads. Joints without an actuator then have no
     /// input; otherwise every joint has one, a torque or a force. Without effect on a URDF.
     pub actuators: bool,

@@ -1,12 +1,12 @@
 //! Changes of a robot file by the effects of a hypothesis.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use appell_gap::diagnose::{Changes, Refitted};
 use appell_report::text::{number, with_unit};
 use appell_robots::{
-    ActuatorName, Amount, Change, Dictionary, Format, JointNumber, Letters, Options,
+    ActuatorName, Amount, Change, Dictionary, Format, JointNumber, Letters, Lock, Options,
 };
 use appell_spec::units;
 use toml::de::{DeTable, DeValue};
@@ -48,6 +48,8 @@ pub(super) struct Part {
 pub(super) struct Wanted<'h> {
     /// The nominal robot.
     dictionary: Dictionary,
+    /// Bodies that were diagnosed together with others beyond a locked joint.
+    merged: BTreeSet<String>,
     format: Format,
     hypothesis: &'h Hypothesis,
     of_spec: Changes,
@@ -63,6 +65,7 @@ impl<'h> Wanted<'h> {
         path: &Path,
         text: &str,
         hypothesis: &'h Hypothesis,
+        locked: &[String],
     ) -> Result<(Vec<Part>, Vec<String>), Error> {
         let options = Options {
             letters: Letters::Matching(vec!["*.com".to_owned()]),
@@ -70,9 +73,30 @@ impl<'h> Wanted<'h> {
             ..Options::default()
         };
         let imported = robot::read_text(path, text, None, &options)?;
+        let lock = locked.iter().map(|joint| Lock {
+            joint: joint.clone(),
+            value: None,
+        });
+        let reduced = robot::read_text(
+            path,
+            text,
+            None,
+            &Options {
+                lock: lock.collect(),
+                ..options
+            },
+        )?;
+        let names = |of: &Dictionary| of.bodies.iter().map(|own| own.name.clone()).collect();
+        let mut merged: BTreeSet<String> = names(&imported.dictionary);
+        merged.retain(|name| {
+            let of_both = [&imported.dictionary, &reduced.dictionary];
+            let [whole, reduced] = of_both.map(|of| companions(of, name));
+            whole != reduced
+        });
         let of_spec = hypothesis.changes();
         let fitted = of_spec.parameters.iter();
         let mut wanted = Self {
+            merged,
             dictionary: imported.dictionary,
             format: imported.format,
             hypothesis,
@@ -117,6 +141,10 @@ impl<'h> Wanted<'h> {
             let last = attribute.strip_prefix("com.");
             last.or_else(|| attribute.strip_prefix("gravity.")) == Some(*axis)
         });
+        let of_body = matches!(attribute, "mass" | "inertia" | "com.x" | "com.y" | "com.z");
+        if of_body && self.merged.contains(element) {
+            return None;
+        }
         let element = element.to_owned();
         Some(match attribute {
             "mass" => Change::Mass {
@@ -218,6 +246,9 @@ impl<'h> Wanted<'h> {
     fn in_body(&self, site: &str, vector: [f64; 3]) -> Option<(String, [f64; 3])> {
         let mut bodies = self.dictionary.bodies.iter();
         let own = bodies.find(|own| own.body == site)?;
+        if self.merged.contains(&own.name) {
+            return None;
+        }
         let along = |row: &[f64; 3]| row.iter().zip(vector).map(|(a, b)| a * b).sum();
         Some((own.name.clone(), own.axes.each_ref().map(along)))
     }
@@ -457,6 +488,15 @@ impl<'h> Wanted<'h> {
         self.remarks
             .push(format!("not in {format}: {effect}{written}: {remedy}"));
     }
+}
+
+/// The bodies that count as one with a body.
+fn companions<'d>(dictionary: &'d Dictionary, name: &str) -> Vec<&'d str> {
+    let bodies = || dictionary.bodies.iter();
+    let own = bodies().find(|own| own.name == name);
+    let own = own.map_or("", |own| own.body.as_str());
+    let alike = bodies().filter(|other| other.body == own);
+    alike.map(|other| other.name.as_str()).collect()
 }
 
 /// Changes, if there are any.

@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use appell_spec::Code;
 
+use crate::format::Format;
 use crate::includes::Whole;
 use crate::model::Robot;
 use crate::xml::{Element, Findings, Span, elements, inside, parse, tag};
@@ -21,6 +22,7 @@ pub(super) struct Sheet<'x, 'f> {
     pub(super) whole: &'f Whole<'f>,
     /// The text of the file, without includes.
     original: &'f str,
+    pub(super) format: Format,
     pub(super) compiler: Compiler,
     pub(super) defaults: Defaults<'x>,
     pub(super) robot: Robot,
@@ -30,6 +32,8 @@ pub(super) struct Sheet<'x, 'f> {
     pub(super) groups: Vec<body::Group>,
     /// Whether masses, inertias or armatures change.
     pub(super) reshaped: bool,
+    /// Damping and friction of joints of a URDF.
+    pub(super) dynamics: Vec<(Element<'x>, [f64; 2])>,
     /// Joints with backlash, and its size.
     pub(super) plays: Vec<(String, f64)>,
     /// Texts that are inserted into the file, with their places.
@@ -56,6 +60,7 @@ struct Pending<'x> {
 impl<'x, 'f> Sheet<'x, 'f> {
     pub(super) fn new(
         root: Element<'x>,
+        format: Format,
         whole: &'f Whole<'f>,
         original: &'f str,
         robot: Robot,
@@ -65,6 +70,7 @@ impl<'x, 'f> Sheet<'x, 'f> {
             root,
             whole,
             original,
+            format,
             compiler: Compiler::read(root, findings),
             defaults: Defaults::new(root, findings),
             robot,
@@ -72,6 +78,7 @@ impl<'x, 'f> Sheet<'x, 'f> {
             laws: Vec::new(),
             groups: Vec::new(),
             reshaped: false,
+            dynamics: Vec::new(),
             plays: Vec::new(),
             inserted: Vec::new(),
             filled: BTreeMap::new(),
@@ -365,8 +372,8 @@ impl Pending<'_> {
     fn sentence(&self, sheet: &Sheet<'_, '_>) -> Option<String> {
         let element = self.element;
         let kind = element.tag_name().name();
-        let own = |element: Element<'_>| element.attribute("name").map(str::to_owned);
-        let name = own(element).or_else(|| element.parent_element().and_then(own));
+        let mut around = element.ancestors();
+        let name = around.find_map(|own| own.attribute("name"));
         let mut changes = Vec::new();
         if let Some(renamed) = self.renamed {
             changes.push(format!("a `{renamed}` with its numbers written out"));

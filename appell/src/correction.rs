@@ -38,7 +38,8 @@ pub fn correct(
     if let (Some(format), Some(diagnosed)) = (format, report.robot.as_deref())
         && format != diagnosed
     {
-        let message = format!("the report is about a file of {diagnosed}, and this one is {format}");
+        let message =
+            format!("the report is about a file of {diagnosed}, and this one is {format}");
         return Err(Error::data(&path.to_string_lossy(), message));
     }
     let (parts, mut remarks) = Wanted::of(path, text, hypothesis, &report.locked)?;
@@ -54,7 +55,9 @@ pub fn correct(
             for part in parts {
                 match whole(std::slice::from_ref(&part), &[]) {
                     Ok(_) => possible.push(part),
-                    Err(why) => remarks.push(format!("not written: {}: {}", part.name, reason(&why))),
+                    Err(why) => {
+                        remarks.push(format!("not written: {}: {}", part.name, reason(&why)))
+                    }
                 }
             }
             if possible.is_empty() {

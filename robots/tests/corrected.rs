@@ -375,7 +375,10 @@ fn what_actuators_add_to_a_joint_counts() {
     // 0.01 kg m² of the joint, and 3² · 0.004 of the motor.
     let geared = "gear=\"9\" ctrlrange=\"-4 4\"";
     let text = LEG
-        .replace("joint=\"knee\" gear=\"9\"", "joint=\"hip\" gear=\"3\" armature=\"0.004\"")
+        .replace(
+            "joint=\"knee\" gear=\"9\"",
+            "joint=\"hip\" gear=\"3\" armature=\"0.004\"",
+        )
         .replace(geared, "");
     let armature = |amount| joint("hip", JointNumber::Armature, amount);
     let after = |amount| change(&text, &[armature(amount)]).unwrap().text;

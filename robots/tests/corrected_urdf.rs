@@ -84,7 +84,10 @@ fn numbers_are_replaced_where_they_stand() {
     replaces(
         &changes,
         &[
-            ("xyz=\"0.1 0 0\" rpy=\"0 0 0.3\"", "xyz=\"0.11 0 0\" rpy=\"0 0 0.3\""),
+            (
+                "xyz=\"0.1 0 0\" rpy=\"0 0 0.3\"",
+                "xyz=\"0.11 0 0\" rpy=\"0 0 0.3\"",
+            ),
             ("value=\"2.0\"", "value=\"2.1\""),
             ("ixx=\"0.01\"", "ixx=\"0.015\""),
             ("iyy=\"0.02\"", "iyy=\"0.03\""),
@@ -131,5 +134,8 @@ fn links_that_are_fixed_together_have_one_inertia() {
 fn what_a_urdf_cannot_express_is_refused() {
     let armature = joint("wrist", JointNumber::Armature, Amount::Add(0.1));
     let refusal = change(&[armature]).unwrap_err();
-    assert!(refusal.contains("URDF cannot express this change"), "{refusal}");
+    assert!(
+        refusal.contains("URDF cannot express this change"),
+        "{refusal}"
+    );
 }

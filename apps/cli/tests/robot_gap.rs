@@ -158,7 +158,14 @@ fn what_mjcf_cannot_express_stands_in_a_comment() {
         "{better}"
     );
 
-    let shown = ["apply", "robot.xml", "--report", "report.json", "-o", "new.xml"];
+    let shown = [
+        "apply",
+        "robot.xml",
+        "--report",
+        "report.json",
+        "-o",
+        "new.xml",
+    ];
     let shown = folder.done(&[&shown[..], &["--dry-run", "--json", "edits.json"]].concat());
     let head = "--- robot.xml\n+++ new.xml\n@@ -1,3 +1,4 @@\n+<!-- appell: not in MJCF";
     assert!(shown.stdout.starts_with(head), "{}", shown.stdout);
@@ -195,13 +202,25 @@ fn friction_is_found_from_a_urdf_and_written_into_it() {
     let description = DESCRIPTION
         .replace("robot.xml", "robot.urdf")
         .replace("input = \"F\"", "input = \"tau_x\"")
-        .replace("[parameters]", "[parameters]\n\"x.friction\" = { std = 0.01 }");
+        .replace(
+            "[parameters]",
+            "[parameters]\n\"x.friction\" = { std = 0.01 }",
+        );
     folder.write("recording.toml", &description);
     folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
     let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
     assert_eq!(report["robot"], "URDF");
     assert_eq!(report["which"][0]["effects"][0], "coulomb_friction@x");
-    let apply = |file: &'static str| ["apply", file, "--report", "report.json", "-o", "better.urdf"];
+    let apply = |file: &'static str| {
+        [
+            "apply",
+            file,
+            "--report",
+            "report.json",
+            "-o",
+            "better.urdf",
+        ]
+    };
     folder.done(&apply("robot.urdf"));
     let better = folder.read("better.urdf");
     let friction = number_after(&better, "<dynamics friction=\"");
@@ -215,8 +234,12 @@ fn a_locked_joint_needs_no_channel() {
     let wrist = r#"<body name="tool"><joint name="wrist"/><geom size="0.01" mass="0.1"/></body>
     </body>"#;
     folder.write("robot.xml", &ROBOT.replace("</body>", wrist));
-    let locked = |rest: &str| DESCRIPTION.replace("description =", &format!("{rest}\ndescription ="));
-    folder.write("recording.toml", &locked("lock = [\"wrist\"]\nbase = \"fixed\""));
+    let locked =
+        |rest: &str| DESCRIPTION.replace("description =", &format!("{rest}\ndescription ="));
+    folder.write(
+        "recording.toml",
+        &locked("lock = [\"wrist\"]\nbase = \"fixed\""),
+    );
     folder.done(&["recording", "."]);
     for (wrong, message) in [
         ("lock = [\"wrst\"]", "there is no joint `wrst`"),

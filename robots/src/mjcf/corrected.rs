@@ -19,10 +19,10 @@ mod bytes;
 mod change;
 mod joint;
 mod keyframe;
+mod link;
 mod option;
 mod play;
 mod sheet;
-mod link;
 
 use appell_spec::{Code, Diagnostic, Severity};
 
@@ -145,9 +145,17 @@ impl Sheet<'_, '_> {
 
     fn change(&mut self, change: &Change) -> Result<(), Refused> {
         if !self.format.expresses(change) {
-            let message = format!("{} cannot express this change: {change:?}", self.format.word());
+            let message = format!(
+                "{} cannot express this change: {change:?}",
+                self.format.word()
+            );
             let help = "it has inertias of links, and damping and friction of joints";
-            return Err(refused(Code::NotAllowedHere, xml::tag(self.root), message, help));
+            return Err(refused(
+                Code::NotAllowedHere,
+                xml::tag(self.root),
+                message,
+                help,
+            ));
         }
         match change {
             Change::Joint {

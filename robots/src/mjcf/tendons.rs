@@ -79,7 +79,8 @@ impl<'x> Reader<'x, '_> {
         let zero = |word: &str| word == "0";
         let bounds = |given: &Attribute<'_, '_>| !given.value().split_ascii_whitespace().all(zero);
         let given = attribute("range").filter(bounds);
-        let range = given.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
+        let range =
+            given.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
         let bounded = given.filter(|_| limited).map(|range| LeftOut {
             what: "tendon/range".to_owned(),
             name: Some(name.clone()),

@@ -143,7 +143,10 @@ impl Changes {
                 acts: acts.to_owned(),
                 on: candidate.site.clone(),
                 output: None,
-                measures: candidate.acts.channel().and_then(|channel| measured(bench, channel)),
+                measures: candidate
+                    .acts
+                    .channel()
+                    .and_then(|channel| measured(bench, channel)),
             })
         });
         let shown = members().flat_map(|candidate| shown(bench, candidate));
@@ -191,7 +194,9 @@ pub(super) struct Equations<'e> {
 /// What a channel of a robot measures, as its file calls it.
 fn measured(bench: &Bench<'_>, channel: usize) -> Option<String> {
     bench.set.robot.as_ref()?;
-    let label = bench.set.channels[channel].role.label(&bench.set.mechanism)?;
+    let label = bench.set.channels[channel]
+        .role
+        .label(&bench.set.mechanism)?;
     Some(bench.set.named(&label.name).into_owned())
 }
 

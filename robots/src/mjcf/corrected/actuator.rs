@@ -33,7 +33,9 @@ impl<'x> Sheet<'x, '_> {
     fn actuator(&self, name: &str) -> Result<Element<'x>, Refused> {
         let all = || children(self.root, "actuator").flat_map(elements);
         let read = |one: &Element<'x>| self.drive(*one).is_some_and(|drive| drive.name == name);
-        let found = all().find(read).or_else(|| all().find(|one| called(*one) == name));
+        let found = all()
+            .find(read)
+            .or_else(|| all().find(|one| called(*one) == name));
         found.ok_or_else(|| {
             let known: Vec<String> = all().map(called).collect();
             let known = known.iter().map(String::as_str);
@@ -403,9 +405,8 @@ impl<'x> Sheet<'x, '_> {
     /// The damping of a joint by the laws of its actuators.
     pub(super) fn feedback(&self, joint: &str) -> Result<f64, Refused> {
         let all = self.drives_of(joint)?.into_iter();
-        let damping = all.map(|(actuator, gear)| {
-            -gear * gear * self.law(actuator).acting_bias()[2].min(0.0)
-        });
+        let damping =
+            all.map(|(actuator, gear)| -gear * gear * self.law(actuator).acting_bias()[2].min(0.0));
         Ok(damping.sum())
     }
 
@@ -432,7 +433,8 @@ impl<'x> Sheet<'x, '_> {
                     }
                 }
                 "velocity"
-                    if is_unfiltered && numbers(&law.bias) == numbers(&[0.0, 0.0, -law.gain[0]]) =>
+                    if is_unfiltered
+                        && numbers(&law.bias) == numbers(&[0.0, 0.0, -law.gain[0]]) =>
                 {
                     self.set(actuator, "kv", number(law.gain[0]))?;
                 }
@@ -483,9 +485,24 @@ impl<'x> Sheet<'x, '_> {
         }
         let [filtered, affine] = [&law.filter_type, &law.bias_type].map(|word| word != "none");
         let lists = [
-            ("dynprm", 1, filtered, [law, class, before].map(|law| vec![law.time])),
-            ("gainprm", 1, true, [law, class, before].map(|law| law.gain.to_vec())),
-            ("biasprm", AFFINE, affine, [law, class, before].map(|law| law.bias.to_vec())),
+            (
+                "dynprm",
+                1,
+                filtered,
+                [law, class, before].map(|law| vec![law.time]),
+            ),
+            (
+                "gainprm",
+                1,
+                true,
+                [law, class, before].map(|law| law.gain.to_vec()),
+            ),
+            (
+                "biasprm",
+                AFFINE,
+                affine,
+                [law, class, before].map(|law| law.bias.to_vec()),
+            ),
         ];
         for (key, least, acts, [list, of_class, was]) in lists {
             if !acts || !converted && numbers(&list) == numbers(&was) {
@@ -498,7 +515,11 @@ impl<'x> Sheet<'x, '_> {
             let given = given.unwrap_or_default();
             let count = (0..list.len()).rfind(differs).map_or(1, |k| k + 1);
             let count = count.max(given.len()).clamp(least, list.len());
-            let written: Vec<f64> = list[..count].iter().chain(given.iter().skip(count)).copied().collect();
+            let written: Vec<f64> = list[..count]
+                .iter()
+                .chain(given.iter().skip(count))
+                .copied()
+                .collect();
             self.set(actuator, key, numbers(&written))?;
         }
         Ok(())

@@ -65,7 +65,8 @@ impl<'x> Sheet<'x, '_> {
             }
             if !new.is_empty() {
                 let name = joint.attribute("name").unwrap_or_default();
-                self.said.push(format!("joint {name}: dynamics{}", new.replace('"', "")));
+                self.said
+                    .push(format!("joint {name}: dynamics{}", new.replace('"', "")));
                 self.insert_into(joint, &format!("<dynamics{new}/>"), false)?;
             }
         }
@@ -162,7 +163,9 @@ impl<'x> Sheet<'x, '_> {
             }
             return Ok(());
         }
-        let values = values.iter().map(|(key, value)| format!(" {key}=\"{value}\""));
+        let values = values
+            .iter()
+            .map(|(key, value)| format!(" {key}=\"{value}\""));
         let text = format!("<{name}{}/>", values.collect::<String>());
         self.insert_into(inertial, &text, true)
     }

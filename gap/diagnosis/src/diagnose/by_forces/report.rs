@@ -63,7 +63,10 @@ pub(super) fn report(
     Ok(Report {
         mechanism: set.mechanism.name.clone(),
         robot: set.robot.as_ref().map(|robot| robot.format.word()),
-        locked: set.robot.as_ref().map_or_else(Vec::new, |robot| robot.locked.clone()),
+        locked: set
+            .robot
+            .as_ref()
+            .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict: first.after(&which, far.as_ref(), false),
         is_by_simulation: false,
         is_by_forces: true,

@@ -218,6 +218,9 @@ impl<'h> Wanted<'h> {
         let stated = self.dictionary.gravity;
         let count = stated.iter().filter(|one| **one != 0.0).count();
         std::array::from_fn(|axis| {
+            if stated[axis] == 0.0 {
+                return 0.0;
+            }
             let name = match count {
                 1 => "option.gravity".to_owned(),
                 _ => format!("option.gravity.{}", AXES[axis]),

@@ -42,9 +42,10 @@ impl Robot {
         if Format::of(text).is_none() {
             let asked = !options.lock.is_empty() || options.floating || options.grounded;
             let why = "the mechanism is a spec: `lock` and `base` are keys for robot files";
-            return match asked {
-                true => Err(DataError::whole(path.to_string_lossy(), why)),
-                false => Ok(None),
+            return if asked {
+                Err(DataError::whole(path.to_string_lossy(), why))
+            } else {
+                Ok(None)
             };
         }
         for key in &mut keys {

@@ -130,6 +130,14 @@ fn float(robot: &mut model::Robot) {
     }
 }
 
+/// Makes free joints of root links rigid.
+fn ground(robot: &mut model::Robot) {
+    for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
+        let joint = link.joint.take();
+        link.joint = joint.filter(|joint| joint.motion != model::Motion::Free);
+    }
+}
+
 /// Reports the errors of the spec at their sources in the file of the robot.
 fn refuse(spec: &Report, lines: &[(usize, xml::Span)], root: xml::Span, findings: &xml::Findings) {
     for error in spec.diagnostics() {
@@ -235,10 +243,7 @@ pub fn import_with(
         float(&mut robot);
     }
     if options.grounded {
-        for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
-            let joint = link.joint.take();
-            link.joint = joint.filter(|joint| joint.motion != model::Motion::Free);
-        }
+        ground(&mut robot);
     }
     for one in &options.without {
         one.apply(&mut robot);

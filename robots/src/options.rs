@@ -6,6 +6,10 @@ use crate::without::Without;
 
 /// Options of the conversion of a robot to a spec.
 #[derive(Debug, Clone, Default)]
+#[allow(
+    clippy::struct_excessive_bools,
+    reason = "options that do not depend on each other"
+)]
 pub struct Options {
     /// Which numbers become parameters.
     pub letters: Letters,

@@ -260,7 +260,7 @@ impl Writer<'_> {
             bias: drive.bias[0],
             follows_motion: [drive.gain, drive.bias]
                 .iter()
-                .any(|[_, of_motion @ ..]| *of_motion != [0.0; 2]),
+                .any(|[_, of_motion @ ..]| of_motion.iter().any(|factor| *factor != 0.0)),
         });
         for (attribute, value) in [("timeconst", drive.lag), ("delay", drive.delay)] {
             if self.numbers.patterns.choose(&drive.name, attribute, value) {

@@ -57,13 +57,11 @@ impl<'x> Sheet<'x, '_> {
     /// The law of an actuator, as it is to be written.
     fn law(&self, actuator: Element<'x>) -> Law {
         let changed = self.laws.iter().find(|(own, _)| *own == actuator);
-        match changed {
-            Some((_, law)) => law.clone(),
-            None => {
-                let [_, law] = self.laws_in_file(actuator);
-                law
-            }
+        if let Some((_, law)) = changed {
+            return law.clone();
         }
+        let [_, law] = self.laws_in_file(actuator);
+        law
     }
 
     /// Changes the law of an actuator.
@@ -250,8 +248,9 @@ impl<'x> Sheet<'x, '_> {
             _ if seconds == 0.0 => "none",
             "filter" => "filter",
             _ => "filterexact",
-        };
-        law.filter_type = filter.to_owned();
+        }
+        .to_owned();
+        law.filter_type = filter;
         law.time = seconds;
         self.keep(actuator, law);
         Ok(())
@@ -322,12 +321,11 @@ impl<'x> Sheet<'x, '_> {
         let actuator = self.actuator(name)?;
         let before = self.force_range(actuator)?;
         let [from, to] = before.unwrap_or_default();
-        let after = match amount {
-            Amount::Times(factor) => [from * factor, to * factor],
-            _ => {
-                let limit = self.at_least_zero(name, "limit", amount.of(to));
-                [-limit, limit]
-            }
+        let after = if let Amount::Times(factor) = amount {
+            [from * factor, to * factor]
+        } else {
+            let limit = self.at_least_zero(name, "limit", amount.of(to));
+            [-limit, limit]
         };
         match before {
             Some(before) if numbers(&before) == numbers(&after) => Ok(()),
@@ -438,7 +436,7 @@ impl<'x> Sheet<'x, '_> {
                 {
                     self.set(actuator, "kv", number(law.gain[0]))?;
                 }
-                "damper" if is_unfiltered && law.acting_bias() == [0.0; 3] => {
+                "damper" if is_unfiltered && numbers(&law.acting_bias()) == numbers(&[0.0; 3]) => {
                     self.set(actuator, "kv", number(-law.gain[2]))?;
                 }
                 "cylinder"

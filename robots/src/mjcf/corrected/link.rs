@@ -60,7 +60,7 @@ impl<'x> Sheet<'x, '_> {
                 }
                 match own {
                     Some(own) => self.set(own, key, number(after))?,
-                    None => new += &format!(" {key}=\"{}\"", number(after)),
+                    None => new = format!("{new} {key}=\"{}\"", number(after)),
                 }
             }
             if !new.is_empty() {

@@ -130,6 +130,16 @@ fn float(robot: &mut model::Robot) {
     }
 }
 
+/// Frees or fixes the roots, as the options ask.
+fn set_base(robot: &mut model::Robot, options: &Options) {
+    if options.floating {
+        float(robot);
+    }
+    if options.grounded {
+        ground(robot);
+    }
+}
+
 /// Makes free joints of root links rigid.
 fn ground(robot: &mut model::Robot) {
     for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
@@ -239,12 +249,7 @@ pub fn import_with(
         Format::Urdf => urdf::read(root, &findings, options),
         Format::Mjcf => mjcf::read(root, &findings, &whole, options),
     };
-    if options.floating {
-        float(&mut robot);
-    }
-    if options.grounded {
-        ground(&mut robot);
-    }
+    set_base(&mut robot, options);
     for one in &options.without {
         one.apply(&mut robot);
     }

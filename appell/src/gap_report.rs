@@ -37,7 +37,7 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
             "about": one.about,
         })
     });
-    json!({
+    let mut json = json!({
         "schema": SCHEMA,
         "engine": ENGINE,
         "mechanism": report.mechanism,
@@ -63,7 +63,14 @@ pub fn json(report: &Report, next: Option<&Path>, findings: &[String]) -> Value 
         "failed": failed.collect::<Vec<_>>(),
         "disturbances": disturbances.collect::<Vec<_>>(),
         "data": findings,
-    })
+    });
+    if let Some(format) = report.robot {
+        json["robot"] = format.into();
+    }
+    if !report.locked.is_empty() {
+        json["locked"] = report.locked.clone().into();
+    }
+    json
 }
 
 /// A measured law: its curve with standard deviations, and the closest analytic forms.
@@ -105,6 +112,12 @@ pub struct GapReport {
     schema: String,
     /// Name of the mechanism.
     pub mechanism: String,
+    /// The format of the robot file that was diagnosed, `URDF` or `MJCF`.
+    #[serde(default)]
+    pub(crate) robot: Option<String>,
+    /// Joints of that robot that were rigid.
+    #[serde(default)]
+    pub(crate) locked: Vec<String>,
     which: Vec<Hypothesis>,
     #[serde(default)]
     tied: Vec<Vec<String>>,

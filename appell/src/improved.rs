@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use appell_gap::diagnose::{Changes, Refitted, SignalEffect};
 use appell_report::text::{number, with_unit};
 use appell_spec::foreign::toml_string;
+use serde_json::{Value, json};
 
 use crate::Error;
 use crate::gap_report::{Found, GapReport, Hypothesis};
@@ -52,6 +53,12 @@ impl Source {
 }
 
 impl Improved<'_> {
+    /// The changes, those that belong elsewhere included, as JSON.
+    pub fn json(&self) -> Value {
+        let edits = json!(self.changes);
+        json!({ "edits": edits, "tied_with": self.report.rivals(self.hypothesis) })
+    }
+
     /// The changes written to the spec `file`, and those that belong elsewhere.
     pub fn summary(&self, file: &str) -> String {
         let (hypothesis, changes) = (self.hypothesis, &self.changes);

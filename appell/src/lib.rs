@@ -39,6 +39,7 @@ pub mod control;
 pub mod correction;
 pub mod derivation;
 pub mod diagnosis;
+pub mod difference;
 pub mod effects;
 pub mod engine;
 pub mod ensemble;

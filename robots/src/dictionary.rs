@@ -11,6 +11,8 @@ pub struct Dictionary {
     pub joints: Vec<JointName>,
     /// Bodies of the file, in its order.
     pub bodies: Vec<BodyName>,
+    /// The acceleration of gravity, x, y and z.
+    pub gravity: [f64; 3],
 }
 
 /// A number of the file that is a parameter of the spec.
@@ -49,6 +51,14 @@ pub struct ActuatorName {
     pub delay: f64,
     /// Whether its command is a position or a velocity, in the unit of its joint.
     pub is_servo: bool,
+    /// Its transmission ratio.
+    pub gear: f64,
+    /// What multiplies its command, before the gear; without the part that depends on the motion.
+    pub gain: f64,
+    /// Its constant force before the gear.
+    pub bias: f64,
+    /// Whether its force depends on the motion of what it drives.
+    pub follows_motion: bool,
 }
 
 /// A joint with an axis.
@@ -71,4 +81,6 @@ pub struct BodyName {
     pub name: String,
     /// The body of the spec of which it is a part; `ground` if it does not move.
     pub body: String,
+    /// Rotation matrix from the axes of that body to its own in the file; those of the ground are the same.
+    pub axes: [[f64; 3]; 3],
 }

@@ -130,6 +130,24 @@ fn float(robot: &mut model::Robot) {
     }
 }
 
+/// Frees or fixes the roots, as the options ask.
+fn set_base(robot: &mut model::Robot, options: &Options) {
+    if options.floating {
+        float(robot);
+    }
+    if options.grounded {
+        ground(robot);
+    }
+}
+
+/// Makes free joints of root links rigid.
+fn ground(robot: &mut model::Robot) {
+    for link in robot.links.iter_mut().filter(|link| link.parent.is_none()) {
+        let joint = link.joint.take();
+        link.joint = joint.filter(|joint| joint.motion != model::Motion::Free);
+    }
+}
+
 /// Reports the errors of the spec at their sources in the file of the robot.
 fn refuse(spec: &Report, lines: &[(usize, xml::Span)], root: xml::Span, findings: &xml::Findings) {
     for error in spec.diagnostics() {
@@ -231,9 +249,7 @@ pub fn import_with(
         Format::Urdf => urdf::read(root, &findings, options),
         Format::Mjcf => mjcf::read(root, &findings, &whole, options),
     };
-    if options.floating {
-        float(&mut robot);
-    }
+    set_base(&mut robot, options);
     for one in &options.without {
         one.apply(&mut robot);
     }

@@ -7,6 +7,7 @@ mod defaults;
 mod equality;
 mod geoms;
 mod joints;
+mod law;
 mod meshes;
 mod orientation;
 mod replicate;

@@ -231,6 +231,8 @@ pub(crate) struct Tendon {
     pub(crate) relaxed: [f64; 2],
     pub(crate) friction: f64,
     pub(crate) armature: f64,
+    /// Its shortest and longest length, which bound nothing but commands.
+    pub(crate) range: Option<[f64; 2]>,
     /// Bounds of the sum of all forces of actuators on it.
     pub(crate) drive_range: Option<[f64; 2]>,
     pub(crate) place: Span,

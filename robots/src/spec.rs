@@ -21,6 +21,7 @@ use crate::model::{Link, Motion, Robot};
 use crate::names::{Names, short};
 use crate::options::Options;
 use crate::patterns;
+use crate::rotation::Rotation;
 use crate::table::{Item, Section, quoted};
 use crate::tree::{Body, Part, Tree};
 use crate::without::Without;
@@ -266,6 +267,7 @@ impl<'a> Writer<'a> {
 
     /// Records the names of bodies, and declares the names of all numbers that patterns can select.
     fn declare(&mut self, robot: &Robot) {
+        self.dictionary.gravity = robot.gravity;
         for (index, link) in robot.links.iter().enumerate() {
             let body = self.tree.body_of[index].map(|body| self.tree.bodies[body].link);
             let body = body.map_or("ground", |body| &self.called.links[body]);
@@ -273,6 +275,7 @@ impl<'a> Writer<'a> {
                 self.dictionary.bodies.push(BodyName {
                     name: link.name.clone(),
                     body: body.to_owned(),
+                    axes: self.axes(index).0,
                 });
             }
         }
@@ -297,6 +300,20 @@ impl<'a> Writer<'a> {
             patterns.declare(&drive.name, drive.attributes());
         }
         patterns.declare(patterns::OPTION, &["gravity.x", "gravity.y", "gravity.z"]);
+    }
+
+    /// From the axes of the body of a link to those of the link.
+    fn axes(&self, link: usize) -> Rotation {
+        let Some(body) = self.tree.body_of[link] else {
+            return Rotation::IDENTITY;
+        };
+        let mut turned = Rotation::IDENTITY;
+        let mut at = link;
+        while let (None, Some(parent)) = (&self.links[at].joint, self.links[at].parent) {
+            turned = self.links[at].pose.rotation.then(turned);
+            at = parent;
+        }
+        turned.inverse().then(self.tree.bodies[body].own)
     }
 
     fn mechanism(

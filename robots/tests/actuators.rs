@@ -60,6 +60,10 @@ fn actuators_are_inputs_with_their_laws() {
         lag: 0.02,
         delay: 0.0,
         is_servo: true,
+        gear: 1.0,
+        gain: 20.0,
+        bias: 0.0,
+        follows_motion: true,
     };
     assert_eq!(*servo, expected);
     assert_eq!(motor.input, "ctrl_elbow");

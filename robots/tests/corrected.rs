@@ -343,10 +343,78 @@ fn delays_are_whole_steps_where_these_are_near() {
     }
     let limit = Change::ForceLimit {
         actuator: "hip_servo".to_owned(),
-        limit: 8.0,
+        range: [-8.0, 8.0],
     };
     let after = "joint=\"hip\" forcerange=\"-8 8\"/>";
     replaces(&[limit], &[("joint=\"hip\"/>", after)]);
+}
+
+#[test]
+fn limits_of_forces_are_those_of_the_file_and_the_new_ones() {
+    let limit = |range| Change::ForceLimit {
+        actuator: "hip_servo".to_owned(),
+        range,
+    };
+    let times = Change::ForceRange {
+        actuator: "hip_servo".to_owned(),
+        amount: Amount::Times(0.5),
+    };
+    for (change, range) in [
+        (limit([-8.0, 30.0]), "-8 20"),
+        (limit([-30.0, 5.0]), "-20 5"),
+        (times, "-10 10"),
+    ] {
+        let after = format!("joint=\"hip\" forcerange=\"{range}\"/>");
+        replaces(&[change], &[("joint=\"hip\"/>", &after)]);
+    }
+    replaces(&[limit([-25.0, 25.0])], &[]);
+}
+
+#[test]
+fn what_actuators_add_to_a_joint_counts() {
+    // 0.01 kg m² of the joint, and 3² · 0.004 of the motor.
+    let geared = "gear=\"9\" ctrlrange=\"-4 4\"";
+    let text = LEG
+        .replace(
+            "joint=\"knee\" gear=\"9\"",
+            "joint=\"hip\" gear=\"3\" armature=\"0.004\"",
+        )
+        .replace(geared, "");
+    let armature = |amount| joint("hip", JointNumber::Armature, amount);
+    let after = |amount| change(&text, &[armature(amount)]).unwrap().text;
+    let more = text.replace("armature='0.01'", "armature='0.014'");
+    assert_eq!(after(Amount::To(0.05)), more);
+    let less = text
+        .replace("armature='0.01'", "armature='0'")
+        .replace("armature=\"0.004\"", "armature=\"0.002\"");
+    assert_eq!(after(Amount::To(0.018)), less);
+    // A larger gear leaves the inertia as it is.
+    let gear = Change::Gear {
+        actuator: "knee_motor".to_owned(),
+        amount: Amount::To(6.0),
+    };
+    let geared = text.replace(
+        "gear=\"3\" armature=\"0.004\"",
+        "gear=\"6\" armature=\"0.001\"",
+    );
+    assert_eq!(change(&text, &[gear]).unwrap().text, geared);
+}
+
+#[test]
+fn a_reading_moves_without_the_bounds_of_commands() {
+    let text = LEG.replace("joint=\"hip\"/>", "joint=\"hip\" inheritrange=\"0.5\"/>");
+    let reading = Change::Reading {
+        joint: "hip".to_owned(),
+        bias: std::f64::consts::PI / 180.0,
+    };
+    let expected = text
+        .replace("range=\"-90 90\"", "range=\"-89 91\"")
+        .replace("armature='0.01' />", "armature='0.01' ref=\"1\" />")
+        .replace(
+            " inheritrange=\"0.5\"/>",
+            " ctrlrange=\"-0.785398163397 0.785398163397\"/>",
+        );
+    assert_eq!(change(&text, &[reading]).unwrap().text, expected);
 }
 
 #[test]
@@ -414,9 +482,8 @@ fn what_cannot_be_changed_is_refused_with_its_place() {
     };
     let gain = refusal(LEG, kp);
     assert!(gain.contains("`motor` `knee_motor` has no `kp`"), "{gain}");
-    let urdf = r#"<robot name="a"><link name="b"/></robot>"#;
-    let urdf = refusal(urdf, mass("b"));
-    assert!(urdf.contains("is no MJCF"), "{urdf}");
+    let other = refusal("<sdf/>", mass("b"));
+    assert!(other.contains("neither MJCF nor URDF"), "{other}");
     let copies = LEG.replace(
         "<joint name=\"knee\"",
         "<replicate count=\"2\"><body name=\"toe\"><joint name=\"toe\"/><geom size=\"0.01\"/></body></replicate>\

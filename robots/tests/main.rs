@@ -4,6 +4,7 @@
 
 mod actuators;
 mod corrected;
+mod corrected_urdf;
 mod equality;
 mod files;
 mod includes;

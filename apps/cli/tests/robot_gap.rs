@@ -158,10 +158,94 @@ fn what_mjcf_cannot_express_stands_in_a_comment() {
         "{better}"
     );
 
+    let shown = [
+        "apply",
+        "robot.xml",
+        "--report",
+        "report.json",
+        "-o",
+        "new.xml",
+    ];
+    let shown = folder.done(&[&shown[..], &["--dry-run", "--json", "edits.json"]].concat());
+    let head = "--- robot.xml\n+++ new.xml\n@@ -1,3 +1,4 @@\n+<!-- appell: not in MJCF";
+    assert!(shown.stdout.starts_with(head), "{}", shown.stdout);
+    let edits: Value = serde_json::from_str(&folder.read("edits.json")).expect("JSON");
+    assert_eq!(edits["remarks"][0], line);
+    assert_eq!(edits["diff"], shown.stdout);
+    assert!(!folder.path("new.xml").exists());
+
     let nothing = report
         .replace("[\"sensor_scale@x\"]", "[]")
         .replace("sensor_scale@x.scale", "a");
     folder.write("report.json", &nothing);
     folder.done(&apply);
     assert_eq!(folder.read("better.xml"), ROBOT);
+}
+
+/// The carriage as a URDF.
+const URDF: &str = r#"<robot name="carriage">
+  <link name="rail"/>
+  <link name="cart">
+    <inertial><mass value="1"/><inertia ixx="0.01" ixy="0" ixz="0" iyy="0.01" iyz="0" izz="0.01"/></inertial>
+  </link>
+  <joint name="x" type="prismatic">
+    <parent link="rail"/><child link="cart"/>
+    <limit lower="-9" upper="9" effort="50" velocity="9"/>
+  </joint>
+</robot>
+"#;
+
+#[test]
+fn friction_is_found_from_a_urdf_and_written_into_it() {
+    let folder = rig();
+    folder.write("robot.urdf", URDF);
+    let description = DESCRIPTION
+        .replace("robot.xml", "robot.urdf")
+        .replace("input = \"F\"", "input = \"tau_x\"")
+        .replace(
+            "[parameters]",
+            "[parameters]\n\"x.friction\" = { std = 0.01 }",
+        );
+    folder.write("recording.toml", &description);
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
+    assert_eq!(report["robot"], "URDF");
+    assert_eq!(report["which"][0]["effects"][0], "coulomb_friction@x");
+    let apply = |file: &'static str| {
+        [
+            "apply",
+            file,
+            "--report",
+            "report.json",
+            "-o",
+            "better.urdf",
+        ]
+    };
+    folder.done(&apply("robot.urdf"));
+    let better = folder.read("better.urdf");
+    let friction = number_after(&better, "<dynamics friction=\"");
+    assert!((friction - 0.4).abs() < 0.03, "{better}");
+    folder.fails(3, &apply("robot.xml"), &["about a file of URDF"]);
+}
+
+#[test]
+fn a_locked_joint_needs_no_channel() {
+    let folder = rig();
+    let wrist = r#"<body name="tool"><joint name="wrist"/><geom size="0.01" mass="0.1"/></body>
+    </body>"#;
+    folder.write("robot.xml", &ROBOT.replace("</body>", wrist));
+    let locked =
+        |rest: &str| DESCRIPTION.replace("description =", &format!("{rest}\ndescription ="));
+    folder.write(
+        "recording.toml",
+        &locked("lock = [\"wrist\"]\nbase = \"fixed\""),
+    );
+    folder.done(&["recording", "."]);
+    for (wrong, message) in [
+        ("lock = [\"wrst\"]", "there is no joint `wrst`"),
+        ("base = \"free\"", "`free` is no kind of base"),
+    ] {
+        folder.write("recording.toml", &locked(wrong));
+        folder.fails(3, &["recording", "."], &[message]);
+    }
 }

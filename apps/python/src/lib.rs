@@ -28,5 +28,5 @@ mod _appell {
     #[pymodule_export]
     use super::recordings::{DataSet, Gap, Identified, apply, sample};
     #[pymodule_export]
-    use super::robot::{import_robot, sample_robot};
+    use super::robot::{corrected_robot, import_robot, sample_robot};
 }

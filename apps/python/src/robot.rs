@@ -3,12 +3,30 @@
 use std::path::PathBuf;
 use std::str::FromStr;
 
+use appell::gap_report::GapReport;
 use appell::robot::{self, Letters, Lock, Options, Without};
+use appell::{correction, files};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::errors::Raise;
 use crate::watched::watched;
+
+/// The text of a robot file with a hypothesis of a gap report, and a summary of the changes.
+#[pyfunction]
+#[pyo3(signature = (file, report, hypothesis))]
+pub(crate) fn corrected_robot(
+    py: Python<'_>,
+    file: PathBuf,
+    report: &str,
+    hypothesis: Option<usize>,
+) -> PyResult<(String, String)> {
+    let text = files::read(&file, files::MAX_DATA).raise(py)?;
+    let report = GapReport::parse("gap report", report).raise(py)?;
+    let better = correction::correct(&file, &text, &report, hypothesis).raise(py)?;
+    let summary = better.summary();
+    Ok((better.text, summary))
+}
 
 /// The spec of a robot file, and a report of the import as JSON.
 #[pyfunction]
@@ -37,6 +55,7 @@ pub(crate) fn import_robot(
         snap,
         floating,
         actuators,
+        ..Options::default()
     };
     let name = file.to_string_lossy().into_owned();
     let robot = watched(py, None, move |_| {

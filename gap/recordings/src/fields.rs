@@ -122,7 +122,7 @@ impl<'t> Fields<'t> {
             return Vec::new();
         };
         let Some(list) = value.get_ref().as_array() else {
-            self.wrong_type(value, "a list of file names");
+            self.wrong_type(value, "a list of names");
             return Vec::new();
         };
         let texts = list.iter().map(|value| self.text_of(value));

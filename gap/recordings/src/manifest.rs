@@ -35,7 +35,7 @@ use crate::channel::{Channel, Measured, Role};
 use crate::fields::{Fields, Tolerance, Value};
 use crate::limits::MAX_RUNS;
 use crate::named::Named;
-use crate::robot::Robot;
+use crate::robot::{self, Robot};
 use crate::time::{self, Stated, TIME, may_be_time};
 use crate::{DataError, Library, Parameter, Part, Spec};
 
@@ -51,7 +51,15 @@ pub(crate) struct Manifest {
     pub(crate) runs: Vec<(String, Part)>,
 }
 
-const KEYS: &[&str] = &["mechanism", "description", "parameters", "channels", "runs"];
+const KEYS: &[&str] = &[
+    "mechanism",
+    "description",
+    "lock",
+    "base",
+    "parameters",
+    "channels",
+    "runs",
+];
 /// Keys of a channel that the times do not have.
 const CHANNEL_KEYS: [&str; 6] = [
     "measures",
@@ -96,7 +104,12 @@ pub(crate) fn read(
     let Some(spec) = spec else {
         return Err(fields.report().into());
     };
-    let robot = Robot::read(Path::new(&spec.file), &spec.text, parameter_keys(table))?;
+    let options = robot::options(&mut fields, table);
+    if fields.is_wrong() {
+        return Err(fields.report().into());
+    }
+    let keys = parameter_keys(table);
+    let robot = Robot::read(Path::new(&spec.file), &spec.text, keys, &options)?;
     let (spec, robot) = match robot {
         Some((spec, robot)) => (spec, Some(robot)),
         None => (spec, None),

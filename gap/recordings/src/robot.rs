@@ -4,10 +4,12 @@ use std::path::Path;
 
 use appell_files::FileError;
 use appell_robots::{Dictionary, Entry, Failure, Format, Letters, Options};
-use appell_spec::Mechanism;
 use appell_spec::mechanism::Interpolation;
+use appell_spec::{Code, Mechanism, shown};
+use toml::de::DeTable;
 
 use crate::channel::{Channel, Role};
+use crate::fields::Fields;
 use crate::{DataError, Run, Spec};
 
 /// Times that differ by less, in s, are equal.
@@ -20,6 +22,10 @@ const MAX_MESH: u64 = 1 << 28;
 pub struct Robot {
     /// Path of the file.
     pub file: String,
+    /// Its format.
+    pub format: Format,
+    /// Joints that are made rigid.
+    pub locked: Vec<String>,
     /// Its names in the spec.
     pub dictionary: Dictionary,
 }
@@ -31,9 +37,19 @@ impl Robot {
         path: &Path,
         text: &str,
         mut keys: Vec<String>,
+        options: &Options,
     ) -> Result<Option<(Spec, Self)>, DataError> {
         if Format::of(text).is_none() {
-            return Ok(None);
+            let asked = !options.lock.is_empty() || options.floating || options.grounded;
+            let why = "the mechanism is a spec: `lock` and `base` are keys for robot files";
+            return if asked {
+                Err(DataError::whole(path.to_string_lossy(), why))
+            } else {
+                Ok(None)
+            };
+        }
+        for key in &mut keys {
+            *key = in_words_of_import(key);
         }
         let file = path.to_string_lossy().replace('\\', "/");
         let folder = path.parent().unwrap_or(Path::new(""));
@@ -45,8 +61,7 @@ impl Robot {
         let imported = loop {
             let options = Options {
                 letters: Letters::Matching(keys.clone()),
-                actuators: true,
-                ..Options::default()
+                ..options.clone()
             };
             match appell_robots::import_with(&file, text, &options, &others) {
                 Ok(imported) => break imported,
@@ -68,18 +83,22 @@ impl Robot {
             file: file.clone(),
             text: imported.spec,
         };
-        let dictionary = imported.dictionary;
-        Ok(Some((spec, Self { file, dictionary })))
+        let robot = Self {
+            file,
+            format: imported.format,
+            locked: options.lock.iter().map(|lock| lock.joint.clone()).collect(),
+            dictionary: imported.dictionary,
+        };
+        Ok(Some((spec, robot)))
     }
 
     /// The numbers that a key names: one, the components of one, or with `*` those of all elements.
     pub(crate) fn numbers<'s>(&'s self, key: &str) -> impl Iterator<Item = &'s Entry> {
+        let key = in_words_of_import(key);
         let (element, attribute) = match key.strip_prefix("*.") {
-            Some(attribute) => (None, attribute),
-            None => (Some(key), ""),
+            Some(attribute) => (None, attribute.to_owned()),
+            None => (Some(key), String::new()),
         };
-        let attribute = attribute.to_owned();
-        let element = element.map(str::to_owned);
         let is_or_holds = |whole: &str, name: &str| {
             let rest = name.strip_prefix(whole);
             rest.is_some_and(|rest| rest.is_empty() || rest.starts_with('.'))
@@ -191,6 +210,39 @@ impl Robot {
             .or_else(|| actuator().map(|actuator| actuator.name.clone()))
             .or_else(|| joint().map(|joint| joint.name.clone()))
     }
+}
+
+/// A key of `[parameters]`: URDF calls dry friction `friction`.
+fn in_words_of_import(key: &str) -> String {
+    match key.strip_suffix(".friction") {
+        Some(element) => format!("{element}.frictionloss"),
+        None => key.to_owned(),
+    }
+}
+
+/// The options of a description: `lock = ["wrist"]` and `base = "floating"` or `"fixed"`.
+pub(crate) fn options(fields: &mut Fields<'_>, table: &DeTable<'_>) -> Options {
+    let mut options = Options {
+        actuators: true,
+        ..Options::default()
+    };
+    for (text, at) in fields.strings(table, "lock") {
+        match text.parse() {
+            Ok(lock) => options.lock.push(lock),
+            Err(why) => fields.tell(Code::WrongType, why, at, ""),
+        }
+    }
+    match fields.string(table, "base") {
+        Some((word, _)) if word == "floating" => options.floating = true,
+        Some((word, _)) if word == "fixed" => options.grounded = true,
+        Some((word, at)) => {
+            let message = format!("`{}` is no kind of base", shown(&word));
+            let help = "write \"fixed\" or \"floating\"";
+            fields.tell(Code::UnknownName, message, at, help);
+        }
+        None => {}
+    }
+    options
 }
 
 /// What an actuator makes of its command: after its delay, the output of its filter. The command is held from each row

@@ -7,9 +7,10 @@ use roxmltree::Attribute;
 
 use crate::model::{Drive, LeftOut, On, Tendon};
 use crate::rotation::is_zero;
-use crate::xml::{Element, Findings, children, elements, exactly, numbers, tag};
+use crate::xml::{Element, children, elements, exactly, numbers, tag};
 
 use super::Reader;
+use super::law::Law;
 use super::schema::{self, ACTUATORS};
 
 /// Attributes of all kinds of actuators that drive a joint or a tendon, and those of each kind.
@@ -31,15 +32,6 @@ const OWN: &[(&str, &str)] = &[
         "cogging controller inductance input lugre motorconst nominal resistance saturation thermal",
     ),
 ];
-/// What makes a `dcmotor` another one than a gain and a back-EMF, and the words with which it does not.
-const NO_MERE_MOTOR: &[&str] = &[
-    "cogging",
-    "controller",
-    "inductance",
-    "input",
-    "lugre",
-    "thermal",
-];
 /// Kinds that follow no law of the form gain × command + bias.
 const OTHER_LAW: &str = "its law has no counterpart, and it exerts no force";
 /// Other transmissions, and drives of joints without an axis.
@@ -59,205 +51,6 @@ const READ: &[&str] = &[
     "flag/actuation",
     "option/actuatorgroupdisable",
 ];
-
-/// The law of an actuator as its element and the defaults of its class build it up.
-#[derive(Debug, Clone)]
-struct Built {
-    gain_type: String,
-    gain: [f64; 3],
-    bias_type: String,
-    bias: [f64; 3],
-    filter_type: String,
-    time: f64,
-    /// Whether commands are bounded whatever `ctrllimited` says.
-    bounded: bool,
-    /// The motor of `dcmotor`.
-    motor: Motor,
-    /// An element whose law is of another kind.
-    other: bool,
-}
-
-/// A direct-current motor.
-#[derive(Debug, Clone, Copy, Default)]
-struct Motor {
-    resistance: f64,
-    /// Constants of torque and of back-EMF.
-    constants: [f64; 3],
-    /// Voltage, stall torque and speed without load.
-    nominal: [f64; 3],
-    /// Bounds of torque and of current.
-    saturation: [f64; 3],
-}
-
-impl Motor {
-    /// Its constant and its resistance.
-    fn constants(&self) -> (f64, f64) {
-        let [torque, back, _] = self.constants;
-        let [voltage, stall, speed] = self.nominal;
-        let constant = match (torque > 0.0, back > 0.0) {
-            (true, true) => (torque * back).sqrt(),
-            (false, false) => voltage / speed,
-            _ => torque.max(back),
-        };
-        if self.resistance > 0.0 {
-            (constant, self.resistance)
-        } else {
-            (constant, constant * voltage / stall)
-        }
-    }
-
-    /// The largest torque, if it is bounded.
-    fn bound(&self) -> Option<f64> {
-        let [torque, current, _] = self.saturation;
-        let bound = if torque > 0.0 {
-            torque
-        } else {
-            current * self.constants().0
-        };
-        (bound > 0.0).then_some(bound)
-    }
-}
-
-impl Built {
-    fn new() -> Self {
-        Self {
-            gain_type: "fixed".to_owned(),
-            gain: [1.0, 0.0, 0.0],
-            bias_type: "none".to_owned(),
-            bias: [0.0; 3],
-            filter_type: "none".to_owned(),
-            time: 1.0,
-            bounded: false,
-            motor: Motor::default(),
-            other: false,
-        }
-    }
-
-    /// Sets the types of gain, bias and filter.
-    fn types(&mut self, gain: &str, bias: &str, filter: Option<&str>) {
-        gain.clone_into(&mut self.gain_type);
-        bias.clone_into(&mut self.bias_type);
-        if let Some(filter) = filter {
-            filter.clone_into(&mut self.filter_type);
-        }
-    }
-
-    /// Applies an element, as the functions `mjs_setTo…` of `MuJoCo` do.
-    fn apply(&mut self, element: Element<'_>, findings: &Findings) {
-        let number = |key: &str| {
-            let given = element.attribute_node(key)?;
-            exactly::<1>(findings, &given, &format!("`{key}`")).map(|[number]| number)
-        };
-        let some = |key: &str, into: &mut [f64; 3]| {
-            let given = element.attribute_node(key);
-            let read = given.and_then(|given| numbers(findings, &given));
-            for (own, read) in into.iter_mut().zip(read.into_iter().flatten()) {
-                *own = read;
-            }
-        };
-        self.other = false;
-        match element.tag_name().name() {
-            "general" => {
-                some("gainprm", &mut self.gain);
-                some("biasprm", &mut self.bias);
-                let mut filter = [self.time, 0.0, 0.0];
-                some("dynprm", &mut filter);
-                self.time = filter[0];
-                for (key, own) in [
-                    ("gaintype", &mut self.gain_type),
-                    ("biastype", &mut self.bias_type),
-                    ("dyntype", &mut self.filter_type),
-                ] {
-                    if let Some(word) = element.attribute(key) {
-                        word.clone_into(own);
-                    }
-                }
-            }
-            "motor" => {
-                self.gain[0] = 1.0;
-                self.types("fixed", "none", Some("none"));
-            }
-            "position" => {
-                self.gain[0] = number("kp").unwrap_or(self.gain[0]);
-                self.bias[..2].copy_from_slice(&[0.0, -self.gain[0]]);
-                // A positive factor of the rate is a damping ratio.
-                let kv = number("kv").map(|kv| -kv);
-                self.bias[2] = number("dampratio").or(kv).unwrap_or(self.bias[2]);
-                match number("timeconst") {
-                    Some(0.0) => "none".clone_into(&mut self.filter_type),
-                    Some(time) => {
-                        self.time = time;
-                        "filterexact".clone_into(&mut self.filter_type);
-                    }
-                    None => {}
-                }
-                self.types("fixed", "affine", None);
-            }
-            "velocity" => {
-                self.gain[0] = number("kv").unwrap_or(self.gain[0]);
-                self.bias = [0.0, 0.0, -self.gain[0]];
-                self.types("fixed", "affine", Some("none"));
-            }
-            "damper" => {
-                self.gain = [0.0, 0.0, -number("kv").unwrap_or_default()];
-                self.bounded = true;
-                self.types("affine", "none", Some("none"));
-            }
-            "cylinder" => {
-                self.time = number("timeconst").unwrap_or(self.time);
-                some("bias", &mut self.bias);
-                self.gain[0] = number("area").unwrap_or(self.gain[0]);
-                if let Some(diameter) = number("diameter") {
-                    self.gain[0] = std::f64::consts::FRAC_PI_4 * diameter * diameter;
-                }
-                self.types("fixed", "affine", Some("filter"));
-            }
-            "dcmotor" => {
-                self.motor.resistance = number("resistance").unwrap_or(self.motor.resistance);
-                some("motorconst", &mut self.motor.constants);
-                some("nominal", &mut self.motor.nominal);
-                some("saturation", &mut self.motor.saturation);
-                let acts = |key: &&str| {
-                    let given = element.attribute(*key).unwrap_or_default();
-                    let mut words = given.split_ascii_whitespace();
-                    words.any(|word| word != "voltage" && word.parse() != Ok(0.0))
-                };
-                self.other = NO_MERE_MOTOR.iter().any(acts);
-                self.types("dcmotor", "none", Some("none"));
-            }
-            _ => self.other = true,
-        }
-    }
-
-    /// Gain and bias with the terms that act; `None` for another law.
-    fn law(&self) -> Option<([f64; 3], [f64; 3])> {
-        let gain = match self.gain_type.as_str() {
-            "dcmotor" if !self.other => {
-                let (constant, resistance) = self.motor.constants();
-                let gain = constant / resistance;
-                let law = ([gain, 0.0, 0.0], [0.0, 0.0, -gain * constant]);
-                return (gain.is_finite() && gain > 0.0).then_some(law);
-            }
-            "fixed" => [self.gain[0], 0.0, 0.0],
-            "affine" => self.gain,
-            _ => return None,
-        };
-        let bias = match self.bias_type.as_str() {
-            "none" => [0.0; 3],
-            "affine" => self.bias,
-            _ => return None,
-        };
-        let filtered = ["none", "filter", "filterexact"].contains(&self.filter_type.as_str());
-        (filtered && !self.other).then_some((gain, bias))
-    }
-
-    fn lag(&self) -> f64 {
-        match self.filter_type.as_str() {
-            "none" => 0.0,
-            _ => self.time,
-        }
-    }
-}
 
 impl<'x> Reader<'x, '_> {
     /// Bounds, where an attribute gives them and another one, or the order of the two, says that they hold.
@@ -316,15 +109,15 @@ impl<'x> Reader<'x, '_> {
             let link = link.and_then(|name| self.joint_links.get(name).copied());
             let tendon = target.filter(|_| way == Some("tendon"));
             let tendon = tendon.and_then(|name| by_name.get(name).copied());
-            let (on, inertia, resistance) = if let Some(link) = link
+            let (on, range, inertia, resistance) = if let Some(link) = link
                 && let Some(joint) = &mut self.links[link].joint
             {
                 let on = On::Joint(joint.name.clone());
-                (Some(on), &mut joint.armature, &mut joint.damping)
+                (on, joint.range, &mut joint.armature, &mut joint.damping)
             } else if let Some(tendon) = tendon {
                 let tendon = &mut tendons[tendon];
                 let on = On::Tendon(tendon.name.clone());
-                (Some(on), &mut tendon.armature, &mut tendon.damping)
+                (on, tendon.range, &mut tendon.armature, &mut tendon.damping)
             } else {
                 if armature != 0.0 || !is_zero(damping) {
                     self.findings.warning(
@@ -341,9 +134,10 @@ impl<'x> Reader<'x, '_> {
             for (own, more) in resistance.iter_mut().zip(damping) {
                 *own += more;
             }
-            match on.filter(|_| self.actuators) {
-                Some(on) => drives.extend(self.drive(element, class, on, gear)),
-                None => self.leave_out_of("actuator", element),
+            if self.actuators {
+                drives.extend(self.drive(element, class, on, gear, range));
+            } else {
+                self.leave_out_of("actuator", element);
             }
         }
         if !self.actuators {
@@ -406,6 +200,7 @@ impl<'x> Reader<'x, '_> {
         class: Option<&'x str>,
         on: On,
         gear: f64,
+        range: Option<[f64; 2]>,
     ) -> Option<Drive> {
         let kind = element.tag_name().name();
         self.check_attributes(element);
@@ -416,12 +211,8 @@ impl<'x> Reader<'x, '_> {
             }
             return None;
         }
-        let mut built = Built::new();
-        for one in self.defaults.chain(ACTUATORS, class) {
-            built.apply(one, self.findings);
-        }
-        built.apply(element, self.findings);
-        let Some((gain, bias)) = built.law() else {
+        let [_, law] = Law::of(element, class, &self.defaults, self.findings);
+        let Some((gain, bias)) = law.affine() else {
             self.leave_out_drive(element, OTHER_LAW);
             return None;
         };
@@ -440,15 +231,15 @@ impl<'x> Reader<'x, '_> {
             gear,
             gain,
             bias,
-            ctrl_range: self.commands(&attribute, &built, &on),
+            ctrl_range: self.commands(&attribute, &law, range),
             act_range: self
                 .bounds(&attribute, "actrange", "actlimited")
-                .filter(|_| built.filter_type != "none"),
-            force_range: match built.motor.bound() {
+                .filter(|_| law.filter_type != "none"),
+            force_range: match law.motor.bound() {
                 Some(bound) => Some([-bound, bound]),
                 None => self.bounds(&attribute, "forcerange", "forcelimited"),
             },
-            lag: built.lag(),
+            lag: law.lag(),
             delay: number("delay").unwrap_or_default(),
             place: tag(element),
             on,
@@ -472,24 +263,24 @@ impl<'x> Reader<'x, '_> {
         name
     }
 
-    /// Bounds of the command: those of its own, or those of its joint.
+    /// Bounds of the command: those of its own, or those of its joint or tendon.
     fn commands(
         &self,
         attribute: &dyn Fn(&str) -> Option<Attribute<'x, 'x>>,
-        built: &Built,
-        on: &On,
+        law: &Law,
+        length_range: Option<[f64; 2]>,
     ) -> Option<[f64; 2]> {
         if schema::disabled(self.root, "clampctrl") {
             return None;
         }
         let share = attribute("inheritrange")
             .and_then(|given| exactly::<1>(self.findings, &given, "`inheritrange`"));
-        if let (Some([share]), On::Joint(joint)) = (share.filter(|[share]| *share > 0.0), on) {
-            let [from, to] = self.joint(joint)?.range?;
+        if let Some([share]) = share.filter(|[share]| *share > 0.0) {
+            let [from, to] = length_range?;
             let (middle, half) = (f64::midpoint(from, to), share * (to - from) / 2.0);
             return Some([middle - half, middle + half]);
         }
-        if built.bounded {
+        if law.bounded {
             let given = attribute("ctrlrange")?;
             return exactly(self.findings, &given, "a range, from to,");
         }

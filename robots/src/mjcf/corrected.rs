@@ -1,14 +1,14 @@
-//! The text of an MJCF file with changes of its numbers; everything else stays byte for byte.
+//! The text of an MJCF or URDF file with changes of its numbers; everything else stays byte for byte.
 //!
 //! | file | changes |
 //! |---|---|
 //! | `corrected/joint.rs` | numbers of joints, springs, readings |
 //! | `corrected/body.rs` | masses, centres of mass, inertias, payloads |
 //! | `corrected/actuator.rs` | gains, biases, lags, delays, limits of actuators |
-//! | `corrected/law.rs` | the law of an actuator, as its classes and shortcuts define it |
 //! | `corrected/option.rs` | gravity |
 //! | `corrected/keyframe.rs` | states of new joints and filters in keyframes |
 //! | `corrected/play.rs` | backlash: a second joint |
+//! | `corrected/link.rs` | inertias, damping, friction and payloads of a URDF |
 //! | `corrected/sheet.rs` | attributes that are to be written, element by element |
 //! | `corrected/change.rs` | the changes, and why one cannot be made |
 //! | `corrected/bytes.rs` | replacements of ranges of the text |
@@ -19,7 +19,7 @@ mod bytes;
 mod change;
 mod joint;
 mod keyframe;
-mod law;
+mod link;
 mod option;
 mod play;
 mod sheet;
@@ -30,6 +30,7 @@ use crate::Failure;
 use crate::format::Format;
 use crate::includes::Whole;
 use crate::options::Options;
+use crate::urdf;
 use crate::xml::{self, Findings, parse};
 
 use bytes::Edits;
@@ -46,7 +47,7 @@ pub struct Corrected {
     pub edits: Vec<String>,
 }
 
-/// The text of an MJCF file with changes of its numbers, and with remarks as comments at its head. All other bytes are
+/// The text of an MJCF or URDF file with changes of its numbers, and with remarks as comments at its head. All other bytes are
 /// those of `text`. `others` reads the files that it includes; an element in one of them cannot be changed.
 ///
 /// ```
@@ -68,7 +69,7 @@ pub struct Corrected {
 ///
 /// # Errors
 ///
-/// The file is no MJCF, has errors, or lacks an element that is to be changed; or MJCF cannot express a change.
+/// The file is no robot, has errors, or lacks an element that is to be changed; or its format cannot express a change.
 pub fn corrected(
     file: &str,
     text: &str,
@@ -85,19 +86,15 @@ pub fn corrected(
     let document = parse(&whole.text).map_err(|error| fail(vec![error]))?;
     let root = document.root_element();
     let word = root.tag_name().name();
-    if Format::named(word) != Some(Format::Mjcf) {
+    let Some(format) = Format::named(word) else {
         let message = format!(
-            "the file begins with `<{}>`, and is no MJCF",
+            "the file begins with `<{}>`, and is neither MJCF nor URDF",
             appell_spec::shown(word)
         );
-        let help = "corrections are written into files that begin with `<mujoco>`";
-        return Err(fail(vec![*refused(
-            Code::NotAllowedHere,
-            xml::tag(root),
-            message,
-            help,
-        )]));
-    }
+        let help = "corrections are written into files that begin with `<mujoco>` or `<robot>`";
+        let error = refused(Code::NotAllowedHere, xml::tag(root), message, help);
+        return Err(fail(vec![*error]));
+    };
     let mut edits = Edits::default();
     edits.remark(text, remarks);
     if changes.is_empty() {
@@ -107,11 +104,18 @@ pub fn corrected(
         });
     }
     let findings = Findings::default();
-    let robot = super::read(root, &findings, &whole, &Options::default());
+    let options = Options {
+        actuators: true,
+        ..Options::default()
+    };
+    let robot = match format {
+        Format::Mjcf => super::read(root, &findings, &whole, &options),
+        Format::Urdf => urdf::read(root, &findings, &options),
+    };
     if findings.has_errors() {
         return Err(fail(findings.into_inner()));
     }
-    let mut sheet = Sheet::new(root, &whole, text, robot, &findings);
+    let mut sheet = Sheet::new(root, format, &whole, text, robot, &findings);
     for change in changes {
         sheet.change(change).map_err(|error| fail(vec![*error]))?;
     }
@@ -128,14 +132,37 @@ pub fn corrected(
 impl Sheet<'_, '_> {
     /// Writes what depends on all changes of an element.
     fn finish(&mut self) -> Result<(), Refused> {
+        if self.format == Format::Urdf {
+            self.write_dynamics()?;
+            return self.write_groups();
+        }
         self.write_plays()?;
         self.write_groups()?;
         self.write_settled()?;
+        self.write_laws()?;
         self.write_keyframes()
     }
 
     fn change(&mut self, change: &Change) -> Result<(), Refused> {
+        if !self.format.expresses(change) {
+            let message = format!(
+                "{} cannot express this change: {change:?}",
+                self.format.word()
+            );
+            let help = "it has inertias of links, and damping and friction of joints";
+            return Err(refused(
+                Code::NotAllowedHere,
+                xml::tag(self.root),
+                message,
+                help,
+            ));
+        }
         match change {
+            Change::Joint {
+                joint,
+                attribute,
+                amount,
+            } if self.format == Format::Urdf => self.dynamics(joint, *attribute, *amount),
             Change::Joint {
                 joint,
                 attribute,
@@ -159,7 +186,8 @@ impl Sheet<'_, '_> {
             Change::Bias { actuator, add } => self.bias(actuator, *add),
             Change::Lag { actuator, seconds } => self.lag(actuator, *seconds),
             Change::Delay { actuator, seconds } => self.delay(actuator, *seconds),
-            Change::ForceLimit { actuator, limit } => self.force_limit(actuator, *limit),
+            Change::ForceRange { actuator, amount } => self.force_range_by(actuator, *amount),
+            Change::ForceLimit { actuator, range } => self.force_limit(actuator, *range),
             Change::Gravity(gravity) => self.gravity(*gravity),
         }
     }

@@ -78,8 +78,10 @@ impl<'x> Reader<'x, '_> {
         let limited = attribute("limited").is_none_or(|given| given.value() != "false");
         let zero = |word: &str| word == "0";
         let bounds = |given: &Attribute<'_, '_>| !given.value().split_ascii_whitespace().all(zero);
-        let range = attribute("range").filter(|given| limited && bounds(given));
-        let range = range.map(|range| LeftOut {
+        let given = attribute("range").filter(bounds);
+        let range =
+            given.and_then(|given| exactly::<2>(self.findings, &given, "a range, from to,"));
+        let bounded = given.filter(|_| limited).map(|range| LeftOut {
             what: "tendon/range".to_owned(),
             name: Some(name.clone()),
             effect: Some("its length is not bounded"),
@@ -93,10 +95,11 @@ impl<'x> Reader<'x, '_> {
             relaxed,
             friction: number("frictionloss").unwrap_or_default(),
             armature: number("armature").unwrap_or_default(),
+            range,
             drive_range: self.bounds(&attribute, "actuatorfrcrange", "actuatorfrclimited"),
             place: tag(element),
         };
-        self.left_out.extend(range);
+        self.left_out.extend(bounded);
         Some(tendon)
     }
 

@@ -255,6 +255,12 @@ impl Writer<'_> {
             lag: drive.lag,
             delay: drive.delay,
             is_servo: matches!(drive.law(), Law::Position | Law::Velocity),
+            gear: drive.gear,
+            gain: drive.gain[0],
+            bias: drive.bias[0],
+            follows_motion: [drive.gain, drive.bias]
+                .iter()
+                .any(|[_, of_motion @ ..]| of_motion.iter().any(|factor| *factor != 0.0)),
         });
         for (attribute, value) in [("timeconst", drive.lag), ("delay", drive.delay)] {
             if self.numbers.patterns.choose(&drive.name, attribute, value) {

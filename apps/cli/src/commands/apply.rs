@@ -3,9 +3,11 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
+use appell::difference::unified;
 use appell::gap_report::GapReport;
 use appell::source::Source;
 use appell::{files, robot};
+use serde_json::Value;
 
 use crate::failure::Error;
 use crate::output;
@@ -14,14 +16,15 @@ use crate::output;
 ///
 /// Comments and layout of the spec are kept. Parameters fitted together with the effect are updated,
 /// within their tolerances. Effects that a spec cannot express, such as an actuator delay or a sensor
-/// bias, are listed with the place where they belong. Of an MJCF file only the numbers change; what it cannot
-/// express stands in a comment at its head.
+/// bias, are listed with the place where they belong. Of an MJCF or URDF file only the numbers change; what it
+/// cannot express stands in a comment at its head.
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
-  appell apply rig/my_rig.toml --report report.json --out better.toml")]
+  appell apply rig/my_rig.toml --report report.json --out better.toml
+  appell apply robot.xml --report report.json --dry-run")]
 pub(crate) struct Apply {
-    /// Name of a shipped mechanism, or path of a spec or of an MJCF file, as diagnosed
+    /// Name of a shipped mechanism, or path of a spec or of an MJCF or URDF file, as diagnosed
     model: String,
     /// Gap report of `appell diagnose --json`
     #[arg(long, value_name = "FILE.json")]
@@ -33,6 +36,12 @@ pub(crate) struct Apply {
     /// existing file is not overwritten]
     #[arg(long, short, value_name = "FILE.toml")]
     out: Option<PathBuf>,
+    /// Shows the changes of the file as a diff, and writes nothing
+    #[arg(long)]
+    dry_run: bool,
+    /// Writes the list of changes as JSON, `-` is standard output
+    #[arg(long, value_name = "FILE.json")]
+    json: Option<PathBuf>,
 }
 
 impl Apply {
@@ -46,34 +55,57 @@ impl Apply {
         }
         let source = Source::find(&self.model)?;
         let report = GapReport::read(&self.report)?;
-        let default = PathBuf::from(format!("{}_improved.toml", report.mechanism));
-        let out = self.out.as_ref().unwrap_or(&default);
+        let out = self.out(|| PathBuf::from(format!("{}_improved.toml", report.mechanism)));
         let file = out.to_string_lossy();
         let improved = source.improved(&report, self.hypothesis, &file)?;
-        if improved.spec == source.text {
+        if improved.spec == source.text && !self.dry_run && self.json.is_none() {
             return output::print(&improved.summary("nothing to write"));
         }
-        self.may_replace(out, &improved.spec)?;
-        files::write(out, &improved.spec)?;
-        output::print_beside(&improved.summary(&file), &[&Some(out.clone())])
+        let texts = [source.text.as_str(), &improved.spec];
+        self.deliver(&out, texts, improved.json(), &improved.summary(&file))
     }
 
     /// Corrects a robot file.
     fn robot(&self, path: &Path, text: &str) -> Result<(), Error> {
         let report = GapReport::read(&self.report)?;
         let correction = appell::correction::correct(path, text, &report, self.hypothesis)?;
-        let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-        let default = path.with_file_name(format!("{stem}_improved.xml"));
-        let out = self.out.as_ref().unwrap_or(&default);
-        let file = out.to_string_lossy();
-        self.may_replace(out, &correction.text)?;
-        files::write(out, &correction.text)?;
-        let text = format!(
-            "{file}: {} corrected\n{}",
-            path.display(),
-            correction.summary
-        );
-        output::print_beside(&text, &[&Some(out.clone())])
+        let out = self.out(|| {
+            let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+            let end = path.extension().unwrap_or_default().to_string_lossy();
+            path.with_file_name(format!("{stem}_improved.{end}"))
+        });
+        let head = format!("{}: {} corrected\n", out.display(), path.display());
+        let summary = head + &correction.summary();
+        self.deliver(&out, [text, &correction.text], correction.json(), &summary)
+    }
+
+    fn out(&self, default: impl FnOnce() -> PathBuf) -> PathBuf {
+        self.out.clone().unwrap_or_else(default)
+    }
+
+    /// Writes the changed text, or shows how it differs.
+    fn deliver(
+        &self,
+        out: &Path,
+        [before, after]: [&str; 2],
+        edits: Value,
+        summary: &str,
+    ) -> Result<(), Error> {
+        let difference = unified(&self.model, &out.to_string_lossy(), before, after);
+        if !self.dry_run {
+            self.may_replace(out, after)?;
+            files::write(out, after)?;
+        }
+        if let Some(path) = &self.json {
+            let mut edits = edits;
+            edits["schema"] = "apply/1".into();
+            edits["diff"] = difference.as_str().into();
+            files::write_json(path, &edits)?;
+        }
+        if self.dry_run {
+            return output::print_beside(&difference, &[&self.json]);
+        }
+        output::print_beside(summary, &[&Some(out.to_owned()), &self.json])
     }
 
     /// Refuses to overwrite a file that was not named.

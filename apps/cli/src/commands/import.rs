@@ -89,6 +89,7 @@ impl Import {
             snap: self.snap,
             floating: self.floating,
             actuators: self.actuators,
+            ..Options::default()
         };
         let robot = robot::read(&self.robot, self.root.as_deref(), &options)?;
         if self.out.is_none()

@@ -85,6 +85,15 @@ def import_robot(
     )
 
 
+def corrected_robot(file: str | Path, report: str, hypothesis: int | None = None) -> tuple[str, str]:
+    """The text of an MJCF or URDF file with the leading hypothesis of a gap report, or with another one, numbered from 1,
+    and a summary of the changes. `report` is the text of the report, such as that of `Diagnosis.json`.
+    """
+    if hypothesis is not None and hypothesis < 1:
+        raise ValueError("hypotheses are numbered from 1")
+    return _appell.corrected_robot(Path(file), report, hypothesis)
+
+
 def sample_robot(folder: str | Path) -> list[str]:
     """Writes an arm with four joints as URDF and as MJCF; returns the names of the files."""
     return _appell.sample_robot(Path(folder))

@@ -83,6 +83,12 @@ pub(super) fn assemble(
     };
     Ok(Report {
         mechanism: bench.set.mechanism.name.clone(),
+        robot: bench.set.robot.as_ref().map(|robot| robot.format.word()),
+        locked: bench
+            .set
+            .robot
+            .as_ref()
+            .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict,
         is_by_simulation: bench.is_over_windows(),
         is_by_forces: false,

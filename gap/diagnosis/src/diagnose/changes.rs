@@ -63,6 +63,9 @@ pub struct SignalEffect {
     pub on: String,
     /// The output that a channel measures, among the items.
     pub output: Option<String>,
+    /// What the channel of a robot measures.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub measures: Option<String>,
 }
 
 /// A term of an input in the file of a report.
@@ -140,6 +143,10 @@ impl Changes {
                 acts: acts.to_owned(),
                 on: candidate.sites().concat(),
                 output: None,
+                measures: candidate
+                    .acts
+                    .channel()
+                    .and_then(|channel| measured(bench, channel)),
             })
         });
         let shown = members().flat_map(|candidate| shown(bench, candidate));
@@ -184,6 +191,15 @@ pub(super) struct Equations<'e> {
     pub(super) deviations: Vec<Option<f64>>,
 }
 
+/// What a channel of a robot measures, as its file calls it.
+fn measured(bench: &Bench<'_>, channel: usize) -> Option<String> {
+    bench.set.robot.as_ref()?;
+    let label = bench.set.channels[channel]
+        .role
+        .label(&bench.set.mechanism)?;
+    Some(bench.set.named(&label.name).into_owned())
+}
+
 /// Channels that measure another quantity than the spec states.
 fn shown(bench: &Bench<'_>, candidate: &Candidate) -> Vec<SignalEffect> {
     let measured = bench.set.measured(bench.effects.info());
@@ -196,6 +212,7 @@ fn shown(bench: &Bench<'_>, candidate: &Candidate) -> Vec<SignalEffect> {
             acts: "shows".to_owned(),
             on: channel.column.clone(),
             output: Some(output.clone()),
+            measures: None,
         }));
     }
     shown

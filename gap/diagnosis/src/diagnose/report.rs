@@ -445,6 +445,10 @@ pub struct Found {
 pub struct Report {
     /// Name of the mechanism.
     pub mechanism: String,
+    /// The format of the robot file that is the mechanism, if it is one.
+    pub robot: Option<&'static str>,
+    /// Joints of that robot that the description locks.
+    pub locked: Vec<String>,
     /// The result in one word.
     pub verdict: GapVerdict,
     /// Whether simulations over windows rank the hypotheses, as they did not confirm the one-step predictions.

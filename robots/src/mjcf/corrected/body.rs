@@ -2,6 +2,7 @@
 
 use appell_spec::{Code, did_you_mean};
 
+use crate::format::Format;
 use crate::inertia::{Inertia, within_triangle};
 use crate::model::Robot;
 use crate::options::Options;
@@ -25,14 +26,14 @@ const FULL: &str = "fullinertia";
 /// Bodies that are fixed to each other: one mass, one centre, one inertia.
 pub(super) struct Group {
     /// The link that has the joint.
-    head: usize,
+    pub(super) head: usize,
     /// Before the changes and after them, in the frame of the head.
-    before: Inertia,
-    after: Inertia,
+    pub(super) before: Inertia,
+    pub(super) after: Inertia,
     /// The factor of the moments of inertia, while nothing else changes them.
-    factor: f64,
+    pub(super) factor: f64,
     /// Whether more than the factor changes the moments of inertia.
-    reshaped: bool,
+    pub(super) reshaped: bool,
 }
 
 impl<'x> Sheet<'x, '_> {
@@ -62,7 +63,7 @@ impl<'x> Sheet<'x, '_> {
     }
 
     /// The element of a link.
-    fn body(&self, link: usize) -> Result<Element<'x>, Refused> {
+    pub(super) fn body(&self, link: usize) -> Result<Element<'x>, Refused> {
         let link = &self.robot.links[link];
         self.at(&link.place).ok_or_else(|| {
             let message = format!("body `{}` has no element", link.name);
@@ -162,6 +163,9 @@ impl<'x> Sheet<'x, '_> {
             return Ok(());
         }
         let element = self.body(self.link(name)?)?;
+        if self.format == Format::Urdf {
+            return self.payload_link(name, element, mass, at);
+        }
         let payload = self.free_name("body", "payload");
         self.use_inertials()?;
         let (own, place) = (number(mass / self.scale()?), numbers(&at));
@@ -247,35 +251,59 @@ impl<'x> Sheet<'x, '_> {
     /// Writes masses and inertias of all groups that were changed.
     pub(super) fn write_groups(&mut self) -> Result<(), Refused> {
         for group in std::mem::take(&mut self.groups) {
-            if group.before != group.after {
-                self.reshaped = true;
-                self.use_inertials()?;
-                self.write_group(&group)?;
-                self.add_to_total(group.after.mass - group.before.mass)?;
+            if group.before == group.after {
+                continue;
             }
+            self.reshaped = true;
+            if self.format == Format::Urdf {
+                self.write_links(&group)?;
+                continue;
+            }
+            self.use_inertials()?;
+            self.write_group(&group)?;
+            self.add_to_total(group.after.mass - group.before.mass)?;
         }
         Ok(())
     }
 
     fn write_group(&mut self, group: &Group) -> Result<(), Refused> {
-        let members = self.members(group.head);
-        let others = members.iter().skip(1);
-        let others = others.filter(|(link, _)| !self.robot.links[*link].inertia.is_nothing());
-        let others: Vec<(usize, Pose)> = others.copied().collect();
         let body = self.body(group.head)?;
         let inertial = children(body, "inertial").last();
         let from_geoms = self.compiler.inertia_from == InertiaFrom::Geoms;
         let by_numbers = !from_geoms && !group.reshaped && !self.compiler.adjusts();
         if let Some(inertial) = inertial.filter(|_| by_numbers)
-            && others.is_empty()
+            && self.is_alone(group)
         {
             return self.write_numbers(inertial, group);
         }
+        for (link, own) in self.shares(group)? {
+            self.write_whole(link, own)?;
+        }
+        Ok(())
+    }
+
+    /// Links with mass that are fixed to the head of a group, with their poses.
+    fn others(&self, group: &Group) -> Vec<(usize, Pose)> {
+        let mut members = self.members(group.head);
+        members.retain(|(link, _)| {
+            *link != group.head && !self.robot.links[*link].inertia.is_nothing()
+        });
+        members
+    }
+
+    /// Whether only the head of a group has mass.
+    pub(super) fn is_alone(&self, group: &Group) -> bool {
+        self.others(group).is_empty()
+    }
+
+    /// The links of a group whose inertia changes, each with the new one in its frame.
+    pub(super) fn shares(&self, group: &Group) -> Result<Vec<(usize, Inertia)>, Refused> {
+        let others = self.others(group);
         let own = others.iter().fold(group.after, |own, (link, pose)| {
             own.with(&negative(self.robot.links[*link].inertia.placed(*pose)))
         });
         if is_possible(&own) {
-            return self.write_whole(group.head, own);
+            return Ok(vec![(group.head, own)]);
         }
         if !is_possible(&group.after) {
             let name = &self.robot.links[group.head].name;
@@ -283,13 +311,12 @@ impl<'x> Sheet<'x, '_> {
             let why = why.unwrap_or_else(|| "its mass is not positive".to_owned());
             let message = format!("no body can have the inertia of `{name}`: {why}");
             let help = "the changes of this body are larger than it is";
+            let body = self.body(group.head)?;
             return Err(refused(Code::NotPhysical, tag(body), message, help));
         }
         // The fixed bodies alone are heavier than the new mass: the body has all of it.
-        for (link, _) in others {
-            self.write_whole(link, Inertia::NONE)?;
-        }
-        self.write_whole(group.head, group.after)
+        let emptied = others.into_iter().map(|(link, _)| (link, Inertia::NONE));
+        Ok(emptied.chain([(group.head, group.after)]).collect())
     }
 
     /// Changes numbers of `<inertial>`, in its own axes.

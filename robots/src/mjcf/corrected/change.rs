@@ -30,11 +30,11 @@ impl Amount {
 /// A number of a joint.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum JointNumber {
-    /// Damping: the factor of the rate.
+    /// Damping: the factor of the rate, together with that of its actuators.
     Damping,
     /// Dry friction.
     Frictionloss,
-    /// Reflected inertia of the drive, as written at the joint: without that of its actuators.
+    /// Reflected inertia of the drive, together with that of its actuators.
     Armature,
     /// Stiffness of the spring: the factor of its elongation.
     Stiffness,
@@ -138,12 +138,20 @@ pub enum Change {
         /// The delay, in s.
         seconds: f64,
     },
-    /// The largest force of an actuator in both directions, before its gear.
+    /// The bounds of the force of an actuator, before its gear: the same in both directions, or those of the file times a
+    /// factor.
+    ForceRange {
+        /// The actuator.
+        actuator: String,
+        /// The change of the upper bound.
+        amount: Amount,
+    },
+    /// Bounds of the force of an actuator, before its gear, in addition to those that it has.
     ForceLimit {
         /// The actuator.
         actuator: String,
-        /// The limit.
-        limit: f64,
+        /// Least and largest force.
+        range: [f64; 2],
     },
     /// A spring in addition to that of a joint.
     Spring {

@@ -109,8 +109,18 @@ impl<'x> Sheet<'x, '_> {
         }
         let mut all = self.numbers(element, JOINT, key)?.unwrap_or_default();
         let before = first(Some(&all));
-        let wanted = amount.of(before);
-        let after = self.at_least_zero(name, key, wanted);
+        let carried = match attribute {
+            JointNumber::Damping | JointNumber::Armature => self.carried(name, key)?,
+            _ => 0.0,
+        };
+        let whole = self.at_least_zero(name, key, amount.of(before + carried));
+        if same(whole, before + carried) {
+            return Ok(());
+        }
+        let after = (whole - carried).max(0.0);
+        if whole < carried {
+            self.scale_carried(name, key, whole / carried)?;
+        }
         if same(after, before) {
             return Ok(());
         }
@@ -218,6 +228,8 @@ impl<'x> Sheet<'x, '_> {
         };
         let zero = self.numbers(element, JOINT, "ref")?;
         self.set(element, "ref", numbers(&moved(zero)))?;
+        // Bounds of commands are bounds of readings, and stay.
+        self.write_inherited_ranges(name)?;
         if let Some(range) = self.numbers(element, JOINT, "range")?
             && range.iter().any(|end| *end != 0.0)
         {

@@ -35,7 +35,7 @@ impl<'x> Sheet<'x, '_> {
         if keys.is_empty() {
             return Ok(());
         }
-        let activations = self.activations()?;
+        let activations = self.activations();
         for key in keys {
             if !self.plays.is_empty() {
                 let positions = self.joint_states(|motion| match motion {

@@ -89,8 +89,7 @@ impl<'x> Sheet<'x, '_> {
             let all = self.numbers(element, "joint", key)?;
             Ok(all.and_then(|all| all.first().copied()).unwrap_or_default())
         };
-        let [inertia, feedback] = self.drives_of(name)?;
-        if number_of("armature")? + inertia > 0.0 {
+        if number_of("armature")? + self.carried(name, "armature")? > 0.0 {
             return Ok(());
         }
         let links = &self.robot.links;
@@ -101,7 +100,8 @@ impl<'x> Sheet<'x, '_> {
         let poses = Configuration::new(links, |_| 0.0).poses(links);
         let moved = at.map(|at| mass::matrix(links, &self.robot.tendons, &poses).entries[at][at]);
         // The steps of the simulation follow a drive that settles no faster than in one of them.
-        let followed = self.timestep()? * (feedback + number_of("damping")?);
+        let damping = self.feedback(name)? + self.carried(name, "damping")?;
+        let followed = self.timestep()? * (damping + number_of("damping")?);
         let light = followed.max(LIGHT * moved.unwrap_or_default());
         let words = format!(
             "joint {name}: the drive has no inertia in the file; backlash needs one, armature {} is small",

@@ -4,12 +4,14 @@ use std::collections::{BTreeMap, BTreeSet};
 
 use appell_spec::Code;
 
+use crate::format::Format;
 use crate::includes::Whole;
 use crate::model::Robot;
 use crate::xml::{Element, Findings, Span, elements, inside, parse, tag};
 
 use super::super::compiler::Compiler;
 use super::super::defaults::Defaults;
+use super::super::law::Law;
 use super::body;
 use super::bytes::{Edits, escaped, line_end};
 use super::change::{Refused, refused};
@@ -20,13 +22,18 @@ pub(super) struct Sheet<'x, 'f> {
     pub(super) whole: &'f Whole<'f>,
     /// The text of the file, without includes.
     original: &'f str,
+    pub(super) format: Format,
     pub(super) compiler: Compiler,
     pub(super) defaults: Defaults<'x>,
     pub(super) robot: Robot,
     pending: Vec<Pending<'x>>,
+    /// Laws of actuators, where they change.
+    pub(super) laws: Vec<(Element<'x>, Law)>,
     pub(super) groups: Vec<body::Group>,
     /// Whether masses, inertias or armatures change.
     pub(super) reshaped: bool,
+    /// Damping and friction of joints of a URDF.
+    pub(super) dynamics: Vec<(Element<'x>, [f64; 2])>,
     /// Joints with backlash, and its size.
     pub(super) plays: Vec<(String, f64)>,
     /// Texts that are inserted into the file, with their places.
@@ -53,6 +60,7 @@ struct Pending<'x> {
 impl<'x, 'f> Sheet<'x, 'f> {
     pub(super) fn new(
         root: Element<'x>,
+        format: Format,
         whole: &'f Whole<'f>,
         original: &'f str,
         robot: Robot,
@@ -62,12 +70,15 @@ impl<'x, 'f> Sheet<'x, 'f> {
             root,
             whole,
             original,
+            format,
             compiler: Compiler::read(root, findings),
             defaults: Defaults::new(root, findings),
             robot,
             pending: Vec::new(),
+            laws: Vec::new(),
             groups: Vec::new(),
             reshaped: false,
+            dynamics: Vec::new(),
             plays: Vec::new(),
             inserted: Vec::new(),
             filled: BTreeMap::new(),
@@ -96,12 +107,6 @@ impl<'x, 'f> Sheet<'x, 'f> {
 
     fn pending(&self, element: Element<'x>) -> Option<&Pending<'x>> {
         self.pending.iter().find(|one| one.element == element)
-    }
-
-    /// The name of an element, as it is to be written.
-    pub(super) fn kind(&self, element: Element<'x>) -> &'x str {
-        let renamed = self.pending(element).and_then(|one| one.renamed);
-        renamed.unwrap_or_else(|| element.tag_name().name())
     }
 
     /// An attribute of an element itself, as it is to be written.
@@ -367,8 +372,8 @@ impl Pending<'_> {
     fn sentence(&self, sheet: &Sheet<'_, '_>) -> Option<String> {
         let element = self.element;
         let kind = element.tag_name().name();
-        let own = |element: Element<'_>| element.attribute("name").map(str::to_owned);
-        let name = own(element).or_else(|| element.parent_element().and_then(own));
+        let mut around = element.ancestors();
+        let name = around.find_map(|own| own.attribute("name"));
         let mut changes = Vec::new();
         if let Some(renamed) = self.renamed {
             changes.push(format!("a `{renamed}` with its numbers written out"));

@@ -62,6 +62,11 @@ pub(super) fn report(
     let names = model.info().speed_quantities().iter();
     Ok(Report {
         mechanism: set.mechanism.name.clone(),
+        robot: set.robot.as_ref().map(|robot| robot.format.word()),
+        locked: set
+            .robot
+            .as_ref()
+            .map_or_else(Vec::new, |robot| robot.locked.clone()),
         verdict: first.after(&which, far.as_ref(), false),
         is_by_simulation: false,
         is_by_forces: true,

@@ -40,7 +40,7 @@ pub fn correct(
     {
         let message =
             format!("the report is about a file of {diagnosed}, and this one is {format}");
-        return Err(Error::data(&path.to_string_lossy(), message));
+        return Err(Error::data(path.to_string_lossy(), message));
     }
     let (parts, mut remarks) = Wanted::of(path, text, hypothesis, &report.locked)?;
     let whole = |parts: &[Part], remarks: &[String]| {
@@ -56,7 +56,8 @@ pub fn correct(
                 match whole(std::slice::from_ref(&part), &[]) {
                     Ok(_) => possible.push(part),
                     Err(why) => {
-                        remarks.push(format!("not written: {}: {}", part.name, reason(&why)))
+                        let why = reason(&why);
+                        remarks.push(format!("not written: {}: {why}", part.name));
                     }
                 }
             }

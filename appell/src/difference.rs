@@ -151,26 +151,27 @@ mod tests {
             (0..30).map(line).collect()
         };
         let told = unified("a", "b", &lines(&[]), &lines(&[(1, ""), (20, "x\ny\n")]));
-        insta::assert_snapshot!(told, @r"
-        --- a
-        +++ b
-        @@ -1,5 +1,4 @@
-         line 0
-        -line 1
-         line 2
-         line 3
-         line 4
-        @@ -18,7 +17,8 @@
-         line 17
-         line 18
-         line 19
-        -line 20
-        +x
-        +y
-         line 21
-         line 22
-         line 23
-        ");
+        let expected = "\
+--- a
++++ b
+@@ -1,5 +1,4 @@
+ line 0
+-line 1
+ line 2
+ line 3
+ line 4
+@@ -18,7 +17,8 @@
+ line 17
+ line 18
+ line 19
+-line 20
++x
++y
+ line 21
+ line 22
+ line 23
+";
+        assert_eq!(told, expected);
     }
 
     #[test]

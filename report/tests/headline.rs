@@ -47,6 +47,8 @@ fn report(verdict: GapVerdict, which: Vec<Hypothesis>, budget: Vec<Share>) -> Re
     let stays = budget.iter().find(|part| part.is_rest());
     let closed = 1.0 - stays.map_or(0.0, |part| part.closed);
     Report {
+        locked: Vec::new(),
+        robot: None,
         mechanism: "rig".to_owned(),
         verdict,
         is_by_simulation: false,

@@ -121,16 +121,15 @@ impl<'h> Wanted<'h> {
     fn refit(&mut self, one: &Refitted) {
         let change = self.refitted(one);
         let expressed = change.filter(|change| self.format.expresses(change));
-        match expressed {
-            Some(change) => self.parts.push(Part {
+        if let Some(change) = expressed {
+            self.parts.push(Part {
                 name: one.name.clone(),
                 changes: vec![change],
-            }),
-            None => {
-                let value = with_unit(&number(one.value), &one.unit);
-                self.remarks
-                    .push(format!("not written: {} = {value}", one.name));
-            }
+            });
+        } else {
+            let value = with_unit(&number(one.value), &one.unit);
+            let name = &one.name;
+            self.remarks.push(format!("not written: {name} = {value}"));
         }
     }
 
@@ -355,63 +354,17 @@ impl<'h> Wanted<'h> {
             });
             return some(values.collect());
         }
+        if let Some(changes) = self.of_actuators(effect, kind, site) {
+            return some(changes.into_iter().collect());
+        }
         let value = |name: &str| {
             let mut sizes = self.sizes(effect);
             let found = sizes.find(|(own, _)| *own == name);
             found.and_then(|(_, found)| in_si(found))
         };
-        let by_actuators = |size: &str, change: &dyn Fn(&ActuatorName, f64) -> Change| {
-            let values = self.at_sites(effect, site, size).into_iter();
-            let changes = values.map(|(site, value)| Some(change(self.actuator(&site)?, value)));
-            some(changes.collect())
-        };
         let change = match kind {
             // Its number is among those that were fitted.
             "parameter_error" => return Some(Vec::new()),
-            "actuator_gain" => {
-                return by_actuators("gain", &|own, gain| Change::Gain {
-                    actuator: own.name.clone(),
-                    factor: 1.0 + gain,
-                });
-            }
-            // Of a servo the bias of its force, of all others that of the command.
-            "actuator_bias" => {
-                return by_actuators("bias", &|own, bias| Change::Bias {
-                    actuator: own.name.clone(),
-                    add: if own.follows_motion {
-                        bias / self.gear(own)
-                    } else {
-                        bias * own.gain
-                    },
-                });
-            }
-            // Beside a lag or a delay that the file has.
-            "actuator_lag" => {
-                return by_actuators("time_constant", &|own, more| Change::Lag {
-                    actuator: own.name.clone(),
-                    seconds: own.lag + more,
-                });
-            }
-            "actuator_delay" => {
-                return by_actuators("delay", &|own, more| Change::Delay {
-                    actuator: own.name.clone(),
-                    seconds: own.delay + more,
-                });
-            }
-            // Likewise.
-            "actuator_saturation" | "saturation" => {
-                return by_actuators("limit", &|own, limit| {
-                    let (middle, half) = if own.follows_motion {
-                        (0.0, limit / self.gear(own).abs())
-                    } else {
-                        (own.bias, limit * own.gain.abs())
-                    };
-                    Change::ForceLimit {
-                        actuator: own.name.clone(),
-                        range: [middle - half, middle + half],
-                    }
-                });
-            }
             "spring" => Change::Spring {
                 joint: self.joint(site)?,
                 stiffness: value("stiffness")?,
@@ -459,6 +412,53 @@ impl<'h> Wanted<'h> {
             _ => return None,
         };
         Some(vec![change])
+    }
+
+    /// The changes by an effect on actuators; `None` for another effect, and in it for an unknown actuator.
+    fn of_actuators(&self, effect: &str, kind: &str, site: &str) -> Option<Vec<Option<Change>>> {
+        let by_actuators = |size: &str, change: &dyn Fn(&ActuatorName, f64) -> Change| {
+            let values = self.at_sites(effect, site, size).into_iter();
+            let changes = values.map(|(site, value)| Some(change(self.actuator(&site)?, value)));
+            changes.collect::<Vec<Option<Change>>>()
+        };
+        let changes = match kind {
+            "actuator_gain" => by_actuators("gain", &|own, gain| Change::Gain {
+                actuator: own.name.clone(),
+                factor: 1.0 + gain,
+            }),
+            // Of a servo the bias of its force, of all others that of the command.
+            "actuator_bias" => by_actuators("bias", &|own, bias| Change::Bias {
+                actuator: own.name.clone(),
+                add: if own.follows_motion {
+                    bias / self.gear(own)
+                } else {
+                    bias * own.gain
+                },
+            }),
+            // Beside a lag or a delay that the file has.
+            "actuator_lag" => by_actuators("time_constant", &|own, more| Change::Lag {
+                actuator: own.name.clone(),
+                seconds: own.lag + more,
+            }),
+            "actuator_delay" => by_actuators("delay", &|own, more| Change::Delay {
+                actuator: own.name.clone(),
+                seconds: own.delay + more,
+            }),
+            // Likewise.
+            "actuator_saturation" | "saturation" => by_actuators("limit", &|own, limit| {
+                let (middle, half) = if own.follows_motion {
+                    (0.0, limit / self.gear(own).abs())
+                } else {
+                    (own.bias, limit * own.gain.abs())
+                };
+                Change::ForceLimit {
+                    actuator: own.name.clone(),
+                    range: [middle - half, middle + half],
+                }
+            }),
+            _ => return None,
+        };
+        Some(changes)
     }
 
     /// The joint whose position a channel measures.

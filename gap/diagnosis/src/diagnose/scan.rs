@@ -19,38 +19,66 @@ const FINER: [f64; 3] = [1.4, 1.2, 1.1];
 /// Factors on the noise levels of the model without them.
 const QUIETER: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
 
-/// Effects on the signals of all drives, each with the most likely common value.
+/// Effects on the signals of all drives that improve on the model as stated, each with the most likely common value.
 pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, DiagnoseError> {
     let mut sets = Vec::new();
     for members in groups(bench) {
-        let of = |value: f64| likelihood(bench, stated, &members, value);
-        let [mut value, mut log_posterior] = [TRIED[0], f64::NEG_INFINITY];
-        let mut best = |tried: f64| -> Result<f64, DiagnoseError> {
-            let likelihood = of(tried)?;
-            if likelihood > log_posterior {
-                [value, log_posterior] = [tried, likelihood];
-            }
-            Ok(value)
+        let mut scan = Scan {
+            bench,
+            stated,
+            members: &members,
+            value: 0.0,
+            likelihood: stated.fit.log_likelihood,
         };
-        let mut centre = TRIED[0];
         for tried in TRIED {
-            centre = best(tried)?;
+            if !scan.attempt(tried)? && scan.value > 0.0 {
+                break;
+            }
+        }
+        if scan.value == 0.0 {
+            continue;
         }
         for factor in FINER {
-            for tried in [centre / factor, centre * factor] {
-                best(tried)?;
+            let centre = scan.value;
+            if !scan.attempt(centre * factor)? {
+                scan.attempt(centre / factor)?;
             }
-            centre = best(centre)?;
         }
         sets.push(Set {
-            sizes: sizes(&members, value),
+            sizes: sizes(&members, scan.value),
+            log_posterior: scan.likelihood,
             members,
-            log_posterior,
             levels: 1.0,
             starts: vec![Vec::new()],
         });
     }
     Ok(sets)
+}
+
+/// The search for a common value.
+struct Scan<'s, 'a> {
+    bench: &'s Bench<'a>,
+    stated: &'s Fitted,
+    members: &'s [usize],
+    /// The best one, zero for none, and its log likelihood.
+    value: f64,
+    likelihood: f64,
+}
+
+impl Scan<'_, '_> {
+    /// Tries a value; returns whether it is better. A lag shorter than a step is like a delay, but takes long.
+    fn attempt(&mut self, value: f64) -> Result<bool, DiagnoseError> {
+        let is_lag = |&member: &usize| matches!(self.bench.candidate(member).acts, Acts::Lag(_));
+        if value < self.bench.step && self.members.iter().any(is_lag) {
+            return Ok(false);
+        }
+        let likelihood = likelihood(self.bench, self.stated, self.members, value)?;
+        let is_better = likelihood > self.likelihood;
+        if is_better {
+            (self.value, self.likelihood) = (value, likelihood);
+        }
+        Ok(is_better)
+    }
 }
 
 /// The delays, and the lags, of all drives.
@@ -78,7 +106,7 @@ fn sizes(members: &[usize], value: f64) -> Vec<SizeEstimates> {
     members.iter().map(size).collect()
 }
 
-/// The log likelihood with a common value, at the best of some noise levels.
+/// The weighted log likelihood with a common value, at the best of some noise levels.
 fn likelihood(
     bench: &Bench<'_>,
     stated: &Fitted,
@@ -104,5 +132,5 @@ fn likelihood(
                 .unwrap_or(f64::NEG_INFINITY),
         );
     }
-    Ok(most)
+    Ok(bench.weight * most)
 }

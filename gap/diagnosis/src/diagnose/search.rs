@@ -154,7 +154,7 @@ impl<'b, 'a> Search<'b, 'a> {
         let sets = Sets::about(self.bench, &stated, self.log_posterior(&stated))?;
         for effects in [None, Some(1), Some(2)] {
             for set in self.worth_a_fit(&sets, LEADING, effects) {
-                self.take_from(&stated, &set);
+                self.take_from(&stated, set);
             }
         }
         Ok(())

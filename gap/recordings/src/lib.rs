@@ -24,6 +24,7 @@
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs`, `level.rs` | quantity of a column; its noise level |
 //! | `between.rs` | inputs between rows |
+//! | `draft.rs` | a description from recordings without one |
 //! | `set.rs` | a data set |
 //! | `run.rs` | a run from its table: inputs held, angles unwrapped |
 //! | `quantum.rs`, `noise.rs` | resolution of a sensor; noise level, stated and estimated |
@@ -42,6 +43,7 @@ mod c3d;
 mod channel;
 mod clock;
 pub mod csv;
+mod draft;
 mod error;
 pub mod fields;
 mod finding;
@@ -73,6 +75,7 @@ use std::path::Path;
 pub use bare::{read_bare, read_bare_frames};
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
+pub use draft::{Draft, Drafted};
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;

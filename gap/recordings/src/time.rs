@@ -165,7 +165,7 @@ pub(crate) fn may_be_time(name: &str) -> bool {
 }
 
 /// The unit of the times that the name of a column states.
-fn unit_of(name: &str) -> Option<Unit> {
+pub(crate) fn unit_of(name: &str) -> Option<Unit> {
     split(name)?.1
 }
 

@@ -4,5 +4,6 @@ mod clocks;
 mod common;
 
 mod data_sets;
+mod drafting;
 mod formats;
 mod motion_capture;

@@ -132,7 +132,8 @@ impl Draft<'_> {
             });
         }
         let read = |text: &str| {
-            let manifest = manifest::read(path, text, &[], Some(self.mechanism.clone()))?;
+            let manifest =
+                manifest::read(path, text, &[], Some(self.mechanism.clone()), &|_| None)?;
             assemble(manifest, |name| {
                 let mut runs = self.runs.iter();
                 let run = runs.find(|(own, _)| own == name);

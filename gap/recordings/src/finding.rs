@@ -33,6 +33,8 @@ pub enum FindingKind {
     SmoothInput,
     /// A wrapped angle; unwrapped.
     Unwrapped,
+    /// An angle or a length that jumps, other than by a turn.
+    Jump,
     /// A column that the data set does not describe; ignored.
     UnknownColumn,
     /// A channel that never changes.
@@ -71,6 +73,7 @@ impl FindingKind {
             Self::HeldInput => "held-input",
             Self::SmoothInput => "smooth-input",
             Self::Unwrapped => "unwrapped",
+            Self::Jump => "jump",
             Self::UnknownColumn => "unknown-column",
             Self::Constant => "constant",
             Self::Quantised => "quantised",
@@ -94,6 +97,7 @@ impl FindingKind {
             | Self::Sign
             | Self::Constant
             | Self::HeldInput
+            | Self::Jump
             | Self::NoiseDisagrees
             | Self::NoiseBound
             | Self::NoInput

@@ -9,6 +9,7 @@
 //! ```
 
 use std::borrow::Cow;
+use std::cell::LazyCell;
 
 use appell_spec::units::{Dimension, Unit};
 use appell_spec::{Code, shown};
@@ -170,7 +171,7 @@ fn lines<'e>(
     named: Named<'_>,
     columns: Columns<'_>,
 ) -> Vec<Line<'e>> {
-    let mut header: Option<Option<Vec<String>>> = None;
+    let header = LazyCell::new(columns);
     let mut lines: Vec<Line<'e>> = Vec::new();
     let is_own = |column: &str| entries.iter().any(|(key, _)| key.get_ref() == column);
     for (key, value) in entries {
@@ -185,7 +186,7 @@ fn lines<'e>(
             lines.push(whole);
             continue;
         }
-        let Some(header) = header.get_or_insert_with(columns) else {
+        let Some(header) = header.as_ref() else {
             let message = "the columns of the first run cannot be read, so the pattern finds none";
             fields.tell(Code::NotAllowedHere, message, at, "");
             continue;

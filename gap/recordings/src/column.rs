@@ -193,10 +193,8 @@ fn scaled(
     unit: Unit,
     label: Option<&Label>,
 ) -> Option<Scaled> {
-    let mut number = |key: &str, is_positive: bool| -> Option<Option<f64>> {
-        let Some(value) = table.get(key) else {
-            return Some(None);
-        };
+    let mut number = |key: &str, is_positive: bool| {
+        let value = table.get(key)?;
         let number = fields.number(value)?;
         if number == 0.0 || is_positive && number < 0.0 {
             let what = if is_positive { "positive" } else { "not zero" };
@@ -204,11 +202,14 @@ fn scaled(
             fields.tell(Code::ValueOutsideLimits, message, value.span(), "");
             return None;
         }
-        Some(Some(number))
+        Some(number)
     };
-    let counts = number("counts_per_turn", true)?;
-    let gear = number("gear", true)?;
-    let scale = number("scale", false)?;
+    let counts = number("counts_per_turn", true);
+    let gear = number("gear", true);
+    let scale = number("scale", false);
+    if fields.is_wrong() {
+        return None;
+    }
     if let Some(counts_at) = table.get("counts_per_turn").map(Spanned::span)
         && table.get("unit").is_some()
     {
@@ -237,7 +238,7 @@ fn scaled(
         None => unit.text.clone(),
     };
     let size = scale.map_or(1.0, f64::abs);
-    if let Some(scale) = scale.filter(|scale| scale.abs() != 1.0) {
+    if let Some(scale) = scale.filter(|scale| scale.abs().total_cmp(&1.0).is_ne()) {
         text = format!("{} {text}", scale.abs());
     }
     let factor = per_turn.unwrap_or(unit.scale) / ratio * size;

@@ -160,7 +160,7 @@ impl<R: BufRead> CsvFile<R> {
             return Err(DataError::several(self.mistakes));
         };
         let of_episodes = match episode {
-            Some(episode) => Some((self.episodes()?, episode as f64)),
+            Some(episode) => Some((self.episodes()?, episode)),
             None => None,
         };
         let mut start = None;
@@ -181,8 +181,8 @@ impl<R: BufRead> CsvFile<R> {
                 }
                 continue;
             }
-            if let Some((column, episode)) = of_episodes
-                && self.number(column, |number| number) != episode
+            if let Some((column, chosen)) = of_episodes
+                && episode::number(self.number(column, |number| number)) != Some(chosen)
             {
                 continue;
             }

@@ -21,12 +21,12 @@ use std::path::{Path, PathBuf};
 
 use self::judged::Judged;
 use self::log::{Clock, Log};
-use self::quantities::quantities;
+use self::quantities::{Quantity, quantities};
 use self::text::Content;
 use self::words::Kind;
 use crate::limits::MAX_RUNS;
 use crate::robot::Robot;
-use crate::{DataError, DataSet, Source, Spec, assemble, manifest};
+use crate::{DataError, DataSet, FindingKind, Source, Spec, assemble, episode, manifest};
 
 /// What a description is drafted from.
 pub struct Draft<'d> {
@@ -52,7 +52,7 @@ pub struct Drafted {
 
 impl Draft<'_> {
     /// Drafts a description for the file `path`.
-    pub fn write(self, path: &Path) -> Result<Drafted, DataError> {
+    pub fn write(&self, path: &Path) -> Result<Drafted, DataError> {
         if self.runs.len() > MAX_RUNS {
             let message = format!("a data set has at most {MAX_RUNS} runs");
             return Err(DataError::whole(path.to_string_lossy(), message));
@@ -65,102 +65,108 @@ impl Draft<'_> {
         };
         let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
         let quantities = quantities(&mechanism, robot.as_ref());
-        let paths: Vec<&Path> = self.runs.iter().map(|(_, path)| path.as_path()).collect();
-        let log = Log::read(&paths, self.rate_hz)?;
-        let is_clock = |column: &usize| match log.clock {
-            Clock::Column { index, .. } => index == *column,
-            Clock::Rate(_) | Clock::Unknown => false,
-        };
-        let columns: Vec<usize> = (0..log.names.len())
-            .filter(|column| !is_clock(column) && log.ends(*column).is_some())
-            .collect();
+        let log = Log::read(self.runs, self.rate_hz)?;
+        let columns = log.columns();
         let bound = bound::bind(&log, &columns, &quantities);
         let channels = judged::judge(&log, &bound, &quantities);
-        let is_bound = |column: &usize| channels.iter().any(|own| own.column == *column);
-        let others: Vec<usize> = columns.iter().copied().filter(|c| !is_bound(c)).collect();
-        if !channels
-            .iter()
-            .any(|own| quantities[own.quantity].kind != Kind::Command)
-        {
-            let names: Vec<&str> = quantities.iter().map(|own| own.name.as_str()).collect();
-            let message = format!(
-                "no column has a name like one of the mechanism, {}; rename columns, or write the description by hand",
-                names.join(", ")
-            );
-            return Err(DataError::whole(paths[0].to_string_lossy(), message));
+        let mut measured = channels.iter().map(|own| quantities[own.quantity].kind);
+        if !measured.any(|kind| kind != Kind::Command) {
+            return Err(self.foreign(&quantities));
         }
-        let questions = questions(&log, &channels, &others);
-        let lacking = quantities.iter().enumerate().filter(|(index, own)| {
-            own.kind == Kind::Command && !channels.iter().any(|known| known.quantity == *index)
-        });
-        let lacking = lacking.map(|(_, own)| {
-            format!(
-                "no column is the command `{}`, so zero is taken; is there one?",
-                own.name
-            )
-        });
-        let questions: Vec<String> = questions.into_iter().chain(lacking).collect();
-        let held_out = match self.runs.len() {
+        let others = others(&log, &columns, &channels);
+        let mut questions = questions(&log, &channels, &others);
+        questions.extend(lacking(&quantities, &channels));
+        let held_out = match log.named.len() {
             1 => 0,
             count => (count + 1) / 3,
         };
-        let names: Vec<String> = self.runs.iter().map(|(name, _)| name.clone()).collect();
-        let (fit, test) = names.split_at(names.len() - held_out.min(names.len() - 1));
-        let mut noise = vec![None; channels.len()];
-        let text = |noise: &[Option<f64>]| {
-            let content = Content {
-                mechanism: &self.named,
-                names: &mechanism,
-                robot: robot.as_ref(),
-                log: &log,
-                quantities: &quantities,
-                channels: &channels,
-                others: &others,
-                noise,
-                fit,
-                test,
-            };
-            content.text()
+        let (fit, test) = log.named.split_at(log.named.len() - held_out);
+        let mut content = Content {
+            mechanism: &self.named,
+            names: &mechanism,
+            robot: robot.as_ref(),
+            log: &log,
+            quantities: &quantities,
+            channels: &channels,
+            others: &others,
+            noise: vec![None; channels.len()],
+            fit,
+            test,
         };
-        let is_open = matches!(log.clock, Clock::Unknown)
-            || channels.iter().all(|channel| channel.unit.is_none());
-        if is_open {
-            return Ok(Drafted {
-                text: text(&noise),
-                questions,
-                set: None,
-            });
-        }
-        let read = |text: &str| {
-            let manifest =
-                manifest::read(path, text, &[], Some(self.mechanism.clone()), &|_| None)?;
-            assemble(manifest, |name| {
-                let mut runs = self.runs.iter();
-                let run = runs.find(|(own, _)| own == name);
-                run.map(|(_, path)| Source::File(path.clone()))
-            })
+        let has_units = channels.iter().all(|channel| channel.unit.is_some());
+        let set = if has_units && !matches!(log.clock, Clock::Unknown) {
+            let set = self.read(path, &content.text())?;
+            let columns = channels.iter().map(|channel| &log.names[channel.column]);
+            content.noise = columns.map(|column| level(&set, column)).collect();
+            Some(self.read(path, &content.text())?)
+        } else {
+            None
         };
-        let set = read(&text(&noise))?;
-        for (channel, noise) in channels.iter().zip(&mut noise) {
-            let name = &log.names[channel.column];
-            let own = set.channels.iter().find(|own| own.column == *name);
-            *noise = own.and_then(|own| {
-                let bound = set.findings.iter().any(|finding| {
-                    finding.kind == crate::FindingKind::NoiseBound
-                        && finding.channel.as_deref() == Some(name)
-                });
-                let found = own.noise.filter(|_| !bound)?.found?;
-                Some(own.unit.from_si(found))
-            });
-        }
-        let text = text(&noise);
-        let set = read(&text)?;
         Ok(Drafted {
-            text,
+            text: content.text(),
             questions,
-            set: Some(set),
+            set,
         })
     }
+
+    /// The data set of a text.
+    fn read(&self, path: &Path, text: &str) -> Result<DataSet, DataError> {
+        let mechanism = Some(self.mechanism.clone());
+        let manifest = manifest::read(path, text, &[], mechanism, &|_| None)?;
+        assemble(manifest, |name| {
+            let (file, episodes) = episode::split(path.parent()?, name);
+            let (_, path) = self.runs.iter().find(|(own, _)| own == file)?;
+            let path = path.clone();
+            Some(match episodes {
+                Some(episodes) => Source::Episode(path, *episodes.start()),
+                None => Source::File(path),
+            })
+        })
+    }
+
+    /// The error of recordings without any name of the mechanism.
+    fn foreign(&self, quantities: &[Quantity]) -> DataError {
+        let names: Vec<&str> = quantities.iter().map(|own| own.name.as_str()).collect();
+        let message = format!(
+            "no column has a name like one of the mechanism, {}; rename columns, or write the description by hand",
+            names.join(", ")
+        );
+        let first = self.runs.first().map_or("", |(name, _)| name);
+        DataError::whole(first, message)
+    }
+}
+
+/// Columns that are no quantity. A log may have a joint by its name and by its number.
+fn others(log: &Log, columns: &[usize], channels: &[Judged]) -> Vec<usize> {
+    let is_known = |column: &usize| {
+        let mut bound = channels.iter();
+        bound.any(|own| own.column == *column || log.column(own.column).eq(log.column(*column)))
+    };
+    let others = columns.iter().copied();
+    others.filter(|column| !is_known(column)).collect()
+}
+
+/// The noise level that the data tell of a column, in its unit.
+fn level(set: &DataSet, column: &str) -> Option<f64> {
+    let channel = set.channels.iter().find(|own| own.column == column)?;
+    let is_bound = set.findings.iter().any(|finding| {
+        finding.kind == FindingKind::NoiseBound && finding.channel.as_deref() == Some(column)
+    });
+    let found = channel.noise.filter(|_| !is_bound)?.found?;
+    Some(channel.unit.from_si(found))
+}
+
+/// A question for each command without a column.
+fn lacking(quantities: &[Quantity], channels: &[Judged]) -> Vec<String> {
+    let lacks = |(index, own): &(usize, &Quantity)| {
+        own.kind == Kind::Command && !channels.iter().any(|known| known.quantity == *index)
+    };
+    let lacking = quantities.iter().enumerate().filter(lacks);
+    let asked = lacking.map(|(_, own)| {
+        let name = &own.name;
+        format!("no column is the command `{name}`, so zero is taken; is there one?")
+    });
+    asked.collect()
 }
 
 /// All questions, with the columns that they are about. One that is asked of several columns is asked once.

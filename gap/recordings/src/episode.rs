@@ -15,6 +15,17 @@ pub(crate) fn is_episode(column: &str) -> bool {
     COLUMNS.contains(&column)
 }
 
+/// The episode that a cell names.
+pub(crate) fn number(cell: f64) -> Option<u64> {
+    let is_whole = cell >= 0.0 && cell < 1e15 && cell.fract() == 0.0;
+    #[allow(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "it is whole, not negative and not large"
+    )]
+    is_whole.then_some(cell as u64)
+}
+
 /// The file of the name of a run, and the episodes of it: `all.parquet#3`, `all.parquet#0-7`. A name of a file that
 /// exists has none.
 pub(crate) fn split<'n>(folder: &Path, name: &'n str) -> (&'n str, Option<RangeInclusive<u64>>) {

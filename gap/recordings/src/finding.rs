@@ -29,6 +29,8 @@ pub enum FindingKind {
     Dropouts,
     /// Missing inputs; the previous value is held.
     HeldInput,
+    /// Commands and measurements with times of their own; joined.
+    Asynchronous,
     /// An input that may have been sampled from a continuous signal.
     SmoothInput,
     /// A wrapped angle; unwrapped.
@@ -71,6 +73,7 @@ impl FindingKind {
             Self::Cut => "cut",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
+            Self::Asynchronous => "asynchronous",
             Self::SmoothInput => "smooth-input",
             Self::Unwrapped => "unwrapped",
             Self::Jump => "jump",
@@ -107,6 +110,7 @@ impl FindingKind {
             | Self::Gap
             | Self::Cut
             | Self::Dropouts
+            | Self::Asynchronous
             | Self::SmoothInput
             | Self::Unwrapped
             | Self::UnknownColumn

@@ -21,7 +21,7 @@
 //! | `csv.rs`, `motive.rs` | CSV line by line; the header of Motive |
 //! | `c3d.rs`, `npz.rs` | points and analog channels of motion capture; arrays of NumPy |
 //! | `episode.rs` | several runs in one file |
-//! | `mcap.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
+//! | `mcap.rs`, `topics.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
 //! | `time.rs` | the column of the times and its unit |
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs`, `level.rs` | quantity of a column; its noise level |
@@ -76,6 +76,7 @@ mod set;
 mod stretches;
 mod table;
 mod time;
+mod topics;
 
 use std::path::Path;
 

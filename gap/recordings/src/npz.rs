@@ -252,7 +252,7 @@ impl Kind {
             (b'f', 4) => f64::from(f32::from_bits(low)),
             (b'f', _) => half(u16::from_le_bytes([word[0], word[1]])),
             (b'i', size) => {
-                let above = 64 - 8 * size as u32;
+                let above = 64 - 8 * u32::try_from(size).unwrap_or(8);
                 ((bits << above).cast_signed() >> above) as f64
             }
             _ => bits as f64,

@@ -8,7 +8,7 @@ use crate::clock::{Clock, Sampling};
 use crate::finding::{counted, listed};
 use crate::limits::{MAX_NUMBERS, MAX_TIME, MAX_VALUE, MIN_ROWS, MIN_STEP};
 use crate::time::{NoTime, Stated, TIME, TimeColumn, Times};
-use crate::{DataError, Finding, FindingKind, episode};
+use crate::{DataError, Finding, FindingKind, episode, topics};
 
 /// The numbers of a run.
 pub(crate) struct Table {
@@ -147,8 +147,12 @@ impl Columns {
             let in_si = |&row: &usize| finite(channel.in_si(stamp * values[row]));
             rows.iter().map(in_si).collect()
         };
-        let columns = places.iter().zip(channels).map(column).collect();
-        let times = rows.iter().map(|&row| times[row]).collect();
+        let mut columns: Vec<Vec<f64>> = places.iter().zip(channels).map(column).collect();
+        let mut times: Vec<f64> = rows.iter().map(|&row| times[row]).collect();
+        if matches!(self.clock, OwnClock::Column) {
+            let joined = topics::joined(&mut times, &mut columns, channels);
+            self.findings.extend(joined);
+        }
         checked(file, &time, times, channels, columns, self.findings)
     }
 
@@ -193,15 +197,18 @@ impl Columns {
     }
 
     /// Which rows are of an episode, where one is chosen.
-    fn episode(&self, file: &str, episode: Option<u64>) -> Result<Option<Vec<bool>>, DataError> {
-        let Some(episode) = episode else {
+    fn episode(&self, file: &str, chosen: Option<u64>) -> Result<Option<Vec<bool>>, DataError> {
+        let Some(chosen) = chosen else {
             return Ok(None);
         };
         let mut names = self.names.iter();
         let column = names.position(|name| episode::is_episode(name));
         let column = column.ok_or_else(|| DataError::whole(file, episode::NONE))?;
         let rows = self.values[column].iter();
-        Ok(Some(rows.map(|own| *own == episode as f64).collect()))
+        Ok(Some(
+            rows.map(|own| episode::number(*own) == Some(chosen))
+                .collect(),
+        ))
     }
 }
 

@@ -296,6 +296,107 @@ mod parquet {
         assert!(folder.refused().contains("itself states the unit"));
     }
 
+    /// As LeRobot writes them: lists of one length, of which one is missing and one is short.
+    fn lists() -> Vec<u8> {
+        let schema = "message run {
+            required float timestamp;
+            required int64 episode_index;
+            optional group observation.state (LIST) {
+                repeated group list { optional float element; }
+            }
+            optional group action (LIST) {
+                repeated group list { optional double element; }
+            }
+        }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut bytes = Vec::new();
+        let properties = Arc::new(WriterProperties::builder().build());
+        let mut writer = SerializedFileWriter::new(&mut bytes, schema, properties).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        let rows = || (0..2).flat_map(|_| 0..ROWS);
+        let mut column = group.next_column().unwrap().unwrap();
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "single precision is written"
+        )]
+        let times: Vec<f32> = rows().map(|row| time(row) as f32).collect();
+        column
+            .typed::<FloatType>()
+            .write_batch(&times, None, None)
+            .unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        let episodes: Vec<i64> = (0..2 * ROWS).map(|row| i64::from(row >= ROWS)).collect();
+        column
+            .typed::<Int64Type>()
+            .write_batch(&episodes, None, None)
+            .unwrap();
+        column.close().unwrap();
+        let (mut values, mut defined, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
+        for row in rows() {
+            match row {
+                7 => {
+                    defined.push(0);
+                    repeated.push(0);
+                }
+                _ => {
+                    #[allow(
+                        clippy::cast_possible_truncation,
+                        reason = "single precision is written"
+                    )]
+                    values.extend([0.5, angle(row) as f32]);
+                    defined.extend([3, 3]);
+                    repeated.extend([0, 1]);
+                }
+            }
+        }
+        let mut column = group.next_column().unwrap().unwrap();
+        let typed = column.typed::<FloatType>();
+        typed
+            .write_batch(&values, Some(&defined), Some(&repeated))
+            .unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        let commands: Vec<f64> = rows().map(torque).collect();
+        let ones = vec![3; commands.len()];
+        let firsts = vec![0; commands.len()];
+        let typed = column.typed::<DoubleType>();
+        typed
+            .write_batch(&commands, Some(&ones), Some(&firsts))
+            .unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+        writer.close().unwrap();
+        bytes
+    }
+
+    #[test]
+    fn lists_are_columns_and_episodes_are_runs() {
+        let columns = ["observation.state[1]", "action[0]"];
+        let folder = folder("all.parquet", &lists(), columns);
+        let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+        folder.write(
+            "recording.toml",
+            text.replace("all.parquet", "all.parquet#0-1"),
+        );
+        let set = folder.read().unwrap();
+        assert_eq!(set.runs.len(), 2);
+        let run = &set.runs[1];
+        assert_eq!(run.times.len(), ROWS);
+        for row in 0..ROWS {
+            assert!((run.times[row] - time(row)).abs() < 1e-6);
+            assert_eq!(run.values[0][row].is_nan(), row == 7);
+            assert!(row == 7 || (run.values[0][row] - angle(row)).abs() < 1e-7);
+            assert!((run.values[1][row] - torque(row)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn damaged_lists_are_refused_or_read() {
+        let columns = ["observation.state[1]", "action[0]"];
+        assert_damage_is_told("run.parquet", &lists(), columns);
+    }
+
     #[test]
     fn text_is_no_channel() {
         let message = folder("run.parquet", &file(), ["theta", "note"]).refused();
@@ -388,6 +489,104 @@ float64[2] position
         assert_run(&folder("run.mcap", &file(), COLUMNS), ROUNDING, |row| {
             row == 7
         });
+    }
+
+    /// The joints of a robot in changing order, and commands at a fifth of their rate.
+    fn joints() -> Vec<u8> {
+        let mut bytes = Cursor::new(Vec::new());
+        let mut writer = Writer::new(&mut bytes).unwrap();
+        let none = BTreeMap::new();
+        let schema = "string[] name\nfloat64[] position\nfloat64[] velocity\n";
+        let id = writer.add_schema("sensor_msgs/msg/JointState", "ros2msg", schema.as_bytes());
+        let states = writer
+            .add_channel(id.unwrap(), "/joint_states", "cdr", &none)
+            .unwrap();
+        let schema = "float64[] data\n";
+        let id = writer.add_schema(
+            "std_msgs/msg/Float64MultiArray",
+            "ros2msg",
+            schema.as_bytes(),
+        );
+        let commands = writer
+            .add_channel(id.unwrap(), "/effort", "cdr", &none)
+            .unwrap();
+        let doubles = |bytes: &mut Vec<u8>, values: &[f64]| {
+            while (bytes.len() - 4) % 4 > 0 {
+                bytes.push(0);
+            }
+            bytes.extend(u32::try_from(values.len()).unwrap().to_le_bytes());
+            while !values.is_empty() && (bytes.len() - 4) % 8 > 0 {
+                bytes.push(0);
+            }
+            bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+        };
+        for row in 0..ROWS {
+            let log_time = 1_700_000_000_000_000_000 + 10_000_000 * row as u64;
+            let mut write = |channel_id, log_time, data: &[u8]| {
+                let header = MessageHeader {
+                    channel_id,
+                    sequence: 0,
+                    log_time,
+                    publish_time: log_time,
+                };
+                writer.write_to_known_channel(&header, data).unwrap();
+            };
+            if row % 20 == 0 {
+                let mut data = vec![0, 1, 0, 0];
+                doubles(&mut data, &[torque(row / 20)]);
+                write(commands, log_time - 3_000_000, &data);
+            }
+            let mut order = [("other", 9.0), ("theta", angle(row))];
+            order.rotate_left(row % 2);
+            let mut data = vec![0, 1, 0, 0];
+            data.extend(2_u32.to_le_bytes());
+            for (name, _) in order {
+                while (data.len() - 4) % 4 > 0 {
+                    data.push(0);
+                }
+                data.extend(6_u32.to_le_bytes());
+                data.extend(name.as_bytes());
+                data.push(0);
+            }
+            doubles(&mut data, &order.map(|(_, position)| position));
+            doubles(&mut data, &[]);
+            write(states, log_time, &data);
+        }
+        writer.finish().unwrap();
+        drop(writer);
+        bytes.into_inner()
+    }
+
+    #[test]
+    fn joints_are_columns_by_name_and_commands_are_held_between_their_messages() {
+        let columns = ["/joint_states.position[*]", "/effort.data[*]"];
+        let folder = folder("run.mcap", &joints(), columns);
+        let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+        let text = text.replace("measures = \"theta\"", "measures = \"*\"");
+        let text = text.replace("input = \"tau\"", "input = [\"tau\"]");
+        folder.write("recording.toml", text);
+        let set = folder.read().unwrap();
+        assert_eq!(set.channels[0].column, "/joint_states.position[theta]");
+        let run = &set.runs[0];
+        assert_eq!(run.times.len(), ROWS);
+        for row in 0..ROWS {
+            assert!((run.values[0][row] - angle(row)).abs() < ROUNDING, "{row}");
+            assert!(
+                (run.values[1][row] - torque(row / 20)).abs() < ROUNDING,
+                "{row}"
+            );
+        }
+        let kinds: Vec<_> = set.findings.iter().map(|finding| finding.kind).collect();
+        assert!(
+            kinds.contains(&appell_recordings::FindingKind::Asynchronous),
+            "{kinds:?}"
+        );
+    }
+
+    #[test]
+    fn damaged_joints_are_refused_or_read() {
+        let columns = ["/joint_states.position[theta]", "/effort.data[0]"];
+        assert_damage_is_told("run.mcap", &joints(), columns);
     }
 
     #[test]

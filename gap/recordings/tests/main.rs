@@ -6,4 +6,6 @@ mod common;
 mod data_sets;
 mod drafting;
 mod formats;
+mod logs;
 mod motion_capture;
+mod npz;

@@ -59,7 +59,15 @@ impl Recording {
         let is_stdout = files::is_stdout(path);
         if !is_stdout && !self.force && path.exists() {
             let message = format!("`{}` exists already; --force overwrites it", path.display());
-            return Err(Error::usage(message));
+            return Err(Error::Usage(message));
+        }
+        let same = |own: &PathBuf| match (own.canonicalize(), path.canonicalize()) {
+            (Ok(own), Ok(path)) => own == path,
+            _ => false,
+        };
+        if self.data.iter().any(same) {
+            let message = format!("`{}` is what the draft is made from", path.display());
+            return Err(Error::Usage(message));
         }
         let (mechanism, runs) = match (&self.model, &self.data[..]) {
             (Some(model), runs) => (model.clone(), runs),

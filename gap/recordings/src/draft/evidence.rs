@@ -71,7 +71,10 @@ pub(super) fn follows(log: &Log, command: usize, column: usize) -> Option<(Relat
         let passed = run.times.get(rows.checked_sub(1)?)? - run.times[0];
         (rows > 1 && passed > 0.0).then(|| passed / (rows - 1) as f64)
     })?;
-    let rows = |seconds: f64| ((seconds.abs() / step).round() as usize).min(MOST_ROWS);
+    let rows = |seconds: f64| {
+        let shifts = (1..=MOST_ROWS).take_while(|rows| *rows as f64 * step < seconds.abs());
+        shifts.count()
+    };
     let back = (1..=rows(DELAYS[0])).rev().map(|rows| (rows, true));
     let shifts = back.chain((0..=rows(DELAYS[1])).map(|rows| (rows, false)));
     let mut best: Option<(Relation, f64)> = None;

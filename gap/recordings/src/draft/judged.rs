@@ -8,7 +8,7 @@ use super::bound::Bound;
 use super::evidence::{follows, rate_of};
 use super::log::Log;
 use super::quantities::Quantity;
-use super::words::{Kind, unit, words};
+use super::words::{Kind, is_current, unit, words};
 
 /// A channel of the draft.
 #[derive(Debug, Clone)]
@@ -29,6 +29,8 @@ const AROUND: [f64; 2] = [0.2, 0.2];
 const FAR: f64 = 4.0 * PI;
 /// Angles up to this size in rad may be in degrees as well.
 const SMALL: f64 = 0.3;
+/// Whole numbers up to more than this may be counts of an encoder.
+const FEWEST_COUNTS: f64 = 20.0;
 /// Least correlation that tells a unit and a sign.
 const ALIKE: f64 = 0.6;
 /// Largest factor between a slope and that of a unit.
@@ -80,6 +82,13 @@ pub(super) fn judge(log: &Log, bound: &[Bound], quantities: &[Quantity]) -> Vec<
             Kind::Command | Kind::Torque => {
                 let own = &mut judged[index];
                 own.unit = stated(log, own.column, quantity).or(own.unit.take());
+                let is_current = || {
+                    let names = [&log.names[own.column], &quantity.name];
+                    names.into_iter().any(|name| is_current(&words(name)))
+                };
+                if quantity.is_note && is_current() {
+                    own.unit = Some("A".to_owned());
+                }
             }
             Kind::Position => {}
         }
@@ -120,7 +129,7 @@ fn unit_of_positions(
     let mut is_whole = true;
     for own in bound {
         let quantity = &quantities[own.quantity];
-        let is_alike = quantity.kind == Kind::Position && quantity.has_angle == has_angle;
+        let is_alike = quantity.kind == Kind::Position && quantity.is_angle_or_length(has_angle);
         if !is_alike || stated(log, own.column, quantity).is_some() {
             continue;
         }
@@ -139,13 +148,15 @@ fn unit_of_positions(
         return Common::default();
     }
     let unit = |text: &str| Some(text.to_owned());
-    if has_angle && is_whole && largest > 100.0 && !fits_si {
+    if has_angle && is_whole && largest > FEWEST_COUNTS && !fits_si {
         return Common {
-            unit: None,
-            question: Some(
-                "whole numbers up to some hundreds and more: counts of an encoder? write its counts_per_turn and gear"
-                    .to_owned(),
-            ),
+            unit: unit(other).filter(|_| fits_other),
+            question: Some(if fits_other {
+                format!("whole numbers up to {largest}: degrees, or counts of an encoder?")
+            } else {
+                "whole numbers, too large for angles: counts of an encoder? Write its counts_per_turn, gear and zero"
+                    .to_owned()
+            }),
         };
     }
     match (fits_si, fits_other) {
@@ -187,10 +198,20 @@ fn rate(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judg
     if let Some(unit) = stated(log, own.column, quantity) {
         own.unit = Some(unit);
     }
-    let texts: &[&str] = match quantity.has_angle {
-        true => &["rad/s", "deg/s", "rpm"],
-        false => &["m/s", "mm/s"],
+    let texts: &[&str] = if quantity.has_angle {
+        &["rad/s", "deg/s", "rpm"]
+    } else {
+        &["m/s", "mm/s"]
     };
+    if units::parse(texts[0]).is_ok_and(|unit| unit.dimension != quantity.dimension) {
+        return;
+    }
+    if position.is_some_and(|position| position.unit.is_none()) {
+        own.unit = stated(log, own.column, quantity);
+        own.questions
+            .extend(position.into_iter().flat_map(|own| own.questions.clone()));
+        return;
+    }
     let scale = |text: &str| units::parse(text).map_or(1.0, |unit| unit.scale);
     let known = position.and_then(|position| {
         let unit = position.unit.as_ref()?;
@@ -240,6 +261,12 @@ fn rate(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judg
 /// A command of a position by the position that follows it.
 fn command(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&Judged>) {
     let named = stated(log, own.column, quantity);
+    if position.is_some_and(|position| position.unit.is_none()) {
+        own.unit = named;
+        own.questions
+            .extend(position.into_iter().flat_map(|own| own.questions.clone()));
+        return;
+    }
     let known = position.and_then(|position| {
         let unit = position.unit.clone()?;
         Some((unit, follows(log, own.column, position.column)?))
@@ -257,9 +284,10 @@ fn command(log: &Log, own: &mut Judged, quantity: &Quantity, position: Option<&J
         return;
     }
     let scale = |text: &str| units::parse(text).map_or(1.0, |unit| unit.scale);
-    let texts: &[&str] = match quantity.has_angle {
-        true => &["rad", "deg"],
-        false => &["m", "mm"],
+    let texts: &[&str] = if quantity.has_angle {
+        &["rad", "deg"]
+    } else {
+        &["m", "mm"]
     };
     // The position in SI per command in SI, in each unit of the command.
     let off = |text: &str| {

@@ -1,8 +1,9 @@
 //! The recordings that a draft is made from: their columns, and which of them are the times.
 
-use std::path::Path;
+use std::path::PathBuf;
 
-use crate::limits::MIN_ROWS;
+use crate::episode::{is_episode, number};
+use crate::limits::{MAX_RUNS, MIN_ROWS};
 use crate::time::{self, TIME, may_be_time, unit_of};
 use crate::{DataError, format};
 
@@ -23,6 +24,8 @@ pub(super) struct Log {
     pub(super) names: Vec<String>,
     pub(super) runs: Vec<Rows>,
     pub(super) clock: Clock,
+    /// Names of all runs: of files, or of episodes of files.
+    pub(super) named: Vec<String>,
 }
 
 /// A run: times in s, and the columns.
@@ -48,10 +51,15 @@ pub(super) enum Clock {
 
 impl Log {
     /// Reads the first runs.
-    pub(super) fn read(paths: &[&Path], rate: Option<f64>) -> Result<Self, DataError> {
+    pub(super) fn read(files: &[(String, PathBuf)], rate: Option<f64>) -> Result<Self, DataError> {
         let mut names: Vec<String> = Vec::new();
-        let mut tables = Vec::new();
-        for path in paths.iter().take(MOST_RUNS) {
+        let (mut tables, mut named) = (Vec::new(), Vec::new());
+        for (name, path) in files {
+            let has_episodes = names.iter().any(|name| is_episode(name));
+            if tables.len() >= MOST_RUNS && !has_episodes {
+                named.push(name.clone());
+                continue;
+            }
             let (own, values) = format::columns_of(path)?;
             let file = path.to_string_lossy();
             if values.iter().map(Vec::len).max().unwrap_or(0) < MIN_ROWS {
@@ -59,13 +67,22 @@ impl Log {
                 return Err(DataError::whole(file, message));
             }
             if names.is_empty() {
-                names = own;
-            } else if names != own {
-                let first = paths[0].display();
-                let message = format!("the columns differ from those of {first}");
-                return Err(DataError::whole(file, message));
+                names.clone_from(&own);
             }
-            tables.push(values);
+            let values = in_order(&names, &own, values).ok_or_else(|| {
+                let first = files[0].1.display();
+                DataError::whole(file, format!("the columns differ from those of {first}"))
+            })?;
+            for (episode, mut values) in episodes(&names, values) {
+                named.push(match episode {
+                    Some(episode) => format!("{name}#{episode}"),
+                    None => name.clone(),
+                });
+                values.iter_mut().for_each(|values| hold(values));
+                if tables.len() < MOST_RUNS {
+                    tables.push(values);
+                }
+            }
         }
         let Some(first) = tables.first() else {
             return Err(DataError::whole("recordings", "there is no recording"));
@@ -90,8 +107,22 @@ impl Log {
         Ok(Self {
             runs: runs.collect(),
             names,
+            named,
             clock,
         })
+    }
+
+    /// Columns of numbers that are neither the times nor the number of an episode.
+    pub(super) fn columns(&self) -> Vec<usize> {
+        let is_clock = |column: usize| match self.clock {
+            Clock::Column { index, .. } => index == column,
+            Clock::Rate(_) | Clock::Unknown => false,
+        };
+        let columns = 0..self.names.len();
+        let is_other = |column: &usize| {
+            !is_clock(*column) && !is_episode(&self.names[*column]) && self.ends(*column).is_some()
+        };
+        columns.filter(is_other).collect()
     }
 
     /// The values of a column in each run.
@@ -113,6 +144,50 @@ impl Log {
     /// Whether a column never changes.
     pub(super) fn is_constant(&self, index: usize) -> bool {
         self.ends(index).is_none_or(|[low, high]| low >= high)
+    }
+}
+
+/// The columns in the order of the names of the first run; `None` if one is missing.
+fn in_order(names: &[String], own: &[String], mut values: Vec<Vec<f64>>) -> Option<Vec<Vec<f64>>> {
+    let place = |name: &String| own.iter().position(|own| own == name);
+    let places: Option<Vec<usize>> = names.iter().map(place).collect();
+    let places = places?.into_iter();
+    Some(
+        places
+            .map(|place| std::mem::take(&mut values[place]))
+            .collect(),
+    )
+}
+
+/// The rows of each episode, where there are several.
+fn episodes(names: &[String], values: Vec<Vec<f64>>) -> Vec<(Option<u64>, Vec<Vec<f64>>)> {
+    let numbers = names.iter().position(|name| is_episode(name));
+    let numbers = numbers.map_or(&[][..], |column| &values[column]);
+    let mut all: Vec<u64> = numbers.iter().filter_map(|cell| number(*cell)).collect();
+    all.sort_unstable();
+    all.dedup();
+    if all.len() < 2 {
+        return vec![(None, values)];
+    }
+    let of = |episode: u64| {
+        let rows = |column: &Vec<f64>| -> Vec<f64> {
+            let rows = column.iter().zip(numbers);
+            rows.filter_map(|(value, own)| (number(*own) == Some(episode)).then_some(*value))
+                .collect()
+        };
+        (Some(episode), values.iter().map(rows).collect())
+    };
+    all.into_iter().take(MAX_RUNS).map(of).collect()
+}
+
+/// Values that are missing are those before, as of topics with times of their own.
+fn hold(values: &mut [f64]) {
+    let mut last = f64::NAN;
+    for value in values {
+        if value.is_nan() {
+            *value = last;
+        }
+        last = *value;
     }
 }
 

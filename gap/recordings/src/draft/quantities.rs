@@ -22,6 +22,8 @@ pub(super) struct Quantity {
     pub(super) dimension: Dimension,
     /// Whether it is an angle or a rate of one.
     pub(super) has_angle: bool,
+    /// Whether its unit is only a note: it is the control signal of an actuator as it stands.
+    pub(super) is_note: bool,
     /// Its range in SI, where one is declared.
     pub(super) range: Option<[f64; 2]>,
 }
@@ -36,14 +38,24 @@ impl Quantity {
             unit: label.unit.text.clone(),
             dimension: label.unit.dimension,
             has_angle: label.unit.has_angle(),
+            is_note: false,
             range: None,
         }
     }
 
+    /// Whether it is an angle, or a length.
+    pub(super) fn is_angle_or_length(&self, is_angle: bool) -> bool {
+        let wanted = if is_angle {
+            Dimension::NONE
+        } else {
+            Dimension::LENGTH
+        };
+        self.has_angle == is_angle && self.dimension == wanted
+    }
+
     /// A command of a position, which the position follows.
     pub(super) fn is_position_command(&self) -> bool {
-        self.kind == Kind::Command && self.has_angle && self.dimension == Dimension::NONE
-            || self.kind == Kind::Command && self.dimension == Dimension::LENGTH
+        self.kind == Kind::Command && self.is_angle_or_length(self.has_angle)
     }
 }
 
@@ -89,7 +101,9 @@ fn of_robot(mechanism: &Mechanism, robot: &Robot) -> Vec<Quantity> {
         let joint = actuator.joint.as_ref();
         let axis = joint.and_then(|joint| names.joints.iter().position(|own| own.name == *joint));
         let mut quantity = Quantity::new(Kind::Command, &actuator.name, &own.label, axis);
-        quantity.words.extend(joint.map(String::as_str).map(words));
+        let of_joint = joint.map(String::as_str).map(words);
+        quantity.words.extend(of_joint);
+        quantity.is_note = !actuator.is_servo;
         all.push(quantity);
     }
     all

@@ -45,7 +45,7 @@ pub(super) struct Content<'c> {
     /// Columns that are no quantity, with a question for each that may be one.
     pub(super) others: &'c [usize],
     /// Noise levels in the unit of each channel, where they are known.
-    pub(super) noise: &'c [Option<f64>],
+    pub(super) noise: Vec<Option<f64>>,
     pub(super) fit: &'c [String],
     pub(super) test: &'c [String],
 }
@@ -86,7 +86,7 @@ impl Content<'_> {
         if let Some(line) = line(&self.log.clock, &self.log.names) {
             writeln!(to, "{line}")?;
         }
-        for (channel, noise) in self.channels.iter().zip(self.noise) {
+        for (channel, noise) in self.channels.iter().zip(&self.noise) {
             self.channel(to, channel, *noise)?;
         }
         for &column in self.others {
@@ -94,8 +94,8 @@ impl Content<'_> {
             writeln!(to, "# {} = {{ unit = \"1\" }}  # in no model?", key(name))?;
         }
         let list = |names: &[String]| {
-            let names: Vec<String> = names.iter().map(|name| quoted(name)).collect();
-            names.join(", ")
+            let names = ranges(names).into_iter().map(|name| quoted(&name));
+            names.collect::<Vec<_>>().join(", ")
         };
         writeln!(to, "\n[runs]\nfit  = [{}]", list(self.fit))?;
         writeln!(to, "test = [{}]  # held out", list(self.test))
@@ -168,6 +168,32 @@ impl Content<'_> {
         }
         writeln!(to)
     }
+}
+
+/// Successive episodes of a file as one range: `all.parquet#0-7`.
+fn ranges(names: &[String]) -> Vec<String> {
+    let episode = |name: &String| {
+        let (file, number) = name.rsplit_once('#')?;
+        Some((file.to_owned(), number.parse::<u64>().ok()?))
+    };
+    let mut all: Vec<(String, Option<[u64; 2]>)> = Vec::new();
+    for name in names {
+        match (episode(name), all.last_mut()) {
+            (Some((file, number)), Some((last, Some([_, end]))))
+                if *last == file && *end + 1 == number =>
+            {
+                *end = number;
+            }
+            (Some((file, number)), _) => all.push((file, Some([number; 2]))),
+            (None, _) => all.push((name.clone(), None)),
+        }
+    }
+    let written = |(file, range): (String, Option<[u64; 2]>)| match range {
+        None => file,
+        Some([first, last]) if first == last => format!("{file}#{first}"),
+        Some([first, last]) => format!("{file}#{first}-{last}"),
+    };
+    all.into_iter().map(written).collect()
 }
 
 /// Three digits.

@@ -162,6 +162,12 @@ pub(super) fn unit(words: &[String]) -> Option<&'static str> {
     words.iter().rev().find_map(known).map(|(_, unit)| *unit)
 }
 
+/// Whether words say that a command is a current.
+pub(super) fn is_current(words: &[String]) -> bool {
+    let known = ["current", "currents", "amps", "amp"];
+    words.iter().any(|word| known.contains(&word.as_str()))
+}
+
 /// How many words say nothing that is known.
 pub(super) fn unknown(words: &[&str]) -> usize {
     let lists: [&[&str]; 6] = [&COMMANDS, &DRIVES, &RATES, &TORQUES, &POSITIONS, &PLAIN];

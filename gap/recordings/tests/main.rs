@@ -7,5 +7,6 @@ mod data_sets;
 mod drafting;
 mod formats;
 mod logs;
+mod messages;
 mod motion_capture;
 mod npz;

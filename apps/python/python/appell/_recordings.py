@@ -59,7 +59,8 @@ class Recordings(_appell.DataSet, Report):
         """Recordings of frames by the names of the runs. With `rate_hz`, rows per second, no column is the time.
 
         >>> import appell, numpy as np
-        >>> run = {"theta": 0.1 * np.cos(np.arange(0, 9, 0.03)), "tau": np.sign(np.sin(np.arange(300)))}
+        >>> rows = np.arange(300)
+        >>> run = {"theta": 0.1 * np.cos(0.03 * rows), "tau": np.sign(np.sin(rows))}
         >>> appell.Recordings.from_frames({"day1": run, "day2": run}, "pendulum", rate_hz=100).runs
         ['day1', 'day2']
         """

@@ -81,7 +81,7 @@ impl Content<'_> {
             ..
         } = &self.log.clock
         {
-            writeln!(to, "# ? {question}")?;
+            writeln!(to, "# ? {}", comment(question))?;
         }
         if let Some(line) = line(&self.log.clock, &self.log.names) {
             writeln!(to, "{line}")?;
@@ -137,7 +137,7 @@ impl Content<'_> {
     fn channel(&self, to: &mut String, channel: &Judged, noise: Option<f64>) -> std::fmt::Result {
         let quantity = &self.quantities[channel.quantity];
         for question in &channel.questions {
-            writeln!(to, "# ? {question}")?;
+            writeln!(to, "# ? {}", comment(question))?;
         }
         let verb = match quantity.kind {
             Kind::Command => "input",
@@ -199,6 +199,12 @@ fn ranges(names: &[String]) -> Vec<String> {
 /// Three digits.
 fn rounded(value: f64) -> f64 {
     format!("{value:.2e}").parse().unwrap_or(value)
+}
+
+/// A text in one line.
+fn comment(text: &str) -> String {
+    let plain = |c: char| if c.is_control() { ' ' } else { c };
+    text.chars().map(plain).collect()
 }
 
 /// A key of a table.

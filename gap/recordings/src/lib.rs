@@ -19,7 +19,7 @@
 //! | `frame.rs` | runs in memory |
 //! | `table.rs` | the numbers of a run, in SI and with increasing times |
 //! | `csv.rs`, `motive.rs` | CSV line by line; the header of Motive |
-//! | `c3d.rs`, `npz.rs` | points and analog channels of motion capture; arrays of NumPy |
+//! | `c3d.rs`, `npz.rs` | points and analog channels of motion capture; arrays of `numpy` |
 //! | `episode.rs` | several runs in one file |
 //! | `mcap.rs`, `topics.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
 //! | `time.rs` | the column of the times and its unit |

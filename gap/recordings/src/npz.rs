@@ -1,4 +1,4 @@
-//! NumPy archives: a zip of arrays, each a file `NAME.npy` (NEP 1: a header in the notation of Python, then the
+//! Archives of `numpy`: a zip of arrays, each a file `NAME.npy` (NEP 1: a header in the notation of Python, then the
 //! numbers).
 //!
 //! An array of one dimension is a column of its name, one of two dimensions the columns `name[0]`, `name[1]` …. Other

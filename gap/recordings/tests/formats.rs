@@ -296,7 +296,7 @@ mod parquet {
         assert!(folder.refused().contains("itself states the unit"));
     }
 
-    /// As LeRobot writes them: lists of one length, of which one is missing and one is short.
+    /// As `lerobot` writes them: lists of one length, of which one is missing and one is short.
     fn lists() -> Vec<u8> {
         let schema = "message run {
             required float timestamp;

@@ -1,4 +1,4 @@
-//! Runs are read from archives of NumPy.
+//! Runs are read from archives of `numpy`.
 #![allow(clippy::unwrap_used, reason = "tests may panic")]
 
 use std::io::{Cursor, Write as _};

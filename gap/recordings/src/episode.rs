@@ -17,7 +17,7 @@ pub(crate) fn is_episode(column: &str) -> bool {
 
 /// The episode that a cell names.
 pub(crate) fn number(cell: f64) -> Option<u64> {
-    let is_whole = cell >= 0.0 && cell < 1e15 && cell.fract() == 0.0;
+    let is_whole = (0.0..1e15).contains(&cell) && cell.fract() == 0.0;
     #[allow(
         clippy::cast_possible_truncation,
         clippy::cast_sign_loss,

@@ -29,9 +29,13 @@ pub(crate) fn wrapped(values: &mut [f64], turn: f64) -> Option<Jumps> {
     let (row, size) = steps(values).find(|(_, step)| step.abs() > turn / 2.0)?;
     // In turns of a circle.
     let unit = TAU / turn;
-    values.iter_mut().for_each(|value| *value *= unit);
+    for value in values.iter_mut() {
+        *value *= unit;
+    }
     let count = unwrap(values);
-    values.iter_mut().for_each(|value| *value /= unit);
+    for value in values.iter_mut() {
+        *value /= unit;
+    }
     Some(Jumps { count, row, size })
 }
 

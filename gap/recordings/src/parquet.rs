@@ -228,13 +228,16 @@ fn visit(
     }
 }
 
+/// Takes levels of repetition and the values.
+type Take<'t> = &'t mut dyn FnMut(&[i16], Vec<Option<f64>>) -> Result<()>;
+
 /// Levels of repetition with the values, `None` where one is missing.
 fn repeated<T: DataType>(
     mut reader: ColumnReaderImpl<T>,
     column: &ColumnDescriptor,
     rows: usize,
     number: impl Fn(&T::T) -> f64,
-    to: &mut dyn FnMut(&[i16], Vec<Option<f64>>) -> Result<()>,
+    to: Take<'_>,
 ) -> Result<()> {
     let there = column.max_def_level();
     let mut left = rows;

@@ -39,7 +39,9 @@ pub(crate) fn joined(
     let without: Vec<usize> = (0..times.len()).filter(|&row| lacks(row)).collect();
     let is_apart = is_held || without.len() as f64 > most;
     if is_apart {
-        without.iter().for_each(|&row| is_kept[row] = false);
+        for row in without {
+            is_kept[row] = false;
+        }
     }
     if !is_apart {
         return None;

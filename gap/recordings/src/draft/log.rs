@@ -78,7 +78,9 @@ impl Log {
                     Some(episode) => format!("{name}#{episode}"),
                     None => name.clone(),
                 });
-                values.iter_mut().for_each(|values| hold(values));
+                for column in &mut values {
+                    hold(column);
+                }
                 if tables.len() < MOST_RUNS {
                     tables.push(values);
                 }

@@ -116,7 +116,7 @@ impl Content<'_> {
             }
             return Ok(());
         }
-        for own in self.names.parameters.iter() {
+        for own in &self.names.parameters {
             let label = &own.label;
             let value = label.unit.from_si(own.value);
             let std = rounded(

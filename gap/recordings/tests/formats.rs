@@ -334,21 +334,18 @@ mod parquet {
         column.close().unwrap();
         let (mut values, mut defined, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
         for row in rows() {
-            match row {
-                7 => {
-                    defined.push(0);
-                    repeated.push(0);
-                }
-                _ => {
-                    #[allow(
-                        clippy::cast_possible_truncation,
-                        reason = "single precision is written"
-                    )]
-                    values.extend([0.5, angle(row) as f32]);
-                    defined.extend([3, 3]);
-                    repeated.extend([0, 1]);
-                }
+            if row == 7 {
+                defined.push(0);
+                repeated.push(0);
+                continue;
             }
+            #[allow(
+                clippy::cast_possible_truncation,
+                reason = "single precision is written"
+            )]
+            values.extend([0.5, angle(row) as f32]);
+            defined.extend([3, 3]);
+            repeated.extend([0, 1]);
         }
         let mut column = group.next_column().unwrap().unwrap();
         let typed = column.typed::<FloatType>();

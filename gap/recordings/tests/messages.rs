@@ -30,11 +30,11 @@ fn joints() -> Vec<u8> {
         .add_channel(id.unwrap(), "/effort", "cdr", &none)
         .unwrap();
     let doubles = |bytes: &mut Vec<u8>, values: &[f64]| {
-        while (bytes.len() - 4) % 4 > 0 {
+        while !(bytes.len() - 4).is_multiple_of(4) {
             bytes.push(0);
         }
         bytes.extend(u32::try_from(values.len()).unwrap().to_le_bytes());
-        while !values.is_empty() && (bytes.len() - 4) % 8 > 0 {
+        while !values.is_empty() && !(bytes.len() - 4).is_multiple_of(8) {
             bytes.push(0);
         }
         bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
@@ -60,7 +60,7 @@ fn joints() -> Vec<u8> {
         let mut data = vec![0, 1, 0, 0];
         data.extend(2_u32.to_le_bytes());
         for (name, _) in order {
-            while (data.len() - 4) % 4 > 0 {
+            while !(data.len() - 4).is_multiple_of(4) {
                 data.push(0);
             }
             data.extend(6_u32.to_le_bytes());

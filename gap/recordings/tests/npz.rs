@@ -23,7 +23,7 @@ fn array(descr: &str, is_fortran: bool, shape: &str, numbers: &[u8]) -> Vec<u8> 
     let order = if is_fortran { "True" } else { "False" };
     let mut header =
         format!("{{'descr': '{descr}', 'fortran_order': {order}, 'shape': {shape}, }}");
-    while (header.len() + 11) % 64 > 0 {
+    while !(header.len() + 11).is_multiple_of(64) {
         header.push(' ');
     }
     header.push('\n');

@@ -300,15 +300,16 @@ fn a_description_is_drafted_once_and_accepted() {
     folder.write("recording.toml", "mine");
     folder.fails(2, &asked, &["recording.toml` exists already", "--force"]);
     folder.done(&[&asked[..], &["--force"]].concat());
+    folder.write("spec.toml", "mine");
     let onto = [
         "recording",
-        "robot.xml",
+        "spec.toml",
         "a.csv",
         "--force",
         "--write",
-        "a.csv",
+        "spec.toml",
     ];
-    folder.fails(2, &onto, &["`a.csv` is what the draft is made from"]);
+    folder.fails(2, &onto, &["`spec.toml` is what the draft is made from"]);
     folder.fails(
         2,
         &["recording", "robot.xml", "--write", "r.toml"],

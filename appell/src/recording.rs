@@ -4,11 +4,11 @@ use std::path::{Path, PathBuf};
 
 use appell_gap::units;
 use appell_models::ALL;
-use appell_recordings::MANIFEST;
 pub use appell_recordings::{
-    Channel, DataError, DataSet, Finding, FindingKind, Frame, Measured, Parameter, Part, Role, Run,
-    Spec,
+    Channel, DataError, DataSet, Drafted, Finding, FindingKind, Frame, Measured, Parameter, Part,
+    Role, Run, Spec,
 };
+use appell_recordings::{Draft, MANIFEST};
 use appell_report::recording::sentence;
 use appell_report::text::number;
 use appell_spec::Severity;
@@ -48,6 +48,70 @@ pub fn read_frames(
 /// Remedy for columns without a description.
 const UNNAMED: &str = "CSV files and data frames need the mechanism whose names their columns have; name a shipped one \
                        or a spec";
+
+/// Drafts the description `path` of recordings of a mechanism: a shipped name, or the path of a spec or a robot file.
+/// Recordings without a column of the times need the rate of their rows.
+pub fn draft(
+    mechanism: &str,
+    runs: &[PathBuf],
+    path: &Path,
+    rate_hz: Option<f64>,
+) -> Result<Drafted, Error> {
+    if runs.is_empty() {
+        let message = "a draft needs the mechanism and its recordings";
+        return Err(Error::request(Field::Recordings, message));
+    }
+    if let Some(rate) = rate_hz.filter(|rate| !(rate.is_finite() && *rate > 0.0)) {
+        let message = format!("{rate} rows per second are no rate");
+        return Err(Error::request(Field::Recordings, message));
+    }
+    let source = Source::find(mechanism)?;
+    let named = match source.shipped {
+        Some(shipped) => shipped.name.to_owned(),
+        None => beside(path, Path::new(mechanism))?,
+    };
+    let runs = runs.iter().map(|run| Ok((beside(path, run)?, run.clone())));
+    let runs = runs.collect::<Result<Vec<_>, Error>>()?;
+    let draft = Draft {
+        mechanism: Spec::from(&source),
+        named,
+        runs: &runs,
+        rate_hz,
+    };
+    let mut drafted = draft.write(path)?;
+    if let Some(set) = drafted.set.take() {
+        let set = with_doubts(set)?;
+        let doubtful =
+            |finding: &&Finding| matches!(finding.kind, FindingKind::Unit | FindingKind::Sign);
+        let doubts = set.findings.iter().filter(doubtful).map(sentence);
+        drafted.questions.extend(doubts);
+        drafted.set = Some(set);
+    }
+    Ok(drafted)
+}
+
+/// The path of a file relative to the folder of a description, which has to contain it.
+fn beside(description: &Path, file: &Path) -> Result<String, Error> {
+    let missing = |path: &Path| {
+        let message = format!("there is no folder or file `{}`", path.display());
+        Error::request(Field::Recordings, message)
+    };
+    let folder = match description.parent() {
+        Some(folder) if !folder.as_os_str().is_empty() => folder,
+        _ => Path::new("."),
+    };
+    let folder = folder.canonicalize().map_err(|_| missing(folder))?;
+    let absolute = file.canonicalize().map_err(|_| missing(file))?;
+    let inside = absolute.strip_prefix(&folder).map_err(|_| {
+        let message = format!(
+            "`{}` is not in the folder of the description `{}`, which may only name files beside and below it",
+            file.display(),
+            description.display()
+        );
+        Error::request(Field::Recordings, message)
+    })?;
+    Ok(inside.to_string_lossy().replace('\\', "/"))
+}
 
 /// The shipped mechanisms.
 fn library() -> Vec<(&'static str, Spec)> {

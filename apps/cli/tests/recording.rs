@@ -232,3 +232,124 @@ fn a_unit_that_the_motion_contradicts_is_told_and_refused_until_it_is_vouched_fo
         assert!(doubted(&folder, &checked).is_empty());
     }
 }
+
+/// A carriage whose motion follows its command after 30 ms.
+fn carriage(rows: usize, phase: f64) -> String {
+    let place = |t: f64| 0.3 * (3.0 * t + phase).sin();
+    let mut text = "time,x,x_vel,servo\n".to_owned();
+    for row in 0..rows {
+        let t = row as f64 / 200.0;
+        let noise = 1e-5 * ((row * row) as f64).sin();
+        let rate = 0.9 * (3.0 * t + phase).cos();
+        let _ = writeln!(
+            text,
+            "{t},{:.6},{rate:.6},{:.6}",
+            place(t) + noise,
+            place(t + 0.03)
+        );
+    }
+    text
+}
+
+const ROBOT: &str = r#"<mujoco model="carriage">
+  <worldbody>
+    <body name="cart">
+      <inertial pos="0 0 0" mass="1" diaginertia="0.01 0.01 0.01"/>
+      <joint name="x" type="slide" axis="1 0 0" damping="2"/>
+    </body>
+  </worldbody>
+  <actuator>
+    <position name="servo" joint="x" kp="400" kv="40"/>
+  </actuator>
+</mujoco>
+"#;
+
+#[test]
+fn a_description_is_drafted_once_and_accepted() {
+    let folder = Folder::new();
+    folder.write("robot.xml", ROBOT);
+    for (name, phase) in [("a.csv", 0.0), ("b.csv", 1.0), ("c.csv", 2.0)] {
+        folder.write(name, &carriage(1500, phase));
+    }
+    let asked = [
+        "recording",
+        "robot.xml",
+        "a.csv",
+        "b.csv",
+        "c.csv",
+        "--write",
+        "recording.toml",
+    ];
+    let told = folder.done(&asked).stdout;
+    assert!(told.contains("wrote recording.toml"), "{told}");
+    assert!(told.contains("no questions"), "{told}");
+    let text = std::fs::read_to_string(folder.path("recording.toml")).expect("the draft");
+    for expected in [
+        "mechanism   = \"robot.xml\"",
+        "x = { measures = \"x\", unit = \"m\", noise_std = ",
+        "x_vel = { measures = \"x.velocity\", unit = \"m/s\"",
+        "servo = { input = \"servo\", unit = \"m\" }  # position follows after 30 ms",
+        "# \"*.mass\" = { std = \"3 %\" }",
+        "test = [\"c.csv\"]",
+    ] {
+        assert!(text.contains(expected), "{expected}: {text}");
+    }
+    folder.done(&["recording", "."]);
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    // What is there stays.
+    folder.write("recording.toml", "mine");
+    folder.fails(2, &asked, &["recording.toml` exists already", "--force"]);
+    folder.done(&[&asked[..], &["--force"]].concat());
+    folder.write("spec.toml", "mine");
+    let onto = [
+        "recording",
+        "spec.toml",
+        "a.csv",
+        "--force",
+        "--write",
+        "spec.toml",
+    ];
+    folder.fails(2, &onto, &["`spec.toml` is what the draft is made from"]);
+    folder.fails(
+        2,
+        &["recording", "robot.xml", "--write", "r.toml"],
+        &["and its recordings"],
+    );
+    let outside = [
+        "recording",
+        "robot.xml",
+        "a.csv",
+        "--write",
+        "nowhere/r.toml",
+    ];
+    folder.fails(2, &outside, &["there is no folder or file"]);
+    let printed = folder.done(&["recording", "robot.xml", "a.csv", "--write", "-"]);
+    assert!(
+        printed.stdout.starts_with("# Drafted"),
+        "{}",
+        printed.stdout
+    );
+}
+
+#[test]
+fn a_description_of_a_spec_is_drafted() {
+    let folder = Folder::new();
+    folder.write("a.csv", &fall(600, 2.0));
+    folder.write("b.csv", &fall(400, 1.5));
+    let asked = [
+        "recording",
+        "pendulum",
+        "a.csv",
+        "b.csv",
+        "--write",
+        "recording.toml",
+    ];
+    let told = folder.done(&asked).stdout;
+    assert!(told.contains("no column is the command `tau`"), "{told}");
+    let text = std::fs::read_to_string(folder.path("recording.toml")).expect("the draft");
+    assert!(
+        text.contains("omega = { measures = \"omega\", unit = \"rad/s\""),
+        "{text}"
+    );
+    folder.done(&["recording", "."]);
+}

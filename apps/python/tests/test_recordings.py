@@ -133,6 +133,41 @@ def test_frames_are_recordings():
         appell.Recordings({"t": [0, 1], "theta": [1, 2, 3]}, "pendulum")
 
 
+class Frame:
+    """What a frame of any library has: columns by name."""
+
+    def __init__(self, columns):
+        self._columns = columns
+        self.columns = list(columns)
+
+    def __getitem__(self, name):
+        return self._columns[name]
+
+
+def test_frames_of_any_library_are_runs_by_name():
+    frames = {"first": Frame(swing(0)), "second": Frame(swing(1))}
+    found = appell.Recordings.from_frames(frames, description=SWING)
+    assert found.runs == ["first", "second"]
+    assert np.allclose(found["second"]["angle"], np.radians(swing(1)["angle"]))
+    untimed = {name: {"theta": frame["angle"], "tau": frame["motor"]} for name, frame in frames.items()}
+    found = appell.Recordings.from_frames(untimed, "pendulum", rate_hz=100)
+    assert np.allclose(found["first"]["t"], np.arange(300) / 100)
+    for rate in (0, -1, float("nan")):
+        with pytest.raises(ValueError, match="rows per second"):
+            appell.Recordings.from_frames(untimed, "pendulum", rate_hz=rate)
+    with pytest.raises(ValueError, match="first has no columns"):
+        appell.Recordings.from_frames({"first": [1, 2, 3]}, "pendulum")
+    with pytest.raises(ValueError, match="column `t`"):
+        appell.Recordings.from_frames({"first": {"t": [0, 1], "theta": [0, 1]}}, "pendulum", rate_hz=10)
+
+
+def test_a_frame_of_pandas_is_a_run():
+    pandas = pytest.importorskip("pandas")
+    frame = pandas.DataFrame(swing(0))
+    found = appell.Recordings.from_frames({"first": frame, "second": frame}, description=SWING)
+    assert np.allclose(found["first"]["angle"], np.radians(swing(0)["angle"]))
+
+
 def test_frames_of_pandas_and_polars_are_recordings():
     columns = {"theta": 0.3 * np.sin(3 * np.arange(0, 3, 0.01)), "note": ["as planned"] * 300}
     pandas = pytest.importorskip("pandas")

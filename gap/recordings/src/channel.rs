@@ -21,6 +21,10 @@ pub struct Channel {
     pub unit_checked: bool,
     /// Whether its positive sense is opposite to that of the spec, where it is stated.
     pub reversed: Option<bool>,
+    /// A turn of its encoder in SI, after which the angle begins anew; `None` for a whole turn of the joint.
+    pub turn: Option<f64>,
+    /// The number in its column that is zero.
+    pub zero: f64,
     /// Interpolation of an input between rows, if stated.
     pub interpolation: Option<Interpolation>,
     /// Noise level as stated, in SI.
@@ -112,6 +116,11 @@ impl Channel {
         sign * self.unit.scale
     }
 
+    /// A number of its column in SI.
+    pub(crate) fn in_si(&self, number: f64) -> f64 {
+        (number - self.zero) * self.scale()
+    }
+
     pub(crate) fn new(column: &str, role: Role, unit: Unit, stated_noise: Option<f64>) -> Self {
         Self {
             column: column.to_owned(),
@@ -120,6 +129,8 @@ impl Channel {
             unit_at: None,
             unit_checked: false,
             reversed: None,
+            turn: None,
+            zero: 0.0,
             interpolation: None,
             stated_noise,
             noise: None,
@@ -133,6 +144,7 @@ impl Channel {
 
     /// Whether it measures an angle, which may be wrapped.
     pub fn is_angle(&self) -> bool {
-        self.unit.is_angle() && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
+        let has_turns = self.unit.is_angle() || self.turn.is_some();
+        has_turns && matches!(self.role, Role::Measures(Measured::Coordinate(_)))
     }
 }

@@ -14,17 +14,18 @@ use crate::clock::Clock;
 use crate::finding::listed;
 use crate::limits::{MAX_FILE, MAX_LINE, MAX_MISTAKES};
 use crate::table::{Table, checked, too_many};
-use crate::time::{NoTime, Stated, TimeColumn};
-use crate::{DataError, Finding, FindingKind, motive};
+use crate::time::{NoTime, Stated, TimeColumn, Times};
+use crate::{DataError, Finding, FindingKind, episode, motive};
 
 /// Reads the columns of the channels and the times. `budget` counts down the numbers that may still come.
 pub(crate) fn read(
     path: &Path,
     time: &Stated,
     channels: &[Channel],
+    episode: Option<u64>,
     budget: &mut usize,
 ) -> Result<Table, DataError> {
-    open(path)?.table(time, channels, budget)
+    open(path)?.table(time, channels, episode, budget)
 }
 
 /// The names of the columns.
@@ -151,12 +152,19 @@ impl<R: BufRead> CsvFile<R> {
         mut self,
         time: &Stated,
         channels: &[Channel],
+        episode: Option<u64>,
         budget: &mut usize,
     ) -> Result<Table, DataError> {
         let mut findings = Vec::new();
         let Some(places) = self.places(time, channels, &mut findings) else {
             return Err(DataError::several(self.mistakes));
         };
+        let of_episodes = match episode {
+            Some(episode) => Some((self.episodes()?, episode)),
+            None => None,
+        };
+        let mut start = None;
+        let mut row = 0_usize;
         let mut clock = Clock::default();
         let mut times = Vec::new();
         let mut columns: Vec<Vec<f64>> = vec![Vec::new(); channels.len()];
@@ -173,10 +181,24 @@ impl<R: BufRead> CsvFile<R> {
                 }
                 continue;
             }
-            let t = self.number(places.time.index, places.time.scale());
+            if let Some((column, chosen)) = of_episodes
+                && episode::number(self.number(column, |number| number)) != Some(chosen)
+            {
+                continue;
+            }
+            let t = match places.time.times {
+                Times::Column(index) => self.number(index, |t| t * places.time.scale()),
+                Times::Parts([seconds, nanoseconds]) => {
+                    let seconds = self.number(seconds, |t| t);
+                    let start = *start.get_or_insert(seconds);
+                    seconds - start + self.number(nanoseconds, |t| 1e-9 * t)
+                }
+                Times::Rate(rate) => row as f64 / rate,
+            };
+            row += 1;
             read.clear();
             for (place, channel) in places.channels.iter().zip(channels) {
-                read.push(self.number(*place, channel.scale()));
+                read.push(self.number(*place, |number| channel.in_si(number)));
             }
             let lines = &self.rows.lines;
             if !clock.accept(t, lines.number, &lines.text) {
@@ -232,13 +254,17 @@ impl<R: BufRead> CsvFile<R> {
                 }
             }
         };
-        if let Some(time) = &time {
+        if let Some(time) = &time
+            && matches!(time.times, Times::Column(_))
+        {
             place(&time.name, "");
         }
         let about = "every run has a column for each line of `[channels]`";
         let channels: Vec<usize> = channels.iter().map(|c| place(&c.column, about)).collect();
         let time = time.filter(|_| self.mistakes.is_empty())?;
-        let unknown = (0..header.len()).filter(|i| *i != time.index && !channels.contains(i));
+        let is_known =
+            |i: &usize| time.is_in(*i) || channels.contains(i) || episode::is_episode(&header[*i]);
+        let unknown = (0..header.len()).filter(|i| !is_known(i));
         let unknown: Vec<String> = unknown.map(|i| shown(&header[i])).collect();
         if !unknown.is_empty() {
             let message = format!(
@@ -250,10 +276,17 @@ impl<R: BufRead> CsvFile<R> {
         Some(Places { time, channels })
     }
 
+    /// The column of the episodes.
+    fn episodes(&self) -> Result<usize, DataError> {
+        let mut header = self.rows.header.iter();
+        let found = header.position(|name| episode::is_episode(name));
+        found.ok_or_else(|| DataError::whole(&*self.rows.lines.file, episode::NONE))
+    }
+
     /// The number in a cell in SI, NaN if it is missing; other contents are reported.
-    fn number(&mut self, column: usize, scale: f64) -> f64 {
+    fn number(&mut self, column: usize, in_si: impl Fn(f64) -> f64) -> f64 {
         let text = self.rows.cell(column);
-        match text.parse::<f64>().map(|number| number * scale) {
+        match text.parse::<f64>().map(in_si) {
             Ok(number) if !number.is_infinite() => number,
             _ if MISSING.iter().any(|word| text.eq_ignore_ascii_case(word)) => f64::NAN,
             _ => {

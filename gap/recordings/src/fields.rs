@@ -234,4 +234,24 @@ impl<'t> Fields<'t> {
         let message = format!("expected {wanted}");
         self.tell(Code::WrongType, message, value.span(), "");
     }
+
+    /// Reports a name that is none of those that are known.
+    pub(crate) fn unknown<'n>(
+        &mut self,
+        what: &str,
+        name: &str,
+        at: Span,
+        known: impl Iterator<Item = &'n str> + Clone,
+    ) {
+        let help = did_you_mean(name, known.clone(), || {
+            let list: Vec<&str> = known.collect();
+            if list.is_empty() {
+                format!("the mechanism has no {what}")
+            } else {
+                format!("there are {}", list.join(", "))
+            }
+        });
+        let message = format!("the spec has no {what} `{}`", shown(name));
+        self.tell(Code::UnknownName, message, at, &help);
+    }
 }

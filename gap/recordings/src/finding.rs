@@ -29,10 +29,14 @@ pub enum FindingKind {
     Dropouts,
     /// Missing inputs; the previous value is held.
     HeldInput,
+    /// Commands and measurements with times of their own; joined.
+    Asynchronous,
     /// An input that may have been sampled from a continuous signal.
     SmoothInput,
     /// A wrapped angle; unwrapped.
     Unwrapped,
+    /// An angle or a length that jumps, other than by a turn.
+    Jump,
     /// A column that the data set does not describe; ignored.
     UnknownColumn,
     /// A channel that never changes.
@@ -69,8 +73,10 @@ impl FindingKind {
             Self::Cut => "cut",
             Self::Dropouts => "dropouts",
             Self::HeldInput => "held-input",
+            Self::Asynchronous => "asynchronous",
             Self::SmoothInput => "smooth-input",
             Self::Unwrapped => "unwrapped",
+            Self::Jump => "jump",
             Self::UnknownColumn => "unknown-column",
             Self::Constant => "constant",
             Self::Quantised => "quantised",
@@ -94,6 +100,7 @@ impl FindingKind {
             | Self::Sign
             | Self::Constant
             | Self::HeldInput
+            | Self::Jump
             | Self::NoiseDisagrees
             | Self::NoiseBound
             | Self::NoInput
@@ -103,6 +110,7 @@ impl FindingKind {
             | Self::Gap
             | Self::Cut
             | Self::Dropouts
+            | Self::Asynchronous
             | Self::SmoothInput
             | Self::Unwrapped
             | Self::UnknownColumn

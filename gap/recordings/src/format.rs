@@ -3,10 +3,11 @@
 use std::path::Path;
 
 use crate::channel::Channel;
+use crate::episode::is_episode;
 use crate::limits::{MAX_BYTES, MAX_NUMBERS};
 use crate::table::{Columns, Table, Wanted};
-use crate::time::{Stated, may_be_time};
-use crate::{DataError, c3d, csv};
+use crate::time::{Stated, is_part, may_be_needed};
+use crate::{DataError, c3d, csv, npz};
 
 /// Format of a file, by its extension.
 #[derive(Clone, Copy)]
@@ -14,6 +15,7 @@ enum Format {
     Csv,
     C3d,
     Mcap,
+    Npz,
     Parquet,
 }
 
@@ -26,6 +28,7 @@ impl Format {
         match () {
             () if is("c3d") => Self::C3d,
             () if is("mcap") => Self::Mcap,
+            () if is("npz") => Self::Npz,
             () if is("parquet") => Self::Parquet,
             () => Self::Csv,
         }
@@ -37,19 +40,21 @@ pub(crate) fn read(
     path: &Path,
     time: &Stated,
     channels: &[Channel],
+    episode: Option<u64>,
     budget: &mut usize,
 ) -> Result<Table, DataError> {
     let is_channel = |name: &str| channels.iter().any(|c| c.column == name);
     let is_time = |name: &str| match &time.column {
-        Some(column) => column == name,
-        None => may_be_time(name),
+        Some(column) => column == name || is_part(name, column),
+        None => time.rate.is_none() && may_be_needed(name),
     };
-    let wanted = |name: &str| is_time(name) || is_channel(name);
+    let is_episode = |name: &str| episode.is_some() && is_episode(name);
+    let wanted = |name: &str| is_time(name) || is_channel(name) || is_episode(name);
     match Format::of(path) {
-        Format::Csv => csv::read(path, time, channels, budget),
+        Format::Csv => csv::read(path, time, channels, episode, budget),
         format => {
             let columns = columns(path, format, &wanted, *budget)?;
-            columns.table(&path.to_string_lossy(), time, channels, budget)
+            columns.table(&path.to_string_lossy(), time, channels, episode, budget)
         }
     }
 }
@@ -71,6 +76,7 @@ fn columns(
 ) -> Result<Columns, DataError> {
     match format {
         Format::C3d => c3d::read(path, wanted, budget),
+        Format::Npz => npz::read(path, wanted, budget),
         #[cfg(feature = "mcap")]
         Format::Mcap => crate::mcap::read(path, wanted, budget),
         #[cfg(feature = "parquet")]

@@ -21,6 +21,8 @@ pub struct Frame {
 /// Where a run comes from.
 pub(crate) enum Source<'s> {
     File(PathBuf),
+    /// One episode of a file.
+    Episode(PathBuf, u64),
     Frame(&'s Frame),
 }
 
@@ -29,6 +31,7 @@ impl Source<'_> {
     pub(crate) fn name(&self) -> String {
         match self {
             Self::File(path) => path.to_string_lossy().into_owned(),
+            Self::Episode(path, episode) => format!("{}#{episode}", path.to_string_lossy()),
             Self::Frame(frame) => frame.name.clone(),
         }
     }
@@ -36,7 +39,7 @@ impl Source<'_> {
     /// The names of the columns.
     pub(crate) fn header(&self) -> Result<Vec<String>, DataError> {
         match self {
-            Self::File(path) => format::header(path),
+            Self::File(path) | Self::Episode(path, _) => format::header(path),
             Self::Frame(frame) => Ok(frame.columns.clone()),
         }
     }
@@ -49,7 +52,10 @@ impl Source<'_> {
         budget: &mut usize,
     ) -> Result<Table, DataError> {
         match self {
-            Self::File(path) => format::read(path, time, channels, budget),
+            Self::File(path) => format::read(path, time, channels, None, budget),
+            Self::Episode(path, episode) => {
+                format::read(path, time, channels, Some(*episode), budget)
+            }
             Self::Frame(frame) => {
                 let columns = Columns {
                     names: frame.columns.clone(),
@@ -57,7 +63,7 @@ impl Source<'_> {
                     clock: OwnClock::None,
                     findings: Vec::new(),
                 };
-                columns.table(&frame.name, time, channels, budget)
+                columns.table(&frame.name, time, channels, None, budget)
             }
         }
     }

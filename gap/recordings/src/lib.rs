@@ -13,19 +13,22 @@
 //! | file | idea |
 //! |---|---|
 //! | `manifest.rs`, `fields.rs` | content of `recording.toml`, with positions |
+//! | `channels.rs`, `column.rs` | its channels: patterns; a line with unit and scale |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
 //! | `format.rs` | a run from a file of any format, by its extension |
 //! | `frame.rs` | runs in memory |
 //! | `table.rs` | the numbers of a run, in SI and with increasing times |
 //! | `csv.rs`, `motive.rs` | CSV line by line; the header of Motive |
-//! | `c3d.rs` | points and analog channels of motion capture |
-//! | `mcap.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
+//! | `c3d.rs`, `npz.rs` | points and analog channels of motion capture; arrays of `numpy` |
+//! | `episode.rs` | several runs in one file |
+//! | `mcap.rs`, `topics.rs`, `parquet.rs` | robot logs, columnar tables; with their features |
 //! | `time.rs` | the column of the times and its unit |
 //! | `clock.rs` | which rows are in order; steps and gaps |
 //! | `channel.rs`, `level.rs` | quantity of a column; its noise level |
 //! | `between.rs` | inputs between rows |
+//! | `draft.rs` | a description from recordings without one |
 //! | `set.rs` | a data set |
-//! | `run.rs` | a run from its table: inputs held, angles unwrapped |
+//! | `run.rs`, `jumps.rs` | a run from its table: inputs held, angles unwrapped; jumps |
 //! | `quantum.rs`, `noise.rs` | resolution of a sensor; noise level, stated and estimated |
 //! | `observed.rs` | the runs as recordings for estimation |
 //! | `rebound.rs` | the same recordings for another spec |
@@ -40,13 +43,18 @@ mod bare;
 pub mod between;
 mod c3d;
 mod channel;
+mod channels;
 mod clock;
+mod column;
 pub mod csv;
+mod draft;
+mod episode;
 mod error;
 pub mod fields;
 mod finding;
 mod format;
 mod frame;
+mod jumps;
 mod level;
 pub mod limits;
 mod manifest;
@@ -56,6 +64,7 @@ pub mod motion_capture;
 mod motive;
 mod named;
 mod noise;
+mod npz;
 mod observed;
 #[cfg(feature = "parquet")]
 mod parquet;
@@ -67,12 +76,14 @@ mod set;
 mod stretches;
 mod table;
 mod time;
+mod topics;
 
 use std::path::Path;
 
 pub use bare::{read_bare, read_bare_frames};
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
+pub use draft::{Draft, Drafted};
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;
@@ -109,8 +120,16 @@ pub fn read(
     }
     let folder = file.parent().unwrap_or(Path::new(""));
     let text = appell_files::read_text(&file, appell_spec::limits::MAX_FILE as u64)?;
-    let manifest = manifest::read(&file, &text, library, instead)?;
-    assemble(manifest, |name| Some(Source::File(folder.join(name))))
+    let columns = |run: &str| format::header(&folder.join(episode::split(folder, run).0)).ok();
+    let manifest = manifest::read(&file, &text, library, instead, &columns)?;
+    assemble(manifest, |name| {
+        let (file, episodes) = episode::split(folder, name);
+        let path = folder.join(file);
+        Some(match episodes {
+            Some(episodes) => Source::Episode(path, *episodes.start()),
+            None => Source::File(path),
+        })
+    })
 }
 
 /// A data set whose runs are in memory, from the text of a `recording.toml`, whose `[runs]` name them. `file` is the
@@ -122,8 +141,9 @@ pub fn read_frames(
     library: Library<'_>,
     instead: Option<Spec>,
 ) -> Result<DataSet, DataError> {
-    let manifest = manifest::read(file, text, library, instead)?;
     let frame = |name: &str| frames.iter().find(|frame| frame.name == name);
+    let columns = |run: &str| frame(run).map(|frame| frame.columns.clone());
+    let manifest = manifest::read(file, text, library, instead, &columns)?;
     assemble(manifest, |name| frame(name).map(Source::Frame))
 }
 

@@ -1,8 +1,9 @@
 //! MCAP, the container that robots log into: messages of many topics with their times.
 //!
 //! Messages are JSON or those of ROS 2 (CDR with definitions in its message language). Every number of a
-//! message is a value of the column `topic.field.field` or `topic.field[2]`. Messages of the same time form a
-//! row; values without a message are missing. `t` is in s since the first message, by the clock of the logger.
+//! message is a value of the column `topic.field.field` or `topic.field[2]`; where the message names its joints, as
+//! `sensor_msgs/JointState` does, also of `topic.position[elbow]`. Messages of the same time form a row; values without a
+//! message are missing. `t` is in s since the first message, by the clock of the logger.
 
 mod cdr;
 
@@ -89,7 +90,8 @@ impl Log {
             "json" => {
                 let value: Value =
                     serde_json::from_slice(&message.data).map_err(|_| "is not JSON")?;
-                flatten(&mut channel.topic.clone(), &value, &mut tell);
+                let mut paths = [channel.topic.clone(), channel.topic.clone()];
+                flatten(&mut paths, &value, &[], &mut tell);
             }
             "cdr" => {
                 let definitions = self.definitions.entry(channel.id).or_insert_with(|| {
@@ -149,28 +151,62 @@ impl Log {
     }
 }
 
-/// Every number of a JSON value with the path that leads to it. JSON that was read is at most 128 deep.
-fn flatten(path: &mut String, value: &Value, tell: &mut dyn FnMut(&str, f64)) {
-    let length = path.len();
+/// Every number of a JSON value with the path that leads to it, and the path with names of joints for numbers in lists.
+/// JSON that was read is at most 128 deep.
+fn flatten(
+    paths: &mut [String; 2],
+    value: &Value,
+    names: &[String],
+    tell: &mut dyn FnMut(&str, f64),
+) {
+    let lengths = [paths[0].len(), paths[1].len()];
+    let mut tell_both = |paths: &[String; 2], value: f64| {
+        tell(&paths[0], value);
+        if paths[1] != paths[0] {
+            tell(&paths[1], value);
+        }
+    };
     match value {
-        Value::Number(number) => tell(path, number.as_f64().unwrap_or(f64::NAN)),
-        Value::Bool(value) => tell(path, f64::from(u8::from(*value))),
+        Value::Number(number) => tell_both(paths, number.as_f64().unwrap_or(f64::NAN)),
+        Value::Bool(value) => tell_both(paths, f64::from(u8::from(*value))),
         Value::Array(values) => {
             for (index, value) in values.iter().enumerate() {
+                let name = names.get(index).filter(|_| names.len() == values.len());
                 // Writing to a string cannot fail.
-                let _ = write!(path, "[{index}]");
-                flatten(path, value, tell);
-                path.truncate(length);
+                let _ = write!(paths[0], "[{index}]");
+                let _ = match name {
+                    Some(name) => write!(paths[1], "[{name}]"),
+                    None => write!(paths[1], "[{index}]"),
+                };
+                flatten(paths, value, names, tell);
+                cut(paths, lengths);
             }
         }
         Value::Object(fields) => {
+            let own = cdr::NAMES.iter().find_map(|key| texts(fields.get(*key)?));
+            let names = own.as_deref().unwrap_or(names);
             for (name, value) in fields {
-                path.push('.');
-                path.push_str(name);
-                flatten(path, value, tell);
-                path.truncate(length);
+                for path in &mut *paths {
+                    path.push('.');
+                    path.push_str(name);
+                }
+                flatten(paths, value, names, tell);
+                cut(paths, lengths);
             }
         }
         Value::Null | Value::String(_) => {}
     }
+}
+
+fn cut(paths: &mut [String; 2], lengths: [usize; 2]) {
+    for (path, length) in paths.iter_mut().zip(lengths) {
+        path.truncate(length);
+    }
+}
+
+/// The texts of a list of nothing else.
+fn texts(value: &Value) -> Option<Vec<String>> {
+    let texts = value.as_array()?.iter();
+    let name = |text: &Value| Some(text.as_str()?.chars().take(cdr::LONGEST_NAME).collect());
+    texts.map(name).collect()
 }

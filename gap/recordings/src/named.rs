@@ -2,6 +2,8 @@
 
 use appell_spec::Mechanism;
 
+use crate::channel::Measured;
+use crate::fields::Value;
 use crate::robot::Robot;
 
 /// The names that a description may use: those of the spec, or those of a robot file.
@@ -25,5 +27,37 @@ impl Named<'_> {
             Some((index(&number.parameter)?, one))
         });
         numbers.collect()
+    }
+
+    /// Whether the name in a line of a pattern, filled, is a quantity that may be measured, or an input. A line that
+    /// names none is of a column that is only recorded.
+    pub(crate) fn is_known(self, line: &Value<'_>, filling: &str) -> bool {
+        let name = |key: &str| filled(line.get_ref().as_table()?.get(key)?, filling);
+        match (name("measures"), name("input")) {
+            (Some(name), _) => self.measured(&name).is_some(),
+            (None, Some(name)) => self.commanded(&name).is_some(),
+            (None, None) => true,
+        }
+    }
+
+    /// The quantity of a name that is measured.
+    pub(crate) fn measured(self, name: &str) -> Option<Measured> {
+        let own = self.robot.and_then(|robot| robot.measured(name));
+        Measured::named(own.unwrap_or(name), self.mechanism)
+    }
+
+    /// The input of a name.
+    pub(crate) fn commanded(self, name: &str) -> Option<usize> {
+        let own = self.robot.and_then(|robot| robot.input(name));
+        let mut inputs = self.mechanism.inputs.iter();
+        inputs.position(|input| input.label.name == own.unwrap_or(name))
+    }
+}
+
+/// A name with `*` in it filled; of a list, the filling itself.
+pub(crate) fn filled(name: &Value<'_>, filling: &str) -> Option<String> {
+    match name.get_ref().as_str() {
+        Some(text) => Some(text.replace('*', filling)),
+        None => name.get_ref().as_array().map(|_| filling.to_owned()),
     }
 }

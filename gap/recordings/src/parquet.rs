@@ -1,13 +1,14 @@
 //! Parquet, the format of tables in data stores: columns of numbers in compressed pages.
 //!
-//! Columns of the file are columns of the run. Times may be time stamps, which count from the first row on. Text,
-//! and tables inside tables, are ignored.
+//! Columns of the file are columns of the run. A list of numbers in each row, of one length as in `observation.state`, is
+//! the columns `observation.state[0]`, `observation.state[1]` …. Times may be time stamps, which count from the first row
+//! on. Text, and tables inside tables, are ignored.
 
 use std::fs::File;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
-use parquet::basic::{LogicalType, TimeUnit};
+use parquet::basic::{LogicalType, TimeUnit, Type};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::DataType;
 use parquet::errors::{ParquetError, Result};
@@ -20,6 +21,8 @@ use crate::table::{Columns, OwnClock, Wanted, too_many};
 
 /// Rows that are read at once.
 const BATCH: usize = 1 << 16;
+/// Rows of lists that are read at once.
+const ROWS_OF_LISTS: usize = 1 << 10;
 
 /// Reads a file; `budget` is the most numbers of all columns together.
 pub(crate) fn read(path: &Path, wanted: Wanted<'_>, budget: usize) -> Result<Columns, DataError> {
@@ -51,6 +54,27 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
     let mut stamps = Vec::new();
     let mut left = budget;
     for (index, column) in schema.columns().iter().enumerate() {
+        if let Some(name) = list(column) {
+            let width = width(&reader, index, column)?;
+            let names: Vec<String> = (0..width).map(|own| format!("{name}[{own}]")).collect();
+            let mut values = vec![Vec::new(); width];
+            if names.iter().any(|name| wanted(name)) {
+                let rows = usize::try_from(reader.metadata().file_metadata().num_rows());
+                let count = rows.ok().and_then(|rows| rows.checked_mul(width));
+                let Some(rest) = count.and_then(|count| left.checked_sub(count)) else {
+                    return Ok(None);
+                };
+                left = rest;
+                for group in 0..reader.num_row_groups() {
+                    let reader = reader.get_row_group(group)?.get_column_reader(index)?;
+                    lists(reader, column, &mut values)?;
+                }
+            }
+            stamps.extend(names.iter().map(|_| None));
+            columns.names.extend(names);
+            columns.values.extend(values);
+            continue;
+        }
         let name = column.path().string();
         let mut values = Vec::new();
         if wanted(&name) && column.max_rep_level() == 0 {
@@ -70,6 +94,169 @@ fn columns(file: File, wanted: Wanted<'_>, budget: usize) -> Result<Option<Colum
     }
     columns.clock = OwnClock::Stamps(stamps);
     Ok(Some(columns))
+}
+
+/// Most numbers of a list.
+const MOST_COLUMNS: usize = 4096;
+
+/// The name of a column of lists of numbers: that of its outermost field.
+fn list(column: &ColumnDescriptor) -> Option<&str> {
+    let is_number = !matches!(
+        column.physical_type(),
+        Type::BYTE_ARRAY | Type::FIXED_LEN_BYTE_ARRAY | Type::INT96
+    );
+    let parts = column.path().parts();
+    // `name`, `name.list.element` and older forms of it; other parts are tables inside tables.
+    let is_plain = column.max_rep_level() == 1 && matches!(parts.len(), 1..=3) && is_number;
+    parts.first().map(String::as_str).filter(|_| is_plain)
+}
+
+/// The number of values in the first list, which all lists have.
+fn width(
+    reader: &SerializedFileReader<File>,
+    index: usize,
+    column: &ColumnDescriptor,
+) -> Result<usize> {
+    for group in 0..reader.num_row_groups() {
+        let mut first = Lists::default();
+        let reader = reader.get_row_group(group)?.get_column_reader(index)?;
+        visit(reader, column, 1, &mut |repeated, value| {
+            first.add(repeated, value, None)
+        })?;
+        if first.count > 0 {
+            return Ok(first.count);
+        }
+    }
+    Ok(0)
+}
+
+/// Appends the lists of a group of rows to one column for each of their places.
+fn lists(reader: ColumnReader, column: &ColumnDescriptor, to: &mut [Vec<f64>]) -> Result<()> {
+    let mut lists = Lists::default();
+    let width = to.len();
+    let mut add = |repeated: bool, value: Option<f64>| lists.add(repeated, value, Some(to));
+    visit(reader, column, usize::MAX, &mut add)?;
+    // A list that breaks off ends here.
+    lists.fill(to, width);
+    Ok(())
+}
+
+/// The list that is being read.
+#[derive(Default)]
+struct Lists {
+    /// How many numbers of it there were.
+    count: usize,
+    is_open: bool,
+}
+
+impl Lists {
+    /// The next number of a list, or the first one of the next list.
+    fn add(
+        &mut self,
+        repeated: bool,
+        value: Option<f64>,
+        to: Option<&mut [Vec<f64>]>,
+    ) -> Result<()> {
+        if let Some(to) = to {
+            if !repeated {
+                self.fill(to, to.len());
+                self.count = 0;
+            }
+            self.is_open = true;
+            if value.is_some() || repeated {
+                let Some(column) = to.get_mut(self.count) else {
+                    let message =
+                        format!("a list has more than the {} numbers of the first", to.len());
+                    return Err(ParquetError::General(message));
+                };
+                column.push(value.unwrap_or(f64::NAN));
+            }
+        }
+        self.count += usize::from(value.is_some() || repeated);
+        if self.count > MOST_COLUMNS {
+            let message = format!("a list has more than {MOST_COLUMNS} numbers");
+            return Err(ParquetError::General(message));
+        }
+        Ok(())
+    }
+
+    /// Fills a list that is shorter than the first one.
+    fn fill(&mut self, to: &mut [Vec<f64>], width: usize) {
+        if self.is_open {
+            for column in &mut to[self.count.min(width)..] {
+                column.push(f64::NAN);
+            }
+        }
+        self.is_open = false;
+    }
+}
+
+/// Passes the numbers of a group of rows, up to a number of rows, each with whether it belongs to the list before.
+fn visit(
+    reader: ColumnReader,
+    column: &ColumnDescriptor,
+    rows: usize,
+    see: &mut dyn FnMut(bool, Option<f64>) -> Result<()>,
+) -> Result<()> {
+    let mut to = |repeated: &[i16], values: Vec<Option<f64>>| -> Result<()> {
+        let pairs = repeated.iter().zip(values);
+        pairs
+            .into_iter()
+            .try_for_each(|(level, value)| see(*level > 0, value))
+    };
+    match reader {
+        ColumnReader::BoolColumnReader(reader) => repeated(
+            reader,
+            column,
+            rows,
+            |&value| f64::from(u8::from(value)),
+            &mut to,
+        ),
+        ColumnReader::Int32ColumnReader(reader) => {
+            repeated(reader, column, rows, |&value| f64::from(value), &mut to)
+        }
+        ColumnReader::Int64ColumnReader(reader) => {
+            repeated(reader, column, rows, |&value| value as f64, &mut to)
+        }
+        ColumnReader::FloatColumnReader(reader) => {
+            repeated(reader, column, rows, |&value| f64::from(value), &mut to)
+        }
+        ColumnReader::DoubleColumnReader(reader) => {
+            repeated(reader, column, rows, |&value| value, &mut to)
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Takes levels of repetition and the values.
+type Take<'t> = &'t mut dyn FnMut(&[i16], Vec<Option<f64>>) -> Result<()>;
+
+/// Levels of repetition with the values, `None` where one is missing.
+fn repeated<T: DataType>(
+    mut reader: ColumnReaderImpl<T>,
+    column: &ColumnDescriptor,
+    rows: usize,
+    number: impl Fn(&T::T) -> f64,
+    to: Take<'_>,
+) -> Result<()> {
+    let there = column.max_def_level();
+    let mut left = rows;
+    while left > 0 {
+        let (mut defined, mut levels, mut values) = (Vec::new(), Vec::new(), Vec::new());
+        let batch = left.min(ROWS_OF_LISTS);
+        let (read, ..) =
+            reader.read_records(batch, Some(&mut defined), Some(&mut levels), &mut values)?;
+        if read == 0 {
+            return Ok(());
+        }
+        left -= read.min(left);
+        let mut values = values.iter().map(&number);
+        let pairs = defined
+            .iter()
+            .map(|&level| (level == there).then(|| values.next()).flatten());
+        to(&levels, pairs.collect())?;
+    }
+    Ok(())
 }
 
 /// Appends the numbers of a column of a group of rows.

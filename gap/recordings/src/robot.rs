@@ -131,6 +131,12 @@ impl Robot {
         Some(&actuator.input)
     }
 
+    /// Whether an input of the spec is the command of an actuator that is neither a position nor a velocity.
+    pub(crate) fn is_ctrl(&self, input: &str) -> bool {
+        let mut actuators = self.dictionary.actuators.iter();
+        actuators.any(|actuator| actuator.input == input && !actuator.is_servo)
+    }
+
     /// Replaces commands by what the actuators make of them, where these have a filter or a delay. An input with
     /// interpolation is taken as it is.
     pub(crate) fn drive(&self, runs: &mut [Run], channels: &mut [Channel], mechanism: &Mechanism) {

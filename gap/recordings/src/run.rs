@@ -2,18 +2,15 @@
 
 use std::f64::consts::TAU;
 
-use appell_estimate::smoothing::angle::unwrap;
-
-use crate::channel::{Channel, Role};
+use crate::channel::{Channel, Measured, Role};
 use crate::clock::Sampling;
 use crate::finding::{Finding, FindingKind, counted};
+use crate::jumps;
 use crate::set::{Part, Run};
 use crate::table::Table;
 
 /// Largest number of successive rows without an input; over a longer dropout the input is unknown.
 const LOST: usize = 5;
-/// Range in turns beyond which an angle is not wrapped.
-const MOST_TURNS: f64 = 3.0;
 
 /// A run from its table, with dropouts reported, inputs held and angles unwrapped.
 pub(crate) fn read(
@@ -44,13 +41,27 @@ pub(crate) fn read(
                 tell(FindingKind::Dropouts, format!("{rows} of {all} missing"));
             }
         }
-        if channel.is_angle() && may_be_wrapped(values) {
-            let steps = unwrap(values);
-            if steps > 0 {
-                let steps = counted(steps, "time");
-                let message = format!("the angle starts anew {steps}; it is counted on");
-                tell(FindingKind::Unwrapped, message);
-            }
+        let times = &table.times;
+        let place = |row: usize| format!("row {} (t = {:.3} s)", row + 1, times[row]);
+        if channel.is_angle()
+            && let Some(wrapped) = jumps::wrapped(values, channel.turn.unwrap_or(TAU))
+        {
+            let (steps, place) = (counted(wrapped.count, "time"), place(wrapped.row));
+            let message =
+                format!("the angle starts anew {steps}, first in {place}; it is counted on");
+            tell(FindingKind::Unwrapped, message);
+        }
+        let is_position = matches!(channel.role, Role::Measures(Measured::Coordinate(_)));
+        if is_position && let Some(others) = jumps::others(values) {
+            let size = channel.unit.from_si(others.size);
+            let message = format!(
+                "the value jumps {}, first by {size:.4} {} in {}: no motion, but a dead zone, an angle that starts anew \
+                 at other ends than those of a turn, or a fault; correct the column or cut the run there",
+                counted(others.count, "time"),
+                channel.unit.text,
+                place(others.row)
+            );
+            tell(FindingKind::Jump, message);
         }
     }
     Run {
@@ -89,16 +100,6 @@ fn without_lost_inputs(mut table: Table, channels: &[Channel]) -> Table {
         }
     }
     table
-}
-
-/// Whether an angle may be wrapped; one with a range of several turns is not.
-fn may_be_wrapped(values: &[f64]) -> bool {
-    let present = || values.iter().copied().filter(|value| !value.is_nan());
-    let [low, high] = [
-        present().fold(f64::INFINITY, f64::min),
-        present().fold(f64::NEG_INFINITY, f64::max),
-    ];
-    high - low < MOST_TURNS * TAU
 }
 
 /// Replaces missing values by the previous one; at the beginning by the first one present.

@@ -7,8 +7,8 @@ use crate::channel::Channel;
 use crate::clock::{Clock, Sampling};
 use crate::finding::{counted, listed};
 use crate::limits::{MAX_NUMBERS, MAX_TIME, MAX_VALUE, MIN_ROWS, MIN_STEP};
-use crate::time::{NoTime, Stated, TIME, TimeColumn};
-use crate::{DataError, Finding, FindingKind};
+use crate::time::{NoTime, Stated, TIME, TimeColumn, Times};
+use crate::{DataError, Finding, FindingKind, episode, topics};
 
 /// The numbers of a run.
 pub(crate) struct Table {
@@ -78,13 +78,15 @@ impl Columns {
         file: &str,
         time: &Stated,
         channels: &[Channel],
+        episode: Option<u64>,
         budget: &mut usize,
     ) -> Result<Table, DataError> {
         let time = time.find(&self.names, channels);
         let time = time.map_err(|NoTime { message, help }| {
             DataError::whole(file, format!("{message}; {help}"))
         })?;
-        let time = self.own_clock(file, time)?;
+        let (time, times) = self.times(file, time)?;
+        let episode = self.episode(file, episode)?;
         let place = |name: &str| {
             let place = self.names.iter().position(|own| own == name);
             place.ok_or_else(|| {
@@ -96,7 +98,9 @@ impl Columns {
         };
         let places: Result<Vec<usize>, _> = channels.iter().map(|c| place(&c.column)).collect();
         let places = places?;
-        let is_known = |i: &usize| *i == time.index || places.contains(i);
+        let is_known = |i: &usize| {
+            time.is_in(*i) || places.contains(i) || episode::is_episode(&self.names[*i])
+        };
         let unknown = (0..self.names.len()).filter(|i| !is_known(i));
         let unknown: Vec<String> = unknown.map(|i| shown(&self.names[i])).collect();
         if !unknown.is_empty() {
@@ -108,7 +112,6 @@ impl Columns {
             self.findings.push(finding);
         }
         let mut clock = Clock::default();
-        let times = &self.values[time.index];
         // Formats in columns may be damaged so that these differ.
         if let Some(place) = places
             .iter()
@@ -126,6 +129,7 @@ impl Columns {
         let is_of_topic = matches!(self.clock, OwnClock::Column) && time.name != TIME;
         let rows: Vec<usize> = (0..times.len())
             .filter(|&row| !(is_of_topic && times[row].is_nan()))
+            .filter(|&row| episode.as_ref().is_none_or(|rows| rows[row]))
             .filter(|&row| clock.accept(times[row], row + 1, &format!("row {}", row + 1)))
             .collect();
         self.findings.extend(clock.findings(file)?);
@@ -139,43 +143,72 @@ impl Columns {
                 OwnClock::Stamps(_) => self.clock.unit(*place, &channel.column),
                 OwnClock::Column | OwnClock::None => None,
             };
-            let scale = stamp.unwrap_or(1.0) * channel.scale();
-            let in_si = |&row: &usize| finite(values[row] * scale);
+            let stamp = stamp.unwrap_or(1.0);
+            let in_si = |&row: &usize| finite(channel.in_si(stamp * values[row]));
             rows.iter().map(in_si).collect()
         };
-        let columns = places.iter().zip(channels).map(column).collect();
-        let times = rows.iter().map(|&row| times[row]).collect();
+        let mut columns: Vec<Vec<f64>> = places.iter().zip(channels).map(column).collect();
+        let mut times: Vec<f64> = rows.iter().map(|&row| times[row]).collect();
+        if matches!(self.clock, OwnClock::Column) {
+            let joined = topics::joined(&mut times, &mut columns, channels);
+            self.findings.extend(joined);
+        }
         checked(file, &time, times, channels, columns, self.findings)
     }
 
-    /// Turns the times into s. The unit that the format states is not stated otherwise; time stamps count from the
-    /// first row on.
-    fn own_clock(&mut self, file: &str, time: TimeColumn) -> Result<TimeColumn, DataError> {
-        let own = self.clock.unit(time.index, &time.name);
-        let times = &mut self.values[time.index];
-        match own {
-            None => times.iter_mut().for_each(|t| *t *= time.scale()),
-            Some(_) if time.unit.as_ref().is_some_and(|unit| !unit.is_si()) => {
-                let message = format!(
-                    "the file itself states the unit of the times `{}`; remove the other one",
-                    shown(&time.name)
-                );
-                return Err(DataError::whole(file, message));
+    /// The times in s. The unit that the format states is not stated otherwise; time stamps count from the first row
+    /// on.
+    fn times(&self, file: &str, time: TimeColumn) -> Result<(TimeColumn, Vec<f64>), DataError> {
+        let index = match time.times {
+            Times::Column(index) => index,
+            Times::Parts([seconds, nanoseconds]) => {
+                let parts = self.values[seconds].iter().zip(&self.values[nanoseconds]);
+                let start = self.values[seconds].iter().copied().find(|t| t.is_finite());
+                let start = start.unwrap_or(0.0);
+                let times = parts.map(|(s, ns)| s - start + 1e-9 * ns).collect();
+                return Ok((time, times));
             }
-            Some(unit) => {
-                let first = times.iter().copied().find(|t| t.is_finite());
-                let first = match self.clock {
-                    OwnClock::Stamps(_) => first.unwrap_or(0.0),
-                    OwnClock::Column | OwnClock::None => 0.0,
-                };
-                for t in times.iter_mut() {
-                    *t = unit * (*t - first);
-                }
-                let unit = Some(Unit::si(Dimension::TIME));
-                return Ok(TimeColumn { unit, ..time });
+            Times::Rate(rate) => {
+                let rows = self.values.iter().map(Vec::len).max().unwrap_or(0);
+                let times = (0..rows).map(|row| row as f64 / rate).collect();
+                return Ok((time, times));
             }
+        };
+        let times = &self.values[index];
+        let Some(unit) = self.clock.unit(index, &time.name) else {
+            let times = times.iter().map(|t| t * time.scale()).collect();
+            return Ok((time, times));
+        };
+        if time.unit.as_ref().is_some_and(|unit| !unit.is_si()) {
+            let message = format!(
+                "the file itself states the unit of the times `{}`; remove the other one",
+                shown(&time.name)
+            );
+            return Err(DataError::whole(file, message));
         }
-        Ok(time)
+        let first = match self.clock {
+            OwnClock::Stamps(_) => times.iter().copied().find(|t| t.is_finite()),
+            OwnClock::Column | OwnClock::None => None,
+        };
+        let first = first.unwrap_or(0.0);
+        let times = times.iter().map(|t| unit * (t - first)).collect();
+        let unit = Some(Unit::si(Dimension::TIME));
+        Ok((TimeColumn { unit, ..time }, times))
+    }
+
+    /// Which rows are of an episode, where one is chosen.
+    fn episode(&self, file: &str, chosen: Option<u64>) -> Result<Option<Vec<bool>>, DataError> {
+        let Some(chosen) = chosen else {
+            return Ok(None);
+        };
+        let mut names = self.names.iter();
+        let column = names.position(|name| episode::is_episode(name));
+        let column = column.ok_or_else(|| DataError::whole(file, episode::NONE))?;
+        let rows = self.values[column].iter();
+        Ok(Some(
+            rows.map(|own| episode::number(*own) == Some(chosen))
+                .collect(),
+        ))
     }
 }
 

@@ -2,7 +2,9 @@
 //!
 //! `[channels]` names it with `time = true`; a line `t = { unit = "ms" }` does so as well. Else it is the only
 //! column whose name is one of a clock: `t`, `time` or `timestamp`, with a unit behind it as in `time [ms]`,
-//! `t(us)` or `timestamp_ns`. Without a unit the times are in seconds.
+//! `t(us)` or `timestamp_ns`; else the only one that is a stamp, `header.stamp`, which may be two columns,
+//! `header.stamp.sec` and `header.stamp.nanosec`. Without a unit the times are in seconds. Without a column of the times
+//! the description states the `rate` of the rows.
 
 use appell_spec::units::{self, Dimension, Unit};
 use appell_spec::{closest, shown};
@@ -21,6 +23,23 @@ const NAMES: [&str; 7] = [
     "timestamps",
     "time_stamp",
     "elapsed_time",
+];
+/// Names of stamps, which are the clock where no column has one of the names above.
+const STAMPS: [&str; 7] = [
+    "stamp",
+    "header_stamp",
+    "field_header_stamp",
+    "%time",
+    "sim_time",
+    "log_time",
+    "elapsed",
+];
+/// Ends of the names of two columns that are one time: in s and in ns.
+const PARTS: [[&str; 2]; 4] = [
+    [".sec", ".nanosec"],
+    [".secs", ".nsecs"],
+    ["_sec", "_nanosec"],
+    ["_secs", "_nsecs"],
 ];
 /// Words for units of time, each with the symbol of the unit.
 const WORDS: [(&str, &str); 17] = [
@@ -54,13 +73,26 @@ pub(crate) struct Stated {
     pub(crate) by_name_alone: bool,
     /// The unit, where it is stated.
     pub(crate) unit: Option<Unit>,
+    /// Rows per second, where no column is the time.
+    pub(crate) rate: Option<f64>,
+}
+
+/// Where the times of the rows are.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Times {
+    /// In a column.
+    Column(usize),
+    /// In two columns, in s and in ns.
+    Parts([usize; 2]),
+    /// Nowhere: rows come at a rate in Hz.
+    Rate(f64),
 }
 
 /// The column of the times in a file.
 #[derive(Debug, Clone)]
 pub(crate) struct TimeColumn {
-    /// Its index.
-    pub(crate) index: usize,
+    /// Where they are.
+    pub(crate) times: Times,
     /// Its name.
     pub(crate) name: String,
     /// The unit, where the description or the name states it.
@@ -71,6 +103,15 @@ impl TimeColumn {
     /// The unit in s.
     pub(crate) fn scale(&self) -> f64 {
         self.unit.as_ref().map_or(1.0, |unit| unit.scale)
+    }
+
+    /// Whether the times are in a column.
+    pub(crate) fn is_in(&self, column: usize) -> bool {
+        match self.times {
+            Times::Column(index) => index == column,
+            Times::Parts(parts) => parts.contains(&column),
+            Times::Rate(_) => false,
+        }
     }
 }
 
@@ -87,6 +128,16 @@ impl Stated {
         names: &[String],
         channels: &[Channel],
     ) -> Result<TimeColumn, NoTime> {
+        if let Some(rate) = self.rate {
+            return Ok(TimeColumn {
+                times: Times::Rate(rate),
+                name: "rate".to_owned(),
+                unit: Some(Unit::si(Dimension::TIME)),
+            });
+        }
+        if let Some(parts) = self.parts(names, channels) {
+            return Ok(parts);
+        }
         let clocks = Self::clocks(names, channels);
         if let Some(stated) = &self.column
             && (!self.by_name_alone || clocks.len() < 2)
@@ -109,7 +160,8 @@ impl Stated {
             [] => Err(NoTime {
                 message: "there is no column of the times".to_owned(),
                 help: format!(
-                    "call it `{TIME}`, or name it in `[channels]` of recording.toml: {}",
+                    "call it `{TIME}`, or name it in `[channels]` of recording.toml: {}; without one, write the rows per \
+                     second before the sections: `rate = 100`",
                     line("clock", "s")
                 ),
             }),
@@ -129,21 +181,65 @@ impl Stated {
         }
     }
 
-    /// The columns that have the name of a clock and are no channels.
+    /// The columns that have the name of a clock and are no channels; if there is none, those with the name of a stamp.
     fn clocks(names: &[String], channels: &[Channel]) -> Vec<usize> {
         let is_channel = |name: &String| channels.iter().any(|own| own.column == *name);
-        let is_clock = |index: &usize| {
-            let name = &names[*index];
-            may_be_time(name) && !is_channel(name)
+        let known = |is_clock: &dyn Fn(&str) -> bool| -> Vec<usize> {
+            let is_free = |index: &usize| is_clock(&names[*index]) && !is_channel(&names[*index]);
+            (0..names.len()).filter(is_free).collect()
         };
-        (0..names.len()).filter(is_clock).collect()
+        let clocks = known(&may_be_time);
+        if clocks.is_empty() {
+            return known(&|name| split(name, &STAMPS).is_some());
+        }
+        clocks
+    }
+
+    /// Two columns of the times: those of the stated name, else the only ones of a clock or a stamp.
+    fn parts(&self, names: &[String], channels: &[Channel]) -> Option<TimeColumn> {
+        let place = |name: &str| names.iter().position(|own| own == name);
+        if let Some(stated) = &self.column {
+            if self.by_name_alone || place(stated).is_some() {
+                return None;
+            }
+            let times = PARTS.iter().find_map(|[sec, nanosec]| {
+                let seconds = place(&format!("{stated}{sec}"))?;
+                Some([seconds, place(&format!("{stated}{nanosec}"))?])
+            })?;
+            return Some(TimeColumn::of_parts(stated, times));
+        }
+        let is_channel = |name: &str| channels.iter().any(|own| own.column == name);
+        let mut found = names.iter().enumerate().filter_map(|(index, name)| {
+            let (base, ends) = PARTS
+                .iter()
+                .find_map(|ends| Some((name.strip_suffix(ends[0])?, ends)))?;
+            let is_stamp = is_clock(&plain(base)) || plain(base).ends_with("stamp");
+            let nanoseconds = place(&format!("{base}{}", ends[1])).filter(|_| is_stamp)?;
+            (!is_channel(name)).then(|| TimeColumn::of_parts(base, [index, nanoseconds]))
+        });
+        let first = found.next()?;
+        // Of several topics each has one; then the line of the times names it.
+        let is_only = found.next().is_none();
+        let others = Self::clocks(names, channels);
+        let others = others.iter().filter(|index| !first.is_in(**index));
+        (is_only && others.count() == 0).then_some(first)
     }
 
     fn column_at(&self, index: usize, name: &str) -> TimeColumn {
         TimeColumn {
-            index,
+            times: Times::Column(index),
             name: name.to_owned(),
             unit: self.unit.clone().or_else(|| unit_of(name)),
+        }
+    }
+}
+
+impl TimeColumn {
+    fn of_parts(name: &str, parts: [usize; 2]) -> Self {
+        Self {
+            times: Times::Parts(parts),
+            name: name.to_owned(),
+            unit: Some(Unit::si(Dimension::TIME)),
         }
     }
 }
@@ -161,16 +257,32 @@ pub(crate) fn line(name: &str, unit: &str) -> String {
 
 /// Whether a column has the name of a clock.
 pub(crate) fn may_be_time(name: &str) -> bool {
-    split(name).is_some()
+    split(name, &NAMES).is_some()
+}
+
+/// Whether a column may be the times, or a part of them.
+pub(crate) fn may_be_needed(name: &str) -> bool {
+    let ends = PARTS.as_flattened().iter();
+    let mut bases = ends.filter_map(|end| name.strip_suffix(end));
+    let is_part = bases.any(|base| is_clock(&plain(base)) || plain(base).ends_with("stamp"));
+    is_part || may_be_time(name) || split(name, &STAMPS).is_some()
+}
+
+/// Whether a column is a part of the times of this name.
+pub(crate) fn is_part(name: &str, of: &str) -> bool {
+    let end = name.strip_prefix(of);
+    end.is_some_and(|end| PARTS.as_flattened().contains(&end))
 }
 
 /// The unit of the times that the name of a column states.
-fn unit_of(name: &str) -> Option<Unit> {
-    split(name)?.1
+pub(crate) fn unit_of(name: &str) -> Option<Unit> {
+    let named = split(name, &NAMES).or_else(|| split(name, &STAMPS));
+    named?.1
 }
 
 /// The name of a clock and the unit behind it.
-fn split(name: &str) -> Option<(String, Option<Unit>)> {
+fn split(name: &str, known: &[&str]) -> Option<(String, Option<Unit>)> {
+    let is_clock = |name: &str| known.contains(&name);
     let name = name.trim();
     if let Some((clock, unit)) = bracketed(name) {
         let clock = plain(clock);

@@ -8,24 +8,24 @@ use appell_test_kit::Random;
 use crate::common::{Folder, pendulum};
 
 /// Rows of a run.
-const ROWS: usize = 200;
+pub(crate) const ROWS: usize = 200;
 /// Times and values pass as they are.
-const ROUNDING: f64 = 1e-12;
+pub(crate) const ROUNDING: f64 = 1e-12;
 
-fn time(row: usize) -> f64 {
+pub(crate) fn time(row: usize) -> f64 {
     0.01 * row as f64
 }
 
-fn angle(row: usize) -> f64 {
+pub(crate) fn angle(row: usize) -> f64 {
     0.5 * (3.0 * time(row)).sin()
 }
 
-fn torque(row: usize) -> f64 {
+pub(crate) fn torque(row: usize) -> f64 {
     0.2 * (row % 5) as f64
 }
 
 /// A folder with one run under a name, whose columns have these names.
-fn folder(file: &str, bytes: &[u8], [theta, tau]: [&str; 2]) -> Folder {
+pub(crate) fn folder(file: &str, bytes: &[u8], [theta, tau]: [&str; 2]) -> Folder {
     let channels = format!(
         "\"{theta}\" = {{ measures = \"theta\", unit = \"rad\" }}\n\
          \"{tau}\" = {{ input = \"tau\", unit = \"N m\" }}"
@@ -52,7 +52,7 @@ fn assert_run(folder: &Folder, rounding: f64, is_missing: impl Fn(usize) -> bool
 
 /// Damages copies of a file: cut off, or bytes changed. None may panic; what is cut off in its
 /// beginning is refused.
-fn assert_damage_is_told(file: &str, bytes: &[u8], columns: [&str; 2]) {
+pub(crate) fn assert_damage_is_told(file: &str, bytes: &[u8], columns: [&str; 2]) {
     let folder = folder(file, bytes, columns);
     for length in [0, 1, 3, 16, 100] {
         folder.write(file, &bytes[..length]);
@@ -294,6 +294,104 @@ mod parquet {
         let wrong = "[channels]\ntimestamp = { unit = \"ms\" }\n";
         folder.write("recording.toml", text.replace("[channels]\n", wrong));
         assert!(folder.refused().contains("itself states the unit"));
+    }
+
+    /// As `lerobot` writes them: lists of one length, of which one is missing and one is short.
+    fn lists() -> Vec<u8> {
+        let schema = "message run {
+            required float timestamp;
+            required int64 episode_index;
+            optional group observation.state (LIST) {
+                repeated group list { optional float element; }
+            }
+            optional group action (LIST) {
+                repeated group list { optional double element; }
+            }
+        }";
+        let schema = Arc::new(parse_message_type(schema).unwrap());
+        let mut bytes = Vec::new();
+        let properties = Arc::new(WriterProperties::builder().build());
+        let mut writer = SerializedFileWriter::new(&mut bytes, schema, properties).unwrap();
+        let mut group = writer.next_row_group().unwrap();
+        let rows = || (0..2).flat_map(|_| 0..ROWS);
+        let mut column = group.next_column().unwrap().unwrap();
+        #[allow(
+            clippy::cast_possible_truncation,
+            reason = "single precision is written"
+        )]
+        let times: Vec<f32> = rows().map(|row| time(row) as f32).collect();
+        column
+            .typed::<FloatType>()
+            .write_batch(&times, None, None)
+            .unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        let episodes: Vec<i64> = (0..2 * ROWS).map(|row| i64::from(row >= ROWS)).collect();
+        column
+            .typed::<Int64Type>()
+            .write_batch(&episodes, None, None)
+            .unwrap();
+        column.close().unwrap();
+        let (mut values, mut defined, mut repeated) = (Vec::new(), Vec::new(), Vec::new());
+        for row in rows() {
+            if row == 7 {
+                defined.push(0);
+                repeated.push(0);
+                continue;
+            }
+            #[allow(
+                clippy::cast_possible_truncation,
+                reason = "single precision is written"
+            )]
+            values.extend([0.5, angle(row) as f32]);
+            defined.extend([3, 3]);
+            repeated.extend([0, 1]);
+        }
+        let mut column = group.next_column().unwrap().unwrap();
+        let typed = column.typed::<FloatType>();
+        typed
+            .write_batch(&values, Some(&defined), Some(&repeated))
+            .unwrap();
+        column.close().unwrap();
+        let mut column = group.next_column().unwrap().unwrap();
+        let commands: Vec<f64> = rows().map(torque).collect();
+        let ones = vec![3; commands.len()];
+        let firsts = vec![0; commands.len()];
+        let typed = column.typed::<DoubleType>();
+        typed
+            .write_batch(&commands, Some(&ones), Some(&firsts))
+            .unwrap();
+        column.close().unwrap();
+        group.close().unwrap();
+        writer.close().unwrap();
+        bytes
+    }
+
+    #[test]
+    fn lists_are_columns_and_episodes_are_runs() {
+        let columns = ["observation.state[1]", "action[0]"];
+        let folder = folder("all.parquet", &lists(), columns);
+        let text = std::fs::read_to_string(folder.path("recording.toml")).unwrap();
+        folder.write(
+            "recording.toml",
+            text.replace("all.parquet", "all.parquet#0-1"),
+        );
+        let set = folder.read().unwrap();
+        assert_eq!(set.runs.len(), 2);
+        let run = &set.runs[1];
+        assert_eq!(run.times.len(), ROWS);
+        for row in 0..ROWS {
+            assert!((run.times[row] - time(row)).abs() < 1e-6);
+            assert_eq!(run.values[0][row].is_nan(), row == 7);
+            assert!(row == 7 || (run.values[0][row] - angle(row)).abs() < 1e-7);
+            assert!((run.values[1][row] - torque(row)).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn damaged_lists_are_refused_or_read() {
+        let columns = ["observation.state[1]", "action[0]"];
+        assert_damage_is_told("run.parquet", &lists(), columns);
     }
 
     #[test]

@@ -4,5 +4,9 @@ mod clocks;
 mod common;
 
 mod data_sets;
+mod drafting;
 mod formats;
+mod logs;
+mod messages;
 mod motion_capture;
+mod npz;

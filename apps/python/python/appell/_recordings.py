@@ -47,6 +47,33 @@ class Recordings(_appell.DataSet, Report):
         paths = [data] if isinstance(data, (str, Path)) else list(data)
         return super().__new__(cls, [str(path) for path in paths], _name(model))
 
+    @classmethod
+    def from_frames(
+        cls,
+        frames: Mapping[str, Any],
+        model: Model | str | Path | None = None,
+        *,
+        description: str | Path | None = None,
+        rate_hz: float | None = None,
+    ) -> Recordings:
+        """Recordings of frames by the names of the runs. With `rate_hz`, rows per second, no column is the time.
+
+        >>> import appell, numpy as np
+        >>> rows = np.arange(300)
+        >>> run = {"theta": 0.1 * np.cos(0.03 * rows), "tau": np.sign(np.sin(rows))}
+        >>> appell.Recordings.from_frames({"day1": run, "day2": run}, "pendulum", rate_hz=100).runs
+        ['day1', 'day2']
+        """
+        wrong = [str(name) for name, frame in frames.items() if not _is_frame(frame)]
+        if wrong:
+            raise ValueError(f"frames: {', '.join(wrong)} has no columns; give a frame for each run")
+        if rate_hz is None:
+            return cls(frames, model, description=description)
+        if not rate_hz > 0:
+            raise ValueError(f"rate_hz is the number of rows per second, not {rate_hz}")
+        timed = {name: _timed(frame, rate_hz) for name, frame in frames.items()}
+        return cls(timed, model, description=description)
+
     @cached_property
     def _fields(self) -> dict[str, Any]:
         return json.loads(self.json())
@@ -311,6 +338,15 @@ def _columns(frame: Any) -> list[tuple[str, np.ndarray]]:
     if len(lengths) > 1:
         raise ValueError(f"the columns of a frame have one length, not {', '.join(map(str, sorted(lengths)))}")
     return columns
+
+
+def _timed(frame: Any, rate_hz: float) -> dict[str, np.ndarray]:
+    """The columns of numbers with times at a rate, which no other column may have."""
+    columns = {str(name): frame[name] for name in (frame if isinstance(frame, Mapping) else frame.columns)}
+    if "t" in columns:
+        raise ValueError("rate_hz: the frame has a column `t` of times already")
+    rows = max((len(values) for values in columns.values()), default=0)
+    return {"t": np.arange(rows) / rate_hz, **columns}
 
 
 def _numbers(column: Any) -> np.ndarray | None:

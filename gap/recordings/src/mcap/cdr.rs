@@ -7,6 +7,18 @@ use std::fmt::Write as _;
 /// Messages inside messages are at most so deep.
 const DEEPEST: usize = 16;
 
+/// Fields with the names of what the lists of a message are of: joints of `sensor_msgs/JointState`, of trajectories and
+/// commands of `control_msgs`.
+pub(super) const NAMES: [&str; 5] = [
+    "name",
+    "names",
+    "joint_names",
+    "dof_names",
+    "interface_names",
+];
+/// Longest name of a joint.
+pub(super) const LONGEST_NAME: usize = 256;
+
 /// The message types of a channel by name; the first one has an empty name.
 pub(super) struct Definitions {
     types: BTreeMap<String, Vec<Field>>,
@@ -78,6 +90,8 @@ impl Definitions {
             little: head[1] & 1 == 1,
             elements: body.len(),
             path: topic.to_owned(),
+            named: topic.to_owned(),
+            names: Vec::new(),
             tell,
         };
         reader.message("", 0)
@@ -142,6 +156,10 @@ struct Reader<'a> {
     /// Elements of lists that may still come: each has at least a byte.
     elements: usize,
     path: String,
+    /// The same path with names for numbers in lists, where the message names its joints.
+    named: String,
+    /// Those names: of the message, or of one that contains it.
+    names: Vec<String>,
     tell: &'a mut dyn FnMut(&str, f64),
 }
 
@@ -151,11 +169,13 @@ impl<'a> Reader<'a> {
             return None;
         }
         let definitions: &'a Definitions = self.definitions;
-        let length = self.path.len();
+        let lengths = [self.path.len(), self.named.len()];
+        let outer = self.names.clone();
         for field in definitions.fields(name)? {
-            self.path.push('.');
-            self.path.push_str(&field.name);
-            let of_field = self.path.len();
+            for path in [&mut self.path, &mut self.named] {
+                path.push('.');
+                path.push_str(&field.name);
+            }
             match field.count {
                 Count::One => self.value(&field.kind, depth)?,
                 Count::Fixed(_) | Count::Any => {
@@ -164,17 +184,38 @@ impl<'a> Reader<'a> {
                         _ => self.length()?,
                     };
                     self.elements = self.elements.checked_sub(count)?;
-                    for index in 0..count {
-                        // Writing to a string cannot fail.
-                        let _ = write!(self.path, "[{index}]");
-                        self.value(&field.kind, depth)?;
-                        self.path.truncate(of_field);
+                    if matches!(field.kind, Kind::Text(1)) && NAMES.contains(&&*field.name) {
+                        self.names = (0..count).map(|_| self.text()).collect::<Option<_>>()?;
+                    } else {
+                        self.list(&field.kind, count, depth)?;
                     }
                 }
             }
-            self.path.truncate(length);
+            self.cut(lengths);
+        }
+        self.names = outer;
+        Some(())
+    }
+
+    /// The elements of a list, by their numbers and, where there are as many, by the names of joints.
+    fn list(&mut self, kind: &Kind, count: usize, depth: usize) -> Option<()> {
+        let lengths = [self.path.len(), self.named.len()];
+        for index in 0..count {
+            // Writing to a string cannot fail.
+            let _ = write!(self.path, "[{index}]");
+            let _ = match self.names.get(index).filter(|_| self.names.len() == count) {
+                Some(name) => write!(self.named, "[{name}]"),
+                None => write!(self.named, "[{index}]"),
+            };
+            self.value(kind, depth)?;
+            self.cut(lengths);
         }
         Some(())
+    }
+
+    fn cut(&mut self, [path, named]: [usize; 2]) {
+        self.path.truncate(path);
+        self.named.truncate(named);
     }
 
     fn value(&mut self, kind: &Kind, depth: usize) -> Option<()> {
@@ -182,6 +223,9 @@ impl<'a> Reader<'a> {
             Kind::Number(number) => {
                 let value = self.number(*number)?;
                 (self.tell)(&self.path, value);
+                if self.named != self.path {
+                    (self.tell)(&self.named, value);
+                }
             }
             Kind::Text(width) => {
                 let length = self.length()?.checked_mul(*width)?;
@@ -190,6 +234,16 @@ impl<'a> Reader<'a> {
             Kind::Message(name) => self.message(name, depth + 1)?,
         }
         Some(())
+    }
+
+    /// A text, without the zero at its end.
+    fn text(&mut self) -> Option<String> {
+        let length = self.length()?;
+        let bytes = self.bytes.get(self.at..self.at.checked_add(length)?)?;
+        self.at += length;
+        let text = String::from_utf8_lossy(bytes);
+        let text = text.trim_end_matches('\0');
+        Some(text.chars().take(LONGEST_NAME).collect())
     }
 
     fn length(&mut self) -> Option<usize> {

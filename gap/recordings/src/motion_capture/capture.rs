@@ -37,7 +37,7 @@ impl Capture {
         let channel = |name: String| Channel::new(&name, Role::Recorded, plain.clone(), None);
         let channels: Vec<Channel> = names.map(channel).collect();
         let mut budget = limits::MAX_NUMBERS;
-        let table = format::read(path, &Stated::default(), &channels, &mut budget)?;
+        let table = format::read(path, &Stated::default(), &channels, None, &mut budget)?;
         let mut columns = table.columns.into_iter();
         let bodies = skeleton.bodies.iter().map(|_| {
             let mut next = |column: &Column| -> Vec<f64> {

@@ -390,7 +390,7 @@ fn judged_beside<'m>(
     stage("screening the effects");
     let screen = Screen::of(&bench, &nominal)?;
     stage("fitting the remaining effects");
-    let windows = horizon::windows(whole)?;
+    let windows = horizon::windows(whole, bench.is_of_robot)?;
     let levels = bench.levels(&nominal)?;
     let over = Bench::over(&windows, &bench, &levels)?;
     let known = before.and_then(|before| known(&bench, before).ok());

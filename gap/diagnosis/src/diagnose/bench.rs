@@ -452,6 +452,10 @@ impl<'a> Bench<'a> {
         let mut start = start.to_vec();
         self.loosen(estimation, &mut start)?;
         let levels = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY)?.values;
+        // One step ahead a robot needs its noise levels only.
+        if self.is_of_robot && !self.is_over_windows() {
+            return self.fit_roughly(&[], estimation, &levels);
+        }
         let fitted = self.fit(&[], estimation, &levels)?;
         if fitted.fit.is_optimum() || self.is_over_windows() {
             return Ok(fitted);

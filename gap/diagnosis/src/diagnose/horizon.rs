@@ -24,6 +24,8 @@ use appell_recordings::DataSet;
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;
+/// The same for a robot, which has many joints in each window.
+const OF_ROBOT: usize = 20;
 /// Number of rows of a window: enough to resolve an error that grows over it.
 const ROWS: usize = 40;
 /// Smallest number of rows of a window.
@@ -324,8 +326,9 @@ impl Seen<'_, '_> {
 
 /// The runs, cut into windows of half a typical period: long enough that forces affect the motion, short
 /// enough that errors do not dominate it.
-pub(super) fn windows(set: &DataSet) -> Result<DataSet, DiagnoseError> {
-    Ok(set.windows(length(set), WINDOWS, ROWS)?)
+pub(super) fn windows(set: &DataSet, is_of_robot: bool) -> Result<DataSet, DiagnoseError> {
+    let windows = if is_of_robot { OF_ROBOT } else { WINDOWS };
+    Ok(set.windows(length(set), windows, ROWS)?)
 }
 
 /// Half of a typical period in s: that of a harmonic motion with the ratio of deviation to rate of a channel, the

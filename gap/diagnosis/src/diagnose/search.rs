@@ -21,7 +21,7 @@ use crate::effects::{Acts, Part};
 const LEADING: usize = 2;
 const RIVALS: usize = 6;
 /// The same for a robot, whose fits take long.
-const FEW_RIVALS: usize = 3;
+const FEW_RIVALS: usize = 2;
 /// Number of single effects about which sets are also evaluated.
 const SINGLES: usize = 6;
 /// Largest number of linearisations.
@@ -32,6 +32,8 @@ const WORTH: f64 = 1.5 * TIED;
 const BY_SLOPES: f64 = 0.5;
 /// Largest initial delay relative to the longest one.
 const BELOW: f64 = 0.9;
+/// Parts of the sizes that are tried as initial values.
+const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
 pub(super) const SLACK: f64 = 40.0;
 /// Why a fit does not count.
@@ -318,17 +320,7 @@ impl<'b, 'a> Search<'b, 'a> {
             }
         }
         quieten(&estimation, &mut start, set.levels)?;
-        for sizes in &set.sizes {
-            place(bench, &estimation, sizes, &mut start)?;
-            if from.members.contains(&sizes.candidate) {
-                // Its shape has been estimated already.
-                for (index, part) in bench.own(bench.candidate(sizes.candidate)) {
-                    if part.is_shape() {
-                        start[index] = carried[index];
-                    }
-                }
-            }
-        }
+        self.place_all(from, set, &carried, &estimation, &mut start)?;
         let new: Vec<usize> = (set.members.iter().copied())
             .filter(|member| !from.members.contains(member))
             .collect();
@@ -343,6 +335,52 @@ impl<'b, 'a> Search<'b, 'a> {
         let mut fitted = best_fit(fits)?;
         self.count_late(&mut fitted)?;
         Ok(fitted)
+    }
+
+    /// Writes the sizes of a set as initial values. Of a robot a part of them, where the motion depends on them so
+    /// strongly that with all of them it is predicted worse than without.
+    fn place_all(
+        &self,
+        from: &Fitted,
+        set: &Set,
+        carried: &[f64],
+        estimation: &Estimation<'_>,
+        start: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        let bench = self.bench;
+        let put = |part: f64, start: &mut [f64]| -> Result<(), DiagnoseError> {
+            for sizes in &set.sizes {
+                place(bench, estimation, &sizes.times(part), start)?;
+                if from.members.contains(&sizes.candidate) {
+                    // Its shape has been estimated already.
+                    for (index, part) in bench.own(bench.candidate(sizes.candidate)) {
+                        if part.is_shape() {
+                            start[index] = carried[index];
+                        }
+                    }
+                }
+            }
+            Ok(())
+        };
+        let without = start.to_vec();
+        put(1.0, start)?;
+        if !bench.is_of_robot || !from.members.is_empty() {
+            return Ok(());
+        }
+        let likelihood = |values: &[f64]| {
+            estimation
+                .log_likelihood(values)
+                .unwrap_or(f64::NEG_INFINITY)
+        };
+        let least = likelihood(&without);
+        for part in PARTS {
+            if likelihood(start) > least {
+                break;
+            }
+            start.copy_from_slice(&without);
+            put(part, start)?;
+        }
+        Ok(())
     }
 
     /// The log posterior of the values of the best hypothesis, less what others may make up for by fewer values; that of

@@ -47,6 +47,16 @@ pub(super) struct SizeEstimates {
     pub(super) deviations: Vec<f64>,
 }
 
+impl SizeEstimates {
+    /// A part of them.
+    pub(super) fn times(&self, part: f64) -> Self {
+        Self {
+            values: self.values.iter().map(|value| part * value).collect(),
+            ..self.clone()
+        }
+    }
+}
+
 /// A set of candidates with its expected posterior.
 #[derive(Debug, Clone)]
 pub(super) struct Set {

@@ -25,7 +25,7 @@ const FLAT: f64 = 10.0;
 /// Number of steps that together must gain more than [`Effort::gain`].
 const LAST: usize = 3;
 /// A search is given up after this many steps if this many times the last gains do not reach [`Effort::floor`].
-const GIVEN_UP: (usize, f64) = (8, 10.0);
+const GIVEN_UP: (usize, f64) = (5, 10.0);
 
 impl Fit {
     /// Searches for an optimum from `start` as [`Fit::of`] does, by scoring. The curvature of the

@@ -108,7 +108,12 @@ impl DataSet {
                 values.map(|column| column.map_or(0.0, |column| row.values[column]))
             });
             let earlier: Vec<f64> = earlier.collect();
-            Ok(recording.interpolated(&between)?.after(&times, &earlier))
+            let recording = recording.interpolated(&between)?.after(&times, &earlier);
+            // What the actuators of a robot exert is recorded as a mean over the interval about its row.
+            Ok(match self.robot {
+                Some(_) => recording.with_mean_outputs(),
+                None => recording,
+            })
         })
         .collect()
     }

@@ -99,7 +99,9 @@ pub(super) fn leftover(
         .first()
         .map_or(f64::NEG_INFINITY, |&place| gains[place]);
     let mut quiet = fitted.clone();
-    for _ in 0..LEVELS {
+    // Over windows there is none.
+    let levels = if bench.is_over_windows() { 0 } else { LEVELS };
+    for _ in 0..levels {
         quieten(&estimation, &mut quiet.fit.values, QUIETER)?;
         // With less process noise the filter may diverge.
         let Ok(gains) = of_variables(bench, &estimation, &quiet, &kinds, &mut base, &mut families)

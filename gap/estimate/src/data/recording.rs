@@ -23,6 +23,8 @@ pub struct Recording {
     curvatures: Vec<Vec<f64>>,
     /// Inputs before its first row, held from row to row: delayed ones arrive later.
     earlier: Earlier,
+    /// Whether outputs are means over the interval about their row.
+    has_mean_outputs: bool,
 }
 
 /// A row of inputs.
@@ -95,6 +97,7 @@ impl Recording {
             interpolation: vec![Interpolation::Hold; columns[0]],
             curvatures: vec![Vec::new(); columns[0]],
             earlier: Earlier::default(),
+            has_mean_outputs: false,
             columns,
         })
     }
@@ -112,6 +115,58 @@ impl Recording {
             }
         }
         self
+    }
+
+    /// The same recording, whose measured outputs are means from half a row before their time to half a row after it.
+    #[must_use]
+    pub fn with_mean_outputs(mut self) -> Self {
+        self.has_mean_outputs = true;
+        self
+    }
+
+    pub(crate) fn has_mean_outputs(&self) -> bool {
+        self.has_mean_outputs
+    }
+
+    /// From half a row before the time of a row to half a row after it.
+    pub(crate) fn about(&self, row: usize) -> [f64; 2] {
+        let t = self.times[row];
+        let [before, after] = [row.saturating_sub(1), (row + 1).min(self.times.len() - 1)];
+        [before, after].map(|other| 0.5 * (t + self.times[other]))
+    }
+
+    /// A held input at a time, also before the first row.
+    pub(crate) fn held_at(&self, input: usize, t: f64) -> f64 {
+        let rows = self.times.partition_point(|own| *own <= t);
+        match rows.checked_sub(1) {
+            Some(row) => self.inputs(row)[input],
+            None => self.input_before(input, t),
+        }
+    }
+
+    /// Mean of a held input from one time to another.
+    pub(crate) fn mean_between(&self, input: usize, [from, to]: [f64; 2]) -> f64 {
+        if to <= from {
+            return self.held_at(input, from);
+        }
+        let between = |times: &'_ [f64]| {
+            let [first, last] = [
+                times.partition_point(|t| *t <= from),
+                times.partition_point(|t| *t < to),
+            ];
+            first..last.max(first)
+        };
+        let earlier = &self.earlier.times[between(&self.earlier.times)];
+        let ends = earlier
+            .iter()
+            .chain(&self.times[between(&self.times)])
+            .copied();
+        let (mut sum, mut begin) = (0.0, from);
+        for end in ends.chain([to]) {
+            sum += (end - begin) * self.held_at(input, begin);
+            begin = end;
+        }
+        sum / (to - from)
     }
 
     /// Number of rows of inputs before the first one.
@@ -242,6 +297,7 @@ impl Recording {
                 .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
                 .collect(),
             earlier: Earlier::default(),
+            has_mean_outputs: self.has_mean_outputs,
         }
     }
 
@@ -252,6 +308,7 @@ impl Recording {
             interpolation: self.interpolation.clone(),
             curvatures: self.curvatures.clone(),
             earlier: self.earlier.clone(),
+            has_mean_outputs: self.has_mean_outputs,
             ..same
         })
     }

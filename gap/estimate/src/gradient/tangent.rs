@@ -435,10 +435,15 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     fn measure(&mut self, first: usize) {
         let (n, columns) = (self.pass.sizes.n, self.columns);
+        // The inputs of outputs that were read are on record.
+        let held = match self.pass.records.last() {
+            Some(Record::Measure { held, .. }) if !held.is_empty() => held.clone(),
+            _ => self.pass.held.clone(),
+        };
         for index in first..self.pass.samples.len() {
             let sample = self.pass.samples[index];
             let channel = sample.innovation.channel;
-            let (by_parameters, by_inputs) = self.output_slope(index);
+            let (by_parameters, by_inputs) = self.output_slope(index, &held);
             let t = self.pass.time_of(&sample.innovation);
             let SampleTape { c, a, z, .. } =
                 self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
@@ -469,7 +474,7 @@ impl<'p, 'a> Forward<'p, 'a> {
                         dot(c, &self.rates) + command::by_time(&self.earlier, &by_inputs, t)
                     }
                     Direction::LateInput(input) if !by_inputs.is_empty() => {
-                        by_inputs[input] * command::slope(&self.pass.held, input, t)
+                        by_inputs[input] * command::slope(&held, input, t)
                     }
                     _ => 0.0,
                 };
@@ -493,7 +498,7 @@ impl<'p, 'a> Forward<'p, 'a> {
     }
 
     /// Derivatives of an output that is read with respect to the parameters and the declared inputs; none for a state.
-    fn output_slope(&mut self, index: usize) -> (Vec<f64>, Vec<f64>) {
+    fn output_slope(&mut self, index: usize, held: &[f64]) -> (Vec<f64>, Vec<f64>) {
         let sample = self.pass.samples[index];
         let setup = self.estimation.setup();
         let channel = sample.innovation.channel;
@@ -512,8 +517,13 @@ impl<'p, 'a> Forward<'p, 'a> {
         );
         let mut by_inputs = vec![0.0; info.declared_inputs];
         let t = self.pass.time_of(&sample.innovation);
-        let (z, held) = (&self.pass.z, &self.pass.held);
-        let place = Place::new(self.pass.system.layout, self.pass.values, t, z, held);
+        let place = Place::new(
+            self.pass.system.layout,
+            self.pass.values,
+            t,
+            &self.pass.z,
+            held,
+        );
         let mut sums = Sums {
             z: &mut by.0,
             p: &mut by.1,

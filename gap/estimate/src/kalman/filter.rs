@@ -376,7 +376,7 @@ impl<'a> Pass<'a> {
         let measured = recording.measured(row);
         let t = recording.times()[row];
         let channels = self.sampled(measured, only);
-        let held = self.linearise_outputs(self.sampling_time(t, only), &channels);
+        let held = self.linearise_outputs(recording, row, self.sampling_time(t, only), &channels);
         let prior = self.record(channels.len() * self.sizes.sample_len());
         for (count, &channel) in channels.iter().enumerate() {
             let reading = Reading {
@@ -419,8 +419,14 @@ impl<'a> Pass<'a> {
         (0..channels.len()).filter(is_sampled).collect()
     }
 
-    /// Evaluates the outputs and their slopes if any is sampled; then returns the held inputs.
-    fn linearise_outputs(&mut self, t: f64, channels: &[usize]) -> Vec<f64> {
+    /// Evaluates the outputs and their slopes if any is sampled; then returns their inputs.
+    fn linearise_outputs(
+        &mut self,
+        recording: &Recording,
+        row: usize,
+        t: f64,
+        channels: &[usize],
+    ) -> Vec<f64> {
         let StateSpace {
             setup,
             plant,
@@ -430,10 +436,12 @@ impl<'a> Pass<'a> {
         if !channels.iter().any(is_output) {
             return Vec::new();
         }
-        let place = Place::new(layout, self.values, t, &self.z, &self.held);
+        let system = (setup, layout);
+        let held = command::of_reading(recording, row, &self.held, system, self.values);
+        let place = Place::new(layout, self.values, t, &self.z, &held);
         let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
         plant.outputs(place, &mut self.scratch, outputs, slopes);
-        self.held.clone()
+        held
     }
 
     /// Records the state, the root of P and the output row before a scalar update. Returns the quantity without scale

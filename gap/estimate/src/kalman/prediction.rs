@@ -8,7 +8,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::add_scaled;
 use crate::motion::closure::Closure;
-use crate::motion::command::Switch;
+use crate::motion::command::{self, Switch};
 use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
@@ -230,8 +230,11 @@ impl<'a> Walk<'a> {
                         outputs = vec![0.0; self.system.plant.info().output_len()];
                         let delay = |channel| self.values[self.system.layout.sensor_delay(channel)];
                         let t = self.recording.times()[row] - only.map_or(0.0, delay);
-                        let place =
-                            Place::new(self.system.layout, self.values, t, &self.z, &self.held);
+                        let StateSpace { setup, layout, .. } = self.system;
+                        let (recording, system) = (self.recording, (setup, layout));
+                        let held =
+                            command::of_reading(recording, row, &self.held, system, self.values);
+                        let place = Place::new(layout, self.values, t, &self.z, &held);
                         self.system
                             .plant
                             .output_values(place, &mut self.scratch, &mut outputs);

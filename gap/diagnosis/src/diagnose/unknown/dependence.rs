@@ -99,6 +99,8 @@ impl<'b> Dependence<'b> {
         let moving: Vec<usize> = (0..inputs)
             .filter(|input| bench.range(states + input).is_some())
             .collect();
+        // Among many joints products with inputs are too many; the command of a servo is no force.
+        let factors_of_inputs: &[usize] = if bench.is_of_robot { &[] } else { &moving };
         let mut all = Vec::new();
         for index in 0..states + inputs {
             let Some(range) = bench.range(index) else {
@@ -107,7 +109,7 @@ impl<'b> Dependence<'b> {
             let one = Self::own(bench, index, range);
             all.push(one);
             if index < info.speeds {
-                let factors = moving.iter().map(|&input| Factor::Load(input));
+                let factors = factors_of_inputs.iter().map(|&input| Factor::Load(input));
                 let factors = std::iter::once(Factor::Time).chain(factors);
                 all.extend(factors.map(|factor| Self { factor, ..one }));
             } else if index < states {
@@ -117,7 +119,8 @@ impl<'b> Dependence<'b> {
                     let small = SMALL * (high - low);
                     [Factor::Rate(rate), Factor::Sign(rate, small)]
                 });
-                let factors = factors.chain(moving.iter().map(|&input| Factor::Input(input)));
+                let factors =
+                    factors.chain(factors_of_inputs.iter().map(|&input| Factor::Input(input)));
                 all.extend(factors.map(|factor| Self { factor, ..one }));
             }
         }

@@ -38,10 +38,6 @@ def filtered(commands, actuator, constant, time):
     return state
 
 
-def rows(table):
-    return np.array(table["t"])
-
-
 def window(model, case, table, commands, start, position, rate):
     """Squared errors of positions in units of the noise over a window from a row."""
     data = mujoco.MjData(model)
@@ -50,7 +46,7 @@ def window(model, case, table, commands, start, position, rate):
         own = model.joint(joint)
         data.qpos[own.qposadr[0]] = q
         data.qvel[own.dofadr[0]] = v
-    times = rows(table)
+    times = np.array(table["t"])
     begin = times[start]
     data.time = begin
     for actuator in range(model.nu):

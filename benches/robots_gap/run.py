@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""From a robot file and logs to a corrected file: appell beside mujoco.sysid, judged by MuJoCo.
+"""From a robot file and logs to a corrected file, judged by MuJoCo.
 
-    python3 benches/robots_gap/run.py FOLDER [CASE ...] [--appell PROGRAM] [--jobs N] [--without-peer] [--out FILE]
+    python3 benches/robots_gap/run.py FOLDER [CASE ...] [--appell PROGRAM] [--jobs N] [--reports DIR] [--out FILE]
 
 FOLDER holds `cases/NAME/` (a recording.toml with its robot file and recordings) and `LABELS.json`. appell diagnoses a case
-and corrects the file; mujoco.sysid fits every armature, damping, dry friction, mass, gain and one delay. Both files are
-rolled out in MuJoCo on held-out runs. Needs numpy and `mujoco[sysid]`. README.md tells more.
+and corrects the file, which is rolled out in MuJoCo on held-out runs beside the nominal file and the true one. Needs numpy
+and mujoco. README.md tells more.
 """
 
 import argparse
@@ -32,7 +32,6 @@ def arguments():
     parser.add_argument("--appell", default="appell")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--timeout", type=float, default=1800)
-    parser.add_argument("--without-peer", action="store_true")
     parser.add_argument("--reports", type=Path, help="keep reports and corrected files there")
     parser.add_argument("--out", type=Path, help="write all numbers there as JSON")
     return parser.parse_intermixed_args()

@@ -9,7 +9,7 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
-engine 13
+engine 14
 viscous_friction@theta+spring@theta 15.1
 spring@theta 9.5
 unknown NaN

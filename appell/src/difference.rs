@@ -184,11 +184,14 @@ mod tests {
             ("c\na\nb\nc\na\nb\n", "a\nc\nb\na\nb\na\n"),
         ] {
             let told = unified("a", "b", before, after);
-            let told = told.replace("\n\\ No newline at end of file\n", "");
+            // The end of a text without a newline.
+            let told = told.replace("\n\\ No newline at end of file\n", "\0\n");
             let of = |marks: [char; 2]| -> String {
                 let lines = told.split_inclusive('\n').skip(2);
                 let own = lines.filter(|line| line.starts_with(marks));
-                own.map(|line| &line[1..]).collect()
+                own.map(|line| &line[1..])
+                    .collect::<String>()
+                    .replace("\0\n", "")
             };
             assert_eq!((&*of([' ', '-']), &*of([' ', '+'])), (before, after));
         }

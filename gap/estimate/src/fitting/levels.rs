@@ -13,6 +13,8 @@ use crate::gradient::information::is_level;
 
 /// Change of the logarithm of a level up to which its information is reused.
 const NEAR: f64 = 0.3;
+/// Largest residual in the information of levels, in standard deviations.
+const LARGEST: f64 = 3.0;
 /// Smallest ratio of variances that a step corrects at once.
 const LEAST: f64 = 0.05;
 /// Number of parts of a step that are tried, each half of the one before.
@@ -47,7 +49,7 @@ impl Levels {
             Some(known) => known,
             None => (
                 levels,
-                estimation.information_of_levels(&point.values, free)?,
+                estimation.information_of_levels(&point.values, free, LARGEST)?,
             ),
         };
         let mut information = estimation.information_of_means(&point.values, free)?;

@@ -23,7 +23,7 @@ const DAMPED: [f64; 2] = [2e-5, 1e6];
 /// Predicted gain, in units of [`Effort::gain`], that may remain when no step succeeds.
 const FLAT: f64 = 10.0;
 /// Number of steps that together must gain more than [`Effort::gain`].
-const LAST: usize = 3;
+const LAST: usize = 4;
 /// A search is given up after this many steps if this many times the last gains do not reach [`Effort::floor`].
 const GIVEN_UP: (usize, f64) = (5, 10.0);
 

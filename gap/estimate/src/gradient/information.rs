@@ -21,7 +21,8 @@ impl Estimation<'_> {
         values: &[f64],
         free: &[Free],
     ) -> Result<DMatrix<f64>, EstimateError> {
-        Ok(self.information_of_means(values, free)? + self.information_of_levels(values, free)?)
+        let of_levels = self.information_of_levels(values, free, f64::INFINITY)?;
+        Ok(self.information_of_means(values, free)? + of_levels)
     }
 
     /// The part of values that affect the mean.
@@ -42,11 +43,13 @@ impl Estimation<'_> {
         Ok(information)
     }
 
-    /// The part of levels.
+    /// The part of levels, with residuals of at most `largest` standard deviations: larger ones of a wrong model say
+    /// nothing of the expected information.
     pub(crate) fn information_of_levels(
         &self,
         values: &[f64],
         free: &[Free],
+        largest: f64,
     ) -> Result<DMatrix<f64>, EstimateError> {
         let selection = Selection::new(&self.layout(), free)?;
         let mut information = DMatrix::zeros(free.len(), free.len());
@@ -56,7 +59,7 @@ impl Estimation<'_> {
         }
         let run = self.longest();
         let unknowns: Vec<Unknown> = levels.iter().map(|&i| free[i].unknown).collect();
-        let block = levels::information(self, run, values, &unknowns)?;
+        let block = levels::information(self, run, values, &unknowns, largest)?;
         let rows = |run: usize| self.recordings()[run].times().len();
         let all: usize = (0..self.recordings().len()).map(rows).sum();
         let scale = all as f64 / rows(run) as f64;

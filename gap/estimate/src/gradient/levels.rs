@@ -14,15 +14,14 @@ use crate::kalman::tape::{Record, SampleTape};
 use crate::matrix::{add_scaled, multiply};
 use crate::motion::timeline::{Action, Advance};
 
-/// Largest residual that counts, in standard deviations.
-const LARGEST: f64 = 3.0;
-
-/// Fisher information of some levels, in SI, from the innovations of a recording.
+/// Fisher information of some levels, in SI, from the innovations of a recording; none counts as larger than `largest`
+/// standard deviations.
 pub(crate) fn information(
     estimation: &Estimation<'_>,
     run: usize,
     values: &[f64],
     levels: &[Unknown],
+    largest: f64,
 ) -> Result<DMatrix<f64>, EstimateError> {
     let count = levels.len();
     let actions = estimation.actions(run, values);
@@ -37,6 +36,7 @@ pub(crate) fn information(
         by_s: zeros(count),
         by_e: zeros(count),
         information: zeros(count * count),
+        largest,
         levels,
         pass,
     };
@@ -61,6 +61,8 @@ struct Forward<'p> {
     by_s: Vec<f64>,
     by_e: Vec<f64>,
     information: Vec<f64>,
+    /// Largest residual, in standard deviations.
+    largest: f64,
 }
 
 impl Forward<'_> {
@@ -160,8 +162,7 @@ impl Forward<'_> {
         let (n, lanes) = (self.pass.sizes.n, self.levels.len());
         let sample = self.pass.samples[index];
         let (channel, s) = (sample.innovation.channel, sample.innovation.white_variance);
-        // Residuals of a wrong model say nothing of the expected information.
-        let most = LARGEST * s.sqrt();
+        let most = self.largest * s.sqrt();
         let e = sample.innovation.white_residual.clamp(-most, most);
         let SampleTape { c, a, .. } = self.pass.sizes.sample(&mut self.pass.tape[sample.tape..]);
         self.by_a.fill(0.0);

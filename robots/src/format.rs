@@ -1,7 +1,5 @@
 //! The formats of robot files, recognised by their first element.
 
-use crate::mjcf::{Change, JointNumber};
-
 /// The format of a robot file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Format {
@@ -32,26 +30,6 @@ impl Format {
             Self::Urdf => "URDF",
             Self::Mjcf => "MJCF",
         }
-    }
-
-    /// Whether its files can express a change. A URDF has no actuators, no springs and no gravity.
-    pub fn expresses(self, change: &Change) -> bool {
-        let of_bodies = || {
-            matches!(
-                change,
-                Change::Mass { .. }
-                    | Change::Centre { .. }
-                    | Change::Inertia { .. }
-                    | Change::Payload { .. }
-            )
-        };
-        let of_dynamics = || {
-            let Change::Joint { attribute, .. } = change else {
-                return false;
-            };
-            matches!(attribute, JointNumber::Damping | JointNumber::Frictionloss)
-        };
-        self == Self::Mjcf || of_bodies() || of_dynamics()
     }
 }
 

@@ -230,7 +230,7 @@ fn masses_that_only_a_tolerance_tells_do_not_hold_a_fit_up() {
     assert!(fit.steps <= 30, "{} steps", fit.steps);
     assert!(fit.is_optimum());
     // A search that has to end before is worth what it reached, and its values are told as less certain.
-    let short = Effort { steps: 3, ..effort };
+    let short = Effort { steps: 1, ..effort };
     let ended = Fit::quick(&estimation, &start, &free, short).unwrap();
     assert!(!ended.is_optimum() && ended.gain > 1.0);
     assert!(ended.log_posterior < fit.log_posterior);

@@ -120,7 +120,7 @@ impl<'h> Wanted<'h> {
     /// A number of the file that was fitted beside the effects.
     fn refit(&mut self, one: &Refitted) {
         let change = self.refitted(one);
-        let expressed = change.filter(|change| self.format.expresses(change));
+        let expressed = change.filter(|change| change.is_expressed_by(self.format));
         if let Some(change) = expressed {
             self.parts.push(Part {
                 name: one.name.clone(),
@@ -329,7 +329,7 @@ impl<'h> Wanted<'h> {
         let changes = self.changes_of(effect, kind, site);
         let expressed = changes.filter(|all| {
             let mut all = all.iter();
-            all.all(|change| self.format.expresses(change))
+            all.all(|change| change.is_expressed_by(self.format))
         });
         if kind == "stribeck_friction" || expressed.is_none() {
             self.remark(effect, kind);

@@ -144,7 +144,7 @@ impl Sheet<'_, '_> {
     }
 
     fn change(&mut self, change: &Change) -> Result<(), Refused> {
-        if !self.format.expresses(change) {
+        if !change.is_expressed_by(self.format) {
             let message = format!(
                 "{} cannot express this change: {change:?}",
                 self.format.word()

@@ -46,13 +46,11 @@ const SHARES: Effort = Effort {
     floor: f64::NEG_INFINITY,
 };
 /// The same for noise levels that are re-estimated in the next step.
-const ROUGHLY: Effort = Effort {
+pub(super) const ROUGHLY: Effort = Effort {
     gain: 10.0,
     steps: 30,
     floor: f64::NEG_INFINITY,
 };
-/// Largest number of tenfold increases of the process noise if the filter diverges.
-const LOST: usize = 4;
 /// Prior standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
 /// Relative prior standard deviation of a parameter whose error is a hypothesis.
@@ -410,61 +408,6 @@ impl<'a> Bench<'a> {
         members.map(own).sum()
     }
 
-    /// The nominal model, its parameters within their tolerances. Noise levels are fitted first: with levels that are
-    /// far too small the parameters would leave their tolerances to fit noise. If the filter diverges, as with a wrong
-    /// model of an unstable mechanism, the search is repeated with larger initial process noise.
-    pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
-        let setup = self.setup(&[]);
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        let mut start = self.problem.start.clone();
-        let mut fitted = self.nominal_from(&estimation, &start);
-        for _ in 0..LOST {
-            if fitted.is_ok() {
-                break;
-            }
-            for index in 0..setup.disturbances.len() {
-                start[estimation.layout().place(Unknown::Disturbance(index))?] *= 10.0;
-            }
-            fitted = self.nominal_from(&estimation, &start);
-        }
-        fitted
-    }
-
-    /// The model as stated, with the noise levels that fit.
-    pub(super) fn stated(&self) -> Result<Fitted, DiagnoseError> {
-        let setup = self.setup(&[]);
-        let estimation = Estimation::new(&setup, &self.recordings)?;
-        let mut start = self.problem.start.clone();
-        self.loosen(&estimation, &mut start)?;
-        let levels = Fit::quick(&estimation, &start, &self.problem.levels, ROUGHLY)?.values;
-        let as_it_is = Effort {
-            steps: 0,
-            ..ROUGHLY
-        };
-        self.fit_by(Fit::quick, as_it_is, &[], &estimation, &levels)
-    }
-
-    fn nominal_from(
-        &self,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fitted, DiagnoseError> {
-        let mut start = start.to_vec();
-        self.loosen(estimation, &mut start)?;
-        let levels = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY)?.values;
-        // One step ahead a robot needs its noise levels only.
-        if self.is_of_robot && !self.is_over_windows() {
-            return self.fit_roughly(&[], estimation, &levels);
-        }
-        let fitted = self.fit(&[], estimation, &levels)?;
-        if fitted.fit.is_optimum() || self.is_over_windows() {
-            return Ok(fitted);
-        }
-        // Far from an optimum Newton's method may progress where Fisher scoring does not.
-        let further = self.fit_by(Fit::of, self.effort(), &[], estimation, &levels);
-        Ok(further.unwrap_or(fitted))
-    }
-
     /// The parameters of a fit with the sizes of its members set to zero.
     pub(super) fn without(&self, fitted: &Fitted) -> Vec<f64> {
         let info = self.effects.with(&fitted.members).info();
@@ -539,7 +482,7 @@ impl<'a> Bench<'a> {
         self.fit_by(Fit::quick, SHARES, members, estimation, start)
     }
 
-    fn effort(&self) -> Effort {
+    pub(super) fn effort(&self) -> Effort {
         if self.is_over_windows() {
             COARSE
         } else {
@@ -547,7 +490,7 @@ impl<'a> Bench<'a> {
         }
     }
 
-    fn fit_by(
+    pub(super) fn fit_by(
         &self,
         search: Search,
         effort: Effort,

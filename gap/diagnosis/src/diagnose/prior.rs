@@ -6,6 +6,8 @@ use crate::effects::{Candidate, EffectModel};
 
 /// Prior probability that there is no gap.
 pub(super) const NO_GAP: f64 = 0.5;
+/// Largest number of components of a vector whose subsets are evaluated.
+const MOST_COMPONENTS: usize = 6;
 /// Prior probability that an effect is accompanied by another.
 const NOT_ALONE: f64 = 0.2;
 
@@ -53,4 +55,16 @@ pub(super) fn of_components(model: &EffectModel, name: &str) -> f64 {
     let components = components.filter(|own| is_own(own) && !own.is_of_drives());
     let choices = (1_u64 << components.count().min(32)) - 1;
     -(choices.max(1) as f64).ln()
+}
+
+/// Subsets of the components of a vector, up to a size.
+pub(super) fn subsets(components: usize, largest: usize) -> Vec<Vec<usize>> {
+    let some = 1..1_u32 << components.min(MOST_COMPONENTS);
+    some.filter(|some| some.count_ones() as usize <= largest)
+        .map(|some| {
+            (0..components)
+                .filter(|place| some >> place & 1 == 1)
+                .collect()
+        })
+        .collect()
 }

@@ -8,8 +8,8 @@ use appell_estimate::Estimation;
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
-use super::search::place;
-use super::sets::{Set, SizeEstimates};
+use super::initial::{SizeEstimates, place};
+use super::sets::Set;
 use crate::effects::Acts;
 
 /// Values that are tried, in s.

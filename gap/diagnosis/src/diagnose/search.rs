@@ -8,14 +8,15 @@ use std::collections::BTreeSet;
 use appell_estimate::{Estimation, Unknown};
 
 use super::DiagnoseError;
-use super::bench::{Bench, WRONG};
+use super::bench::Bench;
 use super::calibration::TIED;
 use super::evidence::Fitted;
+use super::initial::place;
 use super::prior::{names, prior};
 use super::scan::scanned;
 use super::screen::quieten;
-use super::sets::{Set, Sets, SizeEstimates, is_fixed};
-use crate::effects::{Acts, Part};
+use super::sets::{Set, Sets, is_fixed};
+use crate::effects::Acts;
 
 /// Number of sets that are fitted before the next linearisation, and of rivals that are fitted about the best one.
 const LEADING: usize = 2;
@@ -30,8 +31,6 @@ const ROUNDS: usize = 4;
 /// that one: the linearisation is inaccurate for large sizes.
 const WORTH: f64 = 1.5 * TIED;
 const BY_SLOPES: f64 = 0.5;
-/// Largest initial delay relative to the longest one.
-const BELOW: f64 = 0.9;
 /// Parts of the sizes that are tried as initial values.
 const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
@@ -554,77 +553,4 @@ fn best_fit(
         (None, Some(error)) => Err(error),
         (None, None) => Err(DiagnoseError::NothingToFit),
     }
-}
-
-/// Writes the best sizes as initial values, none of them at a bound.
-pub(super) fn place(
-    bench: &Bench<'_>,
-    estimation: &Estimation<'_>,
-    sizes: &SizeEstimates,
-    values: &mut [f64],
-) -> Result<(), DiagnoseError> {
-    let layout = estimation.layout();
-    let setup = estimation.setup();
-    let candidate = bench.candidate(sizes.candidate);
-    let first = sizes.values.first().copied().unwrap_or(0.0);
-    let at = |list: &[usize], input| list.iter().position(|own| *own == input).unwrap_or(0);
-    let values_now = bench
-        .effects
-        .info()
-        .parameter_index(&candidate.site)
-        .map_or(0.0, |index| values[index]);
-    let mut set = |unknown, value: f64| -> Result<(), DiagnoseError> {
-        values[layout.place(unknown)?] = value;
-        Ok(())
-    };
-    match candidate.acts {
-        Acts::Items => {
-            let mut direction = 0;
-            for (index, part) in bench.own(candidate) {
-                let unknown = Unknown::Parameter(index);
-                let quantity = &bench.effects.info().parameters[index];
-                match part {
-                    Part::Switch => set(unknown, 1.0)?,
-                    Part::Shape(_) => {
-                        set(unknown, quantity.value)?;
-                        continue;
-                    }
-                    Part::Size | Part::Term(_) => {
-                        let size = sizes.values[direction];
-                        let least = sizes.deviations[direction];
-                        let size = if size.abs() > 0.0 { size } else { least };
-                        set(unknown, size)?;
-                    }
-                }
-                direction += 1;
-            }
-        }
-        Acts::Parameter(_) => {
-            let info = bench.effects.info();
-            if let Some(index) = info.parameter_index(&candidate.site) {
-                let nominal = bench.set.parameters[index].value;
-                let most = WRONG * nominal.abs();
-                let [low, high] = info.parameters[index].range;
-                let moved = values_now + first.clamp(-most, most);
-                set(Unknown::Parameter(index), moved.clamp(low, high))?;
-            }
-        }
-        Acts::Bias(channel) => set(Unknown::Bias(channel), first)?,
-        Acts::Scale(channel) => set(Unknown::Scale(channel), 1.0 + first)?,
-        Acts::Late(channel) => {
-            let longest = setup.channels[channel].longest_delay.unwrap_or(0.0);
-            set(Unknown::SensorDelay(channel), first.clamp(0.0, longest))?;
-        }
-        Acts::Lag(_) | Acts::Slow(_) => {
-            if let Some(free) = bench.of_signal(candidate.acts, setup) {
-                let [shortest, longest] = free.range;
-                set(free.unknown, first.clamp(2.0 * shortest, 0.2 * longest))?;
-            }
-        }
-        Acts::Delay(input) => {
-            let unknown = Unknown::InputDelay(at(&setup.delayed, input));
-            set(unknown, first.clamp(0.0, BELOW * bench.longest_delay()))?;
-        }
-    }
-    Ok(())
 }

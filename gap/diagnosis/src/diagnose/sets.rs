@@ -18,8 +18,9 @@ use super::augmented;
 use super::bench::{Bench, WRONG};
 use super::evidence::{Fitted, occam};
 use super::gram::{Gram, Normal, Solved, whitened};
+use super::initial::SizeEstimates;
 use super::nuisance::{known, moves_the_mean};
-use super::prior::{counts, of_components, of_count, prior};
+use super::prior::{counts, of_components, of_count, prior, subsets};
 use super::screen::{Screened, directions, positive, quieten, shapes};
 use crate::effects::Acts;
 
@@ -33,29 +34,6 @@ const LEAST_SPREAD: f64 = 0.1;
 const BEYOND: f64 = 1.5;
 /// Number of choices of which all triples are evaluated: the best ones alone or in a pair.
 const MOST_CHOICES: usize = 60;
-/// Largest number of components of a vector whose subsets are evaluated.
-const MOST_COMPONENTS: usize = 6;
-
-/// The best sizes of a candidate.
-#[derive(Debug, Clone)]
-pub(super) struct SizeEstimates {
-    /// Index of the candidate.
-    pub(super) candidate: usize,
-    /// One for each of its directions.
-    pub(super) values: Vec<f64>,
-    /// Their standard deviations.
-    pub(super) deviations: Vec<f64>,
-}
-
-impl SizeEstimates {
-    /// A part of them.
-    pub(super) fn times(&self, part: f64) -> Self {
-        Self {
-            values: self.values.iter().map(|value| part * value).collect(),
-            ..self.clone()
-        }
-    }
-}
 
 /// A set of candidates with its expected posterior.
 #[derive(Debug, Clone)]
@@ -269,7 +247,7 @@ impl<'b, 'a> Sets<'b, 'a> {
             let subsets: Vec<Vec<usize>> = if components.iter().all(is_of_drives) {
                 vec![(0..components.len()).collect()]
             } else {
-                subsets(components.len())
+                subsets(components.len(), TOGETHER)
             };
             for some in subsets {
                 let own = some.iter().map(|&place| &components[place]);
@@ -461,18 +439,6 @@ impl<'b, 'a> Sets<'b, 'a> {
         };
         Ok(list.into_iter().map(set).collect())
     }
-}
-
-/// Subsets of the components of a vector.
-fn subsets(components: usize) -> Vec<Vec<usize>> {
-    let some = 1..1_u32 << components.min(MOST_COMPONENTS);
-    some.filter(|some| some.count_ones() as usize <= TOGETHER)
-        .map(|some| {
-            (0..components)
-                .filter(|place| some >> place & 1 == 1)
-                .collect()
-        })
-        .collect()
 }
 
 fn most_counts(bench: &Bench<'_>) -> usize {

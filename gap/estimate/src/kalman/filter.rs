@@ -436,8 +436,7 @@ impl<'a> Pass<'a> {
         if !channels.iter().any(is_output) {
             return Vec::new();
         }
-        let system = (setup, layout);
-        let held = command::of_reading(recording, row, &self.held, system, self.values);
+        let held = command::of_reading(recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &held);
         let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
         plant.outputs(place, &mut self.scratch, outputs, slopes);

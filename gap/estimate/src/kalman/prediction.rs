@@ -231,9 +231,9 @@ impl<'a> Walk<'a> {
                         let delay = |channel| self.values[self.system.layout.sensor_delay(channel)];
                         let t = self.recording.times()[row] - only.map_or(0.0, delay);
                         let StateSpace { setup, layout, .. } = self.system;
-                        let (recording, system) = (self.recording, (setup, layout));
+                        let (recording, held) = (self.recording, &self.held);
                         let held =
-                            command::of_reading(recording, row, &self.held, system, self.values);
+                            command::of_reading(recording, row, held, setup, layout, self.values);
                         let place = Place::new(layout, self.values, t, &self.z, &held);
                         self.system
                             .plant

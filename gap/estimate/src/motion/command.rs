@@ -90,7 +90,8 @@ pub(crate) fn of_reading(
     recording: &Recording,
     row: usize,
     held: &[f64],
-    (setup, layout): (&Setup<'_>, Layout),
+    setup: &Setup<'_>,
+    layout: Layout,
     values: &[f64],
 ) -> Vec<f64> {
     let mut commands = held.to_vec();

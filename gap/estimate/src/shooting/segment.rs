@@ -228,8 +228,7 @@ impl<'a> SegmentIntegrator<'a> {
             0
         };
         let (mut outputs, mut slopes) = (vec![0.0; count], vec![0.0; count * n]);
-        let system = (setup, layout);
-        let held = command::of_reading(self.recording, row, &self.held, system, self.values);
+        let held = command::of_reading(self.recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &held);
         if count > 0 {
             let plant = self.estimation.plant();

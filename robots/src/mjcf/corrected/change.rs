@@ -2,6 +2,7 @@
 
 use appell_spec::{Code, Diagnostic};
 
+use crate::format::Format;
 use crate::rotation::Vector;
 use crate::xml::Span;
 
@@ -180,6 +181,28 @@ pub enum Change {
         /// The reading less the position.
         bias: f64,
     },
+}
+
+impl Change {
+    /// Whether files of a format can express it. A URDF has no actuators, no springs and no gravity.
+    pub fn is_expressed_by(&self, format: Format) -> bool {
+        let of_bodies = || {
+            matches!(
+                self,
+                Self::Mass { .. }
+                    | Self::Centre { .. }
+                    | Self::Inertia { .. }
+                    | Self::Payload { .. }
+            )
+        };
+        let of_dynamics = || {
+            let Self::Joint { attribute, .. } = self else {
+                return false;
+            };
+            matches!(attribute, JointNumber::Damping | JointNumber::Frictionloss)
+        };
+        format == Format::Mjcf || of_bodies() || of_dynamics()
+    }
 }
 
 /// Why a change cannot be made.

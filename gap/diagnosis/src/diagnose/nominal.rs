@@ -1,0 +1,67 @@
+//! Fits of the nominal model.
+
+use appell_estimate::{Effort, Estimation, Fit, Unknown};
+
+use super::DiagnoseError;
+use super::bench::{Bench, ROUGHLY};
+use super::evidence::Fitted;
+
+/// Largest number of tenfold increases of the process noise if the filter diverges.
+const LOST: usize = 4;
+
+impl Bench<'_> {
+    /// The nominal model, its parameters within their tolerances. Noise levels are fitted first: with levels that are
+    /// far too small the parameters would leave their tolerances to fit noise. If the filter diverges, as with a wrong
+    /// model of an unstable mechanism, the search is repeated with larger initial process noise.
+    pub(super) fn nominal(&self) -> Result<Fitted, DiagnoseError> {
+        let setup = self.setup(&[]);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let mut start = self.problem.start.clone();
+        let mut fitted = self.nominal_from(&estimation, &start);
+        for _ in 0..LOST {
+            if fitted.is_ok() {
+                break;
+            }
+            for index in 0..setup.disturbances.len() {
+                start[estimation.layout().place(Unknown::Disturbance(index))?] *= 10.0;
+            }
+            fitted = self.nominal_from(&estimation, &start);
+        }
+        fitted
+    }
+
+    /// The model as stated, with the noise levels that fit.
+    pub(super) fn stated(&self) -> Result<Fitted, DiagnoseError> {
+        let setup = self.setup(&[]);
+        let estimation = Estimation::new(&setup, &self.recordings)?;
+        let mut start = self.problem.start.clone();
+        self.loosen(&estimation, &mut start)?;
+        let levels = Fit::quick(&estimation, &start, &self.problem.levels, ROUGHLY)?.values;
+        let as_it_is = Effort {
+            steps: 0,
+            ..ROUGHLY
+        };
+        self.fit_by(Fit::quick, as_it_is, &[], &estimation, &levels)
+    }
+
+    fn nominal_from(
+        &self,
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let mut start = start.to_vec();
+        self.loosen(estimation, &mut start)?;
+        let levels = Fit::quick(estimation, &start, &self.problem.levels, ROUGHLY)?.values;
+        // One step ahead a robot needs its noise levels only.
+        if self.is_of_robot && !self.is_over_windows() {
+            return self.fit_roughly(&[], estimation, &levels);
+        }
+        let fitted = self.fit(&[], estimation, &levels)?;
+        if fitted.fit.is_optimum() || self.is_over_windows() {
+            return Ok(fitted);
+        }
+        // Far from an optimum Newton's method may progress where Fisher scoring does not.
+        let further = self.fit_by(Fit::of, self.effort(), &[], estimation, &levels);
+        Ok(further.unwrap_or(fitted))
+    }
+}

@@ -313,7 +313,7 @@ fn without_events<'m>(
 /// Largest number of rows in a fit.
 fn most_rows(set: &DataSet, options: &Options) -> usize {
     let measured = set.channels.iter().filter(|channel| channel.is_measured());
-    let most = if by_forces::applies(set, options) {
+    let most = if by_forces::is_of_robot(set, options) {
         ROBOT_VALUES
     } else {
         MOST_VALUES
@@ -386,7 +386,7 @@ fn judged_beside<'m>(
     let whole = training.whole;
     let mut bench = Bench::new(training.segments, model, imperfections)?;
     bench.whole.clone_from(&whole.runs);
-    bench.is_of_robot = by_forces::applies(whole, options);
+    bench.is_of_robot = by_forces::is_of_robot(whole, options);
     stage("fitting the nominal model");
     let nominal = bench.nominal().map_err(DiagnoseError::of_nominal)?;
     stage("screening the effects");

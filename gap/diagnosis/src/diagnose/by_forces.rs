@@ -31,15 +31,33 @@ use motions::Motions;
 use report::HeldOut;
 use search::Search;
 
+/// Smallest number of joints of a robot; mechanisms with fewer are diagnosed by simulation.
+const FEWEST: usize = 3;
+/// The same for a robot that was read from its file.
+const FEWEST_OF_FILE: usize = 2;
+
 /// Whether the recordings determine the residual force of every equation.
 pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
-    /// Smallest number of joints; mechanisms with fewer are diagnosed by simulation.
-    const FEWEST: usize = 3;
+    determines_forces(set, options, FEWEST)
+}
+
+/// Whether the mechanism is a robot, which simulations over windows judge: the same, with fewer joints if it was read from
+/// the file of a robot.
+pub(super) fn is_of_robot(set: &DataSet, options: &Options) -> bool {
+    let fewest = if set.robot.is_some() {
+        FEWEST_OF_FILE
+    } else {
+        FEWEST
+    };
+    determines_forces(set, options, fewest)
+}
+
+fn determines_forces(set: &DataSet, options: &Options, fewest: usize) -> bool {
     let mechanism = &set.mechanism;
     let has = |role: Role| set.channels.iter().any(|channel| channel.role == role);
     let measured = |q: usize| has(Role::Measures(Measured::Coordinate(q)));
     let coordinates = mechanism.coordinates.len();
-    coordinates >= FEWEST
+    coordinates >= fewest
         && driven(mechanism).len() == coordinates
         && mechanism.pseudo_velocities.len() == coordinates
         && mechanism

@@ -176,6 +176,11 @@ impl Comparison {
         holds.then(|| Self::found(bench, search)).transpose()
     }
 
+    /// The nominal model alone.
+    pub(super) fn of_nominal(bench: &Bench<'_>, nominal: Fitted) -> Result<Self, DiagnoseError> {
+        Self::found(bench, Search::new(bench, nominal, []))
+    }
+
     /// Compares the nominal model and known hypotheses, and extends the best of them while that improves it.
     pub(super) fn among(
         bench: &Bench<'_>,

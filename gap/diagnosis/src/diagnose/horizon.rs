@@ -85,7 +85,7 @@ pub(super) fn judged<'a>(
         again: BTreeMap::new(),
     };
     // One-step predictions of a robot take long, and their process noise absorbs what its servos leave.
-    let stepwise = if bench.is_of_robot {
+    let mut stepwise = if bench.is_of_robot {
         None
     } else {
         seen.one_step(&nominal, &known)?
@@ -100,6 +100,14 @@ pub(super) fn judged<'a>(
         simulated(&over, seen.comparable()).ok()
     };
     let none = |comparison: &Comparison| comparison.best().members.is_empty();
+    // Without an effect over its windows a robot is judged by the innovations of the nominal model.
+    if bench.is_of_robot
+        && of_windows
+            .as_ref()
+            .is_some_and(|(_, windows)| none(windows))
+    {
+        stepwise = Some((Comparison::of_nominal(&bench, nominal.clone())?, true));
+    }
     // Without an effect in either ranking there is no gap.
     let of_windows = of_windows.filter(|(_, windows)| {
         !(none(windows) && stepwise.as_ref().is_some_and(|(own, _)| none(own)))

@@ -51,6 +51,8 @@ pub(super) const ROUGHLY: Effort = Effort {
     steps: 30,
     floor: f64::NEG_INFINITY,
 };
+/// Factor on the gain at which a search ends, for the fit of a law.
+const FINELY: f64 = 0.02;
 /// Prior standard deviation of the logarithm of a shape.
 const SHAPE: f64 = 1.0;
 /// Relative prior standard deviation of a parameter whose error is a hypothesis.
@@ -448,6 +450,20 @@ impl<'a> Bench<'a> {
     ) -> Result<Fitted, DiagnoseError> {
         let effort = Effort {
             floor,
+            ..self.effort()
+        };
+        self.fit_by(Fit::quick, effort, members, estimation, start)
+    }
+
+    /// The same to a twentieth of a standard deviation, for values that are reported alone.
+    pub(super) fn fit_finely(
+        &self,
+        members: &[usize],
+        estimation: &Estimation<'_>,
+        start: &[f64],
+    ) -> Result<Fitted, DiagnoseError> {
+        let effort = Effort {
+            gain: FINELY * self.effort().gain,
             ..self.effort()
         };
         self.fit_by(Fit::quick, effort, members, estimation, start)

@@ -230,7 +230,7 @@ impl Lawful {
             start[place] = size;
         }
         bench.hide(&members, &estimation, &mut start)?;
-        let fitted = bench.fit(&members, &estimation, &start)?;
+        let fitted = bench.fit_finely(&members, &estimation, &start)?;
         drop(estimation);
         let first = &self.left.first;
         let law = match &self.kind {

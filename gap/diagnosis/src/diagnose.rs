@@ -9,6 +9,7 @@
 //!          --search, compare--> the most promising sets fitted; their evidence
 //!          --screen--> score test of each candidate alone: gain, detectable size
 //!          (robots: --by_forces--> the same by inverse dynamics of recorded motions, and the report)
+//!          (other robots: --horizon, scan--> simulations over windows about the model as stated)
 //!          --horizon--> validation by simulations over windows; if it fails, these rank the hypotheses
 //!          --outside--> windows that no hypothesis predicts are cut, and the steps above repeated
 //!          --coloured--> one-step predictions with process noise that has memory

@@ -29,12 +29,12 @@ class Case:
     def runs(self):
         return self.description["runs"]
 
-    def measured(self):
-        """Joint -> (column, factor to radians or metres, standard deviation of the noise)."""
+    def measured(self, of=""):
+        """Joint -> (column, factor to SI, standard deviation of the noise) of positions, or of ".velocity" or ".torque"."""
         found = {}
         for column, channel in self.description["channels"].items():
-            joint = channel.get("measures", ".")
-            if "." not in joint:
+            joint, dot, quantity = channel.get("measures", "").partition(".")
+            if joint and dot + quantity == of:
                 factor = ANGLES.get(channel.get("unit"), 1.0)
                 noise = channel.get("noise_std")
                 found[joint] = (column, factor, noise * factor if noise else None)
@@ -53,6 +53,11 @@ class Case:
         return {name: [row[i] for row in numbers] for i, name in enumerate(rows[0])}
 
 
+def described(folder, label=None):
+    """A case from its folder."""
+    return Case(folder.name, folder, tomllib.loads((folder / "recording.toml").read_text()), label or {})
+
+
 def cases(folder, names=()):
     """The labelled cases of a folder that has `cases/` and `LABELS.json`."""
     labels = json.loads((folder / "LABELS.json").read_text())["cases"]
@@ -60,6 +65,4 @@ def cases(folder, names=()):
     for name in ordered:
         if names and name not in names:
             continue
-        path = folder / "cases" / name
-        description = tomllib.loads((path / "recording.toml").read_text())
-        yield Case(name, path, description, labels[name])
+        yield described(folder / "cases" / name, labels[name])

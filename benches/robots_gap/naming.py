@@ -64,6 +64,11 @@ def tie(report):
     return [first]
 
 
+def most(label, moved):
+    """Whether the numbers that moved most are the truth: as many as it has effects, drives together or one by one."""
+    return any(right(label, moved[:n]) for n in range(1, 1 + sum(a.get("n", 1) for a in label["accept"])))
+
+
 def judged(label, report):
     """First, in the tie, in the first three, alarm, claim at .95 and more."""
     which = report["which"]

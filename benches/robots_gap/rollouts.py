@@ -5,10 +5,14 @@ import math
 import mujoco
 import numpy as np
 
+from states import smoothed
+
 # Length of a window in seconds.
 WINDOW = 0.5
 # Commands before a window that filters and delays remember, in seconds.
 MEMORY = 1.0
+# Length of the roll-out before a window in which joints that were added come to their states, in seconds.
+SETTLING = 0.15
 
 
 class Commands:
@@ -38,17 +42,8 @@ def filtered(commands, actuator, constant, time):
     return state
 
 
-def window(model, case, table, commands, start, position, rate):
-    """Squared errors of positions in units of the noise over a window from a row."""
-    data = mujoco.MjData(model)
-    joints = case.label["joints"]
-    for joint, q, v in zip(joints, position, rate):
-        own = model.joint(joint)
-        data.qpos[own.qposadr[0]] = q
-        data.qvel[own.dofadr[0]] = v
-    times = np.array(table["t"])
-    begin = times[start]
-    data.time = begin
+def remember(model, data, commands, begin):
+    """States of filters and delays at the begin of a window, from the commands before."""
     for actuator in range(model.nu):
         if model.actuator_actnum[actuator]:
             constant = model.actuator_dynprm[actuator, 0]
@@ -56,8 +51,53 @@ def window(model, case, table, commands, start, position, rate):
         count = model.actuator_history[actuator, 0]
         if count:
             before = begin + model.opt.timestep * np.arange(-count, 0)
-            values = np.array([[commands.at(t)[actuator]] for t in before])
-            mujoco.mj_initCtrlHistory(model, data, actuator, before, values)
+            rows = np.maximum(np.searchsorted(commands.times, before + 1e-9) - 1, 0)
+            mujoco.mj_initCtrlHistory(model, data, actuator, before, commands.values[rows, actuator][:, None])
+
+
+def started(model, states, commands, begin):
+    """Data with joints in their states (name, position, rate) at a time."""
+    data = mujoco.MjData(model)
+    for joint, q, v in states:
+        own = model.joint(joint)
+        data.qpos[own.qposadr[0]] = q
+        data.qvel[own.dofadr[0]] = v
+    data.time = begin
+    remember(model, data, commands, begin)
+    return data
+
+
+def earlier(times, start):
+    """The row at which the roll-out before a window begins."""
+    return int(np.searchsorted(times, times[start] - SETTLING))
+
+
+def settling(case, table, starts):
+    """States from which added joints settle: those of the label, or from smoothed readings."""
+    joints = case.label["joints"]
+    if "earlier" in starts:
+        return [list(zip(joints, *states)) for states in starts["earlier"]]
+    readings, times = smoothed(case, table), np.array(table["t"])
+    return [[(joint, *readings[joint].at(earlier(times, row))) for joint in joints] for row in starts["rows"]]
+
+
+def settled(model, joints, states, commands, start):
+    """Joints that are not recorded, in their states after a roll-out before a window, from states (name, position, rate)."""
+    times = commands.times
+    data = started(model, states, commands, times[earlier(times, start)])
+    while data.time < times[start] - 1e-9:
+        data.ctrl[:] = commands.at(data.time)
+        mujoco.mj_step(model, data)
+    added = [model.joint(joint) for joint in range(model.njnt) if model.joint(joint).name not in joints]
+    return [(joint.name, data.qpos[joint.qposadr[0]], data.qvel[joint.dofadr[0]]) for joint in added]
+
+
+def window(model, case, table, commands, start, states):
+    """Squared errors of positions in units of the noise over a window from a row."""
+    joints = case.label["joints"]
+    times = np.array(table["t"])
+    begin = times[start]
+    data = started(model, states, commands, begin)
     measured = case.measured()
     addresses = [model.joint(joint).qposadr[0] for joint in joints]
     noise = np.array(case.label["sd"])
@@ -79,14 +119,23 @@ def window(model, case, table, commands, start, position, rate):
 
 def error(text, case):
     """The rms error of the positions on the held-out runs, in units of the noise."""
-    model = mujoco.MjModel.from_xml_string(text)
+    return error_of(mujoco.MjModel.from_xml_string(text), case)
+
+
+def error_of(model, case):
+    """The same of a model that is read."""
     model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT
     squares = []
     for run, starts in case.label["starts"].items():
         table = case.table(run)
         commands = Commands(case, table, model)
-        for start, q, v in zip(starts["rows"], starts["q"], starts["v"]):
-            found = window(model, case, table, commands, start, q, v)
+        joints = case.label["joints"]
+        before = settling(case, table, starts) if model.njnt > len(joints) else []
+        for index, (start, q, v) in enumerate(zip(starts["rows"], starts["q"], starts["v"])):
+            states = list(zip(joints, q, v))
+            if before:
+                states += settled(model, joints, before[index], commands, start)
+            found = window(model, case, table, commands, start, states)
             # Windows with a joint that was not recorded count with the others.
             squares.append(found[np.isfinite(found)])
     every = np.concatenate(squares)

@@ -1,5 +1,6 @@
 //! Programs compiled to machine code.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use appell_runtime::model::At;
@@ -38,16 +39,35 @@ struct Whole {
     model: Arc<JitModel>,
     /// The parameters that are zero in the specialised model.
     zeros: Vec<usize>,
+    /// The same as ranges: every call compares all of them.
+    ranges: Vec<Range<usize>>,
 }
 
 impl Whole {
+    fn of(model: &Arc<JitModel>, mut zeros: Vec<usize>) -> Self {
+        zeros.sort_unstable();
+        let runs = zeros.chunk_by(|one, next| one + 1 == *next);
+        let ranges = runs.map(|run| run[0]..run[0] + run.len()).collect();
+        Self {
+            model: model.clone(),
+            zeros,
+            ranges,
+        }
+    }
+
     fn is_needed(&self, p: &[f64]) -> bool {
-        self.zeros.iter().any(|&index| p[index] != 0.0)
+        let mut ranges = self.ranges.iter();
+        // Without a branch for each parameter.
+        ranges.any(|range| {
+            p[range.clone()]
+                .iter()
+                .fold(false, |any, &value| any | (value != 0.0))
+        })
     }
 
     /// The tape of a function of the specialised model.
     fn tape(&self, kind: FunctionKind) -> Tape {
-        let Self { model, zeros } = self;
+        let Self { model, zeros, .. } = self;
         let is_zero = |index: usize| zeros.binary_search(&index).is_ok();
         let mut tape = model.engine.own(&model.program, kind).clone();
         let parameters = model.engine.sizes.parameters.max(1);
@@ -91,15 +111,10 @@ impl ProgramModel<Jit> {
     /// zero. If one of them is not zero, the general model is evaluated.
     #[must_use]
     pub fn without(self: &Arc<Self>, zeros: &[usize]) -> Self {
-        let mut zeros = zeros.to_vec();
-        zeros.sort_unstable();
         let engine = Jit {
             sizes: self.engine.sizes,
             parts: [const { OnDemand::new(Use::Brief) }; FunctionKind::COUNT],
-            whole: Some(Whole {
-                model: self.clone(),
-                zeros,
-            }),
+            whole: Some(Whole::of(self, zeros.to_vec())),
         };
         Self::of(self.program.clone(), engine)
     }

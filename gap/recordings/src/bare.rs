@@ -147,6 +147,7 @@ fn split(runs: &mut Vec<Run>, findings: &mut Vec<Finding>) {
             .map(|values| values[rows.clone()].to_vec())
             .collect(),
         earlier: Vec::new(),
+        between: Vec::new(),
     };
     *runs = vec![
         piece(0..fitted, Part::Fit),

@@ -6,7 +6,7 @@ use appell_runtime::model::{Interpolation, ModelInfo};
 use appell_spec::Mechanism;
 use appell_spec::mechanism;
 
-use crate::{Channel, DataSet, Measured, Parameter, Part, Role};
+use crate::{Channel, DataSet, Measured, Parameter, Part, Role, Row};
 
 impl DataSet {
     /// The runs of one part.
@@ -100,20 +100,30 @@ impl DataSet {
                 let values = inputs.iter();
                 values.map(move |column| column.map_or(0.0, |column| run.values[column][row]))
             });
+            let commanded: Vec<f64> = commanded.collect();
             let seen = rows.flat_map(|row| measured.iter().map(move |&c| run.values[c][row]));
-            let recording = Recording::new(run.times.clone(), commanded.collect(), seen.collect())?;
-            let times: Vec<f64> = run.earlier.iter().map(|row| row.t).collect();
-            let earlier = run.earlier.iter().flat_map(|row| {
-                let values = inputs.iter();
-                values.map(|column| column.map_or(0.0, |column| row.values[column]))
-            });
-            let earlier: Vec<f64> = earlier.collect();
+            let recording = Recording::new(run.times.clone(), commanded.clone(), seen.collect())?;
+            let listed = |rows: &[Row]| -> (Vec<f64>, Vec<f64>) {
+                let values = rows.iter().flat_map(|row| {
+                    let values = inputs.iter();
+                    values.map(|column| column.map_or(0.0, |column| row.values[column]))
+                });
+                (rows.iter().map(|row| row.t).collect(), values.collect())
+            };
+            let (mut times, mut earlier) = listed(&run.earlier);
             let recording = recording.interpolated(&between)?.after(&times, &earlier);
+            if self.robot.is_none() {
+                return Ok(recording);
+            }
             // What the actuators of a robot exert is recorded as a mean over the interval about its row.
-            Ok(match self.robot {
-                Some(_) => recording.with_mean_outputs(),
-                None => recording,
-            })
+            let (own, values) = if run.between.is_empty() {
+                (run.times.clone(), commanded)
+            } else {
+                listed(&run.between)
+            };
+            times.extend(own);
+            earlier.extend(values);
+            Ok(recording.with_mean_outputs(run.sampling.step, times, earlier))
         })
         .collect()
     }

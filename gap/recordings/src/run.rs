@@ -71,6 +71,7 @@ pub(crate) fn read(
         values,
         sampling,
         earlier: Vec::new(),
+        between: Vec::new(),
     }
 }
 

@@ -85,6 +85,9 @@ pub struct Run {
     /// Rows before its first one, of a window of a run: inputs that are delayed act later. Measurements of them do not
     /// count.
     pub earlier: Vec<Row>,
+    /// Of a subsampled window the rows between its first and its last one: means over a sampling interval need the inputs
+    /// at their full rate.
+    pub between: Vec<Row>,
 }
 
 /// A row: its time, and a value for each channel.

@@ -103,6 +103,7 @@ impl DataSet {
         Run {
             times: kept.clone().map(|row| run.times[row]).collect(),
             values: values.collect(),
+            between: listed(run, 0..run.times.len()),
             ..run.clone()
         }
     }
@@ -195,12 +196,15 @@ fn pieces(rows: usize, kept: usize, least: usize) -> Vec<Range<usize>> {
 fn earlier(run: &Run, row: usize) -> Vec<Row> {
     let begin = run.times.get(row).map_or(f64::INFINITY, |t| t - BEFORE);
     let first = run.times.partition_point(|t| *t < begin);
-    let rows = first.min(row)..row;
-    rows.map(|row| Row {
+    listed(run, first.min(row)..row)
+}
+
+fn listed(run: &Run, rows: Range<usize>) -> Vec<Row> {
+    let row = |row: usize| Row {
         t: run.times[row],
         values: run.values.iter().map(|column| column[row]).collect(),
-    })
-    .collect()
+    };
+    rows.map(row).collect()
 }
 
 fn cut(run: &Run, rows: Range<usize>) -> Run {
@@ -212,6 +216,7 @@ fn cut(run: &Run, rows: Range<usize>) -> Run {
         times: run.times[rows.clone()].to_vec(),
         values: values.map(|column| column[rows.clone()].to_vec()).collect(),
         earlier: earlier(run, rows.start),
+        between: Vec::new(),
     }
 }
 
@@ -230,6 +235,7 @@ mod tests {
             values: vec![times.clone()],
             times: times.clone(),
             earlier: Vec::new(),
+            between: Vec::new(),
         };
         let runs = [run("a"), run("b")];
         let windows = [

@@ -445,7 +445,11 @@ fn left(bench: &Bench<'_>, comparison: &Comparison) -> Option<Left> {
     })
 }
 
+/// Process noise of the nominal model and of the best hypothesis along each pseudo-velocity; over windows there is none.
 fn disturbances(bench: &Bench<'_>, nominal: &Fitted, best: &Fitted) -> Vec<(String, f64, f64)> {
+    if bench.is_over_windows() {
+        return Vec::new();
+    }
     let info = bench.effects.info();
     let level = |fitted: &Fitted, index| {
         let place = fitted.layout.place(Unknown::Disturbance(index));

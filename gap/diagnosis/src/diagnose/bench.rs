@@ -85,6 +85,8 @@ pub(super) struct Bench<'a> {
     pub(super) weight: f64,
     /// Noise levels of the filter that estimates the state before a prediction.
     pub(super) predicting: Vec<(Unknown, f64)>,
+    /// Negligible process noise along each disturbance, if there is none otherwise: the unit of forces over windows.
+    pub(super) negligible: Vec<f64>,
     /// Effective sample size; infinite if all rows count as independent.
     pub(super) told: f64,
     /// Prior of the sizes of effects.
@@ -109,7 +111,7 @@ impl<'a> Bench<'a> {
         set: &DataSet,
         effects: &'a EffectModel,
         imperfections: &[Imperfection],
-        level: impl Fn(&Estimation<'_>, &mut Problem) -> Result<(), DiagnoseError>,
+        mut level: impl FnMut(&Estimation<'_>, &mut Problem) -> Result<(), DiagnoseError>,
     ) -> Result<Self, DiagnoseError> {
         let set = set.bound_to(&effects.mechanism);
         let info = effects.info();
@@ -153,6 +155,7 @@ impl<'a> Bench<'a> {
             step,
             weight: 1.0,
             predicting: Vec::new(),
+            negligible: Vec::new(),
             told: f64::INFINITY,
             imperfections: imperfections.to_vec(),
             is_of_robot: false,
@@ -161,14 +164,20 @@ impl<'a> Bench<'a> {
 
     /// The same problem for other equations, with the noise levels of this one.
     pub(super) fn beside<'o>(&self, effects: &'o EffectModel) -> Result<Bench<'o>, DiagnoseError> {
-        let levels = |_: &Estimation<'_>, problem: &mut Problem| {
+        let levels = |estimation: &Estimation<'_>, problem: &mut Problem| {
             problem.levels.clone_from(&self.problem.levels);
+            for index in 0..estimation.setup().disturbances.len() {
+                let level = Unknown::Disturbance(index);
+                let [own, other] = [estimation.layout(), self.layout].map(|of| of.place(level));
+                problem.start[own?] = self.problem.start[other?];
+            }
             Ok(())
         };
         Ok(Bench {
             whole: self.whole.clone(),
             weight: self.weight,
             predicting: self.predicting.clone(),
+            negligible: self.negligible.clone(),
             told: self.told,
             ..Bench::of(&self.set, effects, &self.imperfections, levels)?
         })

@@ -81,6 +81,7 @@ pub(super) fn place(bench: &Bench<'_>, comparison: &Comparison) -> Result<Where,
     let mut energies = Vec::new();
     for i in 0..s {
         let level = values[layout.place(Unknown::Disturbance(i))?];
+        let level = level.max(bench.negligible.get(i).copied().unwrap_or_default());
         energies.push(added[i] / level.powi(2).max(f64::MIN_POSITIVE));
     }
     let whole: f64 = energies.iter().sum();

@@ -39,13 +39,15 @@ impl Bench<'_> {
         from: &Self,
         levels: &[(Unknown, f64)],
     ) -> Result<Self, DiagnoseError> {
+        let mut negligible = Vec::new();
         let quiet = |estimation: &Estimation<'_>, problem: &mut Problem| {
             let layout = estimation.layout();
             for free in &mut problem.levels {
                 let start = &mut problem.start[layout.place(free.unknown)?];
                 let [low, high] = free.range;
                 if matches!(free.unknown, Unknown::Disturbance(_)) {
-                    *start = low;
+                    *start = 0.0;
+                    negligible.push(low);
                 } else {
                     *free = Free::of(free.unknown).within(low, MOST_LARGER * high);
                 }
@@ -57,6 +59,7 @@ impl Bench<'_> {
         };
         let mut bench = Self::of(windows, from.effects, &from.imperfections, quiet)?;
         bench.whole.clone_from(&from.whole);
+        bench.negligible = negligible;
         let independent = independent(windows, &bench.whole);
         let each = (2.0 / TOLERANCE).min(EACH * independent);
         bench.told = each * bench.effects.info().speeds as f64;

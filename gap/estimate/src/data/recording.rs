@@ -23,8 +23,8 @@ pub struct Recording {
     curvatures: Vec<Vec<f64>>,
     /// Inputs before its first row, held from row to row: delayed ones arrive later.
     earlier: Earlier,
-    /// Whether outputs are means over the interval about their row.
-    has_mean_outputs: bool,
+    /// If outputs are means over an interval about their row.
+    averaged: Option<Averaged>,
 }
 
 /// A row of inputs.
@@ -41,6 +41,39 @@ pub(crate) enum Row {
 struct Earlier {
     times: Vec<f64>,
     inputs: Vec<f64>,
+}
+
+/// Means of outputs over an interval about their row. A recording may have a part of the rows of its inputs, which
+/// are here at their full rate.
+#[derive(Debug, Clone, PartialEq)]
+struct Averaged {
+    /// Length of the interval in s.
+    interval: f64,
+    times: Vec<f64>,
+    /// Held inputs row by row.
+    inputs: Vec<f64>,
+    /// Number of inputs.
+    count: usize,
+}
+
+impl Averaged {
+    /// An input at a time; before the first row that of the first.
+    fn held_at(&self, input: usize, t: f64) -> f64 {
+        let rows = self.times.partition_point(|own| *own <= t);
+        self.inputs[rows.saturating_sub(1) * self.count + input]
+    }
+
+    /// Its mean from one time to another.
+    fn mean_between(&self, input: usize, [from, to]: [f64; 2]) -> f64 {
+        let rows = self.times.partition_point(|t| *t <= from)..;
+        let ends = self.times[rows].iter().copied();
+        let (mut sum, mut begin) = (0.0, from);
+        for end in ends.take_while(|end| *end < to).chain([to]) {
+            sum += (end - begin) * self.held_at(input, begin);
+            begin = end;
+        }
+        sum / (to - from)
+    }
 }
 
 impl Recording {
@@ -97,7 +130,7 @@ impl Recording {
             interpolation: vec![Interpolation::Hold; columns[0]],
             curvatures: vec![Vec::new(); columns[0]],
             earlier: Earlier::default(),
-            has_mean_outputs: false,
+            averaged: None,
             columns,
         })
     }
@@ -117,56 +150,33 @@ impl Recording {
         self
     }
 
-    /// The same recording, whose measured outputs are means from half a row before their time to half a row after it.
+    /// The same recording, whose measured outputs are means over an interval in s, half of it before their time and
+    /// half after it, of held inputs at these times.
     #[must_use]
-    pub fn with_mean_outputs(mut self) -> Self {
-        self.has_mean_outputs = true;
+    pub fn with_mean_outputs(mut self, interval: f64, times: Vec<f64>, inputs: Vec<f64>) -> Self {
+        let count = self.columns[0];
+        let is_whole = inputs.len() == times.len() * count && inputs.iter().all(|u| u.is_finite());
+        self.averaged = (interval > 0.0 && !times.is_empty() && is_whole).then_some(Averaged {
+            interval,
+            times,
+            inputs,
+            count,
+        });
         self
     }
 
-    pub(crate) fn has_mean_outputs(&self) -> bool {
-        self.has_mean_outputs
-    }
-
-    /// From half a row before the time of a row to half a row after it.
-    pub(crate) fn about(&self, row: usize) -> [f64; 2] {
-        let t = self.times[row];
-        let [before, after] = [row.saturating_sub(1), (row + 1).min(self.times.len() - 1)];
-        [before, after].map(|other| 0.5 * (t + self.times[other]))
-    }
-
-    /// A held input at a time, also before the first row.
-    pub(crate) fn held_at(&self, input: usize, t: f64) -> f64 {
-        let rows = self.times.partition_point(|own| *own <= t);
-        match rows.checked_sub(1) {
-            Some(row) => self.inputs(row)[input],
-            None => self.input_before(input, t),
+    /// Mean of a held input, which acts with a delay, over the interval about a time, and the slope of that mean; `None`
+    /// if outputs are no means.
+    pub(crate) fn averaged(&self, input: usize, t: f64, delay: f64) -> Option<[f64; 2]> {
+        let averaged = self.averaged.as_ref()?;
+        if input >= averaged.count || self.is_joined(input) {
+            return None;
         }
-    }
-
-    /// Mean of a held input from one time to another.
-    pub(crate) fn mean_between(&self, input: usize, [from, to]: [f64; 2]) -> f64 {
-        if to <= from {
-            return self.held_at(input, from);
-        }
-        let between = |times: &'_ [f64]| {
-            let [first, last] = [
-                times.partition_point(|t| *t <= from),
-                times.partition_point(|t| *t < to),
-            ];
-            first..last.max(first)
-        };
-        let earlier = &self.earlier.times[between(&self.earlier.times)];
-        let ends = earlier
-            .iter()
-            .chain(&self.times[between(&self.times)])
-            .copied();
-        let (mut sum, mut begin) = (0.0, from);
-        for end in ends.chain([to]) {
-            sum += (end - begin) * self.held_at(input, begin);
-            begin = end;
-        }
-        sum / (to - from)
+        let half = 0.5 * averaged.interval;
+        let ends = [t - half - delay, t + half - delay];
+        let [first, last] = ends.map(|end| averaged.held_at(input, end));
+        let slope = (last - first) / averaged.interval;
+        Some([averaged.mean_between(input, ends), slope])
     }
 
     /// Number of rows of inputs before the first one.
@@ -297,7 +307,7 @@ impl Recording {
                 .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
                 .collect(),
             earlier: Earlier::default(),
-            has_mean_outputs: self.has_mean_outputs,
+            averaged: self.averaged.clone(),
         }
     }
 
@@ -308,7 +318,7 @@ impl Recording {
             interpolation: self.interpolation.clone(),
             curvatures: self.curvatures.clone(),
             earlier: self.earlier.clone(),
-            has_mean_outputs: self.has_mean_outputs,
+            averaged: self.averaged.clone(),
             ..same
         })
     }

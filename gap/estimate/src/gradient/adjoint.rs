@@ -196,6 +196,9 @@ impl Backward<'_, '_> {
         let [column, pushed] = &mut self.vector;
         self.forces.fill(0.0);
         let (mut by_h, mut is_pushed) = (0.0, false);
+        if !pass.is_disturbed {
+            return (by_h, is_pushed);
+        }
         for (j, disturbance) in setup.disturbances.iter().enumerate() {
             let place = layout.disturbance(j);
             let level = pass.values[place];

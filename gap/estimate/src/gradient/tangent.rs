@@ -97,7 +97,8 @@ impl Estimation<'_> {
         let columns = directions.len() + candidates;
         let runs = self.over_runs(|run| {
             let actions = self.actions(run, values);
-            let pass = self.fresh(run, values, &actions);
+            let mut pass = self.fresh(run, values, &actions);
+            pass.is_disturbed |= shapes.is_some_and(|own| own.along == Along::Disturbances);
             let mut forward = Forward::new(self, pass, directions, shapes, columns);
             for &action in &actions {
                 forward.act(action)?;

@@ -12,7 +12,7 @@
 use std::f64::consts::TAU;
 
 use super::square_root::{potter, triangularise};
-use super::tape::{Record, Sample, SampleTape, Sizes};
+use super::tape::{Record, Sample, SampleTape, Sizes, StepTape};
 use crate::EstimateError;
 use crate::data::recording::Recording;
 use crate::data::setup::{Disturbance, Measured, Setup};
@@ -78,6 +78,8 @@ pub(crate) struct Pass<'a> {
     pub(crate) sizes: Sizes,
     /// Whether the tape keeps the whole pass, not only the last action.
     keeps: bool,
+    /// Whether the tape has the directions of the disturbances: without process noise they do not matter.
+    pub(crate) is_disturbed: bool,
     pub(crate) tape: Vec<f64>,
     pub(crate) records: Vec<Record>,
     pub(crate) samples: Vec<Sample>,
@@ -154,12 +156,15 @@ impl<'a> Pass<'a> {
             disturbances: setup.disturbances.len(),
         };
         let zeros = |len| vec![0.0; len];
+        let first = system.layout.disturbance(0);
+        let levels = &values[first..first + sizes.disturbances];
         Self {
             system,
             values,
             run,
             sizes,
             keeps: false,
+            is_disturbed: levels.iter().any(|&level| level != 0.0),
             tape: Vec::new(),
             records: Vec::new(),
             samples: Vec::new(),
@@ -258,14 +263,15 @@ impl<'a> Pass<'a> {
             p,
             lags,
         };
-        let before = span.place(0, &self.z);
-        directions(
-            self.system.setup,
-            self.system.plant,
-            before,
-            &mut self.scratch,
-            on.columns,
-        );
+        if self.is_disturbed {
+            directions(
+                self.system.setup,
+                self.system.plant,
+                span.place(0, &self.z),
+                &mut self.scratch,
+                on.columns,
+            );
+        }
         step(
             self.system.plant,
             span,
@@ -287,23 +293,14 @@ impl<'a> Pass<'a> {
             return self.advance_in_parts(advance, halved, halvings);
         }
 
-        // [S, N½], then [F S, F N½, N½].
-        let [joint, moved] = pieces(&mut self.spread, [n * (n + d), n * (n + d)]);
-        for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
-            joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
-            for j in 0..d {
-                let level = self.values[self.system.layout.disturbance(j)];
-                joint[n + j] = level * (0.5 * h).sqrt() * on.columns[i * d + j];
-            }
+        if self.is_disturbed {
+            let layout = self.system.layout;
+            let noise = |j| self.values[layout.disturbance(j)] * (0.5 * h).sqrt();
+            let roots = [&mut self.spread[..], &mut self.wide[..]];
+            disturbed(&on, [n, d], noise, roots, &mut self.root);
+        } else {
+            multiply(on.f, on.root, n, &mut self.root);
         }
-        multiply(on.f, joint, n, moved);
-        let rows = self.wide.chunks_exact_mut(n + 2 * d);
-        let parts = moved.chunks_exact(n + d).zip(joint.chunks_exact(n + d));
-        for (wide, (moved, joint)) in rows.zip(parts) {
-            wide[..n + d].copy_from_slice(moved);
-            wide[n + d..].copy_from_slice(&joint[n..]);
-        }
-        triangularise(&mut self.wide, n, &mut self.root);
         self.z.copy_from_slice(on.after);
         let finite = self
             .z
@@ -525,6 +522,32 @@ impl<'a> Pass<'a> {
         });
         Ok(())
     }
+}
+
+/// The root of P⁺ = F (P + N) Fᵀ + N; `noise` are the roots of N along the disturbances.
+fn disturbed(
+    on: &StepTape<'_>,
+    [n, d]: [usize; 2],
+    noise: impl Fn(usize) -> f64,
+    [spread, wide]: [&mut [f64]; 2],
+    root: &mut [f64],
+) {
+    // [S, N½], then [F S, F N½, N½].
+    let [joint, moved] = pieces(spread, [n * (n + d), n * (n + d)]);
+    for (i, joint) in joint.chunks_exact_mut(n + d).enumerate() {
+        joint[..n].copy_from_slice(&on.root[i * n..(i + 1) * n]);
+        for j in 0..d {
+            joint[n + j] = noise(j) * on.columns[i * d + j];
+        }
+    }
+    multiply(on.f, joint, n, moved);
+    let rows = wide.chunks_exact_mut(n + 2 * d);
+    let parts = moved.chunks_exact(n + d).zip(joint.chunks_exact(n + d));
+    for (wide, (moved, joint)) in rows.zip(parts) {
+        wide[..n + d].copy_from_slice(moved);
+        wide[n + d..].copy_from_slice(&joint[n..]);
+    }
+    triangularise(wide, n, root);
 }
 
 /// Columns along which the disturbances act on ż: n rows, a column each.

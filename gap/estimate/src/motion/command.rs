@@ -95,21 +95,14 @@ pub(crate) fn of_reading(
     values: &[f64],
 ) -> Vec<f64> {
     let mut commands = held.to_vec();
-    if !recording.has_mean_outputs() {
-        return commands;
-    }
-    let (t, ends) = (recording.times()[row], recording.about(row));
+    let t = recording.times()[row];
     for (input, own) in commands.chunks_exact_mut(NUMBERS).enumerate() {
-        if input >= recording.input_len() || recording.is_joined(input) || ends[0] >= ends[1] {
-            continue;
-        }
         let mut delayed = setup.delayed.iter();
         let delay = delayed.position(|&delayed| delayed == input);
         let late = delay.map_or(0.0, |index| values[layout.input_delay(index)]);
-        let ends = ends.map(|end| end - late);
-        let [first, last] = ends.map(|end| recording.held_at(input, end));
-        let slope = (last - first) / (ends[1] - ends[0]);
-        own.copy_from_slice(&[t, recording.mean_between(input, ends), slope, 0.0, 0.0]);
+        if let Some([mean, slope]) = recording.averaged(input, t, late) {
+            own.copy_from_slice(&[t, mean, slope, 0.0, 0.0]);
+        }
     }
     commands
 }

@@ -1,0 +1,78 @@
+"""How far an effect moves roll-outs of half a second, in units of the noise; sizes that move them so far."""
+
+import math
+from types import SimpleNamespace
+
+import mujoco
+import numpy as np
+
+import make_laws
+import rollouts
+from make_robots import written
+
+# Effects move roll-outs by so much.
+LEAST, MOST = 3.0, 100.0
+
+
+class Probe:
+    """Roll-outs of the robot without an effect, and how far others are from them."""
+
+    def __init__(self, robot, truth, recording, case):
+        self.robot, self.truth, self.recording, self.case = robot, truth, recording, case
+        every = round(rollouts.WINDOW * case["rate"])
+        self.starts = range(every, len(recording.times) - every - 1, every)
+        self.every = every
+        self.plain = self.rolled(truth)
+
+    def rolled(self, truth):
+        """Positions in all windows."""
+        model = mujoco.MjModel.from_xml_string(written(truth.root))
+        with make_laws.acting(model, truth.laws):
+            return np.array([self.window(model, truth, start) for start in self.starts])
+
+    def window(self, model, truth, start):
+        recording, data = self.recording, mujoco.MjData(model)
+        own = [model.joint(joint) for joint in recording.joints]
+        places = [joint.qposadr[0] for joint in own]
+        data.qpos[places] = recording.true_q[start]
+        data.qvel[[joint.dofadr[0] for joint in own]] = recording.true_v[start]
+        data.time = recording.times[start]
+        zones = [truth.zones.get(name, 0.0) for name in self.robot.drives()]
+        values = np.column_stack([make_laws.dead_zone(u, zone) for u, zone in zip(recording.u.T, zones)])
+        rollouts.remember(model, data, SimpleNamespace(times=recording.times, values=values, at=None), recording.times[start])
+        found = []
+        for row in range(start, start + self.every):
+            data.ctrl[:] = values[row]
+            mujoco.mj_step(model, data, nstep=round((recording.times[row + 1] - recording.times[row]) / model.opt.timestep))
+            found.append(data.qpos[places].copy())
+        return found
+
+    def moved(self, effect, size):
+        """The largest over the joints of the rms difference in units of the noise."""
+        truth = self.truth.with_effect(effect, size)
+        try:
+            difference = (self.rolled(truth) - self.plain) / self.case["sd"]
+        except mujoco.FatalError:
+            return math.inf
+        scales = [truth.scales.get(joint, 0.0) for joint in self.recording.joints]
+        lags = [truth.lags.get(joint, 0.0) for joint in self.recording.joints]
+        at_start = self.recording.true_q[list(self.starts)][:, None, :]
+        rates = self.recording.true_v[list(self.starts)][:, None, :]
+        difference = difference + (scales * (self.plain - at_start) - lags * rates) / self.case["sd"]
+        far = np.sqrt(np.mean(difference**2, axis=(0, 1))).max()
+        return float(far) if np.isfinite(far) else math.inf
+
+    def size(self, effect, target):
+        """A size that moves roll-outs by about so much; none where that takes too large a one."""
+        size = effect.guess
+        for _ in range(9):
+            moved = self.moved(effect, size)
+            if 0.85 < moved / target < 1.18:
+                break
+            factor = (target / moved) ** 0.8 if 0 < moved < math.inf else (4.0 if moved == 0 else 0.2)
+            larger = size * min(max(factor, 0.15), 5.0)
+            if larger >= effect.limit and size >= effect.limit:
+                break
+            size = min(larger, effect.limit)
+        moved = self.moved(effect, size)
+        return (size, moved) if LEAST <= moved <= MOST else None

@@ -1,0 +1,106 @@
+"""Tables of cases and tools, and their place in docs/performance.md."""
+
+import math
+import statistics
+
+BEGIN = "<!-- robots: written by benches/robots_gap/run.py -->"
+END = "<!-- end robots -->"
+
+
+def gaps(found):
+    return [(case, own) for case, own in found if case.label["kind"] != "null"]
+
+
+def nulls(found):
+    return [own for case, own in found if case.label["kind"] == "null"]
+
+
+def share(values):
+    known = [v for v in values if v is not None]
+    return f"{sum(known)} of {len(known)}"
+
+
+def closings(found):
+    """What was closed of the gaps that MJCF expresses; a failure closes nothing."""
+    return [own.get("closed", 0.0) for case, own in gaps(found) if case.label["mjcf"]]
+
+
+def worse(found):
+    """Files that are worse than before: with larger errors, or changed where there was no gap."""
+    larger = [own.get("error", 0.0) > own.get("nominal", 0.0) for _, own in gaps(found)]
+    return share(larger + [not own.get("same", True) for own in nulls(found)])
+
+
+def numbers(found):
+    every = [(own.get("right", 0), len(case.label["written"])) for case, own in gaps(found)]
+    return f"{sum(right for right, _ in every)} of {sum(count for _, count in every)}"
+
+
+def cells(case, own):
+    closed = f"{own['closed']:.3f}" if "closed" in own and case.label["mjcf"] else "–"
+    right = f"{own['right']}/{own['numbers']}" if own.get("numbers") else "–"
+    return f"{closed} | {right} | {own['seconds']:.0f}"
+
+
+def rows(found, peers):
+    """The lines of a table of all cases."""
+    head = "| case | true | named first | p | first | tie | closed | numbers | s |"
+    if peers:
+        head += " sysid: found | closed | numbers | s |"
+    lines = [head, "|" + "---|" * (head.count("|") - 1)]
+    for case, own in found:
+        named = " + ".join(own.get("which", ["failed"])) or "nothing"
+        truth = " + ".join(case.label["effects"]) or "nothing"
+        line = (f"| {case.name} | {truth} | {named} | {own.get('p', math.nan):.2f} | {own.get('first', False)} | "
+                f"{own.get('tie', False)} | {cells(case, own)} |")
+        if peers:
+            peer = peers[case.name]
+            line += f" {peer.get('first', False)} | {cells(case, peer)} |"
+        lines.append(line)
+    return lines
+
+
+def sums(found):
+    """What is summed up of a tool: name -> text."""
+    closed = closings(found)
+    every = [own for _, own in gaps(found)]
+    texts = {"first": share([own.get("first", False) for own in every])}
+    if any("tie" in own for own in every):
+        texts["leading tie"] = share([own.get("tie", False) for own in every])
+        texts["first three"] = share([own.get("three", False) for own in every])
+    texts["alarms on rigs without a gap"] = share([own.get("alarm", True) for own in nulls(found)])
+    if closed:
+        texts["closed, median"] = f"{statistics.median(closed):.3f}"
+        texts["closed, mean"] = f"{statistics.mean(closed):.3f}"
+    texts["numbers right within 25 %"] = numbers(found)
+    texts["files made worse"] = worse(found)
+    texts["processor seconds, median"] = f"{statistics.median([own['seconds'] for _, own in found]):.0f}"
+    return texts
+
+
+def summary(found, peers):
+    """The lines of a table of the sums of the tools."""
+    own = sums(found)
+    if not peers:
+        return ["| | appell |", "|---|---|", *(f"| {name} | {text} |" for name, text in own.items())]
+    other = sums([(case, peers[case.name]) for case, _ in found])
+    lines = ["| | appell | mujoco.sysid, usual list |", "|---|---|---|"]
+    return lines + [f"| {name} | {text} | {other.get(name, '–')} |" for name, text in own.items()]
+
+
+def block(about, found, peers):
+    """The block of docs/performance.md."""
+    text = [BEGIN, "", "## From a robot file to a corrected one", "",
+            f"One run of `{about['command']}` on {about['date']}, commit {about['commit']}. MuJoCo {about['mujoco']}.",
+            "`mujoco.sysid` fits all armatures, dampings, dry frictions, masses, gains and one delay; it names nothing: it counts",
+            "as having found the cause where that moved most.", ""]
+    return "\n".join([*text, *summary(found, peers), "", *rows(found, peers), "", END])
+
+
+def replaced(page, text):
+    """A page with the block between the markers replaced."""
+    before, _, rest = page.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    if not end:
+        raise SystemExit(f"no lines {BEGIN!r} and {END!r} in the page")
+    return before + text + after

@@ -4,6 +4,7 @@
 //! ```text
 //!          --split--> training runs | held-out runs, which only the last step reads
 //!          --effects--> candidates: every effect at every site, derived at once with sizes of zero
+//!          --reading--> torques of robots: means about their rows, or readings at them
 //!          --bench, evidence--> the nominal model in innovations form, parameters within tolerance
 //!          --sets--> expected gain of every set of candidates, to first order
 //!          --search, compare--> the most promising sets fitted; their evidence
@@ -69,6 +70,7 @@ mod outside;
 mod pictures;
 mod prediction;
 mod prior;
+mod reading;
 mod report;
 mod scales;
 mod scan;
@@ -159,11 +161,16 @@ fn diagnosed(
     }
     let mut model = EffectModel::new(&set.spec, all)?;
     model.is_of_changes = before.is_some();
+    let reading = reading::likely(&fitted, &model)?;
+    let [set, whole, fitted] = [set, &whole, &fitted].map(|own| DataSet {
+        reading,
+        ..own.clone()
+    });
     let training = Training {
         whole: &whole,
         segments: &fitted,
     };
-    by_filter(set, before, training, &model, options, stage)
+    by_filter(&set, before, training, &model, options, stage)
 }
 
 /// The training runs.

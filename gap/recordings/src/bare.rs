@@ -10,7 +10,9 @@ use crate::frame::{Frame, Source};
 use crate::limits::{MAX_NUMBERS, MAX_RUNS, MIN_ROWS};
 use crate::stretches;
 use crate::time::Stated;
-use crate::{DataError, DataSet, Finding, FindingKind, Parameter, Part, Run, Spec, noise, run};
+use crate::{
+    DataError, DataSet, Finding, FindingKind, Parameter, Part, Reading, Run, Spec, noise, run,
+};
 
 /// Held-out fraction: the last third of several runs, or of one.
 const HELD_OUT: usize = 3;
@@ -86,6 +88,7 @@ fn assemble(spec: Spec, files: &[Source<'_>]) -> Result<DataSet, DataError> {
     let runs = stretches::uninterrupted(runs, &channels, &mut findings);
     let own = mechanism.parameters.iter();
     let mut set = DataSet {
+        reading: Reading::default(),
         parameters: own.map(Parameter::stated).collect(),
         spec,
         robot: None,

@@ -90,7 +90,7 @@ pub use format::columns_of as columns;
 pub use frame::Frame;
 pub use level::{Noise, NoiseSource};
 pub use robot::Robot;
-pub use set::{DataSet, Parameter, Part, Row, Run, Spec};
+pub use set::{DataSet, Parameter, Part, Reading, Row, Run, Spec};
 
 use frame::Source;
 use manifest::Manifest;
@@ -185,6 +185,7 @@ fn assemble<'s>(
     }
     let runs = stretches::uninterrupted(read_runs, &channels, &mut findings);
     let mut set = DataSet {
+        reading: Reading::default(),
         spec,
         robot,
         mechanism,

@@ -6,7 +6,7 @@ use appell_runtime::model::{Interpolation, ModelInfo};
 use appell_spec::Mechanism;
 use appell_spec::mechanism;
 
-use crate::{Channel, DataSet, Measured, Parameter, Part, Role, Row};
+use crate::{Channel, DataSet, Measured, Parameter, Part, Reading, Role, Row};
 
 impl DataSet {
     /// The runs of one part.
@@ -112,18 +112,18 @@ impl DataSet {
             };
             let (mut times, mut earlier) = listed(&run.earlier);
             let recording = recording.interpolated(&between)?.after(&times, &earlier);
+            let between = (!run.between.is_empty()).then(|| listed(&run.between));
+            let recording = match between.clone() {
+                Some((times, inputs)) => recording.subsampled(times, inputs),
+                None => recording,
+            };
             if self.robot.is_none() {
                 return Ok(recording);
             }
-            // What the actuators of a robot exert is recorded as a mean over the interval about its row.
-            let (own, values) = if run.between.is_empty() {
-                (run.times.clone(), commanded)
-            } else {
-                listed(&run.between)
-            };
+            let (own, values) = between.unwrap_or_else(|| (run.times.clone(), commanded));
             times.extend(own);
             earlier.extend(values);
-            Ok(recording.with_mean_outputs(run.sampling.step, times, earlier))
+            Ok(recording.with_outputs(self.reading == Reading::Mean, times, earlier))
         })
         .collect()
     }

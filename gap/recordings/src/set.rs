@@ -37,6 +37,18 @@ pub struct DataSet {
     pub runs: Vec<Run>,
     /// Repairs and warnings.
     pub findings: Vec<Finding>,
+    /// How the torques of a robot were recorded.
+    pub reading: Reading,
+}
+
+/// How outputs that jump with the commands were recorded.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Reading {
+    /// As means from half a row before their row to half a row after it.
+    #[default]
+    Mean,
+    /// At the time of their row, with its command.
+    AtRow,
 }
 
 /// A parameter of the rig.
@@ -85,8 +97,7 @@ pub struct Run {
     /// Rows before its first one, of a window of a run: inputs that are delayed act later. Measurements of them do not
     /// count.
     pub earlier: Vec<Row>,
-    /// Of a subsampled window the rows between its first and its last one: means over a sampling interval need the inputs
-    /// at their full rate.
+    /// Of a subsampled window all rows from its first to its last one: the inputs at their full rate.
     pub between: Vec<Row>,
 }
 

@@ -147,17 +147,18 @@ impl Comparison {
     }
 
     /// Reduces the probability of `unknown` if its law is immaterial in simulations: `again` is the best hypothesis
-    /// over windows.
+    /// over windows. A law that is not found there may be below their resolution, except for a robot: its servos keep
+    /// it near its commands, and whatever does not show over windows is immaterial.
     pub(super) fn bear_out_unknown(
         &mut self,
         over: &Bench<'_>,
         again: &Fitted,
     ) -> Result<(), DiagnoseError> {
-        // A law that is not found over windows may be below their resolution.
-        let Some(seen) = leftover(over, again)? else {
-            return Ok(());
+        let share = match leftover(over, again)? {
+            Some(seen) => self.stays * (1.0 - over.left(seen.first.gain)),
+            None if over.is_of_robot => 0.0,
+            None => return Ok(()),
         };
-        let share = self.stays * (1.0 - over.left(seen.first.gain));
         let weight = self.unknown * (share / IMMATERIAL).min(1.0);
         self.unknown = weight / (weight + (1.0 - self.unknown)).max(f64::MIN_POSITIVE);
         Ok(())

@@ -20,7 +20,7 @@ use super::search::Look;
 use super::unknown::leftover;
 use crate::effects::Acts;
 use appell_estimate::Unknown;
-use appell_recordings::DataSet;
+use appell_recordings::{DataSet, Measured, Role};
 
 /// Number of windows, spread over all runs.
 const WINDOWS: usize = 40;
@@ -109,6 +109,8 @@ pub(super) fn judged<'a>(
         stepwise = Some((Comparison::of_nominal(&bench, nominal.clone())?, true));
     }
     // Without an effect in either ranking there is no gap.
+    let nominal_over = of_windows.as_ref().filter(|_| bench.is_of_robot);
+    let nominal_over = nominal_over.map(|(_, windows)| windows.nominal().clone());
     let of_windows = of_windows.filter(|(_, windows)| {
         !(none(windows) && stepwise.as_ref().is_some_and(|(own, _)| none(own)))
     });
@@ -148,8 +150,12 @@ pub(super) fn judged<'a>(
     let mut comparison = comparison.ok_or(DiagnoseError::NothingToFit)?;
     stage("testing laws outside the library");
     comparison.weigh_unknown(&bench)?;
-    let names_none = comparison.leads_unknown() && !none(&comparison);
-    if let Some(again) = again.filter(|_| names_none) {
+    let again = if none(&comparison) {
+        nominal_over
+    } else {
+        again
+    };
+    if let Some(again) = again.filter(|_| comparison.leads_unknown()) {
         comparison.bear_out_unknown(&over, &again)?;
     }
     Ok(Judged {
@@ -341,13 +347,26 @@ pub(super) fn windows(set: &DataSet, is_of_robot: bool) -> Result<DataSet, Diagn
 
 /// Half of a typical period in s: that of a harmonic motion with the ratio of deviation to rate of a channel, the
 /// shortest one of all channels.
+///
+/// Of a robot only positions count: torques and rates follow the noise of its controllers.
 fn length(set: &DataSet) -> f64 {
+    let is_position = |&column: &usize| {
+        let role = set.channels[column].role;
+        matches!(role, Role::Measures(Measured::Coordinate(_)))
+    };
     let measured = (0..set.channels.len()).filter(|&column| set.channels[column].is_measured());
+    let measured: Vec<usize> = measured.collect();
+    let positions: Vec<usize> = measured.iter().copied().filter(is_position).collect();
+    let measured = if set.robot.is_some() && !positions.is_empty() {
+        positions
+    } else {
+        measured
+    };
     let half = |column: usize| {
         let [rate, _] = rates(set, column)?;
         Some(PI * deviation(set, column) / rate)
     };
-    let middle = measured.filter_map(half).reduce(f64::min);
+    let middle = measured.into_iter().filter_map(half).reduce(f64::min);
     let longest = longest(set);
     let steps = set.runs.iter().map(|run| run.sampling.step);
     let step = steps.fold(f64::INFINITY, f64::min);

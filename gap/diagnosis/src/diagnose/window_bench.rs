@@ -62,7 +62,14 @@ impl Bench<'_> {
         bench.negligible = negligible;
         let independent = independent(windows, &bench.whole);
         let each = (2.0 / TOLERANCE).min(EACH * independent);
-        bench.told = each * bench.effects.info().speeds as f64;
+        let speeds = bench.effects.info().speeds;
+        // Rates and torques of a robot's drives have errors of their own.
+        let histories = if from.is_of_robot {
+            speeds.max(bench.measured.len())
+        } else {
+            speeds
+        };
+        bench.told = each * histories as f64;
         let values = bench.recordings.iter().map(|run| {
             let rows = 0..run.times().len();
             rows.map(|row| {

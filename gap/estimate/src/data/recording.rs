@@ -23,8 +23,10 @@ pub struct Recording {
     curvatures: Vec<Vec<f64>>,
     /// Inputs before its first row, held from row to row: delayed ones arrive later.
     earlier: Earlier,
-    /// If outputs are means over an interval about their row.
-    averaged: Option<Averaged>,
+    /// If rows were left out: each input from row to row as the first two coefficients of [`Recording::polynomial`].
+    lines: Vec<[f64; 2]>,
+    /// The inputs of outputs at their full rate, and whether outputs are means over the interval about their row.
+    of_outputs: Option<(Held, bool)>,
 }
 
 /// A row of inputs.
@@ -43,20 +45,26 @@ struct Earlier {
     inputs: Vec<f64>,
 }
 
-/// Means of outputs over an interval about their row. A recording may have a part of the rows of its inputs, which
-/// are here at their full rate.
+/// Inputs at their full rate, held from each time to the next, of a recording that may have a part of these rows.
 #[derive(Debug, Clone, PartialEq)]
-struct Averaged {
-    /// Length of the interval in s.
-    interval: f64,
+struct Held {
     times: Vec<f64>,
-    /// Held inputs row by row.
+    /// Row by row.
     inputs: Vec<f64>,
     /// Number of inputs.
     count: usize,
 }
 
-impl Averaged {
+impl Held {
+    /// From half a row before the time of a row to half a row after it.
+    fn about(&self, t: f64) -> [f64; 2] {
+        let row = self.times.partition_point(|own| *own < t);
+        let before = row.checked_sub(1).map(|row| t - self.times[row]);
+        let after = self.times.get(row + 1).map(|next| next - t);
+        let [before, after] = [before.or(after), after.or(before)].map(Option::unwrap_or_default);
+        [t - 0.5 * before, t + 0.5 * after]
+    }
+
     /// An input at a time; before the first row that of the first.
     fn held_at(&self, input: usize, t: f64) -> f64 {
         let rows = self.times.partition_point(|own| *own <= t);
@@ -64,15 +72,31 @@ impl Averaged {
     }
 
     /// Its mean from one time to another.
-    fn mean_between(&self, input: usize, [from, to]: [f64; 2]) -> f64 {
+    fn mean_between(&self, input: usize, ends: [f64; 2]) -> f64 {
+        self.moments(input, ends)[0] / (ends[1] - ends[0])
+    }
+
+    /// Its integral from one time to another, and that of its product with the time since their middle.
+    fn moments(&self, input: usize, [from, to]: [f64; 2]) -> [f64; 2] {
         let rows = self.times.partition_point(|t| *t <= from)..;
         let ends = self.times[rows].iter().copied();
-        let (mut sum, mut begin) = (0.0, from);
+        let middle = 0.5 * (from + to);
+        let (mut moments, mut begin) = ([0.0; 2], from);
         for end in ends.take_while(|end| *end < to).chain([to]) {
-            sum += (end - begin) * self.held_at(input, begin);
+            let area = (end - begin) * self.held_at(input, begin);
+            moments[0] += area;
+            moments[1] += area * (0.5 * (begin + end) - middle);
             begin = end;
         }
-        sum / (to - from)
+        moments
+    }
+
+    /// The line with the same moments: its value at the beginning and its slope.
+    fn line(&self, input: usize, ends: [f64; 2]) -> [f64; 2] {
+        let length = ends[1] - ends[0];
+        let [integral, first] = self.moments(input, ends);
+        let slope = 12.0 * first / length.powi(3);
+        [integral / length - 0.5 * slope * length, slope]
     }
 }
 
@@ -130,7 +154,8 @@ impl Recording {
             interpolation: vec![Interpolation::Hold; columns[0]],
             curvatures: vec![Vec::new(); columns[0]],
             earlier: Earlier::default(),
-            averaged: None,
+            lines: Vec::new(),
+            of_outputs: None,
             columns,
         })
     }
@@ -150,33 +175,63 @@ impl Recording {
         self
     }
 
-    /// The same recording, whose measured outputs are means over an interval in s, half of it before their time and
-    /// half after it, of held inputs at these times.
+    /// The same recording with inputs that were held between more rows than it has: from row to row each is the line with
+    /// the same mean and the same first moment. With the mean alone a fast servo would seem delayed.
     #[must_use]
-    pub fn with_mean_outputs(mut self, interval: f64, times: Vec<f64>, inputs: Vec<f64>) -> Self {
+    pub fn subsampled(mut self, times: Vec<f64>, inputs: Vec<f64>) -> Self {
         let count = self.columns[0];
         let is_whole = inputs.len() == times.len() * count && inputs.iter().all(|u| u.is_finite());
-        self.averaged = (interval > 0.0 && !times.is_empty() && is_whole).then_some(Averaged {
-            interval,
+        if times.is_empty() || !is_whole {
+            return self;
+        }
+        let all = Held {
             times,
             inputs,
             count,
-        });
+        };
+        let ends = self.times.iter().skip(1).copied().map(Some).chain([None]);
+        let rows = self.times.iter().copied().zip(ends);
+        self.lines = rows
+            .flat_map(|(from, to)| {
+                let all = &all;
+                (0..count).map(move |input| match to {
+                    Some(to) => all.line(input, [from, to]),
+                    None => [all.held_at(input, from), 0.0],
+                })
+            })
+            .collect();
         self
     }
 
-    /// Mean of a held input, which acts with a delay, over the interval about a time, and the slope of that mean; `None`
-    /// if outputs are no means.
-    pub(crate) fn averaged(&self, input: usize, t: f64, delay: f64) -> Option<[f64; 2]> {
-        let averaged = self.averaged.as_ref()?;
-        if input >= averaged.count || self.is_joined(input) {
+    /// The same recording with inputs that are held from each of these times to the next, to which its measured outputs
+    /// react at once: outputs are means from half a row before their time to half a row after it, or are read at it.
+    #[must_use]
+    pub fn with_outputs(mut self, are_means: bool, times: Vec<f64>, inputs: Vec<f64>) -> Self {
+        let count = self.columns[0];
+        let is_whole = inputs.len() == times.len() * count && inputs.iter().all(|u| u.is_finite());
+        let held = Held {
+            times,
+            inputs,
+            count,
+        };
+        self.of_outputs = (held.times.len() > 1 && is_whole).then_some((held, are_means));
+        self
+    }
+
+    /// A held input to which an output at a time reacts, with its slope, where it acts with a delay; `None` if it is that
+    /// of the motion.
+    pub(crate) fn of_output(&self, input: usize, t: f64, delay: f64) -> Option<[f64; 2]> {
+        let (held, are_means) = self.of_outputs.as_ref()?;
+        if input >= held.count || self.interpolation[input] != Interpolation::Hold {
             return None;
         }
-        let half = 0.5 * averaged.interval;
-        let ends = [t - half - delay, t + half - delay];
-        let [first, last] = ends.map(|end| averaged.held_at(input, end));
-        let slope = (last - first) / averaged.interval;
-        Some([averaged.mean_between(input, ends), slope])
+        if !are_means {
+            return Some([held.held_at(input, t - delay), 0.0]);
+        }
+        let ends = held.about(t).map(|end| end - delay);
+        let [first, last] = ends.map(|end| held.held_at(input, end));
+        let slope = (last - first) / (ends[1] - ends[0]);
+        Some([held.mean_between(input, ends), slope])
     }
 
     /// Number of rows of inputs before the first one.
@@ -254,12 +309,15 @@ impl Recording {
 
     /// Whether an input runs on between rows.
     pub(crate) fn is_joined(&self, input: usize) -> bool {
-        self.interpolation[input] != Interpolation::Hold
+        self.interpolation[input] != Interpolation::Hold || !self.lines.is_empty()
     }
 
     /// An input from the time of a row to that of the next, as the coefficients of the powers of the time since that
     /// row.
     pub fn polynomial(&self, row: usize, input: usize) -> [f64; 4] {
+        if let Some([value, slope]) = self.lines.get(row * self.columns[0] + input) {
+            return [*value, *slope, 0.0, 0.0];
+        }
         let value = self.inputs(row)[input];
         if !self.is_joined(input) || row + 1 >= self.times.len() {
             return [value, 0.0, 0.0, 0.0];
@@ -307,7 +365,10 @@ impl Recording {
                 .map(|own| own.get(rows.clone()).unwrap_or_default().to_vec())
                 .collect(),
             earlier: Earlier::default(),
-            averaged: self.averaged.clone(),
+            lines: (self.lines.get(rows.start * inputs..rows.end * inputs))
+                .unwrap_or_default()
+                .to_vec(),
+            of_outputs: self.of_outputs.clone(),
         }
     }
 
@@ -318,7 +379,8 @@ impl Recording {
             interpolation: self.interpolation.clone(),
             curvatures: self.curvatures.clone(),
             earlier: self.earlier.clone(),
-            averaged: self.averaged.clone(),
+            lines: self.lines.clone(),
+            of_outputs: self.of_outputs.clone(),
             ..same
         })
     }

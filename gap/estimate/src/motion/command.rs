@@ -84,8 +84,7 @@ impl Switch {
     }
 }
 
-/// The inputs of outputs that are read at a row: those that are held, or their means over the interval about the row,
-/// with the slopes of the means.
+/// The inputs of outputs that are read at a row: those of the motion, or as [`Recording::of_output`].
 pub(crate) fn of_reading(
     recording: &Recording,
     row: usize,
@@ -100,8 +99,8 @@ pub(crate) fn of_reading(
         let mut delayed = setup.delayed.iter();
         let delay = delayed.position(|&delayed| delayed == input);
         let late = delay.map_or(0.0, |index| values[layout.input_delay(index)]);
-        if let Some([mean, slope]) = recording.averaged(input, t, late) {
-            own.copy_from_slice(&[t, mean, slope, 0.0, 0.0]);
+        if let Some([value, slope]) = recording.of_output(input, t, late) {
+            own.copy_from_slice(&[t, value, slope, 0.0, 0.0]);
         }
     }
     commands

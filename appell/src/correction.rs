@@ -25,15 +25,19 @@ pub struct Correction {
     pub rivals: Vec<String>,
 }
 
+/// Why a file stays as it is.
+const NO_GAP: &str = "no gap beyond noise and tolerances: the file stays as it is; `--hypothesis 1` writes the numbers \
+    that were fitted within their tolerances";
+
 /// The robot file `path` with a hypothesis of a gap report, numbered from 1; by default the most probable one. All but
-/// the numbers that change stays as it is.
+/// the numbers that change stays as it is, and all of it where there is no gap.
 pub fn correct(
     path: &Path,
     text: &str,
     report: &GapReport,
     hypothesis: Option<usize>,
 ) -> Result<Correction, Error> {
-    let hypothesis = report.hypothesis(hypothesis)?;
+    let hypothesis = report.for_robot(hypothesis)?;
     let format = robot::Format::of(text).map(robot::Format::word);
     if let (Some(format), Some(diagnosed)) = (format, report.robot.as_deref())
         && format != diagnosed
@@ -42,6 +46,14 @@ pub fn correct(
             format!("the report is about a file of {diagnosed}, and this one is {format}");
         return Err(Error::data(path.to_string_lossy(), message));
     }
+    let Some(hypothesis) = &hypothesis else {
+        return Ok(Correction {
+            text: text.to_owned(),
+            edits: Vec::new(),
+            remarks: vec![NO_GAP.to_owned()],
+            rivals: Vec::new(),
+        });
+    };
     let (parts, mut remarks) = Wanted::of(path, text, hypothesis, &report.locked)?;
     let whole = |parts: &[Part], remarks: &[String]| {
         let changes: Vec<Change> = parts.iter().flat_map(|part| part.changes.clone()).collect();

@@ -110,6 +110,9 @@ fn ahead(ahead: &Ahead) -> Value {
 #[derive(Debug, Deserialize)]
 pub struct GapReport {
     schema: String,
+    /// Its verdict.
+    #[serde(default)]
+    verdict: String,
     /// Name of the mechanism.
     pub mechanism: String,
     /// The format of the robot file that was diagnosed, `URDF` or `MJCF`.
@@ -169,14 +172,8 @@ impl GapReport {
 
     /// The hypothesis with this number, from 1; the most probable one without.
     pub fn hypothesis(&self, wanted: Option<usize>) -> Result<&Hypothesis, Error> {
-        let count = self.which.len();
         let place = wanted.unwrap_or(1);
-        let found = place.checked_sub(1).and_then(|index| self.which.get(index));
-        let found = found.ok_or_else(|| {
-            let message =
-                format!("there is no hypothesis {place}: the report has {count}, numbered from 1");
-            Error::request(Field::Hypothesis, message)
-        })?;
+        let found = self.numbered(place)?;
         if let Some(name) = found.alternative() {
             let message = format!(
                 "hypothesis {place} is another model, `{name}`: use its spec\n  choose another \
@@ -194,6 +191,33 @@ impl GapReport {
             return Err(Error::request(Field::Hypothesis, message));
         }
         Ok(found)
+    }
+
+    /// The same for a robot file; `None` if there is no gap to be closed. If no effect of the library explains the gap,
+    /// the numbers that were fitted without effects belong to it.
+    pub(crate) fn for_robot(&self, wanted: Option<usize>) -> Result<Option<Hypothesis>, Error> {
+        let found = self.numbered(wanted.unwrap_or(1))?;
+        if wanted.is_none() && found.effects.is_empty() && self.verdict == "no_gap" {
+            return Ok(None);
+        }
+        if found.changes.is_some() || found.alternative().is_some() {
+            return self.hypothesis(wanted).cloned().map(Some);
+        }
+        let nominal = self.which.iter().find(|other| other.effects.is_empty());
+        Ok(Some(Hypothesis {
+            changes: nominal.and_then(|nominal| nominal.changes.clone()),
+            ..found.clone()
+        }))
+    }
+
+    fn numbered(&self, place: usize) -> Result<&Hypothesis, Error> {
+        let found = place.checked_sub(1).and_then(|index| self.which.get(index));
+        found.ok_or_else(|| {
+            let count = self.which.len();
+            let message =
+                format!("there is no hypothesis {place}: the report has {count}, numbered from 1");
+            Error::request(Field::Hypothesis, message)
+        })
     }
 
     fn list(&self) -> String {

@@ -65,6 +65,11 @@ pub fn draft(
         let message = format!("{rate} rows per second are no rate");
         return Err(Error::request(Field::Recordings, message));
     }
+    if is_recording(Path::new(mechanism)) {
+        let message =
+            format!("`{mechanism}` is a recording: the spec or the robot file comes first");
+        return Err(Error::request(Field::Recordings, message));
+    }
     let source = Source::find(mechanism)?;
     let named = match source.shipped {
         Some(shipped) => shipped.name.to_owned(),
@@ -88,6 +93,14 @@ pub fn draft(
         drafted.set = Some(set);
     }
     Ok(drafted)
+}
+
+/// Whether a file is a recording, by its extension.
+fn is_recording(path: &Path) -> bool {
+    let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
+    ["csv", "c3d", "mcap", "npz", "parquet", "tsv"]
+        .iter()
+        .any(|own| extension == *own)
 }
 
 /// The path of a file relative to the folder of a description, which has to contain it.

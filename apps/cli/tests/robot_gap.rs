@@ -95,10 +95,41 @@ fn friction_is_found_from_a_robot_file_and_written_into_it() {
         &DESCRIPTION.replace("robot.xml", "better.xml"),
     );
     folder.done(&["diagnose", "--data", ".", "--json", "again.json"]);
-    let far = &serde_json::from_str::<Value>(&folder.read("again.json")).expect("JSON")["how_far"];
+    let mut again: Value = serde_json::from_str(&folder.read("again.json")).expect("JSON");
+    let far = &again["how_far"];
     let [nominal, floor] =
         ["nominal", "noise_floor"].map(|key| far[key].as_f64().expect("an error"));
     assert!(nominal < 1.1 * floor, "{far}");
+
+    // Without a gap the file stays as it is.
+    assert_eq!(again["verdict"], "no_gap");
+    let apply = [
+        "apply",
+        "better.xml",
+        "--report",
+        "again.json",
+        "-o",
+        "same.xml",
+    ];
+    let told = folder.done(&apply).stdout;
+    assert!(told.contains("no gap"), "{told}");
+    assert_eq!(folder.read("same.xml"), better);
+
+    // What no effect explains is a comment, beside the numbers that were fitted.
+    let nominal = again["which"].as_array().expect("hypotheses").iter();
+    let nominal = nominal.filter(|own| own["effects"] == serde_json::json!([]));
+    let mut which = vec![serde_json::json!({ "effects": ["unknown"], "probability": 0.9 })];
+    which.extend(nominal.cloned());
+    assert_eq!(which.len(), 2);
+    again["verdict"] = "unexplained".into();
+    again["which"] = which.into();
+    folder.write("again.json", &again.to_string());
+    folder.done(&apply);
+    let written = folder.read("same.xml");
+    assert!(
+        written.contains("<!-- appell: not in MJCF: unknown"),
+        "{written}"
+    );
 }
 
 #[test]

@@ -385,3 +385,47 @@ impl Recording {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Rows at 0, 2 and 4 s of an input that steps up by one each second.
+    fn stairs() -> Result<Recording, EstimateError> {
+        let recording = Recording::new(vec![0.0, 2.0, 4.0], vec![0.5, 2.5, 4.0], Vec::new())?;
+        let (times, inputs) = full_rate();
+        Ok(recording.subsampled(times, inputs))
+    }
+
+    fn full_rate() -> (Vec<f64>, Vec<f64>) {
+        let times: Vec<f64> = (0..5).map(f64::from).collect();
+        (times.clone(), times)
+    }
+
+    #[test]
+    fn inputs_between_the_rows_that_are_left_keep_their_mean_and_first_moment()
+    -> Result<(), EstimateError> {
+        let recording = stairs()?;
+        // 0 for a second, then 1: the integral is 1, the moment about the middle 1/2.
+        let [value, slope, ..] = recording.polynomial(0, 0);
+        assert!((value + 0.25).abs() < 1e-14 && (slope - 0.75).abs() < 1e-14);
+        let integral = 2.0 * value + 2.0 * slope;
+        let moment = slope * 2.0_f64.powi(3) / 12.0;
+        assert!((integral - 1.0).abs() < 1e-14 && (moment - 0.5).abs() < 1e-14);
+        assert!(recording.is_joined(0));
+        Ok(())
+    }
+
+    #[test]
+    fn outputs_are_means_about_their_row_or_readings_with_its_command() -> Result<(), EstimateError>
+    {
+        let (times, inputs) = full_rate();
+        let means = stairs()?.with_outputs(true, times.clone(), inputs.clone());
+        assert_eq!(means.of_output(0, 2.0, 0.0), Some([1.5, 1.0]));
+        assert_eq!(means.of_output(0, 2.0, 1.0), Some([0.5, 1.0]));
+        let readings = stairs()?.with_outputs(false, times, inputs);
+        assert_eq!(readings.of_output(0, 2.0, 0.0), Some([2.0, 0.0]));
+        assert_eq!(stairs()?.of_output(0, 2.0, 0.0), None);
+        Ok(())
+    }
+}

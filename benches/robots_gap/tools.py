@@ -2,6 +2,8 @@
 
 import json
 import math
+import os
+import signal
 import subprocess
 import sys
 import tempfile
@@ -16,12 +18,12 @@ import rollouts
 def measured(command, folder, timeout):
     """Runs a command in a folder; returns its outcome and its processor seconds."""
     with subprocess.Popen(["time", "-f", "%U %S", "-o", "seconds", *map(str, command)], cwd=folder,
-                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as process:
+                          stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          start_new_session=True) as process:
         try:
             output, _ = process.communicate(timeout=timeout)
         except subprocess.TimeoutExpired:
-            process.terminate()
-            subprocess.run(["pkill", "-P", str(process.pid)], check=False)
+            os.killpg(process.pid, signal.SIGKILL)
             output, _ = process.communicate()
     words = (Path(folder) / "seconds").read_text().split() if (Path(folder) / "seconds").exists() else []
     try:

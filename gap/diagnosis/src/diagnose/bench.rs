@@ -164,13 +164,8 @@ impl<'a> Bench<'a> {
 
     /// The same problem for other equations, with the noise levels of this one.
     pub(super) fn beside<'o>(&self, effects: &'o EffectModel) -> Result<Bench<'o>, DiagnoseError> {
-        let levels = |estimation: &Estimation<'_>, problem: &mut Problem| {
+        let levels = |_: &Estimation<'_>, problem: &mut Problem| {
             problem.levels.clone_from(&self.problem.levels);
-            for index in 0..estimation.setup().disturbances.len() {
-                let level = Unknown::Disturbance(index);
-                let [own, other] = [estimation.layout(), self.layout].map(|of| of.place(level));
-                problem.start[own?] = self.problem.start[other?];
-            }
             Ok(())
         };
         Ok(Bench {

@@ -286,6 +286,9 @@ impl<'b, 'a> Search<'b, 'a> {
                 if fitted.fit.is_optimum() {
                     self.settled.insert(members);
                 }
+                if self.bench.is_of_robot && !fitted.is_there() {
+                    self.keep_without_idle(&fitted);
+                }
                 self.keep(fitted);
             }
             Ok(_) => {
@@ -293,6 +296,24 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.failed.push((members, NO_EVIDENCE.to_owned()));
             }
             Err(error) => self.failed.push((members, error.to_string())),
+        }
+    }
+
+    /// Fits the rest of a hypothesis with a member that is not determined beside others, such as dry friction at a drive
+    /// beside that of its joint.
+    fn keep_without_idle(&mut self, whole: &Fitted) {
+        let bench = self.bench;
+        let idle = (whole.members.iter()).filter(|&&own| !bench.candidate(own).is_of_drives());
+        for &idle in idle.filter(|_| whole.members.len() > 1) {
+            let rest = whole.members.iter().filter(|&&own| own != idle);
+            let rest: Vec<usize> = rest.copied().collect();
+            if self.settled.contains(&rest) {
+                continue;
+            }
+            if let Ok(fitted) = self.fitted_without(whole, idle) {
+                self.settled.insert(rest);
+                self.keep(fitted);
+            }
         }
     }
 

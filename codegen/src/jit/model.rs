@@ -56,13 +56,12 @@ impl Whole {
     }
 
     fn is_needed(&self, p: &[f64]) -> bool {
-        let mut ranges = self.ranges.iter();
-        // Without a branch for each parameter.
-        ranges.any(|range| {
-            p[range.clone()]
-                .iter()
-                .fold(false, |any, &value| any | (value != 0.0))
-        })
+        let others = |range: &Range<usize>| -> usize {
+            let values = p[range.clone()].iter();
+            // Without a branch for each parameter.
+            values.map(|value| usize::from(*value != 0.0)).sum()
+        };
+        self.ranges.iter().any(|range| others(range) > 0)
     }
 
     /// The tape of a function of the specialised model.

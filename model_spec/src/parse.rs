@@ -46,9 +46,8 @@ pub fn parse(text: &str) -> (SpecAst, Vec<Diagnostic>) {
             Diagnostic::error(Code::TomlSyntax, "this is XML, and a spec is TOML")
                 .at(at..at + 1, "a tag")
                 .help(
-                    "a robot file with its recordings needs their description: `appell recording robot.xml RUN.csv ... \
-                     --write recording.toml` drafts it, and its folder is the data set; `appell import robot.xml` makes \
-                     a spec of it, `appell new NAME` begins another one",
+                    "a robot file with its recordings needs their description, which `appell recording` drafts from \
+                     both; `appell import robot.xml` makes a spec of it, `appell new NAME` begins another one",
                 ),
         );
     } else {

@@ -147,8 +147,8 @@ impl Comparison {
     }
 
     /// Reduces the probability of `unknown` if its law is immaterial in simulations: `again` is the best hypothesis
-    /// over windows. A law that is not found there may be below their resolution, except for a robot: its servos keep
-    /// it near its commands, and whatever does not show over windows is immaterial.
+    /// over windows. A law that is not found there may be below their resolution, except for a robot: all of it
+    /// is driven and measured, and whatever does not show over windows is immaterial.
     pub(super) fn bear_out_unknown(
         &mut self,
         over: &Bench<'_>,

@@ -3,12 +3,15 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
+use nalgebra::DMatrix;
+
 use super::EstimateError;
 use crate::data::layout::Layout;
 use crate::data::recording::Recording;
 use crate::data::setup::{Measured, Setup};
 use crate::data::unknown::Unknown;
 use crate::gradient::adjoint::adjoint;
+use crate::gradient::tangent::Direction;
 use crate::kalman::filter::{Innovation, Pass};
 use crate::matrix::add;
 use crate::motion::plant::{Plant, StateSpace};
@@ -31,6 +34,14 @@ pub struct Estimation<'a> {
     knots: Vec<f64>,
     /// Tapes of passes that are over: a search needs one after the other, and fresh memory is slow.
     tapes: Mutex<Vec<Vec<f64>>>,
+}
+
+/// Derivatives of the log-likelihood.
+pub(crate) struct Slopes {
+    /// With respect to all values.
+    pub(crate) gradient: Vec<f64>,
+    /// Fisher information of the means along the directions.
+    pub(crate) means: DMatrix<f64>,
 }
 
 impl<'a> Estimation<'a> {
@@ -120,21 +131,26 @@ impl<'a> Estimation<'a> {
     ///
     /// [`Model::has_adjoint`]: appell_runtime::model::Model::has_adjoint
     pub fn gradient(&self, values: &[f64]) -> Result<(f64, Vec<f64>), EstimateError> {
-        let (sum, gradient) = self.gradient_if(values, |_| true)?;
-        Ok((sum, gradient.unwrap_or_default()))
+        let (sum, slopes) = self.slopes_if(values, &[], |_| true)?;
+        Ok((sum, slopes.map_or_else(Vec::new, |slopes| slopes.gradient)))
     }
 
-    /// The log-likelihood, and its gradient if the predicate holds for the log-likelihood: the reverse
-    /// sweep takes twice as long as the filter.
-    pub(crate) fn gradient_if(
+    /// The log-likelihood; and its slopes if the predicate holds for it, as the reverse sweep takes twice as long as
+    /// the filter.
+    pub(crate) fn slopes_if(
         &self,
         values: &[f64],
+        directions: &[Direction],
         is_wanted: impl Fn(f64) -> bool,
-    ) -> Result<(f64, Option<Vec<f64>>), EstimateError> {
+    ) -> Result<(f64, Option<Slopes>), EstimateError> {
         self.check(values)?;
-        let mut passes = self.over_runs(|run| self.pass(run, values, true))?;
+        let of_run = |run| match directions {
+            [] => Ok((self.pass(run, values, true)?, DMatrix::zeros(0, 0))),
+            some => self.kept_with_information(run, values, some),
+        };
+        let (mut passes, means): (Vec<_>, Vec<_>) = self.over_runs(of_run)?.into_iter().unzip();
         let sum = passes.iter().map(Pass::log_likelihood).sum();
-        let gradient = is_wanted(sum).then(|| {
+        let slopes = is_wanted(sum).then(|| {
             let slopes = in_parallel(passes.iter_mut(), |pass| {
                 let mut gradient = vec![0.0; self.layout.len()];
                 adjoint(pass, &(0..usize::MAX), &mut gradient);
@@ -144,11 +160,14 @@ impl<'a> Estimation<'a> {
             for own in &slopes {
                 add(own, &mut gradient);
             }
-            gradient
+            Slopes {
+                gradient,
+                means: means.into_iter().sum(),
+            }
         });
         let tapes = passes.into_iter().map(|pass| pass.tape);
         self.tapes().extend(tapes);
-        Ok((sum, gradient))
+        Ok((sum, slopes))
     }
 
     /// The gradient of the log-likelihood of some rows of a run, given all rows before them: their
@@ -206,11 +225,7 @@ impl<'a> Estimation<'a> {
     ) -> Result<Pass<'b>, EstimateError> {
         let recording = &self.recordings[run];
         let actions = self.actions(run, values);
-        let tape = keeps.then(|| {
-            let mut tape = self.tapes().pop().unwrap_or_default();
-            tape.clear();
-            tape
-        });
+        let tape = keeps.then(|| self.blank_tape());
         Pass::over(self.system(), values, run, recording, &actions, tape)
     }
 
@@ -219,15 +234,23 @@ impl<'a> Estimation<'a> {
         self.tapes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
+    /// A tape for a pass that is kept.
+    pub(super) fn blank_tape(&self) -> Vec<f64> {
+        let mut tape = self.tapes().pop().unwrap_or_default();
+        tape.clear();
+        tape
+    }
+
     /// The filter before the first of the `actions` of a run.
     pub(super) fn fresh<'b>(
         &'b self,
         run: usize,
         values: &'b [f64],
         actions: &[Action],
+        tape: Option<Vec<f64>>,
     ) -> Pass<'b> {
         let recording = &self.recordings[run];
-        Pass::new(self.system(), values, run, recording, actions, None)
+        Pass::new(self.system(), values, run, recording, actions, tape)
     }
 
     /// Steps, changes of inputs and samples of a run.

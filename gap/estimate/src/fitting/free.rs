@@ -1,10 +1,11 @@
 //! Free values, with their coordinates, limits and priors.
 
-use nalgebra::DVector;
+use nalgebra::{DMatrix, DVector};
 
 use crate::EstimateError;
 use crate::data::layout::Layout;
 use crate::data::unknown::Unknown;
+use crate::gradient::tangent::Direction;
 
 /// Coordinate in which a value is estimated.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -161,6 +162,26 @@ impl<'a> Selection<'a> {
             let [low, high] = free.range;
             values[place] = free.to_value(coordinate).max(low).min(high);
         }
+    }
+
+    /// The directions of the values.
+    pub(crate) fn directions(&self) -> Vec<Direction> {
+        let unknowns = self.free.iter().map(|free| Direction::Value(free.unknown));
+        unknowns.collect()
+    }
+
+    /// The Fisher information of the coordinates, from that of the values.
+    pub(crate) fn stretched(
+        &self,
+        mut information: DMatrix<f64>,
+        values: &[f64],
+    ) -> DMatrix<f64> {
+        for (i, (free, &place)) in self.free.iter().zip(&self.places).enumerate() {
+            let stretch = free.stretch(values[place]);
+            information.row_mut(i).scale_mut(stretch);
+            information.column_mut(i).scale_mut(stretch);
+        }
+        information
     }
 
     /// The gradient with respect to the coordinates, from that with respect to the values.

@@ -52,7 +52,10 @@ impl Levels {
                 estimation.information_of_levels(&point.values, free, LARGEST)?,
             ),
         };
-        let mut information = estimation.information_of_means(&point.values, free)?;
+        let mut information = match &point.means {
+            Some(means) => means.clone(),
+            None => estimation.information_of_means(&point.values, free)?,
+        };
         information += &of_levels.1;
         information += DMatrix::from_diagonal(&selection.prior_information());
         self.known = Some(of_levels);

@@ -36,16 +36,25 @@ pub(crate) struct Point {
     pub(crate) gradient: DVector<f64>,
     /// Whether a coordinate is at a limit beyond which the objective increases.
     pub(crate) is_held: Vec<bool>,
+    /// Fisher information of the coordinates that affect means, if it was computed with the gradient.
+    pub(crate) means: Option<DMatrix<f64>>,
 }
 
 impl Posterior<'_, '_> {
     /// At some values, clamped to their limits.
     pub(crate) fn at(&self, values: &[f64]) -> Result<Point, EstimateError> {
-        let coordinates = self.selection.coordinates(values)?;
-        let mut values = values.to_vec();
-        self.selection.write(&coordinates, &mut values);
+        let (values, coordinates) = self.clamped(values)?;
         let (log_likelihood, slopes) = self.estimation.gradient(&values)?;
         Ok(self.point(values, coordinates, log_likelihood, &slopes))
+    }
+
+    /// The same with the information of the means.
+    pub(crate) fn with_means(&self, values: &[f64]) -> Result<Point, EstimateError> {
+        let (values, coordinates) = self.clamped(values)?;
+        let point = self.point_if(values, coordinates, |_| true)?;
+        point.ok_or(EstimateError::Singular {
+            what: "the information",
+        })
     }
 
     /// After a step from a point.
@@ -55,8 +64,8 @@ impl Posterior<'_, '_> {
         Ok(self.point(values, coordinates, log_likelihood, &slopes))
     }
 
-    /// The same if the objective rises by more than `gain`; most other steps are rejected before their gradient is
-    /// computed.
+    /// The same with the information of the means, if the objective rises by more than `gain`; most other steps are
+    /// rejected before their gradient is computed.
     pub(crate) fn bettered(&self, point: &Point, step: &DVector<f64>, gain: f64) -> Option<Point> {
         let (values, coordinates) = self.stepped(point, step);
         let (prior, _) = self.selection.prior(&coordinates);
@@ -64,9 +73,34 @@ impl Posterior<'_, '_> {
             let rise = likelihood + prior - point.objective;
             rise > gain || point.is_rounding(rise)
         };
-        let (likelihood, slopes) = self.estimation.gradient_if(&values, may_be).ok()?;
-        let next = self.point(values, coordinates, likelihood, &slopes?);
+        let next = self.point_if(values, coordinates, may_be).ok()??;
         (next.objective.is_finite() && point.is_worse_than(&next, gain)).then_some(next)
+    }
+
+    /// The point with the information of the means, if its log-likelihood fulfils a predicate.
+    fn point_if(
+        &self,
+        values: Vec<f64>,
+        coordinates: DVector<f64>,
+        is_wanted: impl Fn(f64) -> bool,
+    ) -> Result<Option<Point>, EstimateError> {
+        let directions = self.selection.directions();
+        let (likelihood, slopes) = self.estimation.slopes_if(&values, &directions, is_wanted)?;
+        Ok(slopes.map(|slopes| {
+            let means = self.selection.stretched(slopes.means, &values);
+            Point {
+                means: Some(means),
+                ..self.point(values, coordinates, likelihood, &slopes.gradient)
+            }
+        }))
+    }
+
+    /// Values within their limits, and their coordinates.
+    fn clamped(&self, values: &[f64]) -> Result<(Vec<f64>, DVector<f64>), EstimateError> {
+        let coordinates = self.selection.coordinates(values)?;
+        let mut values = values.to_vec();
+        self.selection.write(&coordinates, &mut values);
+        Ok((values, coordinates))
     }
 
     /// Values and coordinates after a step from a point, within their limits.
@@ -97,6 +131,7 @@ impl Posterior<'_, '_> {
         });
         Point {
             is_held: is_held.collect(),
+            means: None,
             objective: log_likelihood + prior,
             log_likelihood,
             gradient,

@@ -43,7 +43,7 @@ impl Fit {
             selection: &selection,
         };
         let mut levels = Levels::default();
-        let mut point = posterior.at(start)?;
+        let mut point = posterior.with_means(start)?;
         let mut information = levels.information(&posterior, &point)?;
         let mut scaling = LevelScaling::of(&posterior, &point)?;
         let (mut damping, mut steps) = (0.0, 0);

@@ -8,7 +8,6 @@
 use nalgebra::DMatrix;
 
 use super::levels;
-use super::tangent::Direction;
 use crate::EstimateError;
 use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
@@ -32,15 +31,9 @@ impl Estimation<'_> {
         free: &[Free],
     ) -> Result<DMatrix<f64>, EstimateError> {
         let selection = Selection::new(&self.layout(), free)?;
-        let directions: Vec<Direction> = free.iter().map(|f| Direction::Value(f.unknown)).collect();
-        let tangent = self.tangent(values, &directions, None)?;
-        let mut information = tangent.slopes.tr_mul(&tangent.slopes);
-        for i in 0..free.len() {
-            let stretch = free[i].stretch(selection.value(values, i));
-            information.row_mut(i).scale_mut(stretch);
-            information.column_mut(i).scale_mut(stretch);
-        }
-        Ok(information)
+        let tangent = self.tangent(values, &selection.directions(), None)?;
+        let information = tangent.slopes.tr_mul(&tangent.slopes);
+        Ok(selection.stretched(information, values))
     }
 
     /// The part of levels, with residuals of at most `largest` standard deviations: larger ones of a wrong model say

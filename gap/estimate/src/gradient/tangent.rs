@@ -9,7 +9,7 @@
 //! its command from the reading of the same row, so that the command contains the noise of the reading and would be
 //! correlated with the innovation. The command of a row therefore acts on later readings only.
 
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, DMatrixView};
 
 use appell_runtime::model::At;
 
@@ -97,12 +97,10 @@ impl Estimation<'_> {
         let columns = directions.len() + candidates;
         let runs = self.over_runs(|run| {
             let actions = self.actions(run, values);
-            let mut pass = self.fresh(run, values, &actions);
+            let mut pass = self.fresh(run, values, &actions, None);
             pass.is_disturbed |= shapes.is_some_and(|own| own.along == Along::Disturbances);
             let mut forward = Forward::new(self, pass, directions, shapes, columns);
-            for &action in &actions {
-                forward.act(action)?;
-            }
+            forward.over(&actions)?;
             Ok((forward.pass.samples, forward.rows, forward.added_squares))
         })?;
         let mut samples: Vec<(usize, Innovation)> = Vec::new();
@@ -129,6 +127,23 @@ impl Estimation<'_> {
             slopes: by_columns(&rows, columns, &order),
             added_squares,
         })
+    }
+
+    /// The pass of a run that is kept on a tape, and the Fisher information of its means along some directions.
+    pub(crate) fn kept_with_information<'b>(
+        &'b self,
+        run: usize,
+        values: &'b [f64],
+        directions: &[Direction],
+    ) -> Result<(Pass<'b>, DMatrix<f64>), EstimateError> {
+        let actions = self.actions(run, values);
+        let pass = self.fresh(run, values, &actions, Some(self.blank_tape()));
+        let columns = directions.len();
+        let mut forward = Forward::new(self, pass, directions, None, columns);
+        forward.over(&actions)?;
+        let samples = forward.pass.samples.len();
+        let slopes = DMatrixView::from_slice(&forward.rows, columns, samples);
+        Ok((forward.pass, slopes * slopes.transpose()))
     }
 }
 
@@ -234,6 +249,10 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
+    fn over(&mut self, actions: &[Action]) -> Result<(), EstimateError> {
+        actions.iter().try_for_each(|&action| self.act(action))
+    }
+
     fn act(&mut self, action: Action) -> Result<(), EstimateError> {
         let (records, samples) = (self.pass.records.len(), self.pass.samples.len());
         let recording = &self.estimation.recordings()[self.pass.run];
@@ -243,16 +262,12 @@ impl<'p, 'a> Forward<'p, 'a> {
         self.pass.act(recording, action)?;
         match action {
             Action::Advance(_) => {
-                let steps = self.pass.records[records..].iter();
-                let steps: Vec<(Advance, usize)> = steps
-                    .filter_map(|record| match record {
-                        Record::Advance { advance, tape } => Some((*advance, *tape)),
-                        _ => None,
-                    })
-                    .collect();
-                for (advance, tape) in steps {
-                    self.advance(advance, tape);
+                let mut tape = std::mem::take(&mut self.pass.tape);
+                for record in records..self.pass.records.len() {
+                    let record = self.pass.records[record].clone();
+                    self.follow(&record, &mut tape);
                 }
+                self.pass.tape = tape;
                 self.earlier.clone_from(&self.pass.held);
             }
             Action::Switch { .. } if records > 0 => self.switched = true,
@@ -261,6 +276,17 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
         self.close(action, recording);
         Ok(())
+    }
+
+    /// Follows a step.
+    fn follow(&mut self, record: &Record, tape: &mut [f64]) {
+        if let Record::Advance { advance, tape: at } = *record {
+            self.advance(advance, &mut tape[at..]);
+        } else if let Some(mut parts) = self.pass.in_parts(record, tape) {
+            for part in &parts.records {
+                self.follow(part, &mut parts.tape);
+            }
+        }
     }
 
     /// Projects onto the dependent coordinates.
@@ -287,7 +313,7 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     /// Z ← F (Z + H) + H, where H is half of the increment of the step, by the slopes at its
     /// midpoint.
-    fn advance(&mut self, advance: Advance, tape: usize) {
+    fn advance(&mut self, advance: Advance, tape: &mut [f64]) {
         let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
         let info = self.estimation.setup().model.info();
         let (states, parameters) = (info.state_len(), info.parameter_len());
@@ -295,7 +321,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         let lagged = self.lagged(advance, tape);
         let disturbances = self.pass.sizes.disturbances;
         let plant = self.pass.system.plant;
-        let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
+        let on = self.pass.sizes.step(tape);
         let middle = &on.stages.z[n..2 * n];
         let (values, t) = (self.pass.values, advance.t + half);
         let place = Place::new(self.pass.system.layout, values, t, middle, on.held);
@@ -368,14 +394,14 @@ impl<'p, 'a> Forward<'p, 'a> {
 
     /// Increments of a step by the direct effect of directions on the rates of lags, each with its
     /// column.
-    fn lagged(&mut self, advance: Advance, tape: usize) -> Vec<(usize, Vec<f64>)> {
+    fn lagged(&mut self, advance: Advance, tape: &mut [f64]) -> Vec<(usize, Vec<f64>)> {
         const ALL: [usize; 4] = [0, 1, 2, 3];
         let (n, states) = (
             self.pass.sizes.n,
             self.estimation.setup().model.info().state_len(),
         );
         let (p, lags, plant) = (self.pass.p(), self.pass.lags(), self.pass.system.plant);
-        let on = self.pass.sizes.step(&mut self.pass.tape[tape..]);
+        let on = self.pass.sizes.step(tape);
         let span = Span {
             t: advance.t,
             h: advance.h,

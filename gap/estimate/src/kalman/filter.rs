@@ -21,7 +21,10 @@ use crate::motion::closure::Closure;
 use crate::motion::command::{self, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_HALVINGS, Span, halvings, step};
+use crate::motion::transition::{MOST_PARTS, Span, step};
+
+/// Numbers on all tapes up to which they keep the parts of steps, 1 GiB.
+const MOST_NUMBERS: usize = 1 << 27;
 
 /// The innovation of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -191,7 +194,7 @@ impl<'a> Pass<'a> {
         }
         match action {
             Action::Advance(advance) => {
-                self.advance(advance, 0)?;
+                self.advance(advance, 1)?;
                 self.close(advance.t + advance.h)
             }
             Action::Switch { row, input } => {
@@ -246,8 +249,8 @@ impl<'a> Pass<'a> {
         start
     }
 
-    /// Advances by a step, or by parts of it if it is too long.
-    fn advance(&mut self, advance: Advance, halved: u32) -> Result<(), EstimateError> {
+    /// Advances by a step, one of `of` parts of a whole one, or by parts of it if it is too long.
+    fn advance(&mut self, advance: Advance, of: u32) -> Result<(), EstimateError> {
         let tape = self.record(self.sizes.step_len());
         self.records.push(Record::Advance { advance, tape });
         let (n, d) = (self.sizes.n, self.sizes.disturbances);
@@ -272,27 +275,18 @@ impl<'a> Pass<'a> {
                 on.columns,
             );
         }
-        step(
-            self.system.plant,
-            span,
-            &mut self.scratch,
-            &mut on.stages,
-            on.after,
-            on.f,
-        );
         // Loops are closed only after whole steps.
-        let halvings = if self.system.setup.has_corners && self.closure.is_none() {
-            let states = self.system.plant.info().state_len();
-            halvings(&on.stages, n, states, h).min(MOST_HALVINGS - halved)
-        } else {
-            0
-        };
-        if halvings > 0 {
+        let is_cut = self.system.setup.has_corners && self.closure.is_none() && of < MOST_PARTS;
+        let plant = self.system.plant;
+        let own = if is_cut { plant.info().state_len() } else { 0 };
+        let after = [&mut *on.after, &mut *on.f];
+        let parts = step(plant, span, &mut self.scratch, &mut on.stages, after, own);
+        if parts > 1 {
             self.tape.truncate(tape);
             self.records.pop();
-            return self.advance_in_parts(advance, halved, halvings);
+            let parts = parts.min(MOST_PARTS / of).max(2);
+            return self.advance_in_parts(advance, of, parts);
         }
-
         if self.is_disturbed {
             let layout = self.system.layout;
             let noise = |j| self.values[layout.disturbance(j)] * (0.5 * h).sqrt();
@@ -313,33 +307,37 @@ impl<'a> Pass<'a> {
         })
     }
 
-    /// Advances by the parts of a step. A pass that keeps everything keeps the start of the whole
-    /// step.
+    /// Advances by the parts of a step. A long pass that keeps everything keeps the start of the whole step.
     pub(crate) fn advance_in_parts(
         &mut self,
         advance: Advance,
-        halved: u32,
-        halvings: u32,
+        of: u32,
+        parts: u32,
     ) -> Result<(), EstimateError> {
-        let kept = (self.keeps && halved == 0).then(|| {
+        let kept = (self.keeps && of == 1 && self.is_long()).then(|| {
             let tape = self.tape.len();
             for start in [&self.held, &self.z, &self.root] {
                 self.tape.extend_from_slice(start);
             }
             self.records.push(Record::Parts {
                 advance,
-                halvings,
+                parts,
                 tape,
             });
             (self.tape.len(), self.records.len())
         });
-        let mut parts = advance.parts(halvings);
-        parts.try_for_each(|part| self.advance(part, halved + halvings))?;
+        let mut all = advance.parts(parts);
+        all.try_for_each(|part| self.advance(part, of * parts))?;
         if let Some((tape, records)) = kept {
             self.tape.truncate(tape);
             self.records.truncate(records);
         }
         Ok(())
+    }
+
+    /// Whether the tapes of all runs would take too much memory with the parts of steps.
+    fn is_long(&self) -> bool {
+        self.tape.len() > MOST_NUMBERS / self.system.layout.runs.max(1)
     }
 
     /// Closes the loops.

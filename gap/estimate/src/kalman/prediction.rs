@@ -11,7 +11,7 @@ use crate::motion::closure::Closure;
 use crate::motion::command::{self, Switch};
 use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
+use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, is_uneven};
 
 /// Prediction error of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -43,7 +43,7 @@ impl Estimation<'_> {
         self.layout().place(Unknown::Initial { run, state: 0 })?;
         let recording = &self.recordings()[run];
         let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions);
+        let mut pass = self.fresh(run, values, &actions, None);
         let mut walk = Walk::new(&pass, recording);
         let mut predicted = Vec::new();
         for (index, &action) in actions.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Estimation<'_> {
         self.layout().place(Unknown::Initial { run, state: 0 })?;
         let recording = &self.recordings()[run];
         let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions);
+        let mut pass = self.fresh(run, values, &actions, None);
         let mut expected = Vec::new();
         for (index, &action) in actions.iter().enumerate() {
             pass.act(recording, action)?;
@@ -83,7 +83,7 @@ impl Estimation<'_> {
             if origins.binary_search(&row).is_err() {
                 continue;
             }
-            let mut ahead = self.fresh(run, values, &actions);
+            let mut ahead = self.fresh(run, values, &actions, None);
             ahead.z.copy_from_slice(&pass.z);
             ahead.root.copy_from_slice(&pass.root);
             ahead.held.copy_from_slice(&pass.held);
@@ -262,7 +262,7 @@ impl<'a> Walk<'a> {
 
     /// A step of the same method as that of the filter.
     fn advance(&mut self, advance: Advance) {
-        self.step(advance, 0);
+        self.step(advance, 1);
         let t = advance.t + advance.h;
         if let Some(closure) = &mut self.closure {
             let open = self.z.clone();
@@ -278,7 +278,7 @@ impl<'a> Walk<'a> {
     }
 
     /// A step, or parts of it if it is too long.
-    fn step(&mut self, advance: Advance, halved: u32) {
+    fn step(&mut self, advance: Advance, of: u32) {
         let (Advance { t, h, .. }, n) = (advance, self.z.len());
         let mut after = self.z.clone();
         self.stage.copy_from_slice(&self.z);
@@ -295,10 +295,10 @@ impl<'a> Walk<'a> {
             }
         }
         let has_corners = self.system.setup.has_corners && self.closure.is_none();
-        let is_cut = has_corners && halved < MOST_HALVINGS;
+        let is_cut = has_corners && of < MOST_PARTS;
         if is_cut && is_uneven(&self.rates, n, self.system.plant.info().state_len()) {
-            for part in advance.parts(1) {
-                self.step(part, halved + 1);
+            for part in advance.parts(2) {
+                self.step(part, 2 * of);
             }
         } else {
             self.z = after;

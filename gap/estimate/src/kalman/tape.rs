@@ -12,11 +12,11 @@ use crate::motion::transition::{Stages, stages_len};
 pub(crate) enum Record {
     /// A step; its numbers start at `tape`.
     Advance { advance: Advance, tape: usize },
-    /// A step in parts, two to the power of `halvings` or more. To save memory only the start of
-    /// the step is kept at `tape`; the reverse sweep recomputes the parts.
+    /// A step in parts, `parts` or more. Only the start of the step is
+    /// kept at `tape`, to save memory; sweeps recompute the parts.
     Parts {
         advance: Advance,
-        halvings: u32,
+        parts: u32,
         tape: usize,
     },
     /// Scalars that were measured at one time, and the inputs then, where outputs were.
@@ -110,34 +110,36 @@ impl Pass<'_> {
     /// Visits the records in reverse order, each with the tape of its numbers. A step in parts is
     /// replaced by its parts.
     pub(crate) fn walk_back(&self, tape: &mut [f64], mut visit: impl FnMut(&Record, &mut [f64])) {
-        let mut again = Self::blank(self.system, self.values, self.run);
         for record in self.records.iter().rev() {
-            match record {
-                Record::Parts {
-                    advance,
-                    halvings,
-                    tape: at,
-                } => {
-                    again.begin_at(&mut tape[*at..]);
-                    // The forward pass succeeded.
-                    let _ = again.advance_in_parts(*advance, 0, *halvings);
-                    for part in again.records.iter().rev() {
-                        visit(part, &mut again.tape);
-                    }
+            if let Some(mut parts) = self.in_parts(record, tape) {
+                for part in parts.records.iter().rev() {
+                    visit(part, &mut parts.tape);
                 }
-                whole => visit(whole, tape),
+            } else {
+                visit(record, tape);
             }
         }
     }
 
-    /// Restarts with the inputs, state and root of P on a tape.
-    fn begin_at(&mut self, start: &mut [f64]) {
+    /// The parts of a step of which the tape has the start only.
+    pub(crate) fn in_parts(&self, record: &Record, tape: &mut [f64]) -> Option<Self> {
+        let Record::Parts {
+            advance,
+            parts,
+            tape: at,
+        } = *record
+        else {
+            return None;
+        };
+        let mut again = Self::blank(self.system, self.values, self.run);
+        again.is_disturbed = self.is_disturbed;
         let Sizes { n, commands, .. } = self.sizes;
-        let [held, z, root] = pieces(start, [commands, n, n * n]);
-        self.held.copy_from_slice(held);
-        self.z.copy_from_slice(z);
-        self.root.copy_from_slice(root);
-        self.tape.clear();
-        self.records.clear();
+        let [held, z, root] = pieces(&mut tape[at..], [commands, n, n * n]);
+        again.held.copy_from_slice(held);
+        again.z.copy_from_slice(z);
+        again.root.copy_from_slice(root);
+        // The forward pass succeeded.
+        let _ = again.advance_in_parts(advance, 1, parts);
+        Some(again)
     }
 }

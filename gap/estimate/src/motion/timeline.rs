@@ -38,9 +38,8 @@ pub(crate) struct Moved {
 }
 
 impl Advance {
-    /// Cut into 2ⁿ equal parts.
-    pub(crate) fn parts(self, halvings: u32) -> impl Iterator<Item = Self> {
-        let count = 1_u32 << halvings;
+    /// Cut into equal parts.
+    pub(crate) fn parts(self, count: u32) -> impl Iterator<Item = Self> {
         let part = f64::from(count).recip();
         let h = part * self.h;
         (0..count).map(move |i| Self {

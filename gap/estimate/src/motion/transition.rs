@@ -14,8 +14,8 @@ pub(crate) const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 /// Weights of the rates.
 pub(crate) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
-/// Largest number of halvings of a step.
-pub(crate) const MOST_HALVINGS: u32 = 5;
+/// Largest number of parts of a step.
+pub(crate) const MOST_PARTS: u32 = 32;
 /// Relative error of a rate at which a step is halved.
 const UNEVEN: f64 = 0.1;
 /// Largest step relative to the shortest decay time: longer ones are unstable.
@@ -74,15 +74,17 @@ impl<'a> Span<'a> {
     }
 }
 
-/// Fills the stages from the state in the first one; writes z⁺ and F.
+/// Fills the stages from the state in the first one; writes z⁺ and F. Returns the number of equal parts in which the
+/// step has to be taken instead, where the rates of the first `own` states have a kink, such as that of regularised dry
+/// friction, or decay fast; 1 otherwise.
 pub(crate) fn step(
     plant: &Plant<'_>,
     span: Span<'_>,
     scratch: &mut Scratch,
     stages: &mut Stages<'_>,
-    after: &mut [f64],
-    f: &mut [f64],
-) {
+    [after, f]: [&mut [f64]; 2],
+    own: usize,
+) -> u32 {
     let (n, h) = (plant.n, span.h);
     let nn = n * n;
     after.copy_from_slice(&stages.z[..n]);
@@ -95,12 +97,16 @@ pub(crate) fn step(
         );
         let a = &mut stages.a[i * nn..(i + 1) * nn];
         plant.jacobian(span.place(i, z), scratch, k, a);
+        let stiff = decays(a, n, own, h);
+        if stiff > 1 {
+            return stiff;
+        }
         add_scaled(h * WEIGHTS[i], k, after);
         let (x, next_x) = stages.x.split_at_mut((i + 1) * nn);
         let x = &x[i * nn..];
         if i == 3 {
             add_product(h * WEIGHTS[i], a, x, n, f);
-            return;
+            break;
         }
         let (first, next) = stages.z.split_at_mut((i + 1) * n);
         next[..n].copy_from_slice(&first[..n]);
@@ -121,6 +127,15 @@ pub(crate) fn step(
             .step_by(n + 1)
             .for_each(|entry| *entry += 1.0);
     }
+    1 + u32::from(is_uneven(stages.k, n, own))
+}
+
+/// Number of parts of a step that are shorter than the decay time of the first `own` states.
+fn decays(a: &[f64], n: usize, own: usize, h: f64) -> u32 {
+    // The trace of A² is the sum of the squares of the eigenvalues.
+    let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
+    let fastest = pairs.sum::<f64>().abs().sqrt();
+    ((h * fastest / STIFF).ceil() as u32).clamp(1, MOST_PARTS)
 }
 
 /// Increment of a step by an additional rate of one state, given at each stage.
@@ -142,25 +157,6 @@ pub(crate) fn added_by_rate(
         }
     }
     added
-}
-
-/// Number of halvings of a step required by the first `own` states: for a kink, such as that of
-/// regularised dry friction, or for a fast decay.
-pub(crate) fn halvings(stages: &Stages<'_>, n: usize, own: usize, h: f64) -> u32 {
-    // The trace of A² is the sum of the squares of the eigenvalues.
-    let squares = |a: &[f64]| -> f64 {
-        let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
-        pairs.sum()
-    };
-    let fastest = stages.a.chunks_exact(n * n).map(squares);
-    let fastest = fastest.fold(0.0, |most: f64, squares| most.max(squares.abs()));
-    let decays = h * fastest.sqrt() / STIFF;
-    let short_enough = |halvings: &u32| decays <= f64::from(1_u32 << halvings);
-    match (0..MOST_HALVINGS).find(short_enough) {
-        Some(0) => u32::from(is_uneven(stages.k, n, own)),
-        Some(halvings) => halvings,
-        None => MOST_HALVINGS,
-    }
 }
 
 /// Whether the rates of the first `own` states differ between stages more than in a smooth motion.

@@ -14,7 +14,7 @@ use crate::motion::closure::Closure;
 use crate::motion::command::{self, Switch};
 use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_HALVINGS, STAGES, WEIGHTS, is_uneven};
+use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, is_uneven};
 
 /// A segment. Derivatives with respect to its initial state, then to the free values.
 pub(super) struct Segment {
@@ -82,7 +82,7 @@ impl<'a> SegmentIntegrator<'a> {
         let mut is_first = true;
         for action in self.estimation.actions(self.run, self.values) {
             match action {
-                Action::Advance(advance) => self.advance(advance, 0),
+                Action::Advance(advance) => self.advance(advance, 1),
                 Action::Switch { row, input } => {
                     let switch = Switch {
                         row,
@@ -149,7 +149,7 @@ impl<'a> SegmentIntegrator<'a> {
     }
 
     /// One step of the state and its derivatives, or parts of it if it is too long.
-    fn advance(&mut self, advance: Advance, halved: u32) {
+    fn advance(&mut self, advance: Advance, of: u32) {
         let Advance { t, h, .. } = advance;
         let (n, width) = (self.n, self.width);
         let (before, by_before) = (self.z.clone(), self.by.clone());
@@ -175,11 +175,11 @@ impl<'a> SegmentIntegrator<'a> {
             }
         }
         let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
-        let is_cut = has_corners && halved < MOST_HALVINGS;
+        let is_cut = has_corners && of < MOST_PARTS;
         if is_cut && is_uneven(&rates, n, self.estimation.plant().info().state_len()) {
             (self.z, self.by) = (before, by_before);
-            for part in advance.parts(1) {
-                self.advance(part, halved + 1);
+            for part in advance.parts(2) {
+                self.advance(part, 2 * of);
             }
         }
     }

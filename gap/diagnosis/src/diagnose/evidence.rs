@@ -32,7 +32,19 @@ pub(super) struct Fitted {
 impl Fitted {
     /// Whether the sizes of all members differ from zero by more than a standard deviation.
     pub(super) fn is_there(&self) -> bool {
-        self.evidence.smallest > 1.0
+        self.evidence.smallest > SMALLEST
+    }
+
+    /// Whether a size of a member is zero within a standard deviation.
+    pub(super) fn is_idle(&self, bench: &Bench<'_>, member: usize) -> bool {
+        let setup = bench.setup(&self.members);
+        let brought = bench.brought(member, &setup);
+        let is_own = |unknown: Unknown| {
+            bench.is_wrong(&[member], unknown) || brought.iter().any(|own| own.unknown == unknown)
+        };
+        let (_, sizes) = Evidence::with_sizes(bench, &self.members, &self.fit, 0.0);
+        let mut own = sizes.iter().filter(|(unknown, _)| is_own(*unknown));
+        own.any(|(_, size)| *size <= SMALLEST)
     }
 }
 
@@ -51,6 +63,16 @@ pub(super) struct Evidence {
 
 impl Evidence {
     pub(super) fn of(bench: &Bench<'_>, members: &[usize], fit: &Fit, by_inputs: f64) -> Self {
+        Self::with_sizes(bench, members, fit, by_inputs).0
+    }
+
+    /// The same with the sizes of members in their standard deviations.
+    fn with_sizes(
+        bench: &Bench<'_>,
+        members: &[usize],
+        fit: &Fit,
+        by_inputs: f64,
+    ) -> (Self, Vec<(Unknown, f64)>) {
         let is_level = |i: usize| {
             matches!(
                 fit.free[i].unknown,
@@ -65,7 +87,7 @@ impl Evidence {
         });
         let (log_volume, deviations) = volume(&information);
         let mut occam = log_volume;
-        let mut smallest = f64::INFINITY;
+        let mut sizes: Vec<(Unknown, f64)> = Vec::new();
         let own = bench.problem.wanted.len();
         let of_error = |free: &Free, coordinate: f64| {
             let [expected, _] = free
@@ -78,7 +100,7 @@ impl Evidence {
         for (place, &i) in open.iter().enumerate() {
             let free = &fit.free[i];
             occam += if let Some((density, times)) = of_error(free, fit.coordinates[i]) {
-                smallest = smallest.min(times);
+                sizes.push((free.unknown, times));
                 density
             } else if let Some([expected, deviation]) = free.prior {
                 let off = (fit.coordinates[i] - free.to_coordinate(expected)) / deviation;
@@ -106,7 +128,7 @@ impl Evidence {
                 let left = whole.as_ref().map_or(0.0, |whole| {
                     deviations[place] / whole[(i, i)].sqrt().hypot(promised)
                 });
-                smallest = smallest.min(size / in_value * left);
+                sizes.push((free.unknown, size / in_value * left));
                 // The Jacobian of the coordinate: that of a lag is logarithmic.
                 let stretch = (in_value / deviations[place]).ln();
                 let two_sided = free.range[0] < neutral;
@@ -118,18 +140,20 @@ impl Evidence {
         for i in own..fit.free.len() {
             let free = &fit.free[i];
             if fit.at_limit[i] && free.prior.is_none() && !is_level(i) {
-                smallest = 0.0;
+                sizes.push((free.unknown, 0.0));
             }
         }
         if members.is_empty() {
-            smallest = f64::INFINITY;
+            sizes.clear();
         }
-        Self {
+        let all = sizes.iter().map(|(_, size)| *size);
+        let evidence = Self {
             log_likelihood: fit.log_likelihood,
             occam,
             by_inputs,
-            smallest,
-        }
+            smallest: all.fold(f64::INFINITY, f64::min),
+        };
+        (evidence, sizes)
     }
 
     /// Logarithm of the evidence.

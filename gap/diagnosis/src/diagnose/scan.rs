@@ -3,7 +3,10 @@
 //! A delay shifts the motion, which is far from linear in it where it is as long as the motion of a servo takes, and
 //! other effects imitate its linear part. A few values are therefore tried with the model as stated.
 
-use appell_estimate::Estimation;
+use std::collections::BTreeMap;
+use std::f64::consts::TAU;
+
+use appell_estimate::{Estimation, Innovation};
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -16,8 +19,8 @@ use crate::effects::Acts;
 const TRIED: [f64; 7] = [0.002, 0.005, 0.012, 0.025, 0.045, 0.08, 0.13];
 /// Factors on the best of them, tried in turn.
 const FINER: [f64; 3] = [1.4, 1.2, 1.1];
-/// Factors on the noise levels of the model without them.
-const QUIETER: [f64; 4] = [1.0, 0.5, 0.2, 0.1];
+/// Smallest factor on the noise levels of the model without them.
+const QUIETEST: f64 = 0.1;
 
 /// Effects on the signals of all drives that improve on the model as stated, each with the most likely common value.
 pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, DiagnoseError> {
@@ -106,7 +109,7 @@ fn sizes(members: &[usize], value: f64) -> Vec<SizeEstimates> {
     members.iter().map(size).collect()
 }
 
-/// The weighted log likelihood with a common value, at the best of some noise levels.
+/// The weighted log likelihood with a common value.
 fn likelihood(
     bench: &Bench<'_>,
     stated: &Fitted,
@@ -119,18 +122,23 @@ fn likelihood(
     for sizes in sizes(members, value) {
         place(bench, &estimation, &sizes, &mut values)?;
     }
-    let mut most = f64::NEG_INFINITY;
-    for factor in QUIETER {
-        let mut quieter = values.clone();
-        for free in &bench.problem.levels {
-            quieter[estimation.layout().place(free.unknown)?] *= factor;
-        }
-        // With too little noise the filter may diverge.
-        most = most.max(
-            estimation
-                .log_likelihood(&quieter)
-                .unwrap_or(f64::NEG_INFINITY),
-        );
+    // With too little noise the filter may diverge.
+    let likelihood = estimation.innovations(&values).map(|runs| profile(&runs));
+    Ok(bench.weight * likelihood.unwrap_or(f64::NEG_INFINITY))
+}
+
+/// The log likelihood with the most likely noise of each channel, at the gains of the given one.
+fn profile(runs: &[Vec<Innovation>]) -> f64 {
+    let mut channels: BTreeMap<usize, (f64, f64, f64)> = BTreeMap::new();
+    for innovation in runs.iter().flatten() {
+        let (count, squares, logs) = channels.entry(innovation.channel).or_default();
+        *count += 1.0;
+        *squares += innovation.whitened().powi(2);
+        *logs += (TAU * innovation.white_variance).ln();
     }
-    Ok(bench.weight * most)
+    let of_channel = |&(count, squares, logs): &(f64, f64, f64)| {
+        let variance = (squares / count).max(QUIETEST * QUIETEST);
+        logs + count * variance.ln() + squares / variance
+    };
+    -0.5 * channels.values().map(of_channel).sum::<f64>()
 }

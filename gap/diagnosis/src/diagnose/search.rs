@@ -303,7 +303,9 @@ impl<'b, 'a> Search<'b, 'a> {
     /// beside that of its joint.
     fn keep_without_idle(&mut self, whole: &Fitted) {
         let bench = self.bench;
-        let idle = (whole.members.iter()).filter(|&&own| !bench.candidate(own).is_of_drives());
+        let is_idle =
+            |&&own: &&usize| !bench.candidate(own).is_of_drives() && whole.is_idle(bench, own);
+        let idle = whole.members.iter().filter(is_idle);
         for &idle in idle.filter(|_| whole.members.len() > 1) {
             let rest = whole.members.iter().filter(|&&own| own != idle);
             let rest: Vec<usize> = rest.copied().collect();

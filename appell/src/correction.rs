@@ -26,8 +26,8 @@ pub struct Correction {
 }
 
 /// Why a file stays as it is.
-const NO_GAP: &str = "no gap beyond noise and tolerances: the file stays as it is; the first hypothesis of the report \
-    has the numbers that were fitted within their tolerances";
+const NO_GAP: &str = "no gap beyond noise and tolerances, and no number that has to change: the file stays as it is; \
+    the first hypothesis of the report has the numbers that were fitted within their tolerances";
 
 /// The robot file `path` with a hypothesis of a gap report, numbered from 1; by default the most probable one. All but
 /// the numbers that change stays as it is, and all of it where there is no gap.

@@ -8,6 +8,8 @@ use serde_json::{Value, json};
 
 use crate::{Error, Field, files};
 
+/// The share of the re-fitted parameters in the budget.
+const REFIT: &str = "refit";
 /// Name and version of the format.
 const SCHEMA: &str = "gap-report/1";
 
@@ -126,6 +128,23 @@ pub struct GapReport {
     tied: Vec<Vec<String>>,
     #[serde(default)]
     pub(crate) imperfections: Vec<Found>,
+    #[serde(default)]
+    how_far: Option<HowFar>,
+}
+
+/// The shares of the gap on the held-out runs.
+#[derive(Debug, Deserialize)]
+struct HowFar {
+    #[serde(default)]
+    budget: Vec<Share>,
+}
+
+#[derive(Debug, Deserialize)]
+struct Share {
+    effect: String,
+    interval: [f64; 2],
+    #[serde(rename = "material")]
+    is_material: bool,
 }
 
 /// A hypothesis of a report.
@@ -193,11 +212,13 @@ impl GapReport {
         Ok(found)
     }
 
-    /// The same for a robot file; `None` if there is no gap to be closed. If no effect of the library explains the gap,
+    /// The same for a robot file; `None` if there is no gap, and numbers within their tolerances hardly improve the
+    /// predictions of the held-out runs. If no effect of the library explains the gap,
     /// the numbers that were fitted without effects belong to it.
     pub(crate) fn for_robot(&self, wanted: Option<usize>) -> Result<Option<Hypothesis>, Error> {
         let found = self.numbered(wanted.unwrap_or(1))?;
-        if wanted.is_none() && found.effects.is_empty() && self.verdict == "no_gap" {
+        let is_right = found.effects.is_empty() && self.verdict == "no_gap" && !self.needs_refit();
+        if wanted.is_none() && is_right {
             return Ok(None);
         }
         if found.changes.is_some() || found.alternative().is_some() {
@@ -208,6 +229,12 @@ impl GapReport {
             changes: nominal.and_then(|nominal| nominal.changes.clone()),
             ..found.clone()
         }))
+    }
+
+    /// Whether the fitted numbers close a material share of the errors on the held-out runs.
+    fn needs_refit(&self) -> bool {
+        let mut shares = self.how_far.iter().flat_map(|far| &far.budget);
+        shares.any(|share| share.effect == REFIT && share.is_material && share.interval[0] > 0.0)
     }
 
     fn numbered(&self, place: usize) -> Result<&Hypothesis, Error> {

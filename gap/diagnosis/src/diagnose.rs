@@ -90,6 +90,7 @@ mod windows;
 mod yardstick;
 
 use crate::effects::{Effect, EffectModel, candidates};
+use appell_estimate::Recording;
 use appell_recordings::{DataSet, Part};
 
 pub use crate::held_out::AHEAD;
@@ -195,12 +196,14 @@ fn by_filter(
     let first = judged(training, model, options, &mut stage)?;
     let training_runs = HeldOut::of(&whole.all(Part::Test), &first.bench)?;
     let (judged, rest) = without_events(first, whole, model, options, &mut stage)?;
+    let is_whole = rest.is_none();
     let (fitted, rest) =
         (rest.as_ref()).map_or((training.segments, whole), |(fitted, rest)| (fitted, rest));
     let Judged {
         bench,
         screen,
         mut comparison,
+        outside,
     } = judged;
     stage("measuring the residual force");
     let test = set.only(Part::Test);
@@ -237,10 +240,17 @@ fn by_filter(
         Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
         None => None,
     };
-    for (set, runs) in [(whole, &training_runs), (&test, &held_out)] {
-        let outside = outside::windows(&bench, comparison.best(), set, &runs.recordings);
-        report.place.windows.extend(outside?);
-    }
+    let training_recordings = &training_runs.recordings;
+    let windows = |set, recordings: &[Recording]| {
+        outside::windows(&bench, comparison.best(), set, recordings)
+    };
+    let of_training = match outside.filter(|_| is_whole) {
+        Some(known) => known,
+        None => windows(whole, training_recordings)?,
+    };
+    report.place.windows.extend(of_training);
+    let of_test = windows(&test, &held_out.recordings)?;
+    report.place.windows.extend(of_test);
     let best = Leader {
         bench: &bench,
         fitted: comparison.best(),
@@ -297,13 +307,13 @@ fn by_filter(
 /// The hypotheses fitted without the windows that none of them predicts, with the segments and the runs of that fit;
 /// unchanged if there are no such windows or if that fit fails.
 fn without_events<'m>(
-    first: Judged<'m>,
+    mut first: Judged<'m>,
     whole: &DataSet,
     model: &'m EffectModel,
     options: &Options,
     stage: &mut impl FnMut(&'static str),
 ) -> Result<(Judged<'m>, Option<(DataSet, DataSet)>), DiagnoseError> {
-    let Some(rest) = outside::rest(&first, whole)? else {
+    let Some(rest) = outside::rest(&mut first, whole)? else {
         return Ok((first, None));
     };
     let fitted = rest.stretches(most_rows(&rest, options));
@@ -406,9 +416,9 @@ fn judged_beside<'m>(
     let known = before.and_then(|before| known(&bench, before).ok());
     let known = known.into_iter().collect();
     let judged = horizon::judged(bench, screen, nominal, known, over, stage)?;
-    let judged = horizon::lengthened(judged, &levels, whole, stage)?;
+    let mut judged = horizon::lengthened(judged, &levels, whole, stage)?;
     // An event is no process noise.
-    if outside::rest(&judged, whole)?.is_some() {
+    if outside::rest(&mut judged, whole)?.is_some() {
         return Ok(judged);
     }
     judged.with_coloured_noise()

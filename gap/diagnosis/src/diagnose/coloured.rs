@@ -29,6 +29,7 @@ impl Judged<'_> {
     pub(super) fn with_coloured_noise(mut self) -> Result<Self, DiagnoseError> {
         if !self.bench.is_over_windows() && !self.comparison.is_null() {
             self.comparison = weighed(&self.bench, self.comparison)?;
+            self.outside = None;
         }
         Ok(self)
     }

@@ -97,7 +97,11 @@ impl Comparison {
 
     /// Sets the probability that no effect of the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
-        self.left = leftover(bench, self.best())?;
+        self.left = if bench.leaves_nothing(self.best())? {
+            None
+        } else {
+            leftover(bench, self.best())?
+        };
         self.weigh_left(bench);
         Ok(())
     }

@@ -16,6 +16,7 @@ use super::compare::Comparison;
 use super::evidence::Fitted;
 use super::scales::{deviation, rates};
 use super::screen::Screen;
+use super::report::Window;
 use super::search::Look;
 use super::unknown::leftover;
 use crate::effects::Acts;
@@ -56,6 +57,8 @@ pub(super) struct Judged<'a> {
     pub(super) bench: Bench<'a>,
     pub(super) screen: Screen,
     pub(super) comparison: Comparison,
+    /// Windows of the training runs that the best hypothesis does not predict, once they are known.
+    pub(super) outside: Option<Vec<Window>>,
 }
 
 impl Judged<'_> {
@@ -130,6 +133,7 @@ pub(super) fn judged<'a>(
                 bench,
                 screen,
                 comparison,
+                outside: None,
             });
         }
         if none(&comparison) {
@@ -140,6 +144,7 @@ pub(super) fn judged<'a>(
             bench: over,
             screen: of_windows,
             comparison,
+            outside: None,
         });
     }
     // One-step predictions decide also if no simulation reproduces the recordings.
@@ -162,6 +167,7 @@ pub(super) fn judged<'a>(
         bench,
         screen,
         comparison,
+        outside: None,
     })
 }
 
@@ -205,6 +211,7 @@ pub(super) fn lengthened<'a>(
                 screen: Screen::of(&over, comparison.nominal())?,
                 bench: over,
                 comparison,
+                outside: None,
             });
         }
     }

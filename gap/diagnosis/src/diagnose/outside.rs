@@ -89,19 +89,31 @@ pub(super) fn windows(
 
 /// Training runs without the windows that the best hypothesis does not predict; `None` without such windows, or without
 /// a gap.
-pub(super) fn rest(judged: &Judged<'_>, whole: &DataSet) -> Result<Option<DataSet>, DiagnoseError> {
-    let comparison = &judged.comparison;
-    if comparison.is_null() {
+pub(super) fn rest(
+    judged: &mut Judged<'_>,
+    whole: &DataSet,
+) -> Result<Option<DataSet>, DiagnoseError> {
+    if judged.comparison.is_null() {
         return Ok(None);
     }
-    let bench = &judged.bench;
-    let runs = HeldOut::of(&whole.all(Part::Test), bench)?;
-    let found = windows(bench, comparison.best(), whole, &runs.recordings)?;
-    let margin = 0.5 * windows::length(bench);
+    let found = of_training(judged, whole)?;
+    let margin = 0.5 * windows::length(&judged.bench);
     let cut = found.into_iter();
     let cut = cut.map(|one| (one.run, [one.from - margin, one.to + margin]));
     let cut: Vec<_> = cut.collect();
     Ok((!cut.is_empty()).then(|| whole.without(&cut)))
+}
+
+/// The windows of the training runs.
+fn of_training(judged: &mut Judged<'_>, whole: &DataSet) -> Result<Vec<Window>, DiagnoseError> {
+    if let Some(known) = &judged.outside {
+        return Ok(known.clone());
+    }
+    let bench = &judged.bench;
+    let runs = HeldOut::of(&whole.all(Part::Test), bench)?;
+    let found = windows(bench, judged.comparison.best(), whole, &runs.recordings)?;
+    judged.outside = Some(found.clone());
+    Ok(found)
 }
 
 /// Moduli of the prediction errors, in expected standard deviations.

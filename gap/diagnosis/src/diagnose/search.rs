@@ -35,6 +35,8 @@ const BY_SLOPES: f64 = 0.5;
 const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
 pub(super) const SLACK: f64 = 40.0;
+/// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated.
+const IMITATED: f64 = 0.5;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters are not identifiable";
 
@@ -149,8 +151,12 @@ impl<'b, 'a> Search<'b, 'a> {
     /// Fits sets about the model as stated: refitted parameters may imitate a large effect, far from its optimum.
     fn start_from_stated(&mut self) -> Result<(), DiagnoseError> {
         let stated = self.bench.stated()?;
+        let [nominal, from] = [&self.fits[0], &stated].map(|fitted| fitted.fit.log_likelihood);
         for set in scanned(self.bench, &stated)? {
-            self.take_from(&stated, &set);
+            // What explains less than the tolerances do needs no start of its own.
+            if set.log_posterior - from > IMITATED * (nominal - from) {
+                self.take_from(&stated, &set);
+            }
         }
         let sets = Sets::about(self.bench, &stated, self.log_posterior(&stated))?;
         for effects in [None, Some(1), Some(2)] {

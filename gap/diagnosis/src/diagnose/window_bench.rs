@@ -5,6 +5,7 @@ use appell_estimate::{Estimation, Free, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
+use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::scales::deviation;
 use crate::identify::Problem;
@@ -105,6 +106,24 @@ impl Bench<'_> {
             .filter(|(unknown, _)| matches!(unknown, Unknown::Noise(_)));
         self.is_over_windows()
             .then(|| noise.map(|(_, value)| *value).collect())
+    }
+
+    /// Whether the errors of a robot over windows are so close to the noise of its sensors that no law for the rest can
+    /// gain much.
+    pub(super) fn leaves_nothing(&self, fitted: &Fitted) -> Result<bool, DiagnoseError> {
+        let Some(sensors) = self.noise_of_sensors().filter(|_| self.is_of_robot) else {
+            return Ok(false);
+        };
+        let mut most = 0.0;
+        for (channel, sensor) in sensors.into_iter().enumerate() {
+            let error = fitted.fit.values[fitted.layout.place(Unknown::Noise(channel))?];
+            let rows = self.recordings.iter();
+            let readings = rows.flat_map(|run| {
+                (0..run.times().len()).filter(move |&row| !run.measured(row)[channel].is_nan())
+            });
+            most += readings.count() as f64 * (error / sensor).ln().max(0.0);
+        }
+        Ok(self.weight * most < TIED)
     }
 
     /// Whether a hypothesis predicts: errors over windows are far smaller than the motion.

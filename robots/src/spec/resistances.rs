@@ -9,7 +9,7 @@ use super::units::Units;
 use super::{Writer, operand, plus};
 
 /// Rates below which dry friction fades out.
-const SLOW: f64 = 0.01;
+const SLOW: f64 = 0.004;
 
 /// The coordinate, speed or tendon on which such forces act.
 pub(super) struct Owner<'a> {

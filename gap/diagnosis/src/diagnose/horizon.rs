@@ -14,9 +14,9 @@ use super::bench::Bench;
 use super::calibration::{IMMATERIAL, TIED};
 use super::compare::Comparison;
 use super::evidence::Fitted;
+use super::report::Window;
 use super::scales::{deviation, rates};
 use super::screen::Screen;
-use super::report::Window;
 use super::search::Look;
 use super::unknown::leftover;
 use crate::effects::Acts;
@@ -121,7 +121,8 @@ pub(super) fn judged<'a>(
     if let Some((of_windows, mut comparison)) = of_windows {
         stage("testing laws outside the library");
         comparison.weigh_unknown(&over)?;
-        let whole = if comparison.leads_unknown() && !none(&comparison) {
+        let is_open = comparison.leads_unknown() && !none(&comparison);
+        let whole = if is_open && !bench.is_of_robot {
             let again = bench.fitted_again(&over, comparison.best());
             let known = again.into_iter().map(|(_, again)| again).collect();
             nothing_left(&bench, &nominal, known, stepwise.take())?

@@ -91,6 +91,20 @@ impl Held {
         moments
     }
 
+    /// Its changes from one time to another, times half the squares of the times from them to the end on their side of a
+    /// time between, divided by the whole time: the mean of its integral less the value of that at the time between.
+    fn kinks(&self, input: usize, [from, to]: [f64; 2], t: f64) -> f64 {
+        let first = self.times.partition_point(|own| *own <= from).max(1);
+        let rows = (first..self.times.len()).take_while(|&row| self.times[row] < to);
+        let of_row = |row: usize| {
+            let own = self.times[row];
+            let reach = if own >= t { to - own } else { own - from };
+            let [before, after] = [row - 1, row].map(|row| self.inputs[row * self.count + input]);
+            0.5 * (after - before) * reach * reach
+        };
+        rows.map(of_row).sum::<f64>() / (to - from)
+    }
+
     /// The line with the same moments: its value at the beginning and its slope.
     fn line(&self, input: usize, ends: [f64; 2]) -> [f64; 2] {
         let length = ends[1] - ends[0];
@@ -232,6 +246,28 @@ impl Recording {
         let [first, last] = ends.map(|end| held.held_at(input, end));
         let slope = (last - first) / (ends[1] - ends[0]);
         Some([held.mean_between(input, ends), slope])
+    }
+
+    /// The duration of the output at a time, if outputs are means.
+    pub(crate) fn duration_of_output(&self, t: f64) -> Option<f64> {
+        let (held, are_means) = self.of_outputs.as_ref()?;
+        let [from, to] = held.about(t);
+        are_means.then_some(to - from)
+    }
+
+    /// Of a rate that follows a held input: the difference of its mean over the time of an output from its value at the
+    /// middle, per unit of its slope.
+    pub(crate) fn kinks_of_output(&self, input: usize, t: f64, delay: f64) -> f64 {
+        match &self.of_outputs {
+            Some((held, true)) if input < held.count => {
+                if self.interpolation[input] != Interpolation::Hold {
+                    return 0.0;
+                }
+                let ends = held.about(t).map(|end| end - delay);
+                held.kinks(input, ends, t - delay)
+            }
+            _ => 0.0,
+        }
     }
 
     /// Number of rows of inputs before the first one.
@@ -423,6 +459,9 @@ mod tests {
         let means = stairs()?.with_outputs(true, times.clone(), inputs.clone());
         assert_eq!(means.of_output(0, 2.0, 0.0), Some([1.5, 1.0]));
         assert_eq!(means.of_output(0, 2.0, 1.0), Some([0.5, 1.0]));
+        // A rate that follows the input has a kink at the row, and its mean over ±1/2 is 1/8 above it.
+        assert_eq!(means.kinks_of_output(0, 2.0, 0.0), 0.125);
+        assert_eq!(means.kinks_of_output(0, 2.0, 0.25), 0.03125);
         let readings = stairs()?.with_outputs(false, times, inputs);
         assert_eq!(readings.of_output(0, 2.0, 0.0), Some([2.0, 0.0]));
         assert_eq!(stairs()?.of_output(0, 2.0, 0.0), None);

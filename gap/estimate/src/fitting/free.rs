@@ -171,11 +171,7 @@ impl<'a> Selection<'a> {
     }
 
     /// The Fisher information of the coordinates, from that of the values.
-    pub(crate) fn stretched(
-        &self,
-        mut information: DMatrix<f64>,
-        values: &[f64],
-    ) -> DMatrix<f64> {
+    pub(crate) fn stretched(&self, mut information: DMatrix<f64>, values: &[f64]) -> DMatrix<f64> {
         for (i, (free, &place)) in self.free.iter().zip(&self.places).enumerate() {
             let stretch = free.stretch(values[place]);
             information.row_mut(i).scale_mut(stretch);

@@ -18,7 +18,7 @@ use crate::data::recording::Recording;
 use crate::data::setup::{Disturbance, Measured, Setup};
 use crate::matrix::{add_scaled, dot, multiply, pieces, scale, transposed_multiply};
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Switch};
+use crate::motion::command::{self, Averaging, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, Span, step};
@@ -433,8 +433,10 @@ impl<'a> Pass<'a> {
         }
         let held = command::of_reading(recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &held);
+        let averaging = Averaging::of(recording, row, setup, layout, self.values);
+        let z = plant.mean_state(place, &mut self.scratch, averaging.as_ref());
         let (outputs, slopes) = (&mut self.outputs, &mut self.output_slopes);
-        plant.outputs(place, &mut self.scratch, outputs, slopes);
+        plant.outputs(Place { z: &z, ..place }, &mut self.scratch, outputs, slopes);
         held
     }
 

@@ -8,7 +8,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::add_scaled;
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Switch};
+use crate::motion::command::{self, Averaging, Switch};
 use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, is_uneven};
@@ -235,9 +235,10 @@ impl<'a> Walk<'a> {
                         let held =
                             command::of_reading(recording, row, held, setup, layout, self.values);
                         let place = Place::new(layout, self.values, t, &self.z, &held);
-                        self.system
-                            .plant
-                            .output_values(place, &mut self.scratch, &mut outputs);
+                        let averaging = Averaging::of(recording, row, setup, layout, self.values);
+                        let (plant, scratch) = (self.system.plant, &mut self.scratch);
+                        let z = plant.mean_state(place, scratch, averaging.as_ref());
+                        plant.output_values(Place { z: &z, ..place }, scratch, &mut outputs);
                     }
                     outputs[output]
                 }

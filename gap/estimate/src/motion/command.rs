@@ -96,12 +96,47 @@ pub(crate) fn of_reading(
     let mut commands = held.to_vec();
     let t = recording.times()[row];
     for (input, own) in commands.chunks_exact_mut(NUMBERS).enumerate() {
-        let mut delayed = setup.delayed.iter();
-        let delay = delayed.position(|&delayed| delayed == input);
-        let late = delay.map_or(0.0, |index| values[layout.input_delay(index)]);
+        let late = delay(input, setup, layout, values);
         if let Some([value, slope]) = recording.of_output(input, t, late) {
             own.copy_from_slice(&[t, value, slope, 0.0, 0.0]);
         }
     }
     commands
+}
+
+/// The time over which the outputs of a row are means.
+pub(crate) struct Averaging {
+    /// Its length in s.
+    pub(crate) duration: f64,
+    /// Changes of the inputs in it, as [`Recording::kinks_of_output`]; those that act by a lag make no kink.
+    pub(crate) kinks: Vec<f64>,
+}
+
+impl Averaging {
+    /// That of a row; `None` if outputs are readings.
+    pub(crate) fn of(
+        recording: &Recording,
+        row: usize,
+        setup: &Setup<'_>,
+        layout: Layout,
+        values: &[f64],
+    ) -> Option<Self> {
+        let t = recording.times()[row];
+        let duration = recording.duration_of_output(t)?;
+        let of_input = |input: usize| {
+            if setup.lagging.contains(&input) {
+                return 0.0;
+            }
+            recording.kinks_of_output(input, t, delay(input, setup, layout, values))
+        };
+        let kinks = (0..recording.input_len()).map(of_input).collect();
+        Some(Self { duration, kinks })
+    }
+}
+
+/// The delay of an input.
+fn delay(input: usize, setup: &Setup<'_>, layout: Layout, values: &[f64]) -> f64 {
+    let mut delayed = setup.delayed.iter();
+    let place = delayed.position(|&delayed| delayed == input);
+    place.map_or(0.0, |index| values[layout.input_delay(index)])
 }

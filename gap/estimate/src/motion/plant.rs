@@ -8,11 +8,11 @@
 use appell_runtime::model::{At, Gradient, Model, ModelInfo};
 use appell_runtime::signal::{Signal, SignalError};
 
-use super::command;
+use super::command::{self, Averaging};
 use super::sensors::Filter;
 use crate::data::layout::Layout;
 use crate::data::setup::Setup;
-use crate::matrix::{add_scaled, pieces};
+use crate::matrix::{add_scaled, dot, pieces};
 
 /// Relative step of a central difference of an exact gradient with respect to a drifting parameter.
 const DIFFERENCE: f64 = 1e-5;
@@ -417,6 +417,35 @@ impl<'a> Plant<'a> {
         self.view(place, u, p);
         self.model.appell(at(place, n, u, p), mass, bias, forces);
         appell_runtime::dense::lu_solve_in_place(mass, columns, self.speeds);
+    }
+
+    /// The mean state over the time of an output that is a mean: rates have kinks where inputs change, and
+    /// x̄ = x + ẍ h²/24 where they do not.
+    pub(crate) fn mean_state(
+        &self,
+        place: Place<'_>,
+        scratch: &mut Scratch,
+        averaging: Option<&Averaging>,
+    ) -> Vec<f64> {
+        let mut z = place.z.to_vec();
+        let Some(Averaging { duration, kinks }) = averaging else {
+            return z;
+        };
+        let (n, m) = (self.info().state_len(), self.m);
+        let Scratch { u, p, a, b, .. } = scratch;
+        self.view(place, u, p);
+        let (a, b) = (&mut a[..n * n], &mut b[..n * m]);
+        let mut rates = vec![0.0; n];
+        self.model.jacobians(at(place, n, u, p), &mut rates, a, b);
+        let square = duration * duration / 24.0;
+        for (state, z) in z[..n].iter_mut().enumerate() {
+            let by_states = &a[state * n..(state + 1) * n];
+            // A fast decay, such as that of dry friction at rest, is over before the end.
+            let decay = 1.0 + by_states[state].abs() * duration / 6.0;
+            *z += dot(&b[state * m..][..kinks.len()], kinks);
+            *z += square * dot(by_states, &rates) / decay;
+        }
+        z
     }
 
     /// y of all outputs.

@@ -11,7 +11,7 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
-use crate::motion::command::{self, Switch};
+use crate::motion::command::{self, Averaging, Switch};
 use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, is_uneven};
@@ -231,8 +231,11 @@ impl<'a> SegmentIntegrator<'a> {
         let held = command::of_reading(self.recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &held);
         if count > 0 {
-            let plant = self.estimation.plant();
-            plant.outputs(place, &mut self.scratch, &mut outputs, &mut slopes);
+            let (plant, scratch) = (self.estimation.plant(), &mut self.scratch);
+            let averaging = Averaging::of(self.recording, row, setup, layout, self.values);
+            let z = plant.mean_state(place, scratch, averaging.as_ref());
+            let place = Place { z: &z, ..place };
+            plant.outputs(place, scratch, &mut outputs, &mut slopes);
         }
         for (index, channel) in setup.channels.iter().enumerate() {
             let measured = self.recording.measured(row)[index];

@@ -90,7 +90,6 @@ mod windows;
 mod yardstick;
 
 use crate::effects::{Effect, EffectModel, candidates};
-use appell_estimate::Recording;
 use appell_recordings::{DataSet, Part};
 
 pub use crate::held_out::AHEAD;
@@ -240,17 +239,9 @@ fn by_filter(
         Some(rival) => Some((rival, HeldOut::of(&rival.rebound(&test)?, &rival.bench)?)),
         None => None,
     };
-    let training_recordings = &training_runs.recordings;
-    let windows = |set, recordings: &[Recording]| {
-        outside::windows(&bench, comparison.best(), set, recordings)
-    };
-    let of_training = match outside.filter(|_| is_whole) {
-        Some(known) => known,
-        None => windows(whole, training_recordings)?,
-    };
-    report.place.windows.extend(of_training);
-    let of_test = windows(&test, &held_out.recordings)?;
-    report.place.windows.extend(of_test);
+    let known = outside.filter(|_| is_whole);
+    let sets = [(whole, &training_runs), (&test, &held_out)];
+    (report.place.windows).extend(outside::of_both(&bench, comparison.best(), sets, known)?);
     let best = Leader {
         bench: &bench,
         fitted: comparison.best(),

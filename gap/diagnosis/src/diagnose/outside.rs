@@ -87,6 +87,22 @@ pub(super) fn windows(
     Ok(found)
 }
 
+/// The windows of the training runs, unless they are known, and of the held-out runs.
+pub(super) fn of_both(
+    bench: &Bench<'_>,
+    fitted: &Fitted,
+    [training, test]: [(&DataSet, &HeldOut); 2],
+    known: Option<Vec<Window>>,
+) -> Result<Vec<Window>, DiagnoseError> {
+    let of = |(set, runs): (&DataSet, &HeldOut)| windows(bench, fitted, set, &runs.recordings);
+    let mut found = match known {
+        Some(known) => known,
+        None => of(training)?,
+    };
+    found.extend(of(test)?);
+    Ok(found)
+}
+
 /// Training runs without the windows that the best hypothesis does not predict; `None` without such windows, or without
 /// a gap.
 pub(super) fn rest(

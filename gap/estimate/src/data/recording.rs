@@ -460,8 +460,11 @@ mod tests {
         assert_eq!(means.of_output(0, 2.0, 0.0), Some([1.5, 1.0]));
         assert_eq!(means.of_output(0, 2.0, 1.0), Some([0.5, 1.0]));
         // A rate that follows the input has a kink at the row, and its mean over ±1/2 is 1/8 above it.
-        assert_eq!(means.kinks_of_output(0, 2.0, 0.0), 0.125);
-        assert_eq!(means.kinks_of_output(0, 2.0, 0.25), 0.03125);
+        let kinks = [0.0, 0.25].map(|delay| means.kinks_of_output(0, 2.0, delay));
+        assert_eq!(
+            kinks.map(f64::to_bits),
+            [0.125_f64, 0.03125].map(f64::to_bits)
+        );
         let readings = stairs()?.with_outputs(false, times, inputs);
         assert_eq!(readings.of_output(0, 2.0, 0.0), Some([2.0, 0.0]));
         assert_eq!(stairs()?.of_output(0, 2.0, 0.0), None);

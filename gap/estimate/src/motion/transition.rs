@@ -135,7 +135,10 @@ fn decays(a: &[f64], n: usize, own: usize, h: f64) -> u32 {
     // The trace of A² is the sum of the squares of the eigenvalues.
     let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
     let fastest = pairs.sum::<f64>().abs().sqrt();
-    ((h * fastest / STIFF).ceil() as u32).clamp(1, MOST_PARTS)
+    // A small count.
+    #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
+    let parts = (h * fastest / STIFF).ceil() as u32;
+    parts.clamp(1, MOST_PARTS)
 }
 
 /// Increment of a step by an additional rate of one state, given at each stage.

@@ -12,8 +12,7 @@ use crate::motion::transition::{Stages, stages_len};
 pub(crate) enum Record {
     /// A step; its numbers start at `tape`.
     Advance { advance: Advance, tape: usize },
-    /// A step in parts, `parts` or more. Only the start of the step is
-    /// kept at `tape`, to save memory; sweeps recompute the parts.
+    /// A step in parts, `parts` or more. Only its start is kept at `tape`, to save memory; sweeps recompute the parts.
     Parts {
         advance: Advance,
         parts: u32,

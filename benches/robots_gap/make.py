@@ -4,8 +4,8 @@
     python3 benches/robots_gap/make.py OUT --seed N --cases K --nulls M
 
 OUT gets `cases/NAME/` and `LABELS.json` in the form that run.py reads. A robot differs from its file within the stated
-tolerances and by an effect that moves roll-outs of half a second by 3 to 100 times the noise; those of the nulls have none,
-half of them are pushed by gusts. Each case is made from a seed of its own. Needs numpy and mujoco.
+tolerances and by an effect that moves roll-outs of half a second by 3 to 100 times the noise as no numbers within tolerances
+do; those of the nulls have none, half of them are pushed by gusts. No run reaches the range of a joint. Each case is made from a seed of its own. Needs numpy and mujoco.
 """
 
 import argparse
@@ -30,6 +30,8 @@ from make_sizes import Probe
 RUNS = ("run1.csv", "run2.csv", "run3.csv", "run4.csv", "run5.csv")
 # Tolerances alone move roll-outs by no more than about so many times the noise.
 TOLERABLE = 15.0
+# Ends of a joint's range that no run comes near, as a share of it.
+NEAR = 0.02
 # Effects in turn: one of the library, two, one that no kind describes.
 GROUPS = ("single", "single", "pair", "single", "single", "unknown", "single", "single")
 
@@ -59,15 +61,15 @@ def chosen(kind, typical, probe, rng):
 
 
 def drawn(group, used, seed, typical, probe, rng):
-    """Effects of a group and their kinds: of those that show, the kinds that were used least."""
+    """Effects of a group and their kinds: of those that show, the kinds that were used least; none where none shows."""
     choices = {"pair": make_kinds.PAIRS, "unknown": [(kind,) for kind in make_kinds.UNKNOWN]}
     kinds = list(choices.get(group, [(kind,) for kind in make_kinds.SINGLE]))
     order = sorted(kinds, key=lambda choice: (used["+".join(choice)], (kinds.index(choice) - seed) % len(kinds)))
-    for choice in 3 * order:
+    for choice in 2 * order:
         found = [chosen(kind, typical, probe, rng) for kind in choice]
         if all(found):
             return found, "+".join(choice)
-    raise SystemExit("no effect shows on this robot")
+    return None
 
 
 def gusts(robot, probe_case, typical, size):
@@ -83,9 +85,29 @@ def noisier(probe, nominal):
         probe.case[name] = probe.case[name] * min(max(moved / TOLERABLE, 1.0), 6.0)
 
 
+def reaches_range(robot, runs):
+    """Whether a joint comes near an end of its range."""
+    ranges = {joint.get("name"): joint.get("range") for joint in robot.root.iter("joint") if joint.get("range")}
+    for index, joint in enumerate(robot.joints()):
+        low, high = (float(word) for word in ranges.get(joint, "-inf inf").split())
+        places = np.concatenate([run.true_q[:, index] for run in runs.values()])
+        if places.min() < low + NEAR * (high - low) or places.max() > high - NEAR * (high - low):
+            return True
+    return False
+
+
 def made(folder, seed, index, group, used, null_kind):
     """Writes one case; returns its label and the robot that was recorded."""
-    rng = np.random.default_rng([seed, index])
+    for attempt in range(20):
+        rng = np.random.default_rng([seed, index, attempt])
+        found = tried(folder, rng, index, seed, group, used, null_kind)
+        if found:
+            return found
+    raise SystemExit(f"no robot of kind {index % len(KINDS)} shows an effect away from the ends of its joints")
+
+
+def tried(folder, rng, index, seed, group, used, null_kind):
+    """One case, or nothing where no effect shows or a run reaches the range of a joint."""
     robot = KINDS[index % len(KINDS)](rng)
     case = sensors(robot, rng)
     root, offsets, robot.tolerances = make_files.perturbed(robot, rng)
@@ -93,9 +115,12 @@ def made(folder, seed, index, group, used, null_kind):
     first = Recording(robot, base, rng, case, "sines", 8.0)
     typical = make_kinds.Typical(robot, base, first)
     case["sd_t"] = 0.02 * typical.torque
-    probe = Probe(robot, base, first, case)
+    probe = Probe(robot, base, first, case, robot.tolerances["com"])
     noisier(probe, make_effects.Truth(robot.root))
-    found, kinds = ([], "") if null_kind else drawn(group, used, seed, typical, probe, rng)
+    drawn_effects = ([], "") if null_kind else drawn(group, used, seed, typical, probe, rng)
+    if not drawn_effects:
+        return None
+    found, kinds = drawn_effects
     truth = base
     for effect, size, _ in found:
         truth = truth.with_effect(effect, size)
@@ -104,6 +129,8 @@ def made(folder, seed, index, group, used, null_kind):
     seconds = rng.uniform(8, 12 if len(typical.joints) > 4 else 15)
     motions = ["sines", "steps", *rng.choice(["sines", "ramps"], 2), str(rng.choice(["steps", "ramps"]))]
     runs = {name: Recording(robot, truth, rng, case, kind, seconds) for name, kind in zip(RUNS, motions)}
+    if reaches_range(robot, runs):
+        return None
     make_files.write(folder, robot, case, runs, rng)
     label = make_files.label(robot, case, runs, found, base, truth, group, null_kind, offsets)
     return label | {"drawn": kinds, "excitation": [str(motion) for motion in motions]}, truth

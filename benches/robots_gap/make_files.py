@@ -13,34 +13,47 @@ from make_robots import text, written
 SHARES = {"mass": 0.03, "inertia": 0.10, "kp": 0.02, "kv": 0.05, "gear": 0.02, "armature": 0.10, "damping": 0.15, "frictionloss": 0.15}
 
 
-def perturbed(robot, rng):
-    """A robot that differs from its file within tolerances; the offsets in standard deviations; the tolerances."""
-    root, offsets, used = copy.deepcopy(robot.root), {}, set()
-    first = root.find(".//inertial").get("pos").split()
-    centre = float(f"{0.02 * np.linalg.norm([float(word) for word in first]):.1g}")
+def numbers(root, centre):
+    """Name -> element, attribute, entry of it and standard deviation: every number that has a tolerance."""
+    found = {}
 
-    def draw(element, name, attribute, key=None):
-        if element.get(key or attribute) is None:
-            return
-        used.add(attribute)
-        offset = float(np.clip(rng.normal(0, 0.5), -1.2, 1.2))
-        offsets[f"{name}.{attribute}"] = round(offset, 4)
-        values = [float(word) * (1 + SHARES[attribute] * offset) for word in element.get(key or attribute).split()]
-        element.set(key or attribute, " ".join(f"{value:.7g}" for value in values))
+    def every(element, name, attribute, key=None):
+        values = (element.get(key or attribute) or "").split()
+        for entry, value in enumerate(values):
+            found.setdefault(f"{name}.{attribute}", []).append((element, key or attribute, entry, SHARES[attribute] * float(value)))
 
     for body in root.iter("body"):
         own, name = body.find("inertial"), body.get("name")
-        draw(own, name, "mass")
-        draw(own, name, "inertia", "diaginertia")
-        shift = np.clip(rng.normal(0, 0.5, 3), -1.2, 1.2)
-        offsets |= {f"{name}.com.{axis}": round(float(s), 4) for axis, s in zip("xyz", shift)}
-        own.set("pos", " ".join(f"{float(word) + centre * s:.7g}" for word, s in zip(own.get("pos").split(), shift)))
+        every(own, name, "mass")
+        every(own, name, "inertia", "diaginertia")
+        found |= {f"{name}.com.{axis}": [(own, "pos", entry, centre)] for entry, axis in enumerate("xyz")}
         for joint in body.findall("joint"):
             for attribute in ("armature", "damping", "frictionloss"):
-                draw(joint, joint.get("name"), attribute)
+                every(joint, joint.get("name"), attribute)
     for drive in root.find("actuator"):
         for attribute in ("kp", "kv", "gear"):
-            draw(drive, drive.get("name"), attribute)
+            every(drive, drive.get("name"), attribute)
+    return found
+
+
+def moved(places, deviations):
+    """Moves a number by so many standard deviations."""
+    for element, key, entry, deviation in places:
+        words = element.get(key).split()
+        words[entry] = f"{float(words[entry]) + deviations * deviation:.7g}"
+        element.set(key, " ".join(words))
+
+
+def perturbed(robot, rng):
+    """A robot that differs from its file within tolerances; the offsets in standard deviations; the tolerances."""
+    root = copy.deepcopy(robot.root)
+    first = root.find(".//inertial").get("pos").split()
+    centre = float(f"{0.02 * np.linalg.norm([float(word) for word in first]):.1g}")
+    own = numbers(root, centre)
+    offsets = {name: round(float(np.clip(rng.normal(0, 0.5), -1.2, 1.2)), 4) for name in own}
+    for name, places in own.items():
+        moved(places, offsets[name])
+    used = {name.split(".")[1] for name in own} - {"com"}
     return root, offsets, {"com": centre} | {name: SHARES[name] for name in sorted(used)}
 
 

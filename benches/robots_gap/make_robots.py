@@ -72,7 +72,7 @@ class Builder:
 
     def joint(self, body, name, axis, home, reach, kind="hinge", limits=(-2.9, 2.9)):
         first = list(body).index(body.find("inertial")) + 1
-        joint = ET.Element("joint", name=name, type=kind, axis=axis, range=text(limits))
+        joint = ET.Element("joint", name=name, type=kind, axis=axis, **({"range": text(limits)} if limits else {}))
         body.insert(first, joint)
         self.home[name], self.reach[name] = home, reach
         return joint
@@ -181,7 +181,7 @@ def crane(rng):
     boom = built.link(cart, "boom", [0, 0, 0], length, 0.4 * mass)
     built.joint(boom, "boom_tilt", "0 1 0", math.pi - 0.5, rng.uniform(0.3, 0.5), limits=(0.5, 5.5))
     load = built.link(boom, "load", [0, 0, length], 0.7 * length, 0.2 * mass)
-    built.joint(load, "swing", "0 1 0", 0.5, 0.3)
+    built.joint(load, "swing", "0 1 0", 0.5, 0.3, limits=None)
     built.drive(rng.random() < 0.4, passive=("swing",))
     torques = built.actuator[0].tag == "motor"
     return built.robot("cart with a boom and a hanging load that nothing drives", torques, "load")

@@ -1,24 +1,30 @@
 """How far an effect moves roll-outs of half a second, in units of the noise; sizes that move them so far."""
 
+import copy
 import math
+from dataclasses import replace
 from types import SimpleNamespace
 
 import mujoco
 import numpy as np
 
+import make_files
 import make_laws
 import rollouts
 from make_robots import written
 
 # Effects move roll-outs by so much.
 LEAST, MOST = 3.0, 100.0
+# An effect shows beside the tolerances if the best values within them explain it worse by so many nats in one run.
+DECIDABLE = 25.0
 
 
 class Probe:
     """Roll-outs of the robot without an effect, and how far others are from them."""
 
-    def __init__(self, robot, truth, recording, case):
-        self.robot, self.truth, self.recording, self.case = robot, truth, recording, case
+    def __init__(self, robot, truth, recording, case, centre):
+        self.robot, self.truth, self.recording, self.case, self.centre = robot, truth, recording, case, centre
+        self.slopes = None
         every = round(rollouts.WINDOW * case["rate"])
         self.starts = range(every, len(recording.times) - every - 1, every)
         self.every = every
@@ -47,20 +53,41 @@ class Probe:
             found.append(data.qpos[places].copy())
         return found
 
-    def moved(self, effect, size):
-        """The largest over the joints of the rms difference in units of the noise."""
+    def difference(self, effect, size):
+        """Differences of an effect from what is without it in units of the noise, as it is read; none where it has no motion."""
         truth = self.truth.with_effect(effect, size)
         try:
             difference = (self.rolled(truth) - self.plain) / self.case["sd"]
         except mujoco.FatalError:
-            return math.inf
+            return None
         scales = [truth.scales.get(joint, 0.0) for joint in self.recording.joints]
         lags = [truth.lags.get(joint, 0.0) for joint in self.recording.joints]
         at_start = self.recording.true_q[list(self.starts)][:, None, :]
         rates = self.recording.true_v[list(self.starts)][:, None, :]
         difference = difference + (scales * (self.plain - at_start) - lags * rates) / self.case["sd"]
-        far = np.sqrt(np.mean(difference**2, axis=(0, 1))).max()
-        return float(far) if np.isfinite(far) else math.inf
+        return difference if np.isfinite(difference).all() else None
+
+    def moved(self, effect, size):
+        """The largest over the joints of the rms difference in units of the noise."""
+        difference = self.difference(effect, size)
+        return math.inf if difference is None else float(np.sqrt(np.mean(difference**2, axis=(0, 1))).max())
+
+    def tolerated(self):
+        """Differences by one standard deviation of each number that has a tolerance, a column each."""
+        if self.slopes is None:
+            columns = []
+            for name in make_files.numbers(self.truth.root, self.centre):
+                root = copy.deepcopy(self.truth.root)
+                make_files.moved(make_files.numbers(root, self.centre)[name], 1.0)
+                columns.append(((self.rolled(replace(self.truth, root=root)) - self.plain) / self.case["sd"]).ravel())
+            self.slopes = np.column_stack(columns)
+        return self.slopes
+
+    def decidable(self, effect, size):
+        """Whether no values within the tolerances move the robot as the effect does."""
+        slopes, difference = self.tolerated(), self.difference(effect, size).ravel()
+        values = np.linalg.solve(slopes.T @ slopes + np.eye(slopes.shape[1]), slopes.T @ difference)
+        return 0.5 * (np.sum((difference - slopes @ values) ** 2) + values @ values) > DECIDABLE
 
     def size(self, effect, target):
         """A size that moves roll-outs by about so much; none where that takes too large a one."""
@@ -75,4 +102,4 @@ class Probe:
                 break
             size = min(larger, effect.limit)
         moved = self.moved(effect, size)
-        return (size, moved) if LEAST <= moved <= MOST else None
+        return (size, moved) if LEAST <= moved <= MOST and self.decidable(effect, size) else None

@@ -168,7 +168,7 @@ fn states_that_are_smoothed_over_long_steps_are_those_over_short_ones() {
     ignore = "asks Linux how much memory was used"
 )]
 fn steps_in_many_parts_do_not_fill_the_memory() {
-    // Its parts on one tape would be 100 MB.
+    // Their parts on one tape are 100 MB.
     const ROWS: usize = 10_000;
     let most_used = || -> f64 {
         let status = std::fs::read_to_string("/proc/self/status").unwrap();
@@ -179,6 +179,7 @@ fn steps_in_many_parts_do_not_fill_the_memory() {
     let model = sticking();
     let setup = Setup {
         has_corners: true,
+        most_memory: 1 << 23,
         ..Setup::new(&model, &[Measured::State(1)])
     };
     let drive = Drive::sines(ROWS, BETWEEN, &[2.0]);
@@ -187,9 +188,16 @@ fn steps_in_many_parts_do_not_fill_the_memory() {
     let recordings = [record(&setup, &values, &drive, &mut Random::of("sticks"))];
     let estimation = Estimation::new(&setup, &recordings).unwrap();
     let before = most_used();
-    estimation.gradient(&values).unwrap();
+    let (_, taken_again) = estimation.gradient(&values).unwrap();
     let taken = most_used() - before;
     assert!(taken < 30.0, "{taken} MB");
+    let setup = Setup {
+        most_memory: usize::MAX,
+        ..setup
+    };
+    let estimation = Estimation::new(&setup, &recordings).unwrap();
+    let (_, kept) = estimation.gradient(&values).unwrap();
+    assert_eq!(taken_again, kept);
 }
 
 #[test]

@@ -136,6 +136,20 @@ fn friction_is_found_from_a_robot_file_and_written_into_it() {
 }
 
 #[test]
+fn numbers_within_their_tolerances_are_written_where_they_close_the_errors() {
+    let folder = rig::dry(0.0);
+    folder.write("robot.xml", &ROBOT.replace("mass=\"1\"", "mass=\"1.1\""));
+    folder.write("recording.toml", &DESCRIPTION.replace("2 %", "6 %"));
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
+    assert_eq!(report["verdict"], "no_gap");
+    let report = ["--report", "report.json", "-o", "better.xml"];
+    folder.done(&[&["apply", "robot.xml"], &report[..]].concat());
+    let mass = number_after(&folder.read("better.xml"), "mass=\"");
+    assert!((mass - 1.0).abs() < 0.02, "{mass}");
+}
+
+#[test]
 fn an_unknown_number_or_joint_of_a_robot_is_named_with_its_line() {
     let folder = rig();
     for (right, wrong, message) in [

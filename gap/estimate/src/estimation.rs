@@ -3,17 +3,13 @@
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
-use nalgebra::DMatrix;
-
 use super::EstimateError;
 use crate::data::layout::Layout;
 use crate::data::recording::Recording;
 use crate::data::setup::{Measured, Setup};
 use crate::data::unknown::Unknown;
 use crate::gradient::adjoint::adjoint;
-use crate::gradient::tangent::Direction;
 use crate::kalman::filter::{Innovation, Pass};
-use crate::matrix::add;
 use crate::motion::plant::{Plant, StateSpace};
 use crate::motion::timeline::{Action, timeline};
 use crate::motion::transition::stages_len;
@@ -34,14 +30,6 @@ pub struct Estimation<'a> {
     knots: Vec<f64>,
     /// Tapes of passes that are over: a search needs one after the other, and fresh memory is slow.
     tapes: Mutex<Vec<Vec<f64>>>,
-}
-
-/// Derivatives of the log-likelihood.
-pub(crate) struct Slopes {
-    /// With respect to all values.
-    pub(crate) gradient: Vec<f64>,
-    /// Fisher information of the means along the directions.
-    pub(crate) means: DMatrix<f64>,
 }
 
 impl<'a> Estimation<'a> {
@@ -131,43 +119,8 @@ impl<'a> Estimation<'a> {
     ///
     /// [`Model::has_adjoint`]: appell_runtime::model::Model::has_adjoint
     pub fn gradient(&self, values: &[f64]) -> Result<(f64, Vec<f64>), EstimateError> {
-        let (sum, slopes) = self.slopes_if(values, &[], |_| true)?;
-        Ok((sum, slopes.map_or_else(Vec::new, |slopes| slopes.gradient)))
-    }
-
-    /// The log-likelihood; and its slopes if the predicate holds for it, as the reverse sweep takes twice as long as
-    /// the filter.
-    pub(crate) fn slopes_if(
-        &self,
-        values: &[f64],
-        directions: &[Direction],
-        is_wanted: impl Fn(f64) -> bool,
-    ) -> Result<(f64, Option<Slopes>), EstimateError> {
-        self.check(values)?;
-        let of_run = |run| match directions {
-            [] => Ok((self.pass(run, values, true)?, DMatrix::zeros(0, 0))),
-            some => self.kept_with_information(run, values, some),
-        };
-        let (mut passes, means): (Vec<_>, Vec<_>) = self.over_runs(of_run)?.into_iter().unzip();
-        let sum = passes.iter().map(Pass::log_likelihood).sum();
-        let slopes = is_wanted(sum).then(|| {
-            let slopes = in_parallel(passes.iter_mut(), |pass| {
-                let mut gradient = vec![0.0; self.layout.len()];
-                adjoint(pass, &(0..usize::MAX), &mut gradient);
-                gradient
-            });
-            let mut gradient = vec![0.0; self.layout.len()];
-            for own in &slopes {
-                add(own, &mut gradient);
-            }
-            Slopes {
-                gradient,
-                means: means.into_iter().sum(),
-            }
-        });
-        let tapes = passes.into_iter().map(|pass| pass.tape);
-        self.tapes().extend(tapes);
-        Ok((sum, slopes))
+        let kept = self.kept(values, &[])?;
+        Ok((kept.log_likelihood(), kept.slopes().gradient))
     }
 
     /// The gradient of the log-likelihood of some rows of a run, given all rows before them: their
@@ -230,7 +183,7 @@ impl<'a> Estimation<'a> {
     }
 
     /// The tapes; a poisoned lock is ignored, as no code panics while holding it.
-    fn tapes(&self) -> MutexGuard<'_, Vec<Vec<f64>>> {
+    pub(super) fn tapes(&self) -> MutexGuard<'_, Vec<Vec<f64>>> {
         self.tapes.lock().unwrap_or_else(PoisonError::into_inner)
     }
 

@@ -4,12 +4,14 @@
 //! |---|---|
 //! | `adjoint.rs` | the gradient with respect to all values, by one reverse sweep over the tape |
 //! | `information.rs` | Fisher information in few passes |
+//! | `kept.rs` | gradient and information of the means from one pass |
 //! | `levels.rs` | that of levels, in one pass |
 //! | `sensitivity.rs` | scores and Fisher information, value by value |
 //! | `tangent.rs` | directional derivatives of innovations, in one pass |
 
 pub(crate) mod adjoint;
 pub(crate) mod information;
+pub(crate) mod kept;
 mod levels;
 pub(crate) mod sensitivity;
 pub(crate) mod tangent;

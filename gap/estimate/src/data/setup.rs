@@ -70,6 +70,9 @@ pub struct Setup<'a> {
     /// Whether steps are halved at kinks of the equations, such as those of regularised dry
     /// friction. Smooth motions have none; likelihoods of chaotic ones are smoother without.
     pub has_corners: bool,
+    /// Memory in bytes up to which a gradient keeps the parts of such steps; beyond, its reverse sweep takes them
+    /// again. The result is the same.
+    pub most_memory: usize,
 }
 
 impl<'a> Setup<'a> {
@@ -88,6 +91,7 @@ impl<'a> Setup<'a> {
             drifting: Vec::new(),
             longest_step: f64::INFINITY,
             has_corners: false,
+            most_memory: 1 << 30,
         }
     }
 

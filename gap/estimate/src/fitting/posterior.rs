@@ -6,6 +6,7 @@ use nalgebra::{DMatrix, DVector};
 use super::free::{Coordinate, Free, Selection};
 use crate::EstimateError;
 use crate::estimation::Estimation;
+use crate::gradient::kept::Kept;
 
 /// Largest change of a logarithm in one step, for levels whose optimum is zero.
 const REACH: f64 = 3.0;
@@ -51,10 +52,10 @@ impl Posterior<'_, '_> {
     /// The same with the information of the means.
     pub(crate) fn with_means(&self, values: &[f64]) -> Result<Point, EstimateError> {
         let (values, coordinates) = self.clamped(values)?;
-        let point = self.point_if(values, coordinates, |_| true)?;
-        point.ok_or(EstimateError::Singular {
-            what: "the information",
-        })
+        let kept = self
+            .estimation
+            .kept(&values, &self.selection.directions())?;
+        Ok(self.kept_point(&values, coordinates, kept))
     }
 
     /// After a step from a point.
@@ -73,26 +74,21 @@ impl Posterior<'_, '_> {
             let rise = likelihood + prior - point.objective;
             rise > gain || point.is_rounding(rise)
         };
-        let next = self.point_if(values, coordinates, may_be).ok()??;
+        let directions = self.selection.directions();
+        let kept = self.estimation.kept(&values, &directions).ok()?;
+        let next =
+            may_be(kept.log_likelihood()).then(|| self.kept_point(&values, coordinates, kept))?;
         (next.objective.is_finite() && point.is_worse_than(&next, gain)).then_some(next)
     }
 
-    /// The point with the information of the means, if its log-likelihood fulfils a predicate.
-    fn point_if(
-        &self,
-        values: Vec<f64>,
-        coordinates: DVector<f64>,
-        is_wanted: impl Fn(f64) -> bool,
-    ) -> Result<Option<Point>, EstimateError> {
-        let directions = self.selection.directions();
-        let (likelihood, slopes) = self.estimation.slopes_if(&values, &directions, is_wanted)?;
-        Ok(slopes.map(|slopes| {
-            let means = self.selection.stretched(slopes.means, &values);
-            Point {
-                means: Some(means),
-                ..self.point(values, coordinates, likelihood, &slopes.gradient)
-            }
-        }))
+    /// The point of a pass that is kept.
+    fn kept_point(&self, values: &[f64], coordinates: DVector<f64>, kept: Kept<'_, '_>) -> Point {
+        let likelihood = kept.log_likelihood();
+        let slopes = kept.slopes();
+        Point {
+            means: Some(self.selection.stretched(slopes.means, values)),
+            ..self.point(values.to_vec(), coordinates, likelihood, &slopes.gradient)
+        }
     }
 
     /// Values within their limits, and their coordinates.

@@ -9,7 +9,7 @@
 //! its command from the reading of the same row, so that the command contains the noise of the reading and would be
 //! correlated with the innovation. The command of a row therefore acts on later readings only.
 
-use nalgebra::{DMatrix, DMatrixView};
+use nalgebra::DMatrix;
 
 use appell_runtime::model::At;
 
@@ -128,23 +128,6 @@ impl Estimation<'_> {
             added_squares,
         })
     }
-
-    /// The pass of a run that is kept on a tape, and the Fisher information of its means along some directions.
-    pub(crate) fn kept_with_information<'b>(
-        &'b self,
-        run: usize,
-        values: &'b [f64],
-        directions: &[Direction],
-    ) -> Result<(Pass<'b>, DMatrix<f64>), EstimateError> {
-        let actions = self.actions(run, values);
-        let pass = self.fresh(run, values, &actions, Some(self.blank_tape()));
-        let columns = directions.len();
-        let mut forward = Forward::new(self, pass, directions, None, columns);
-        forward.over(&actions)?;
-        let samples = forward.pass.samples.len();
-        let slopes = DMatrixView::from_slice(&forward.rows, columns, samples);
-        Ok((forward.pass, slopes * slopes.transpose()))
-    }
 }
 
 /// Rows in a certain order as a matrix: block by block, since it lies in memory by columns.
@@ -163,9 +146,9 @@ fn by_columns(rows: &[f64], columns: usize, order: &[usize]) -> DMatrix<f64> {
 }
 
 /// Derivatives of the state along a run.
-struct Forward<'p, 'a> {
+pub(super) struct Forward<'p, 'a> {
     estimation: &'p Estimation<'a>,
-    pass: Pass<'p>,
+    pub(super) pass: Pass<'p>,
     directions: Vec<Direction>,
     shapes: Option<Shapes<'p>>,
     columns: usize,
@@ -185,14 +168,14 @@ struct Forward<'p, 'a> {
     /// Whether inputs have changed since the last step.
     switched: bool,
     /// Derivatives of the whitened innovations.
-    rows: Vec<f64>,
+    pub(super) rows: Vec<f64>,
     /// The mean time between rows in s.
     interval: f64,
     added_squares: Vec<f64>,
 }
 
 impl<'p, 'a> Forward<'p, 'a> {
-    fn new(
+    pub(super) fn new(
         estimation: &'p Estimation<'a>,
         pass: Pass<'p>,
         directions: &[Direction],
@@ -249,7 +232,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    fn over(&mut self, actions: &[Action]) -> Result<(), EstimateError> {
+    pub(super) fn over(&mut self, actions: &[Action]) -> Result<(), EstimateError> {
         actions.iter().try_for_each(|&action| self.act(action))
     }
 

@@ -23,9 +23,6 @@ use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, Span, step};
 
-/// Numbers on all tapes up to which they keep the parts of steps, 1 GiB.
-const MOST_NUMBERS: usize = 1 << 27;
-
 /// The innovation of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Innovation {
@@ -337,7 +334,8 @@ impl<'a> Pass<'a> {
 
     /// Whether the tapes of all runs would take too much memory with the parts of steps.
     fn is_long(&self) -> bool {
-        self.tape.len() > MOST_NUMBERS / self.system.layout.runs.max(1)
+        let each = self.system.setup.most_memory / self.system.layout.runs.max(1);
+        self.tape.len() > each / size_of::<f64>()
     }
 
     /// Closes the loops.

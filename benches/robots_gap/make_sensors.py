@@ -20,7 +20,7 @@ def reading_delay(joint):
     def apply(truth, size):
         truth.lags[joint] = size
 
-    return Effect(f"sensor_delay@{joint}", apply, 0.005, 0.04, any_of(f"sensor_delay@({joint}|{joint}_(pos|vel|eff))"), [], "s", mjcf=False)
+    return Effect(f"sensor_delay@{joint}", apply, 0.005, 0.04, any_of(f"sensor_delay@({joint}|{joint}_(pos|vel|eff))", also=[f"sensor_delay@{joint}_vel"]), [], "s", mjcf=False)
 
 
 def dead_zone(drive, guess, limit):

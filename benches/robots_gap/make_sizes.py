@@ -40,8 +40,10 @@ class Probe:
         recording, data = self.recording, mujoco.MjData(model)
         own = [model.joint(joint) for joint in recording.joints]
         places = [joint.qposadr[0] for joint in own]
-        data.qpos[places] = recording.true_q[start]
-        data.qvel[[joint.dofadr[0] for joint in own]] = recording.true_v[start]
+        # The same readings at the start.
+        scales = np.array([1 + truth.scales.get(joint, 0.0) for joint in recording.joints])
+        data.qpos[places] = recording.true_q[start] / scales
+        data.qvel[[joint.dofadr[0] for joint in own]] = recording.true_v[start] / scales
         data.time = recording.times[start]
         zones = [truth.zones.get(name, 0.0) for name in self.robot.drives()]
         values = np.column_stack([make_laws.dead_zone(u, zone) for u, zone in zip(recording.u.T, zones)])
@@ -50,7 +52,7 @@ class Probe:
         for row in range(start, start + self.every):
             data.ctrl[:] = values[row]
             mujoco.mj_step(model, data, nstep=round((recording.times[row + 1] - recording.times[row]) / model.opt.timestep))
-            found.append(data.qpos[places].copy())
+            found.append(scales * data.qpos[places])
         return found
 
     def difference(self, effect, size):
@@ -60,11 +62,9 @@ class Probe:
             difference = (self.rolled(truth) - self.plain) / self.case["sd"]
         except mujoco.FatalError:
             return None
-        scales = [truth.scales.get(joint, 0.0) for joint in self.recording.joints]
         lags = [truth.lags.get(joint, 0.0) for joint in self.recording.joints]
-        at_start = self.recording.true_q[list(self.starts)][:, None, :]
         rates = self.recording.true_v[list(self.starts)][:, None, :]
-        difference = difference + (scales * (self.plain - at_start) - lags * rates) / self.case["sd"]
+        difference = difference - lags * rates / self.case["sd"]
         return difference if np.isfinite(difference).all() else None
 
     def moved(self, effect, size):

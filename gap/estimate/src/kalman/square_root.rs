@@ -16,9 +16,10 @@ pub(crate) fn triangularise(rows: &mut [f64], n: usize, factor: &mut [f64]) {
         let length = dot(mirror, mirror).sqrt();
         // The sign that avoids cancellation.
         let pivot = if mirror[0] > 0.0 { -length } else { length };
-        if pivot != 0.0 {
+        // Directions that have died out, whose squares are no numbers any more, are as none.
+        let scale = (pivot * (mirror[0] - pivot)).recip();
+        if scale.is_finite() {
             mirror[0] -= pivot;
-            let scale = 1.0 / (pivot * mirror[0]);
             for row in below.chunks_exact_mut(width) {
                 let along = scale * dot(mirror, &row[i..]);
                 add_scaled(along, mirror, &mut row[i..]);
@@ -70,6 +71,19 @@ mod tests {
         let mut factor = [1.0; 4];
         triangularise(&mut [0.0; 6], 2, &mut factor);
         assert!(factor.iter().all(|&entry| entry == 0.0));
+    }
+
+    #[test]
+    fn directions_that_have_died_out_are_as_none() {
+        for size in [1e-150, 1e-160, 1e-200, 1e-320] {
+            let mut factor = [1.0; 4];
+            triangularise(&mut [size, size, 1.0, 2.0], 2, &mut factor);
+            let length = f64::hypot(factor[2], factor[3]);
+            assert!(
+                (length - 5.0_f64.sqrt()).abs() < 1e-12,
+                "{size}: {factor:?}"
+            );
+        }
     }
 
     #[test]

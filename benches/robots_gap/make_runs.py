@@ -121,7 +121,7 @@ class Recording:
         gust, memory = np.zeros(len(dofs)), math.exp(-1 / (0.1 * case["rate"]))
         if not tracker:
             self.fill(data, aims[0])
-        states, self.u = [], []
+        states, torques, self.u = [], [], []
         with make_laws.acting(model, truth.laws):
             for row, begin in enumerate(grid):
                 command = aims[row]
@@ -139,10 +139,12 @@ class Recording:
                 data.qfrc_applied[dofs] = gust
                 end = grid[row + 1] if row + 1 < len(grid) else begin + 1 / case["rate"]
                 for _ in range(round((end - begin) / FINE)):
-                    states.append((data.qpos[places], data.qvel[dofs], data.qfrc_actuator[dofs]))
+                    states.append((data.qpos[places], data.qvel[dofs]))
                     mujoco.mj_step(model, data)
+                    torques.append(data.qfrc_actuator[dofs])
         settled = sum(round((b - a) / FINE) for a, b in zip(grid[: len(before)], grid[1:]))
-        self.q, self.v, self.torque = (np.array(values) for values in zip(*states))
+        self.q, self.v = (np.array(values) for values in zip(*states))
+        self.torque = np.array(torques)
         self.u = np.array(self.u[len(before) :])
         self.sample(settled, sensors, truth, case, scale)
 

@@ -1,59 +1,51 @@
-//! Initial delays and lags of all drives.
+//! Initial delays and lags of all drives, and initial limits of loads and inputs.
 //!
 //! A delay shifts the motion, which is far from linear in it where it is as long as the motion of a servo takes, and
-//! other effects imitate its linear part. A few values are therefore tried with the model as stated.
+//! other effects imitate its linear part. A limit has no linear part at all. A few values are therefore tried with the
+//! model as stated.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::TAU;
 
-use appell_estimate::{Estimation, Innovation};
+use appell_estimate::{Estimation, Innovation, Unknown};
 
 use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
 use super::initial::{SizeEstimates, place};
 use super::sets::Set;
-use crate::effects::Acts;
+use crate::effects::{Acts, Part};
 
 /// Values that are tried, in s.
 const TRIED: [f64; 7] = [0.002, 0.005, 0.012, 0.025, 0.045, 0.08, 0.13];
+/// Limits that are tried, relative to the stated value of the first variant.
+const LIMITS: [f64; 9] = [2.8, 2.1, 1.6, 1.2, 0.9, 0.66, 0.5, 0.37, 0.28];
 /// Factors on the best of them, tried in turn.
 const FINER: [f64; 3] = [1.4, 1.2, 1.1];
 /// Smallest factor on the noise levels of the model without them.
 const QUIETEST: f64 = 0.1;
 
-/// Effects on the signals of all drives that improve on the model as stated, each with the most likely common value.
+/// Effects that improve on the model as stated: on the signals of all drives, each with the most likely common value,
+/// and limits.
 pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, DiagnoseError> {
     let mut sets = Vec::new();
     for members in groups(bench) {
-        let mut scan = Scan {
-            bench,
-            stated,
-            members: &members,
-            value: 0.0,
-            likelihood: stated.fit.log_likelihood,
-        };
+        let mut scan = Scan::of(bench, stated, &members, None);
         for tried in TRIED {
             if !scan.attempt(tried)? && scan.value > 0.0 {
                 break;
             }
         }
-        if scan.value == 0.0 {
-            continue;
+        sets.extend(scan.finer(&FINER)?);
+    }
+    for (limit, shape) in limits(bench) {
+        let members = [limit];
+        let mut scan = Scan::of(bench, stated, &members, Some(shape));
+        let first = bench.effects.info().parameters[shape].value;
+        for factor in LIMITS {
+            scan.attempt(factor * first)?;
         }
-        for factor in FINER {
-            let centre = scan.value;
-            if !scan.attempt(centre * factor)? {
-                scan.attempt(centre / factor)?;
-            }
-        }
-        sets.push(Set {
-            sizes: sizes(&members, scan.value),
-            log_posterior: scan.likelihood,
-            members,
-            levels: 1.0,
-            starts: vec![Vec::new()],
-        });
+        sets.extend(scan.finer(&FINER[1..])?);
     }
     Ok(sets)
 }
@@ -63,25 +55,109 @@ struct Scan<'s, 'a> {
     bench: &'s Bench<'a>,
     stated: &'s Fitted,
     members: &'s [usize],
-    /// The best one, zero for none, and its log likelihood.
+    /// The parameter that is tried; the size of the members if there is none.
+    shape: Option<usize>,
+    /// The best value, zero for none, and its log likelihood.
     value: f64,
     likelihood: f64,
 }
 
-impl Scan<'_, '_> {
+impl<'s, 'a> Scan<'s, 'a> {
+    fn of(
+        bench: &'s Bench<'a>,
+        stated: &'s Fitted,
+        members: &'s [usize],
+        shape: Option<usize>,
+    ) -> Self {
+        Self {
+            bench,
+            stated,
+            members,
+            shape,
+            value: 0.0,
+            likelihood: stated.fit.log_likelihood,
+        }
+    }
+
     /// Tries a value; returns whether it is better. A lag shorter than a step is like a delay, but takes long.
     fn attempt(&mut self, value: f64) -> Result<bool, DiagnoseError> {
         let is_lag = |&member: &usize| matches!(self.bench.candidate(member).acts, Acts::Lag(_));
         if value < self.bench.step && self.members.iter().any(is_lag) {
             return Ok(false);
         }
-        let likelihood = likelihood(self.bench, self.stated, self.members, value)?;
+        let likelihood = self.likelihood(value)?;
         let is_better = likelihood > self.likelihood;
         if is_better {
             (self.value, self.likelihood) = (value, likelihood);
         }
         Ok(is_better)
     }
+
+    /// Tries values about the best one; the effect with the best of them, if it improves on the model as stated.
+    fn finer(mut self, factors: &[f64]) -> Result<Option<Set>, DiagnoseError> {
+        if self.value == 0.0 {
+            return Ok(None);
+        }
+        for factor in factors {
+            let centre = self.value;
+            if !self.attempt(centre * factor)? {
+                self.attempt(centre / factor)?;
+            }
+        }
+        let setup = self.bench.setup(self.members);
+        let estimation = Estimation::new(&setup, &self.bench.recordings)?;
+        Ok(Some(Set {
+            sizes: sizes(self.members, self.value),
+            log_posterior: self.likelihood,
+            members: self.members.to_vec(),
+            levels: 1.0,
+            starts: vec![self.shaped(&estimation, self.value)?],
+        }))
+    }
+
+    /// The weighted log likelihood with a common value.
+    fn likelihood(&self, value: f64) -> Result<f64, DiagnoseError> {
+        let bench = self.bench;
+        let setup = bench.setup(self.members);
+        let estimation = Estimation::new(&setup, &bench.recordings)?;
+        let mut values = bench.carried(self.stated, &estimation);
+        for sizes in sizes(self.members, value) {
+            place(bench, &estimation, &sizes, &mut values)?;
+        }
+        for (place, value) in self.shaped(&estimation, value)? {
+            values[place] = value;
+        }
+        // With too little noise the filter may diverge.
+        let likelihood = estimation.innovations(&values).map(|runs| profile(&runs));
+        Ok(bench.weight * likelihood.unwrap_or(f64::NEG_INFINITY))
+    }
+
+    /// The place of the parameter that is tried, with a value.
+    fn shaped(
+        &self,
+        estimation: &Estimation<'_>,
+        value: f64,
+    ) -> Result<Vec<(usize, f64)>, DiagnoseError> {
+        let shape = self.shape.map(|shape| {
+            let place = estimation.layout().place(Unknown::Parameter(shape))?;
+            Ok((place, value))
+        });
+        shape.into_iter().collect()
+    }
+}
+
+/// The first variant of each limit, with the parameter that is its value.
+fn limits(bench: &Bench<'_>) -> Vec<(usize, usize)> {
+    let mut seen = BTreeSet::new();
+    let all = bench.effects.candidates.iter().enumerate();
+    let limits = all.filter_map(|(number, candidate)| {
+        let own = bench.own(candidate);
+        let is_switched = own.iter().any(|(_, part)| *part == Part::Switch);
+        let shape = own.into_iter().find(|(_, part)| part.is_shape());
+        let (shape, _) = shape.filter(|_| is_switched && seen.insert(candidate.name()))?;
+        Some((number, shape))
+    });
+    limits.collect()
 }
 
 /// The delays, and the lags, of all drives.
@@ -107,24 +183,6 @@ fn sizes(members: &[usize], value: f64) -> Vec<SizeEstimates> {
         deviations: vec![value],
     };
     members.iter().map(size).collect()
-}
-
-/// The weighted log likelihood with a common value.
-fn likelihood(
-    bench: &Bench<'_>,
-    stated: &Fitted,
-    members: &[usize],
-    value: f64,
-) -> Result<f64, DiagnoseError> {
-    let setup = bench.setup(members);
-    let estimation = Estimation::new(&setup, &bench.recordings)?;
-    let mut values = bench.carried(stated, &estimation);
-    for sizes in sizes(members, value) {
-        place(bench, &estimation, &sizes, &mut values)?;
-    }
-    // With too little noise the filter may diverge.
-    let likelihood = estimation.innovations(&values).map(|runs| profile(&runs));
-    Ok(bench.weight * likelihood.unwrap_or(f64::NEG_INFINITY))
 }
 
 /// The log likelihood with the most likely noise of each channel, at the gains of the given one.

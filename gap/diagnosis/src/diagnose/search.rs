@@ -25,6 +25,8 @@ const RIVALS: usize = 6;
 const FEW_RIVALS: usize = 2;
 /// Number of single effects about which sets are also evaluated.
 const SINGLES: usize = 6;
+/// Number of single effects that are fitted about the model as stated.
+const STRONG: usize = 4;
 /// Largest number of linearisations.
 const ROUNDS: usize = 4;
 /// Sets are fitted if their expected log posterior is below the best one by at most this, plus a part of the gain of
@@ -35,7 +37,8 @@ const BY_SLOPES: f64 = 0.5;
 const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
 pub(super) const SLACK: f64 = 40.0;
-/// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated.
+/// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated, and of
+/// the gain of the best single effect that others have to promise.
 const IMITATED: f64 = 0.5;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters are not identifiable";
@@ -158,13 +161,33 @@ impl<'b, 'a> Search<'b, 'a> {
                 self.take_from(&stated, &set);
             }
         }
-        let sets = Sets::about(self.bench, &stated, self.log_posterior(&stated))?;
+        let without = self.log_posterior(&stated);
+        let sets = Sets::about(self.bench, &stated, without)?;
+        for set in self.strong_singles(&sets, without) {
+            self.take_from(&stated, set);
+        }
         for effects in [None, Some(1), Some(2)] {
             for set in self.worth_a_fit(&sets, LEADING, effects) {
                 self.take_from(&stated, set);
             }
         }
         Ok(())
+    }
+
+    /// The single effects that promise at least a part of what the best of them promises: to first order another effect
+    /// at the same place may imitate a large one.
+    fn strong_singles<'s>(&self, sets: &'s [Set], without: f64) -> Vec<&'s Set> {
+        let mut told = BTreeSet::new();
+        let singles = sets.iter().filter(|set| {
+            let names = names(self.bench.effects, &set.members);
+            names.len() == 1 && told.insert(names)
+        });
+        let singles: Vec<&Set> = singles.take(STRONG).collect();
+        let most = singles
+            .first()
+            .map_or(0.0, |set| set.log_posterior - without);
+        let is_strong = |set: &&Set| set.log_posterior - without > IMITATED * most.max(TIED);
+        singles.into_iter().filter(is_strong).collect()
     }
 
     /// Adds the most promising effects to the best hypothesis while that improves it, and fits the rivals of the result.

@@ -300,3 +300,28 @@ fn a_locked_joint_needs_no_channel() {
         folder.fails(3, &["recording", "."], &[message]);
     }
 }
+
+#[test]
+fn the_torque_of_a_joint_without_an_actuator_may_be_recorded() {
+    let folder = rig();
+    let tool = r#"<body name="tool"><joint name="wrist"/><geom size="0.01" mass="0.1"/></body>
+    </body>"#;
+    folder.write("robot.xml", &ROBOT.replace("</body>", tool));
+    for run in ["a.csv", "b.csv", "c.csv"] {
+        let text = folder.read(run);
+        let lines = text.lines().enumerate();
+        let longer = lines.map(|(row, line)| match row {
+            0 => format!("{line},effort\n"),
+            _ => format!("{line},0\n"),
+        });
+        folder.write(run, &longer.collect::<String>());
+    }
+    let effort = |name: &str| {
+        let line = format!("effort = {{ measures = \"{name}\", unit = \"N*m\", noise_std = 0.1 }}");
+        DESCRIPTION.replace("[runs]", &format!("{line}\n[runs]"))
+    };
+    folder.write("recording.toml", &effort("wrist.torque"));
+    folder.done(&["recording", "."]);
+    folder.write("recording.toml", &effort("wirst.torque"));
+    folder.fails(3, &["recording", "."], &["wirst.torque"]);
+}

@@ -112,7 +112,7 @@ pub(crate) fn channel(
     let label = role.label(named.mechanism);
     let unit = unit(fields, table, role, named);
     let stated = fields.deviation(table, "noise_std");
-    if stated.is_some() && !matches!(role, Role::Measures(_)) {
+    if stated.is_some() && table.get("measures").is_none() {
         let message = "only measured channels have noise";
         fields.tell(Code::NotAllowedHere, message, at, "remove `noise_std`");
         return None;
@@ -285,6 +285,10 @@ fn interpolation(
 
 fn measured(fields: &mut Fields<'_>, name: &str, at: Span, named: Named<'_>) -> Option<Role> {
     let mechanism = named.mechanism;
+    // A log has zeros there.
+    if named.robot.is_some_and(|robot| robot.is_undriven(name)) {
+        return Some(Role::Recorded);
+    }
     let found = named.measured(name);
     if found.is_none() {
         let is_input = mechanism.inputs.iter().any(|i| i.label.name == name);

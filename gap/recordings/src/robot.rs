@@ -124,6 +124,13 @@ impl Robot {
         })
     }
 
+    /// Whether a name is the torque of a joint on which no actuator acts.
+    pub(crate) fn is_undriven(&self, name: &str) -> bool {
+        let joint = name.strip_suffix(".torque");
+        let mut joints = self.dictionary.joints.iter();
+        joints.any(|own| Some(own.name.as_str()) == joint && own.torque.is_none())
+    }
+
     /// The input of an actuator.
     pub(crate) fn input(&self, name: &str) -> Option<&str> {
         let mut actuators = self.dictionary.actuators.iter();

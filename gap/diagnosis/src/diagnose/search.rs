@@ -155,9 +155,12 @@ impl<'b, 'a> Search<'b, 'a> {
     fn start_from_stated(&mut self) -> Result<(), DiagnoseError> {
         let stated = self.bench.stated()?;
         let [nominal, from] = [&self.fits[0], &stated].map(|fitted| fitted.fit.log_likelihood);
-        for set in scanned(self.bench, &stated)? {
-            // What explains less than the tolerances do needs no start of its own.
-            if set.log_posterior - from > IMITATED * (nominal - from) {
+        let scanned = scanned(self.bench, &stated)?;
+        let all = scanned.iter().map(|set| set.log_posterior);
+        let most = all.fold(nominal, f64::max);
+        for set in scanned {
+            // What explains less than the tolerances or another effect needs no start of its own.
+            if set.log_posterior - from > IMITATED * (most - from) {
                 self.take_from(&stated, &set);
             }
         }

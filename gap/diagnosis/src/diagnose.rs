@@ -271,6 +271,9 @@ fn by_filter(
     report.verdict = report
         .verdict
         .after(&report.which, how_far.as_ref(), bench.is_over_windows());
+    if let Some(far) = &how_far {
+        report.without_immaterial_law(far);
+    }
     let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
         stage("drawing");

@@ -4,7 +4,7 @@ use nalgebra::DMatrix;
 use serde::Serialize;
 
 pub use super::advice::{Advice, Open};
-use super::calibration::TIED;
+use super::calibration::{IMMATERIAL, TIED};
 use super::changes::{Changes, Refitted};
 pub use super::pictures::{ForceHistory, ForceLaw, MissingForce, Pictures, Trace};
 pub use super::value::{QUANTILE, Value};
@@ -501,6 +501,38 @@ pub struct Report {
 }
 
 impl Report {
+    /// A law beside no effect that closes nothing of the gap, where re-fitted parameters close all of it, is no gap: the
+    /// probability of `unknown` falls with what the law closes.
+    pub(super) fn without_immaterial_law(&mut self, far: &HowFar) {
+        let closed = |is_it: fn(&Share) -> bool| {
+            let mut budget = far.budget.iter();
+            budget.find(|part| is_it(part)).map(|part| part.closed)
+        };
+        let (Some(refit), Some(law)) = (closed(Share::is_refit), closed(Share::is_law)) else {
+            return;
+        };
+        let mut listed = self.which.iter().filter(|one| !one.is_unknown());
+        let is_beside_nothing = listed.next().is_some_and(|one| one.effects.is_empty());
+        if !is_beside_nothing || refit < 1.0 - IMMATERIAL {
+            return;
+        }
+        let part = (law / IMMATERIAL).clamp(0.0, 1.0);
+        let unknown = self.which.iter_mut().find(|one| one.is_unknown());
+        let removed = unknown.map_or(0.0, |unknown| {
+            let before = unknown.probability;
+            unknown.probability *= part;
+            before - unknown.probability
+        });
+        for one in &mut self.which {
+            one.probability /= (1.0 - removed).max(f64::MIN_POSITIVE);
+        }
+        (self.which).sort_by(|a, b| b.probability.total_cmp(&a.probability));
+        if self.which[0].effects.is_empty() {
+            self.verdict = GapVerdict::NoGap;
+            self.place = Where::nowhere();
+        }
+    }
+
     /// The most probable hypothesis of the library.
     pub fn leading(&self) -> Option<&Hypothesis> {
         self.which.iter().find(|one| !one.is_unknown())

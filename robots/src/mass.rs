@@ -229,20 +229,6 @@ pub(crate) fn damp(drives: &mut [Drive], links: &[Link], tendons: &[Tendon]) -> 
     true
 }
 
-/// By freedom: the acceleration per force along it, as drawn and with all others free. Nothing if the robot is too large
-/// for that.
-pub(crate) fn mobilities(links: &[Link], tendons: &[Tendon]) -> Vec<(Freedom, f64)> {
-    let freedoms = Freedom::all(links);
-    if freedoms.len() > MOST_FREEDOMS {
-        return Vec::new();
-    }
-    let drawn = Configuration::new(links, |_| 0.0).poses(links);
-    let inverse = inverse(matrix(links, tendons, &drawn).entries);
-    let all = freedoms.into_iter().enumerate();
-    all.map(|(row, freedom)| (freedom, inverse[row][row]))
-        .collect()
-}
-
 /// The first freedom without inertia along it, from the leaves of the tree inwards.
 ///
 /// The freedoms are reduced to the independent ones: `rows` are the equations between them in reduced echelon form.

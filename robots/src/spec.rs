@@ -15,7 +15,6 @@ use appell_spec::limits::{MAX_ITEMS, MAX_SENTENCE};
 use crate::assembly::Configuration;
 use crate::dictionary::{BodyName, Dictionary, JointName};
 use crate::format::Format;
-use crate::kinematics::Freedom;
 use crate::letters::{Numbers, Parameter};
 use crate::loops::Equations;
 use crate::model::{Link, Motion, Robot};
@@ -58,8 +57,6 @@ pub(crate) struct Writer<'a> {
     start: Option<&'a Configuration>,
     /// Whether joints have inputs of their own, since actuators are not read.
     driven: bool,
-    /// Accelerations of freedoms per force, where there is dry friction.
-    mobilities: Vec<(Freedom, f64)>,
     /// What actuators exert, by body.
     torques: Vec<drives::Exerted>,
     dictionary: Dictionary,
@@ -191,7 +188,6 @@ impl<'a> Writer<'a> {
             weightless: Vec::new(),
             start: None,
             driven: robot.drives.is_none(),
-            mobilities: resistances::mobilities(robot),
             torques: Vec::new(),
             dictionary: Dictionary::default(),
             coordinates: Section::default(),

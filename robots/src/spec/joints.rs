@@ -33,12 +33,7 @@ impl Writer<'_> {
         };
         self.damping(&owner, joint.damping, &rate);
         self.spring(&owner, joint.stiffness, joint.relaxed);
-        self.friction(
-            &owner,
-            joint.friction,
-            &rate,
-            Some([self.tree.bodies[index].link, 0]),
-        );
+        self.friction(&owner, joint.friction, &rate);
         if joint.armature != 0.0 || self.numbers.patterns.names(&joint.name, "armature") {
             self.armature(joint, &q, &units);
         }
@@ -157,7 +152,7 @@ impl Writer<'_> {
             units,
         };
         self.damping(&owner, joint.damping, speed);
-        self.friction(&owner, joint.friction, speed, None);
+        self.friction(&owner, joint.friction, speed);
     }
 
     /// Armature of a ball joint or a free joint.

@@ -1,20 +1,15 @@
 //! Damping, springs and dry friction along a coordinate, a speed or the length of a tendon.
 
-use crate::kinematics::Freedom;
 use crate::letters::{Kind, Number, quantity};
-use crate::mass;
 use crate::model::Polynomial;
-use crate::model::Robot;
 use crate::rotation::is_zero;
 use crate::table::Item;
 
 use super::units::Units;
 use super::{Writer, operand, plus};
 
-/// Rates below which dry friction fades out: those that it stops within this time, in s, but no larger than `SLOW` and
-/// no smaller than a hundredth of it.
-const STOPS: f64 = 1e-3;
-const SLOW: f64 = 0.004;
+/// Rates below which dry friction fades out, for an angle and for a length: that of an arm of a tenth of a meter.
+const SLOW: [f64; 2] = [0.004, 0.0004];
 
 /// The coordinate, speed or tendon on which such forces act.
 pub(super) struct Owner<'a> {
@@ -210,14 +205,8 @@ impl Writer<'_> {
         self.resist(owner, "spring", &force);
     }
 
-    /// Dry friction, along a freedom of a link if it is that of a joint.
-    pub(super) fn friction(
-        &mut self,
-        owner: &Owner<'_>,
-        friction: f64,
-        rate: &str,
-        along: Option<[usize; 2]>,
-    ) {
+    /// Dry friction.
+    pub(super) fn friction(&mut self, owner: &Owner<'_>, friction: f64, rate: &str) {
         if friction == 0.0 && !self.chosen(owner, "frictionloss") {
             return;
         }
@@ -228,33 +217,10 @@ impl Writer<'_> {
             attribute: "frictionloss",
             about: "dry friction",
         };
-        let mut known = self.mobilities.iter();
-        let own = known.find(|(one, _)| Some([one.link, one.component]) == along);
-        let slow = own.map_or(SLOW, |(_, mobility)| {
-            fades_below(STOPS * friction * mobility)
-        });
         let friction = self.of_owner(owner.called, owner.of, owner.kind, number);
-        let slow = quantity(slow, owner.units.rate);
+        let is_angle = owner.units.coordinate == "rad";
+        let slow = quantity(SLOW[usize::from(!is_angle)], owner.units.rate);
         let force = format!("-{friction}*smooth_sign({rate}, {slow})");
         self.resist(owner, "friction", &force);
     }
-}
-
-/// Accelerations of the freedoms per force, where they have dry friction.
-pub(super) fn mobilities(robot: &Robot) -> Vec<(Freedom, f64)> {
-    let mut joints = robot.links.iter().filter_map(|link| link.joint.as_ref());
-    if joints.any(|joint| joint.friction > 0.0) {
-        mass::mobilities(&robot.links, &robot.tendons)
-    } else {
-        Vec::new()
-    }
-}
-
-/// A rate within the limits, in two digits.
-fn fades_below(rate: f64) -> f64 {
-    let rate = if rate > 0.0 { rate.min(SLOW) } else { SLOW };
-    let rate = rate.max(0.01 * SLOW);
-    let digit = 10.0_f64.powf(rate.log10().floor() - 1.0);
-    let digits = (rate / digit).round();
-    digits / (1.0 / digit).round()
 }

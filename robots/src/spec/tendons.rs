@@ -67,7 +67,7 @@ impl Writer<'_> {
                 units: &units,
             };
             self.damping(&owner, tendon.damping, &rate);
-            self.friction(&owner, tendon.friction, &rate, None);
+            self.friction(&owner, tendon.friction, &rate);
             if !is_zero(tendon.stiffness) {
                 let [from, to] = tendon.relaxed.map(|end| tendon.length.constant - end);
                 let beyond = |end: f64| plus(&length, &quantity(end, units.coordinate));

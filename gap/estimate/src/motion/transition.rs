@@ -15,7 +15,7 @@ pub(crate) const STAGES: [f64; 3] = [0.5, 0.5, 1.0];
 pub(crate) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0];
 
 /// Largest number of parts of a step.
-pub(crate) const MOST_PARTS: u32 = 32;
+pub(crate) const MOST_PARTS: u32 = 256;
 /// Relative error of a rate at which a step is halved.
 const UNEVEN: f64 = 0.1;
 /// Largest step relative to the shortest decay time: longer ones are unstable.

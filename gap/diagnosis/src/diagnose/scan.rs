@@ -20,6 +20,8 @@ use crate::effects::{Acts, Part};
 const TRIED: [f64; 7] = [0.002, 0.005, 0.012, 0.025, 0.045, 0.08, 0.13];
 /// Limits that are tried, relative to the stated value of the first variant.
 const LIMITS: [f64; 9] = [2.8, 2.1, 1.6, 1.2, 0.9, 0.66, 0.5, 0.37, 0.28];
+/// Loss in log likelihood that tells that a limit is too low.
+const WORSE: f64 = 10.0;
 /// Factors on the best of them, tried in turn.
 const FINER: [f64; 3] = [1.4, 1.2, 1.1];
 /// Smallest factor on the noise levels of the model without them.
@@ -32,7 +34,7 @@ pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, Di
     for members in groups(bench) {
         let mut scan = Scan::of(bench, stated, &members, None);
         for tried in TRIED {
-            if !scan.attempt(tried)? && scan.value > 0.0 {
+            if !scan.betters(tried)? && scan.value > 0.0 {
                 break;
             }
         }
@@ -43,7 +45,11 @@ pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, Di
         let mut scan = Scan::of(bench, stated, &members, Some(shape));
         let first = bench.effects.info().parameters[shape].value;
         for factor in LIMITS {
-            scan.attempt(factor * first)?;
+            // Below a limit that the drive exceeds, all others are worse.
+            let likelihood = scan.attempt(factor * first)?;
+            if likelihood < stated.fit.log_likelihood - WORSE {
+                break;
+            }
         }
         sets.extend(scan.finer(&FINER[1..])?);
     }
@@ -79,18 +85,23 @@ impl<'s, 'a> Scan<'s, 'a> {
         }
     }
 
-    /// Tries a value; returns whether it is better. A lag shorter than a step is like a delay, but takes long.
-    fn attempt(&mut self, value: f64) -> Result<bool, DiagnoseError> {
+    /// Tries a value; returns whether it is the best one.
+    fn betters(&mut self, value: f64) -> Result<bool, DiagnoseError> {
+        self.attempt(value)?;
+        Ok(self.value.total_cmp(&value).is_eq())
+    }
+
+    /// Tries a value; returns its log likelihood. A lag shorter than a step is like a delay, but takes long.
+    fn attempt(&mut self, value: f64) -> Result<f64, DiagnoseError> {
         let is_lag = |&member: &usize| matches!(self.bench.candidate(member).acts, Acts::Lag(_));
         if value < self.bench.step && self.members.iter().any(is_lag) {
-            return Ok(false);
+            return Ok(f64::NEG_INFINITY);
         }
         let likelihood = self.likelihood(value)?;
-        let is_better = likelihood > self.likelihood;
-        if is_better {
+        if likelihood > self.likelihood {
             (self.value, self.likelihood) = (value, likelihood);
         }
-        Ok(is_better)
+        Ok(likelihood)
     }
 
     /// Tries values about the best one; the effect with the best of them, if it improves on the model as stated.
@@ -100,7 +111,7 @@ impl<'s, 'a> Scan<'s, 'a> {
         }
         for factor in factors {
             let centre = self.value;
-            if !self.attempt(centre * factor)? {
+            if !self.betters(centre * factor)? {
                 self.attempt(centre / factor)?;
             }
         }

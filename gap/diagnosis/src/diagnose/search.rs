@@ -30,9 +30,10 @@ const STRONG: usize = 4;
 /// Largest number of linearisations.
 const ROUNDS: usize = 4;
 /// Sets are fitted if their expected log posterior is below the best one by at most this, plus a part of the gain of
-/// that one: the linearisation is inaccurate for large sizes.
+/// that one: the linearisation is inaccurate for large sizes. Of a robot a smaller one, as its strong single effects are
+/// all fitted.
 const WORTH: f64 = 1.5 * TIED;
-const BY_SLOPES: f64 = 0.5;
+const BY_SLOPES: [f64; 2] = [0.5, 0.25];
 /// Parts of the sizes that are tried as initial values.
 const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
@@ -244,6 +245,12 @@ impl<'b, 'a> Search<'b, 'a> {
                 .fits
                 .iter()
                 .position(|own| own.members == single.members);
+            // More effects beside a single one have to gain by it.
+            let gains = |set: &&Set| {
+                let holds = single.members.iter().all(|own| set.members.contains(own));
+                !holds || set.log_posterior > log_posterior
+            };
+            let sets: Vec<Set> = sets.iter().filter(gains).cloned().collect();
             for set in self.worth_a_fit(&sets, LEADING, None) {
                 self.take(from.unwrap_or(0), set);
             }
@@ -258,7 +265,8 @@ impl<'b, 'a> Search<'b, 'a> {
         let best = sets
             .first()
             .map_or(fitted, |set| set.log_posterior.max(fitted));
-        let least = best - WORTH - BY_SLOPES * (best - log(0)).max(0.0);
+        let part = BY_SLOPES[usize::from(self.bench.is_of_robot)];
+        let least = best - WORTH - part * (best - log(0)).max(0.0);
         let leading = self.best().map_or(&[][..], |best| &self.fits[best].members);
         let is_new = |set: &&Set| {
             let is_fitted = self.fits.iter().any(|own| own.members == set.members);

@@ -15,8 +15,10 @@ from make_robots import written
 
 # Effects move roll-outs by so much.
 LEAST, MOST = 3.0, 100.0
-# An effect shows beside the tolerances if the best values within them explain it worse by so many nats in one run.
+# An effect shows beside the tolerances if the best values within them explain it worse by so many nats in one run and leave
+# such a part of what it moves.
 DECIDABLE = 25.0
+LEFT = 0.05
 
 
 class Probe:
@@ -87,7 +89,8 @@ class Probe:
         """Whether no values within the tolerances move the robot as the effect does."""
         slopes, difference = self.tolerated(), self.difference(effect, size).ravel()
         values = np.linalg.solve(slopes.T @ slopes + np.eye(slopes.shape[1]), slopes.T @ difference)
-        return 0.5 * (np.sum((difference - slopes @ values) ** 2) + values @ values) > DECIDABLE
+        left = np.sum((difference - slopes @ values) ** 2)
+        return 0.5 * (left + values @ values) > DECIDABLE and left > LEFT * np.sum(difference**2)
 
     def size(self, effect, target):
         """A size that moves roll-outs by about so much; none where that takes too large a one."""

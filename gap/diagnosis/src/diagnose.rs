@@ -268,12 +268,7 @@ fn by_filter(
         _ => best,
     };
     let how_far = held_out.how_far(&bench, &comparison, &leader, before.as_ref(), options)?;
-    report.verdict = report
-        .verdict
-        .after(&report.which, how_far.as_ref(), bench.is_over_windows());
-    if let Some(far) = &how_far {
-        report.without_immaterial_law(far);
-    }
+    report.settle(how_far.as_ref(), bench.is_over_windows());
     let horizons = held_out.horizons(&bench, &comparison, &leader)?;
     let pictures = if options.pictures {
         stage("drawing");

@@ -501,9 +501,17 @@ pub struct Report {
 }
 
 impl Report {
+    /// The verdict after predictions of the held-out runs.
+    pub(super) fn settle(&mut self, far: Option<&HowFar>, is_by_simulation: bool) {
+        self.verdict = self.verdict.after(&self.which, far, is_by_simulation);
+        if let Some(far) = far {
+            self.without_immaterial_law(far);
+        }
+    }
+
     /// A law beside no effect that closes nothing of the gap, where re-fitted parameters close all of it, is no gap: the
     /// probability of `unknown` falls with what the law closes.
-    pub(super) fn without_immaterial_law(&mut self, far: &HowFar) {
+    fn without_immaterial_law(&mut self, far: &HowFar) {
         let closed = |is_it: fn(&Share) -> bool| {
             let mut budget = far.budget.iter();
             budget.find(|part| is_it(part)).map(|part| part.closed)

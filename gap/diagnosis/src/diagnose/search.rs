@@ -182,7 +182,12 @@ impl<'b, 'a> Search<'b, 'a> {
     /// at the same place may imitate a large one.
     fn strong_singles<'s>(&self, sets: &'s [Set], without: f64) -> Vec<&'s Set> {
         let mut told = BTreeSet::new();
+        // Biases and scales of channels are linear.
+        let is_of_channel = |&own: &usize| self.bench.candidate(own).acts.channel().is_some();
         let singles = sets.iter().filter(|set| {
+            if set.members.iter().any(is_of_channel) {
+                return false;
+            }
             let names = names(self.bench.effects, &set.members);
             names.len() == 1 && told.insert(names)
         });

@@ -168,6 +168,20 @@ fn states_that_are_smoothed_over_long_steps_are_those_over_short_ones() {
     ignore = "asks Linux how much memory was used"
 )]
 fn steps_in_many_parts_do_not_fill_the_memory() {
+    // In a process of its own, where no other test takes memory meanwhile.
+    const ALONE: &str = "APPELL_TEST_ALONE";
+    if std::env::var_os(ALONE).is_none() {
+        let name = "estimate_corners::steps_in_many_parts_do_not_fill_the_memory";
+        let mut alone = std::process::Command::new(std::env::current_exe().unwrap());
+        let output = alone
+            .args([name, "--exact"])
+            .env(ALONE, "1")
+            .output()
+            .unwrap();
+        let said = String::from_utf8_lossy(&output.stdout);
+        assert!(said.contains("1 passed"), "{said}");
+        return;
+    }
     // Their parts on one tape are 100 MB.
     const ROWS: usize = 10_000;
     let most_used = || -> f64 {

@@ -439,8 +439,12 @@ fn source(reading: &mut Reading<'_>, name: &Text, folder: &Path) -> Result<Optio
         return Source::shipped(&name.text).map(Some);
     }
     if folder.join(&name.text).exists() {
+        let study = reading.study;
+        let set = study.motion.set.iter().map(|entry| &entry.name);
+        let given = set.chain(study.vary.iter().map(|vary| &vary.name));
+        let numbers: Vec<&str> = given.map(|name| name.text.as_str()).collect();
         return match reading.file(folder, name) {
-            Some(path) => Source::read(&path).map(Some),
+            Some(path) => reading.at(name, Source::read_with(&path, &numbers)),
             None => Ok(None),
         };
     }

@@ -159,7 +159,13 @@ impl Model {
 
     /// The values of the spec, to be changed by texts with units.
     pub fn setup(&self) -> Result<Setup<'_>, Error> {
-        Setup::new(&self.source.file, &self.source.text, self.info())
+        let Source {
+            file, text, robot, ..
+        } = &self.source;
+        Ok(Setup {
+            robot: robot.as_deref(),
+            ..Setup::new(file, text, self.info())?
+        })
     }
 
     /// Integrates the equations of motion.

@@ -136,22 +136,35 @@ fn library() -> Vec<(&'static str, Spec)> {
 }
 
 fn read_with(paths: &[PathBuf], source: Option<&Source>) -> Result<DataSet, Error> {
-    let spec = source.map(Spec::from);
     if let Some(path) = paths.iter().find(|path| !path.exists()) {
         let message = format!("there is no folder or file `{}`", path.display());
         return Err(Error::request(Field::Recordings, message));
     }
     let described = |path: &PathBuf| path.is_dir() || path.ends_with(MANIFEST);
-    match (paths, spec) {
-        ([folder], spec) if described(folder) => {
+    match (paths, source) {
+        ([folder], source) if described(folder) => {
+            let spec = source.map(Spec::from);
             with_doubts(appell_recordings::read(folder, &library(), spec)?)
         }
         (paths, _) if paths.iter().any(described) => Err(Error::request(
             Field::Recordings,
             "give one data set, or CSV files and their mechanism",
         )),
-        (paths, Some(spec)) => with_doubts(appell_recordings::read_bare(spec, paths)?),
+        // Columns have the names of the spec, also of one that is made from a robot file.
+        (paths, Some(source)) => {
+            let (file, text) = (source.file.clone(), source.text.clone());
+            with_doubts(appell_recordings::read_bare(Spec { file, text }, paths)?)
+        }
         (_, None) => Err(Error::request(Field::Recordings, UNNAMED)),
+    }
+}
+
+/// The spec of a data set.
+pub fn source(set: &DataSet) -> Source {
+    let mut shipped = ALL.iter();
+    Source {
+        shipped: shipped.find(|shipped| shipped.spec == set.spec.text),
+        ..Source::of(&*set.spec.file, &*set.spec.text)
     }
 }
 
@@ -162,13 +175,7 @@ fn with_doubts(mut set: DataSet) -> Result<DataSet, Error> {
     if set.findings.iter().any(is_slow) {
         return Ok(set);
     }
-    let mut shipped = ALL.iter();
-    let source = Source {
-        file: set.spec.file.clone(),
-        text: set.spec.text.clone(),
-        shipped: shipped.find(|shipped| shipped.spec == set.spec.text),
-    };
-    let equations = Equations::at_hand(&source)?;
+    let equations = Equations::at_hand(&source(&set))?;
     for doubt in units::doubts(&set, equations.model()) {
         let kind = if doubt.is_sign {
             FindingKind::Sign

@@ -11,6 +11,7 @@ use appell_spec::units::{self, UnitError};
 use appell_spec::{Mechanism, Scope, Snippet, did_you_mean, formula};
 
 use crate::formula::Workbench;
+use crate::source::Robot;
 use crate::{Error, Field};
 
 /// A name with the text of its value, such as `R=30cm`.
@@ -66,6 +67,8 @@ pub struct Setup<'a> {
     pub initial: Vec<f64>,
     /// Whether states must stay in their declared ranges.
     pub watch_ranges: bool,
+    /// The robot file of which it is the spec.
+    pub robot: Option<&'a Robot>,
 }
 
 impl<'a> Setup<'a> {
@@ -80,7 +83,14 @@ impl<'a> Setup<'a> {
             parameters,
             initial,
             watch_ranges: true,
+            robot: None,
         })
+    }
+
+    /// The name in the spec of a quantity, which a robot file may call otherwise.
+    pub fn in_spec<'n>(&'n self, name: &'n str) -> &'n str {
+        let of_file = (self.robot).and_then(|robot| robot.imported.dictionary.in_spec(name));
+        of_file.unwrap_or(name)
     }
 
     /// Sets parameters; an expression may use parameters set before it.
@@ -93,7 +103,12 @@ impl<'a> Setup<'a> {
         unique(assignments, field)?;
         for assignment in assignments {
             let Assignment { name, value } = assignment;
-            let index = known(field, name, "parameter", &self.info.parameters)?;
+            let index = known(
+                field,
+                self.in_spec(name),
+                "parameter",
+                &self.info.parameters,
+            )?;
             let unit = self.unit_of_parameter(index);
             let value = self.value(field, name, value, unit)?;
             inside(name, value, self.limits_of_parameter(index), unit)
@@ -126,7 +141,7 @@ impl<'a> Setup<'a> {
 
     /// Index of a state.
     pub fn state(&self, field: Field, name: &str) -> Result<usize, Error> {
-        known(field, name, "state", &self.info.states)
+        known(field, self.in_spec(name), "state", &self.info.states)
     }
 
     /// The declared inputs.
@@ -136,7 +151,7 @@ impl<'a> Setup<'a> {
 
     /// Index of a declared input.
     pub fn input(&self, field: Field, name: &str) -> Result<usize, Error> {
-        known(field, name, "input", self.declared_inputs())
+        known(field, self.in_spec(name), "input", self.declared_inputs())
     }
 
     /// A constant value of a declared input, with its index.

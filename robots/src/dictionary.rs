@@ -15,6 +15,34 @@ pub struct Dictionary {
     pub gravity: [f64; 3],
 }
 
+impl Dictionary {
+    /// The name in the spec of a number `ELEMENT.ATTRIBUTE`, a joint, its velocity `JOINT.velocity`, or an actuator.
+    pub fn in_spec(&self, name: &str) -> Option<&str> {
+        let number = || {
+            let mut entries = self.entries.iter().filter(|one| !one.parameter.is_empty());
+            let is_it = |one: &&Entry| {
+                let rest = name.strip_prefix(one.element.as_str());
+                rest.and_then(|rest| rest.strip_prefix('.')) == Some(one.attribute)
+            };
+            entries.find(is_it).map(|one| one.parameter.as_str())
+        };
+        let joint = || {
+            let mut joints = self.joints.iter();
+            joints.find_map(|joint| match name.strip_prefix(joint.name.as_str())? {
+                "" => Some(joint.coordinate.as_str()),
+                ".velocity" => Some(&joint.velocity),
+                _ => None,
+            })
+        };
+        let actuator = || {
+            let mut actuators = self.actuators.iter();
+            let actuator = actuators.find(|one| one.name == name);
+            actuator.map(|one| one.input.as_str())
+        };
+        number().or_else(joint).or_else(actuator)
+    }
+}
+
 /// A number of the file that is a parameter of the spec.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Entry {

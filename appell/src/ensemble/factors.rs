@@ -53,13 +53,14 @@ pub(super) fn targets(reading: &mut Reading<'_>, setup: &Setup<'_>, table: &Tabl
 
 /// A parameter or a state of a spec.
 pub(super) fn named(setup: &Setup<'_>, name: &str) -> Option<Target> {
+    let name = setup.in_spec(name);
     let parameter = setup.info.parameter_index(name).map(Target::Parameter);
     parameter.or_else(|| setup.info.state_index(name).map(Target::State))
 }
 
 fn unknown(reading: &mut Reading<'_>, setup: &Setup<'_>, name: &str, at: &Text) {
     let info = setup.info;
-    if info.input_index(name).is_some() {
+    if info.input_index(setup.in_spec(name)).is_some() {
         let message = format!("`{name}` is an input, which is a function of time");
         let help = format!(
             "drive it under `[motion.input]`, such as `{name} = \"push\"`, and let a quantity of the study's own vary: \

@@ -96,9 +96,16 @@ impl<'s> Reading<'s> {
     }
 
     /// Index of the quantity of a name; an unknown one is reported.
-    pub(super) fn known(&mut self, name: &Text, what: &str, among: &[Quantity]) -> Option<usize> {
+    pub(super) fn known(
+        &mut self,
+        name: &Text,
+        setup: &Setup<'_>,
+        what: &str,
+        among: &[Quantity],
+    ) -> Option<usize> {
         let names = among.iter().map(|quantity| quantity.name.as_ref());
-        let found = names.clone().position(|other| other == name.text);
+        let own = setup.in_spec(&name.text);
+        let found = names.clone().position(|other| other == own);
         if found.is_none() {
             let help = did_you_mean(&name.text, names, String::new);
             let message = format!("there is no {what} `{}`", name.text);

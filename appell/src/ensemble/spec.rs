@@ -104,7 +104,10 @@ pub(super) fn extended(
     if reading.findings.len() > before {
         return Ok(None);
     }
-    let source = Source::of(source.file.as_str(), composition.text());
+    let source = Source {
+        robot: source.robot.clone(),
+        ..Source::of(source.file.as_str(), composition.text())
+    };
     let model = Model::of(source, Some(Engine::Jit))?;
     let outputs = model.setup()?.mechanism.outputs;
     for kept in &mut kept {

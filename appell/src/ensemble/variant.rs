@@ -55,7 +55,7 @@ pub(super) fn nominal<'m>(
     let study = reading.study;
     let mut derived = Derived::default();
     for Entry { name, value } in &study.motion.set {
-        let Some(index) = reading.known(name, "parameter", &setup.info.parameters) else {
+        let Some(index) = reading.known(name, &setup, "parameter", &setup.info.parameters) else {
             continue;
         };
         if study.vary.iter().any(|vary| vary.name.text == name.text) {
@@ -71,7 +71,7 @@ pub(super) fn nominal<'m>(
         }
     }
     for Entry { name, value } in &study.motion.initial {
-        let Some(index) = reading.known(name, "state", &setup.info.states) else {
+        let Some(index) = reading.known(name, &setup, "state", &setup.info.states) else {
             continue;
         };
         let unit = setup.unit_of_state(index);
@@ -123,7 +123,7 @@ pub(super) fn variant(
     }
     start.extend(derived.start);
     for Entry { name, value } in &study.motion.input {
-        let Some(index) = reading.known(name, "input", setup.declared_inputs()) else {
+        let Some(index) = reading.known(name, &setup, "input", setup.declared_inputs()) else {
             continue;
         };
         let unit = setup.unit_of_input(index);

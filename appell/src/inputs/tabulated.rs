@@ -51,7 +51,7 @@ pub fn read(
             let message = "a data set says itself how its inputs run from row to row: write `interpolation` in the line of the channel";
             return Err(Error::request(Field::Interpolation, message));
         }
-        Some((description, run)) => recorded(description, run, name, setup.spec)?,
+        Some((description, run)) => recorded(description, run, name, setup)?,
         None => tabulated(
             path,
             setup,
@@ -112,9 +112,10 @@ fn described(text: &str) -> Option<(&str, &str)> {
 }
 
 /// The inputs of a run of a data set.
-fn recorded(description: &str, run: &str, name: &str, spec: &str) -> Result<Columns, Error> {
-    // The spec may be in no file.
-    let mut set = recording::read_of(&Source::of(name, spec), &[description.into()])?;
+fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Result<Columns, Error> {
+    // The spec may be in no file; a description of a robot has the names of its file.
+    let text = setup.robot.map_or(setup.spec, |robot| &robot.text);
+    let mut set = recording::read_of(&Source::of(name, text), &[description.into()])?;
     recording::check_units(&set)?;
     let Some(place) = set.runs.iter().position(|own| own.name == run) else {
         let names: Vec<&str> = set.runs.iter().map(|own| own.name.as_str()).collect();

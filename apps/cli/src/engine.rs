@@ -2,6 +2,7 @@
 
 use crate::failure::Error;
 use appell::Model;
+use appell::setup::Assignment;
 use appell::source::Source;
 
 use crate::failure::note;
@@ -28,16 +29,28 @@ impl From<Engine> for appell::engine::Engine {
     }
 }
 
-/// The model of a MODEL; without an engine, emitted code if shipped, else machine code.
-pub(crate) fn model(model: &str, engine: Option<Engine>) -> Result<Model, Error> {
-    let source = Source::find(model)?;
+/// The model of a MODEL; without an engine, emitted code if shipped, else machine code. Of a robot file, numbers that are
+/// set are parameters.
+pub(crate) fn model(
+    model: &str,
+    set: &[Assignment],
+    engine: Option<Engine>,
+) -> Result<Model, Error> {
+    let numbers: Vec<&str> = set.iter().map(|one| one.name.as_str()).collect();
+    let source = Source::find_with(model, &numbers)?;
+    remark(&source);
     made(|| Model::of(source, engine.map(Into::into)))
 }
 
 /// The equations with the adjoints that estimation needs.
-pub(crate) fn model_for_estimation(model: &str) -> Result<Model, Error> {
-    let source = Source::find(model)?;
+pub(crate) fn model_for_estimation(source: Source) -> Result<Model, Error> {
     made(|| Model::for_estimation(source))
+}
+
+/// What the equations of a robot file lack although it changes the motion.
+fn remark(source: &Source) {
+    let left_out = source.robot.iter().flat_map(|robot| robot.remarks());
+    left_out.for_each(|remark| note(&remark));
 }
 
 fn made(make: impl FnOnce() -> Result<Model, appell::Error>) -> Result<Model, Error> {

@@ -15,7 +15,7 @@ use crate::{engine, progress};
 /// The problem: prescribed values, free quantities, continuation parameter.
 #[derive(Debug, clap::Args)]
 pub(crate) struct Question {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     pub(crate) model: String,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
@@ -86,7 +86,7 @@ impl Question {
         &self,
         then: impl FnOnce(&Resolved<'_>, &Setup<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
-        let model = engine::model(&self.model, None)?;
+        let model = engine::model(&self.model, &self.set, None)?;
         let mut setup = model.setup()?;
         setup.set(&self.set)?;
         let question = appell::steady::Question {

@@ -43,6 +43,7 @@ mod planted;
 mod recording;
 mod reproduce;
 mod robot_gap;
+mod robot_model;
 mod simulate;
 mod steady;
 mod sticking;

@@ -6,7 +6,7 @@ use crate::rig;
 use crate::support::Folder;
 
 /// The carriage of the rig as a robot file.
-const ROBOT: &str = r#"<!-- A carriage on a rail. -->
+pub(crate) const ROBOT: &str = r#"<!-- A carriage on a rail. -->
 <mujoco model="carriage">
   <worldbody>
     <body name="cart">
@@ -20,7 +20,7 @@ const ROBOT: &str = r#"<!-- A carriage on a rail. -->
 </mujoco>
 "#;
 
-const DESCRIPTION: &str = r#"
+pub(crate) const DESCRIPTION: &str = r#"
 mechanism   = "robot.xml"
 description = "simulated rig"
 [parameters]

@@ -122,12 +122,7 @@ impl DataSet {
             rough: false,
         };
         let answer = watched(py, progress, move |watch| {
-            let source = Source {
-                file: set.spec.file.clone(),
-                text: set.spec.text.clone(),
-                shipped: None,
-            };
-            let model = appell::Model::for_estimation(source)?;
+            let model = appell::Model::for_estimation(appell::recording::source(&set))?;
             model.identify(&set, &options, |stage| watch.stage(stage))
         })?;
         Ok(Identified {
@@ -174,8 +169,8 @@ impl DataSet {
                 alternatives: alternatives
                     .iter()
                     .map(|model| {
-                        let Source { file, text, .. } = Source::find(model)?;
-                        Ok(appell::recording::Spec { file, text })
+                        let source = Source::find(model)?;
+                        Ok(appell::recording::Spec::from(&source))
                     })
                     .collect::<Result<_, Error>>()?,
                 horizon,
@@ -278,11 +273,7 @@ pub(crate) fn apply(
     hypothesis: Option<usize>,
     out: &str,
 ) -> PyResult<(String, String)> {
-    let source = Source {
-        file: spec,
-        text,
-        shipped: None,
-    };
+    let source = Source::of(spec, text);
     let report = GapReport::parse("gap report", report).raise(py)?;
     let improved = source.improved(&report, hypothesis, out).raise(py)?;
     let summary = improved.summary(out);

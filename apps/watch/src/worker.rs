@@ -199,11 +199,7 @@ impl Job<'_> {
     }
 
     fn model(&self, text: &str, derived: Derived) {
-        let source = Source {
-            file: self.file.to_owned(),
-            text: text.to_owned(),
-            shipped: None,
-        };
+        let source = Source::of(self.file, text);
         let films = FilmMaker::new(&derived.mechanism).map_err(|findings| {
             let messages = findings.iter().map(|finding| finding.message.as_str());
             messages.collect::<Vec<_>>().join("; ")

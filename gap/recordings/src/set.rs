@@ -129,6 +129,13 @@ impl DataSet {
         }
     }
 
+    /// The name in the spec of a quantity, which a robot file may call otherwise.
+    pub fn in_spec<'n>(&'n self, name: &'n str) -> &'n str {
+        let robot = self.robot.as_ref();
+        let of_file = robot.and_then(|robot| robot.dictionary.in_spec(name));
+        of_file.unwrap_or(name)
+    }
+
     /// Adds a doubt about a channel.
     pub fn doubt(&mut self, kind: FindingKind, column: &str, message: String) {
         let finding = Finding::new(kind, message);

@@ -204,7 +204,10 @@ impl Reader<'_> {
             named.truncate(MAX_ENTRIES);
         }
         named.retain(|(name, _)| {
-            let is_valid = name::is_valid(&name.text);
+            // Numbers of a robot file are called `ELEMENT.ATTRIBUTE`.
+            let of_model = section != "keep";
+            let is_valid =
+                name::is_valid(&name.text) || of_model && name.text.split('.').all(name::is_valid);
             if !is_valid {
                 let message = format!("`{}` is not a valid name", shown(&name.text));
                 let help = format!("a name is {}", name::RULE);

@@ -20,7 +20,7 @@ Examples:
   appell base rig/my_rig.toml --data rig --json base.json
   appell derive double_pendulum --regressor --out regressor.py")]
 pub(crate) struct Base {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
     #[arg(long, num_args = 1.., value_name = "DIR")]
@@ -36,7 +36,7 @@ impl Base {
             [] => None,
             data => Some(appell::recording::read(data, Some(&self.model))?),
         };
-        let model = engine::model(&self.model, None)?;
+        let model = engine::model(&self.model, &[], None)?;
         let spinner = progress::spinner("finding combinations of parameters");
         let found = model.base_parameters(set.as_ref());
         spinner.finish_and_clear();

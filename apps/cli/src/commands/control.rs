@@ -22,7 +22,7 @@ Examples:
   appell control cart_pole --poles -4
   appell control unicycle --at \"omega_2=1[m/s]/R\" --outputs omega_1,theta,sigma,r --lqr Q=1,R=0.1 --write law.toml")]
 pub(crate) struct Control {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE")]
@@ -100,7 +100,7 @@ pub(crate) struct Control {
 
 impl Control {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let model = engine::model(&self.model, None)?;
+        let model = engine::model(&self.model, &self.set, None)?;
         self.needs_law()?;
         let (text, json) = match &self.schedule {
             None => self.designed(&model)?,

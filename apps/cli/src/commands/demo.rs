@@ -62,7 +62,7 @@ impl Written<'_> {
 /// The lane change of the paper, from the equations to the moving unicycle; returns its summary.
 fn lane_change(written: &mut Written<'_>) -> Result<String, Error> {
     let source = Source::shipped("unicycle")?;
-    let model = engine::model("unicycle", None)?;
+    let model = engine::model("unicycle", &[], None)?;
     let motion = Motion {
         interval: Some(0.01),
         options: Options::with_tolerances(1e-10, 1e-10),

@@ -27,7 +27,7 @@ Examples:
   appell derive unicycle --stage linear --about \"theta=0, r=0, dot(psi)=0, u=0\"")]
 #[expect(clippy::struct_excessive_bools, reason = "flags of a command line")]
 pub(crate) struct Derive {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// Output format [default: that of the extension of `--out`, else text]
     #[arg(long, value_parser = one_of(&FORMATS))]

@@ -30,7 +30,7 @@ const REPORTS: &str = "gap-reports";
 Examples:
   appell diagnose --data rig --json report.json --html gap.html")]
 pub(crate) struct Diagnose {
-    /// Name of a shipped mechanism or path of a spec, instead of the one that the data set names
+    /// Name of a shipped mechanism, or path of a spec or a robot file, instead of the one that the data set names
     model: Option<String>,
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names; several folders are
     /// diagnosed one by one and give a table
@@ -309,13 +309,10 @@ impl Diagnose {
 
     /// The other specs.
     fn alternatives(&self) -> Result<Vec<Spec>, Error> {
-        let specs = self.alternative.iter().map(|model| {
-            let source = Source::find(model)?;
-            Ok(Spec {
-                file: source.file,
-                text: source.text,
-            })
-        });
+        let specs = self
+            .alternative
+            .iter()
+            .map(|model| Ok(Spec::from(&Source::find(model)?)));
         specs.collect()
     }
 

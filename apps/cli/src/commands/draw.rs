@@ -16,7 +16,7 @@ Examples:
   appell draw unicycle
   appell draw my_pendulum.toml --initial theta=60deg --out tilted.svg")]
 pub(crate) struct Draw {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// A parameter, such as R=0.3 or R=30cm
     #[arg(long, value_name = "NAME=VALUE", allow_hyphen_values = true)]

@@ -20,7 +20,7 @@ Examples:
   echo '{\"cases\": [{\"state\": {\"v\": 0, \"omega\": 1, \"x\": 0.1, \"theta\": 0.2}}]}' > cases.json
   appell evaluate my_pendulum.toml --cases cases.json --json values.json")]
 pub(crate) struct Evaluate {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// JSON file with states, inputs and parameters; `-` is standard input
     #[arg(long, value_name = "IN.json")]
@@ -36,7 +36,7 @@ pub(crate) struct Evaluate {
 impl Evaluate {
     pub(super) fn run(&self) -> Result<(), Error> {
         let text = files::read(&self.cases, MAX_BYTES)?;
-        let model = engine::model(&self.model, Some(self.engine))?;
+        let model = engine::model(&self.model, &[], Some(self.engine))?;
         let cases = Cases::read(&self.cases.to_string_lossy(), &text, model.info())?;
         let evaluation = model.evaluation()?;
         let (mut singular, mut count) = (Vec::new(), 0_usize);

@@ -19,7 +19,7 @@ Examples:
   appell export unicycle --fmu
   appell export my_pendulum.toml --fmu --sources-only --out pendulum_sources.fmu")]
 pub(crate) struct Export {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// The package is an FMU
     #[arg(long, required = true)]

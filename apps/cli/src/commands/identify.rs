@@ -18,10 +18,11 @@ use appell_report::identification;
 #[derive(Debug, clap::Args)]
 #[command(after_long_help = "\
 Examples:
-  appell identify rig/my_rig.toml --data rig --plot predicted.svg")]
+  appell identify rig/my_rig.toml --data rig --plot predicted.svg
+  appell identify --data robot --free elbow.damping,elbow.frictionloss")]
 pub(crate) struct Identify {
-    /// Name of a shipped mechanism or path of a spec
-    model: String,
+    /// Mechanism of the recordings: a shipped one, a spec or a robot file [default: the one that a data set names]
+    model: Option<String>,
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
     data: Vec<PathBuf>,
@@ -65,9 +66,9 @@ enum Start {
 
 impl Identify {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let set = appell::recording::read(&self.data, Some(&self.model))?;
+        let set = appell::recording::read(&self.data, self.model.as_deref())?;
         appell::recording::check(&set)?;
-        let model = engine::model_for_estimation(&self.model)?;
+        let model = engine::model_for_estimation(appell::recording::source(&set))?;
         let spinner = progress::spinner("reading");
         let options = Options {
             free: self.free.clone(),
@@ -84,15 +85,16 @@ impl Identify {
         spinner.finish_and_clear();
         let answer = answer?;
         if let Some(path) = &self.json {
-            files::write_json(path, &appell::json::identification(&set, &answer))?;
+            let own = appell::json::identification(&set, &answer);
+            files::write_json(path, &appell::json::in_names_of(&set, own))?;
         }
         if let Some(path) = &self.plot {
             picture::write(path, &identification::figure(&set, &answer).to_svg())?;
         }
         if let Some(path) = &self.html {
-            files::write(path, &identification::page(&set, &answer))?;
+            files::write(path, &set.named(&identification::page(&set, &answer)))?;
         }
         let outputs = [&self.json, &self.plot, &self.html];
-        output::print_beside(&identification::text(&set, &answer), &outputs)
+        output::print_beside(&set.named(&identification::text(&set, &answer)), &outputs)
     }
 }

@@ -21,7 +21,7 @@ Examples:
   appell motion capture/skeleton.toml capture/ride_1.csv capture/ride_2.csv --out rides
   appell inverse euc_3dof --data rides --free h --bias phi --plot torque.svg")]
 pub(crate) struct Inverse {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// Folder with a `recording.toml`, or CSV files with columns of the spec's names
     #[arg(long, required = true, num_args = 1.., value_name = "DIR")]
@@ -43,7 +43,7 @@ pub(crate) struct Inverse {
 impl Inverse {
     pub(super) fn run(&self) -> Result<(), Error> {
         let set = appell::recording::read(&self.data, Some(&self.model))?;
-        let model = engine::model_for_estimation(&self.model)?;
+        let model = engine::model_for_estimation(appell::recording::source(&set))?;
         let options = Options {
             free: self.free.clone(),
             biased: self.bias.clone(),

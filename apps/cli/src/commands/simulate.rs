@@ -30,7 +30,7 @@ Examples:
   appell simulate my_pendulum.toml --set l=30cm --input \"F=5*sin(2*t)\" --csv motion.csv
   appell simulate rolling_wheel --initial theta=20deg --initial omega_2=10 --html wheel.html")]
 pub(crate) struct Simulate {
-    /// Name of a shipped mechanism or path of a spec
+    /// Name of a shipped mechanism, or path of a spec or a robot file
     model: String,
     /// End of the motion in s
     #[arg(
@@ -153,7 +153,7 @@ enum OnEvent {
 
 impl Simulate {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let model = engine::model(&self.model, self.engine)?;
+        let model = engine::model(&self.model, &self.set, self.engine)?;
         let whole = Motion {
             interval: self.dt_s,
             ..Motion::new(self.t_end_s)

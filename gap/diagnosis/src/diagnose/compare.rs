@@ -1,6 +1,6 @@
 //! Posterior probabilities of the hypotheses.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use appell_estimate::Fit;
 
@@ -21,6 +21,9 @@ const MUCH: f64 = 20.0;
 
 /// A larger expected gain of a step is due to diverging sensitivities.
 const MOST_PROMISED: f64 = 1e4;
+
+/// Probability below which a hypothesis changes no conclusion.
+const UNLIKELY: f64 = 0.01;
 
 /// Hypotheses with their probabilities.
 #[derive(Debug, Clone)]
@@ -166,6 +169,33 @@ impl Comparison {
         let weight = self.unknown * (share / IMMATERIAL).min(1.0);
         self.unknown = weight / (weight + (1.0 - self.unknown)).max(f64::MIN_POSITIVE);
         Ok(())
+    }
+
+    /// The same without hypotheses with a reason against them; those that are hardly probable are not asked.
+    pub(super) fn without(&mut self, mut reason: impl FnMut(&Fitted) -> Option<String>) {
+        let nominal = self.nominal().members.clone();
+        let mut asked = BTreeSet::new();
+        loop {
+            let sum: f64 = self.fits.iter().map(|(_, probability)| probability).sum();
+            for (_, probability) in &mut self.fits {
+                *probability /= sum;
+            }
+            let is_next = |(own, probability): &(Fitted, f64)| {
+                *probability > UNLIKELY && own.members != nominal && !asked.contains(&own.members)
+            };
+            let Some(next) = self.fits.iter().position(is_next) else {
+                break;
+            };
+            let members = self.fits[next].0.members.clone();
+            if let Some(reason) = reason(&self.fits[next].0) {
+                self.fits.remove(next);
+                self.failed.push((members, reason));
+            } else {
+                asked.insert(members);
+            }
+        }
+        let is_nominal = |(own, _): &(Fitted, f64)| own.members == nominal;
+        self.nominal = self.fits.iter().position(is_nominal).unwrap_or(0);
     }
 
     /// Searches from the nominal model and other known hypotheses. `look` validates the best hypothesis before others

@@ -100,7 +100,13 @@ pub(super) fn judged<'a>(
         None
     } else {
         stage("fitting simulations over windows");
-        simulated(&over, seen.comparable()).ok()
+        let mut found = simulated(&over, seen.comparable()).ok();
+        if let Some((_, windows)) = &mut found
+            && bench.is_of_robot
+        {
+            windows.without_imitations(&bench, &over)?;
+        }
+        found
     };
     let none = |comparison: &Comparison| comparison.best().members.is_empty();
     // Without an effect over its windows a robot is judged by the innovations of the nominal model.
@@ -171,6 +177,50 @@ pub(super) fn judged<'a>(
         comparison,
         outside: None,
     })
+}
+
+impl Comparison {
+    /// Over windows, where there is no process noise, effects may imitate disturbances: a robot's hypotheses are left out
+    /// if one step ahead, with process noise, they predict worse than the nominal model or than with fewer effects. A
+    /// filter does not carry the coordinates that effects add.
+    fn without_imitations(
+        &mut self,
+        bench: &Bench<'_>,
+        over: &Bench<'_>,
+    ) -> Result<(), DiagnoseError> {
+        let one_step = |fitted: &Fitted| {
+            let taken = bench.taken(over, fitted);
+            taken.map(|taken| taken.fit.log_likelihood)
+        };
+        let nominal = one_step(self.nominal())?;
+        let all: Vec<Fitted> = self.fits.iter().map(|(own, _)| own.clone()).collect();
+        let within = |fitted: &Fitted| {
+            let is_part = |own: &&Fitted| {
+                let mut members = own.members.iter();
+                !own.members.is_empty()
+                    && own.members.len() < fitted.members.len()
+                    && members.all(|member| fitted.members.contains(member))
+            };
+            all.iter().find(is_part)
+        };
+        self.without(|fitted| {
+            let adds = |&member: &usize| bench.candidate(member).brings.is_some();
+            if fitted.members.iter().any(adds) {
+                return None;
+            }
+            let fewer = within(fitted).and_then(|fewer| one_step(fewer).ok());
+            let least = fewer.map_or(nominal, |fewer| fewer.max(nominal));
+            let gain = one_step(fitted).ok()? - least;
+            (gain < -TIED).then(|| {
+                format!(
+                    "it predicts windows better, but one step ahead it lowers the log likelihood by {:.0}: over windows \
+                     it imitates disturbances",
+                    -gain
+                )
+            })
+        });
+        Ok(())
+    }
 }
 
 /// The ranking over longer windows, if no effect of the library explains the one-step predictions but one nearly closes

@@ -34,6 +34,8 @@ pub enum GapVerdict {
 
 /// Largest unexplained part of an explained gap.
 const MOST: f64 = 0.5;
+/// Part of its probability that `unknown` keeps where its law closes nothing.
+const DOUBT: f64 = 0.05;
 
 impl GapVerdict {
     /// The verdict after predictions of the held-out runs: an effect that does not improve them explains nothing, nor
@@ -503,42 +505,19 @@ pub struct Report {
 impl Report {
     /// The verdict after predictions of the held-out runs.
     pub(super) fn settle(&mut self, far: Option<&HowFar>, is_by_simulation: bool) {
+        if let Some(far) = far
+            && forget_immaterial_law(&mut self.which, far)
+        {
+            self.verdict = if self.which[0].effects.is_empty() {
+                self.place = Where::nowhere();
+                GapVerdict::NoGap
+            } else if self.tied.is_empty() {
+                GapVerdict::Explained
+            } else {
+                GapVerdict::Ambiguous
+            };
+        }
         self.verdict = self.verdict.after(&self.which, far, is_by_simulation);
-        if let Some(far) = far {
-            self.without_immaterial_law(far);
-        }
-    }
-
-    /// A law beside no effect that closes nothing of the gap, where re-fitted parameters close all of it, is no gap: the
-    /// probability of `unknown` falls with what the law closes.
-    fn without_immaterial_law(&mut self, far: &HowFar) {
-        let closed = |is_it: fn(&Share) -> bool| {
-            let mut budget = far.budget.iter();
-            budget.find(|part| is_it(part)).map(|part| part.closed)
-        };
-        let (Some(refit), Some(law)) = (closed(Share::is_refit), closed(Share::is_law)) else {
-            return;
-        };
-        let mut listed = self.which.iter().filter(|one| !one.is_unknown());
-        let is_beside_nothing = listed.next().is_some_and(|one| one.effects.is_empty());
-        if !is_beside_nothing || refit < 1.0 - IMMATERIAL {
-            return;
-        }
-        let part = (law / IMMATERIAL).clamp(0.0, 1.0);
-        let unknown = self.which.iter_mut().find(|one| one.is_unknown());
-        let removed = unknown.map_or(0.0, |unknown| {
-            let before = unknown.probability;
-            unknown.probability *= part;
-            before - unknown.probability
-        });
-        for one in &mut self.which {
-            one.probability /= (1.0 - removed).max(f64::MIN_POSITIVE);
-        }
-        (self.which).sort_by(|a, b| b.probability.total_cmp(&a.probability));
-        if self.which[0].effects.is_empty() {
-            self.verdict = GapVerdict::NoGap;
-            self.place = Where::nowhere();
-        }
     }
 
     /// The most probable hypothesis of the library.
@@ -555,6 +534,29 @@ impl Report {
         let tied = self.tied.first().into_iter().flatten();
         tied.filter(says_its_own).map(Vec::as_slice).collect()
     }
+}
+
+/// Reduces the probability of a leading `unknown` by what its law closes, where all else closes the gap: a law that
+/// closes nothing is no gap, however significant it is. Returns whether another hypothesis leads then.
+fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
+    let closed = |is_it: fn(&Share) -> bool| {
+        let parts = far.budget.iter().filter(|part| is_it(part));
+        parts.map(|part| part.closed).sum::<f64>()
+    };
+    let (law, rest) = (closed(Share::is_law), closed(Share::is_rest));
+    let leads = which.first().is_some_and(Hypothesis::is_unknown);
+    if far.budget.is_empty() || !leads || law + rest > IMMATERIAL {
+        return false;
+    }
+    let before = which[0].probability;
+    which[0].probability *= (law / IMMATERIAL).clamp(DOUBT, 1.0);
+    let removed = before - which[0].probability;
+    let others: f64 = which[1..].iter().map(|one| one.probability).sum();
+    for one in &mut which[1..] {
+        one.probability += removed * one.probability / others.max(f64::MIN_POSITIVE);
+    }
+    which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    !which[0].is_unknown()
 }
 
 /// Estimates of parameters.
@@ -594,6 +596,59 @@ mod tests {
             bettered_ci95: [[0.9, 1.0]; 2],
             is_worse: false,
             runs: Vec::new(),
+        }
+    }
+
+    fn hypothesis(effect: Option<&str>, probability: f64) -> Hypothesis {
+        Hypothesis {
+            effects: effect.iter().map(|&name| name.to_owned()).collect(),
+            probability,
+            same_as: None,
+            log_bayes_factor: None,
+            parameters: Vec::new(),
+            changes: None,
+        }
+    }
+
+    #[test]
+    fn a_law_that_closes_nothing_is_no_gap() {
+        let first = |budget: &[(&str, f64)]| {
+            let budget = budget.iter().map(|&(name, closed)| Share {
+                name: name.to_owned(),
+                closed,
+                interval: [closed; 2],
+                is_material: closed > 0.02,
+            });
+            let far = HowFar {
+                budget: budget.collect(),
+                ..far(1.0, true)
+            };
+            let mut which = [
+                hypothesis(Some(UNKNOWN), 0.95),
+                hypothesis(None, 0.04),
+                hypothesis(Some("coulomb_friction@x"), 0.01),
+            ];
+            let changes = forget_immaterial_law(&mut which, &far);
+            let sum: f64 = which.iter().map(|one| one.probability).sum();
+            assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+            assert_eq!(changes, !which[0].is_unknown());
+            let [first, ..] = which;
+            (first.effects, first.probability)
+        };
+        // Re-fitted parameters close all of it, with and without a measured law.
+        for budget in [
+            &[(REFIT, 1.05), (REST, -0.05)][..],
+            &[(REFIT, 0.996), (LAW, 0.0), (REST, 0.004)],
+        ] {
+            let (effects, probability) = first(budget);
+            assert!(effects.is_empty() && (0.7..0.8).contains(&probability));
+        }
+        // The law closes a part, or much stays.
+        for budget in [
+            &[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)],
+            &[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)],
+        ] {
+            assert_eq!(first(budget), (vec![UNKNOWN.to_owned()], 0.95));
         }
     }
 

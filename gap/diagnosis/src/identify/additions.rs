@@ -49,6 +49,7 @@ pub(super) fn named(
     let columns: Vec<&str> = measured.iter().map(|(c, _)| c.column.as_str()).collect();
     let find = |name: &String| {
         let (owner, what) = name.rsplit_once('.')?;
+        let owner = set.in_spec(owner);
         let place = |list: &[&str]| list.iter().position(|own| *own == owner);
         let (kind, index) = match (what, place(inputs), place(&columns)) {
             ("lag", Some(input), _) => (Kind::Lag, input),

@@ -119,7 +119,7 @@ fn free_parameters(
 ) -> Result<(Vec<Free>, Vec<Quantity>), IdentifyError> {
     let has_tolerance = |&i: &usize| set.parameters[i].std.is_some_and(|std| std > 0.0);
     let chosen: Vec<usize> = if let Some(names) = &options.free {
-        let names = names.iter().map(|name| parameter(name, info));
+        let names = names.iter().map(|name| parameter(set.in_spec(name), info));
         names.collect::<Result<_, _>>()?
     } else {
         (0..set.parameters.len()).filter(has_tolerance).collect()
@@ -145,9 +145,11 @@ fn free_parameters(
     };
     let quantity = |&index: &usize| {
         let value = set.parameters[index].value;
+        let own = &info.parameters[index];
         Quantity {
+            name: set.named(&own.name).into_owned().into(),
             value,
-            ..info.parameters[index].clone()
+            ..own.clone()
         }
     };
     let frees = chosen.iter().map(free).collect();

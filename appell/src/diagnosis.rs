@@ -1,7 +1,7 @@
 //! Diagnosis of recordings: the library of effects, and a user's own.
 
 use std::fmt::Write as _;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use appell_gap::diagnose;
 use appell_gap::effects;
@@ -13,7 +13,34 @@ pub use appell_gap::diagnose::{
 };
 pub use appell_gap::effects::{Effect, EffectError, ModelError};
 
-use crate::{Error, Field, files, recording};
+use crate::difference::unified;
+use crate::gap_report::{self, GapReport};
+use crate::json::in_names_of;
+use crate::{Error, Field, correction, files, recording};
+
+/// The page of a gap report, with the lines of the spec or the robot file that change.
+pub fn page(set: &DataSet, report: &Report) -> String {
+    // A page without them if there is nothing to write, or the file is gone.
+    let lines = changed_lines(set, report).unwrap_or_default();
+    let page = appell_report::gap::page(set, report, &lines);
+    set.named(&page).into_owned()
+}
+
+/// What `apply` changes by the leading hypothesis, as a difference.
+fn changed_lines(set: &DataSet, report: &Report) -> Result<String, Error> {
+    let json = in_names_of(set, gap_report::json(report, None, &[]));
+    let report = GapReport::parse("the report", &json.to_string())?;
+    let (file, before, after) = if let Some(robot) = &set.robot {
+        let text = files::read(Path::new(&robot.file), appell_robots::MAX_FILE)?;
+        let better = correction::correct(Path::new(&robot.file), &text, &report, None)?;
+        (&robot.file, text, better.text)
+    } else {
+        let source = recording::source(set);
+        let better = source.improved(&report, None, &source.file)?.spec;
+        (&set.spec.file, source.text, better)
+    };
+    Ok(unified(file, file, &before, &after))
+}
 
 /// A library of effects.
 #[derive(Debug)]

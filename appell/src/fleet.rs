@@ -8,7 +8,6 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::{Component, Path, PathBuf};
 
 use appell_gap::diagnose::{ENGINE, Options};
-use appell_report::gap::page;
 use rayon::ThreadPoolBuilder;
 use rayon::prelude::*;
 use serde::Deserialize;
@@ -17,7 +16,7 @@ use serde_json::Value;
 use crate::diagnosis::Library;
 use crate::gap_report::Hypothesis;
 use crate::json::in_names_of;
-use crate::{Error, Field, files, gap_report, recording};
+use crate::{Error, Field, diagnosis, files, gap_report, recording};
 
 /// Folders to be diagnosed with the same options.
 #[derive(Debug)]
@@ -140,7 +139,7 @@ impl Fleet<'_> {
         let mut json = in_names_of(&set, json);
         json["of"] = of.into();
         if self.with_pages {
-            files::write(&page_path, &set.named(&page(&set, &report)))?;
+            files::write(&page_path, &diagnosis::page(&set, &report))?;
         }
         files::write_json(&path, &json)?;
         Ok((serde_json::from_value(json)?, false))

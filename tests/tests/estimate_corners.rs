@@ -168,6 +168,7 @@ fn states_that_are_smoothed_over_long_steps_are_those_over_short_ones() {
     ignore = "asks Linux how much memory was used"
 )]
 fn steps_in_many_parts_do_not_fill_the_memory() {
+    const ROWS: usize = 10_000;
     // In a process of its own, where no other test takes memory meanwhile.
     const ALONE: &str = "APPELL_TEST_ALONE";
     if std::env::var_os(ALONE).is_none() {
@@ -183,7 +184,6 @@ fn steps_in_many_parts_do_not_fill_the_memory() {
         return;
     }
     // Their parts on one tape are 100 MB.
-    const ROWS: usize = 10_000;
     let most_used = || -> f64 {
         let status = std::fs::read_to_string("/proc/self/status").unwrap();
         let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

@@ -246,8 +246,7 @@ impl Gap {
     }
 
     fn page(&self) -> String {
-        let page = appell_report::gap::page(&self.set, &self.report);
-        self.set.named(&page).into_owned()
+        appell::diagnosis::page(&self.set, &self.report)
     }
 
     /// The inputs proposed for the next experiment, as CSV.

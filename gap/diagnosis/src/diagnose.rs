@@ -336,13 +336,15 @@ fn pictures(
     leader: &Leader<'_>,
     place: &Where,
 ) -> Result<Pictures, DiagnoseError> {
+    let (force_law, joints) = match leader.alternative {
+        Some(_) => (None, Vec::new()),
+        None => force_law::force_laws(bench, comparison, place)?,
+    };
     Ok(Pictures {
         force_history: force_history::force_history(bench, comparison)?,
         traces: held_out.traces(bench, comparison, leader)?,
-        force_law: match leader.alternative {
-            Some(_) => None,
-            None => force_law::force_law(bench, comparison, place)?,
-        },
+        force_law,
+        joints,
     })
 }
 

@@ -53,6 +53,7 @@ pub(super) fn home(mechanism: &Mechanism, name: &str) -> BTreeSet<PointId> {
 fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
     let quantity = Quantity::Coordinate(coordinate);
     let mut points: Vec<PointId> = placed(mechanism, quantity).collect();
+    let mut centres = Vec::new();
     for (id, frame) in mechanism.frames.entries() {
         if !frame
             .turns
@@ -63,10 +64,11 @@ fn moved(mechanism: &Mechanism, coordinate: CoordinateId) -> Vec<PointId> {
         }
         let placing = mechanism.points.iter().find(|point| point.frame == id);
         let body = mechanism.bodies.iter().find(|body| body.frame == Some(id));
-        let pivot = placing.and_then(|point| point.from);
-        points.extend(pivot.or(body.map(|body| body.centre)));
+        points.extend(placing.and_then(|point| point.from));
+        centres.extend(body.map(|body| body.centre));
     }
-    points
+    // A rotor without a point is where the joint is that it drives.
+    if points.is_empty() { centres } else { points }
 }
 
 /// Points whose positions depend on a quantity.

@@ -118,15 +118,16 @@ fn change(report: &Report, applied: Option<usize>) -> Vec<String> {
         GapVerdict::Explained | GapVerdict::Ambiguous => advised(report, applied),
         GapVerdict::Unexplained => {
             let own = "describe the missing effect yourself, and diagnose with it";
+            let file = file(report);
             let command = match applied {
                 None => return only(own),
                 Some(1) => "`appell apply`".to_owned(),
                 Some(number) => format!("`appell apply`, given hypothesis {number},"),
             };
             vec![if written(report) == applied {
-                format!("{command} writes the measured force into the spec; look for its cause")
+                format!("{command} writes the measured force into the {file}; look for its cause")
             } else {
-                format!("{command} writes the fitted parameters into the spec; {own}")
+                format!("{command} writes the fitted parameters into the {file}; {own}")
             }]
         }
     }
@@ -168,7 +169,7 @@ fn advised(report: &Report, applied: Option<usize>) -> Vec<String> {
             "nothing yet: record {motion}, and diagnose again with the recording before `appell apply`"
         )]
     } else {
-        let what = written_where(first, &advice.certain);
+        let what = written_where(report, &advice.certain);
         vec![format!("certain: {}: {what}", advice.certain.join(", "))]
     };
     // Effects that are open for the same reason.
@@ -240,8 +241,17 @@ fn opened(report: &Report, first: Option<&Hypothesis>, open: &Open) -> String {
     why.collect::<Vec<_>>().join("; ")
 }
 
+/// What holds the model.
+fn file(report: &Report) -> &'static str {
+    match report.robot {
+        Some(_) => "robot file",
+        None => "spec",
+    }
+}
+
 /// Where changes are written: effects that a spec can hold, and those that belong elsewhere.
-fn written_where(first: Option<&Hypothesis>, effects: &[String]) -> String {
+fn written_where(report: &Report, effects: &[String]) -> String {
+    let (first, file) = (report.leading(), file(report));
     let signals = first.and_then(|first| first.changes.as_ref());
     let signals = signals.map_or(&[][..], |changes| &changes.signal_effects);
     let is_elsewhere = |effect: &&String| {
@@ -261,9 +271,9 @@ fn written_where(first: Option<&Hypothesis>, effects: &[String]) -> String {
             "nothing in the equations; {listed} {belong} elsewhere, `appell apply` says where"
         ),
         (false, false) => format!(
-            "write into the spec what it can express; {listed} {belong} elsewhere, `appell apply` says where"
+            "write into the {file} what it can express; {listed} {belong} elsewhere, `appell apply` says where"
         ),
-        (false, true) => "write into the spec (`appell apply`)".to_owned(),
+        (false, true) => format!("write into the {file} (`appell apply`)"),
     }
 }
 

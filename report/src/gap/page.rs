@@ -5,7 +5,7 @@ use std::collections::BTreeSet;
 use appell_codegen::derived;
 use appell_gap::diagnose::{AHEAD, GapVerdict, HowFar, Hypothesis, Report, Share, Trace, Where};
 use appell_recordings::{DataSet, Part};
-use maud::{Markup, html};
+use maud::{Markup, PreEscaped, html};
 
 use super::budget::{budget, closes};
 use super::doubt::doubts;
@@ -30,7 +30,9 @@ const MATTERS: f64 = 0.05;
 const TOLD: f64 = 0.001;
 
 /// The page.
-pub fn page(set: &DataSet, report: &Report) -> String {
+///
+/// `lines` are those of the spec or of the robot file that change, as a difference.
+pub fn page(set: &DataSet, report: &Report, lines: &str) -> String {
     let name = &set.mechanism.name;
     let title = format!("{name}: the gap");
     PageShell::new(&title, STYLE).around(&html! {
@@ -39,6 +41,7 @@ pub fn page(set: &DataSet, report: &Report) -> String {
             p class="faint" { (set.description) }
             p class="verdict" { (capitalised(&statement(report))) "." }
             (reading(report))
+            (changes(set, lines))
             @if let Some(far) = &report.how_far {
                 (budget(report, far))
             }
@@ -50,6 +53,29 @@ pub fn page(set: &DataSet, report: &Report) -> String {
             (recordings(set, report))
         }
     })
+}
+
+/// The lines that change.
+fn changes(set: &DataSet, lines: &str) -> Markup {
+    let file = set
+        .robot
+        .as_ref()
+        .map_or(&set.spec.file, |robot| &robot.file);
+    let of = |line: &str| match line.as_bytes().first() {
+        Some(b'+') => "new",
+        Some(b'-') => "old",
+        _ => "",
+    };
+    html! {
+        @if !lines.is_empty() {
+            details {
+                summary { "The lines of " (code(file)) " that change, as " (code("appell apply")) " writes them" }
+                pre class="lines" {
+                    @for line in lines.lines() { span class=(of(line)) { (line) } "\n" }
+                }
+            }
+        }
+    }
 }
 
 /// Below the verdict: size, change, error, and how sure it is.
@@ -151,6 +177,14 @@ fn place(set: &DataSet, report: &Report) -> Markup {
                     "Missing force, estimated without assuming a law, and the law found for it."
                 };
                 (figure(plots::law(law), caption))
+            }
+        }
+        @if let Some(pictures) = history.filter(|pictures| !pictures.joints.is_empty()) {
+            figure {
+                div class="pairs" {
+                    @for svg in plots::joints(&pictures.joints) { (PreEscaped(svg)) }
+                }
+                figcaption { "Missing torque or force of each joint over its rate and over its position." }
             }
         }
     }

@@ -76,6 +76,21 @@ pub(super) fn trace(trace: &Trace) -> [String; 2] {
 
 /// The missing force against the variable on which it depends.
 pub(super) fn law(law: &ForceLaw) -> String {
+    let force = format!(
+        "missing force in the equation of {} [{}]",
+        law.equation, law.unit
+    );
+    over_variable(law, force, 260.0)
+}
+
+/// The missing torques of joints over their rates and positions.
+pub(super) fn joints(joints: &[[ForceLaw; 2]]) -> impl Iterator<Item = String> {
+    let laws = joints.iter().flatten();
+    laws.map(|law| over_variable(law, format!("missing [{}]", law.unit), 190.0))
+}
+
+/// A missing force, named by a label, over its variable.
+fn over_variable(law: &ForceLaw, force: String, height: f64) -> String {
     let layer = |label: &str, points: &[[f64; 2]], look, colour| {
         let [x, y] = [0, 1].map(|k| points.iter().map(|point| point[k]).collect::<Vec<f64>>());
         Layer::new(label, look, colour, &x, y)
@@ -95,13 +110,9 @@ pub(super) fn law(law: &ForceLaw) -> String {
     if !law.law.is_empty() {
         layers.push(layer("identified law", &law.law, Look::Line, effect));
     }
-    let force = format!(
-        "missing force in the equation of {} [{}]",
-        law.equation, law.unit
-    );
     let plot = Plot {
         labels: [format!("{} [{}]", law.variable, law.variable_unit), force],
-        height: 260.0,
+        height,
         layers,
     };
     plot.to_svg()

@@ -127,7 +127,7 @@ fn rig(written: &mut Written<'_>) -> Result<String, Error> {
     let about = "the missing effect, and how far it closes the gap";
     files::write(
         &written.place("gap.html", about),
-        &appell_report::gap::page(&set, &report),
+        &appell::diagnosis::page(&set, &report),
     )?;
     let about = "the same for programs, and for `appell apply`";
     let json = written.place("gap.json", about);

@@ -158,7 +158,7 @@ impl Diagnose {
             files::write_json(path, &appell::json::in_names_of(&set, json))?;
         }
         if let Some(path) = &self.html {
-            files::write(path, &set.named(&appell_report::gap::page(&set, &report)))?;
+            files::write(path, &appell::diagnosis::page(&set, &report))?;
         }
         let outputs = [&self.json, &self.html, &next];
         let mut text = diagnosed::text(&report, next.as_deref(), &self.apply(&set));

@@ -6,6 +6,9 @@ use serde::Serialize;
 use super::calibration::TIED;
 use super::report::{Hypothesis, QUANTILE, Report, Share};
 
+/// Part of the gap that may stay where effects close it.
+const STAYS: f64 = 0.05;
+
 /// The effects of the leading hypothesis, by what is known of them.
 #[derive(Debug, Clone, Default, PartialEq, Serialize)]
 pub struct Advice {
@@ -41,13 +44,17 @@ impl Advice {
         let Some(first) = report.leading() else {
             return advice;
         };
+        let budget = report.how_far.as_ref().map_or(&[][..], |far| &far.budget);
+        // Whatever is beside an effect that closes the gap, the effect is there.
+        let mut rest = budget.iter().filter(|share| share.is_rest());
+        let is_closed = rest.any(|rest| rest.closed < STAYS);
         let is_rival = |one: &&Hypothesis| {
             one.effects != first.effects
+                && !(is_closed && one.is_unknown())
                 && one.same_as.is_none()
                 && (first.probability / one.probability).ln() < TIED
         };
         let rivals: Vec<&Hypothesis> = report.which.iter().filter(is_rival).collect();
-        let budget = report.how_far.as_ref().map_or(&[][..], |far| &far.budget);
         for effect in &first.effects {
             let effect = effect.clone();
             let share = share(first, &effect, budget);

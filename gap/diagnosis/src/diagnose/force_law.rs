@@ -11,8 +11,10 @@ use super::bench::Bench;
 use super::compare::Comparison;
 use super::force_history::{median, together};
 use super::forces::{Forces, mean_missing};
+use super::localise::force_unit;
 use super::prediction::followed;
 use super::report::{ForceLaw, ShareOf, Where};
+use crate::effects::EffectModel;
 
 /// Largest number of steps that are evaluated.
 const STEPS: usize = 6000;
@@ -35,22 +37,27 @@ pub(super) struct Step {
     pub(super) law: f64,
 }
 
-/// The missing force of the equation with the greatest share.
-pub(super) fn force_law(
+/// The missing force of the equation with the greatest share, and of a robot those of all joints.
+pub(super) fn force_laws(
     bench: &Bench<'_>,
     comparison: &Comparison,
     place: &Where,
-) -> Result<Option<ForceLaw>, DiagnoseError> {
+) -> Result<(Option<ForceLaw>, Vec<[ForceLaw; 2]>), DiagnoseError> {
     let info = bench.effects.info();
     let Some(first) = place.equations.first() else {
-        return Ok(None);
+        return Ok((None, Vec::new()));
     };
     let names = info.states[..info.speeds].iter();
     let Some(equation) = names.map(|s| &s.name).position(|name| *name == first.name) else {
-        return Ok(None);
+        return Ok((None, Vec::new()));
     };
-    let steps = steps(bench, comparison, equation)?;
-    Ok(over_its_variable(info, first, &steps))
+    let steps = steps(bench, comparison)?;
+    let joints = if bench.is_of_robot {
+        over_rates_and_positions(bench.effects, &steps)
+    } else {
+        Vec::new()
+    };
+    Ok((over_its_variable(info, first, &steps[equation]), joints))
 }
 
 /// The force over the variable that explains most of the law, or of the force itself without a law.
@@ -59,7 +66,7 @@ pub(super) fn over_its_variable(
     first: &ShareOf,
     steps: &[Step],
 ) -> Option<ForceLaw> {
-    let variables = info.states.iter().chain(info.inputs.iter());
+    let variables = info.state_len() + info.inputs.len();
     let has_law = steps.iter().any(|step| step.law != 0.0);
     let target = |step: &Step| if has_law { step.law } else { step.force };
     let varies = |v: &usize| {
@@ -68,11 +75,44 @@ pub(super) fn over_its_variable(
             .next()
             .is_some_and(|first| values.any(|value| value != first))
     };
-    let varying = (0..variables.clone().count()).filter(varies);
+    let varying = (0..variables).filter(varies);
     let explained = varying.map(|v| (v, explained(steps, v, target)));
     let best = explained.max_by(|a, b| a.1.total_cmp(&b.1));
     let (variable, part) = best.filter(|(_, part)| part.is_finite())?;
-    let quantity = variables.clone().nth(variable)?;
+    over(info, [&first.name, &first.unit], variable, part, steps)
+}
+
+/// The forces of all equations, each over its pseudo-velocity and over the coordinate of the same index.
+pub(super) fn over_rates_and_positions(
+    model: &EffectModel,
+    steps: &[Vec<Step>],
+) -> Vec<[ForceLaw; 2]> {
+    let info = model.info();
+    if info.state_len() != 2 * info.speeds {
+        return Vec::new();
+    }
+    let of = |(equation, steps): (usize, &Vec<Step>)| {
+        let unit = force_unit(&model.mechanism, equation);
+        let names = [&*info.states[equation].name, &unit];
+        let law = |variable: usize| {
+            let part = explained(steps, variable, |step| step.law);
+            over(info, names, variable, part, steps)
+        };
+        Some([law(equation)?, law(info.speeds + equation)?])
+    };
+    steps.iter().enumerate().filter_map(of).collect()
+}
+
+/// The force of an equation, its name and unit given, over a state or an input that explains a part of the law.
+fn over(
+    info: &ModelInfo,
+    [equation, unit]: [&str; 2],
+    variable: usize,
+    part: f64,
+    steps: &[Step],
+) -> Option<ForceLaw> {
+    let quantity = info.states.iter().chain(info.inputs.iter()).nth(variable)?;
+    let has_law = steps.iter().any(|step| step.law != 0.0);
     let stride = steps.len().div_ceil(POINTS).max(1);
     let in_unit = |[x, force]: [f64; 2]| [x / quantity.scale, force];
     let of = |step: &Step| in_unit([step.variables[variable], step.force]);
@@ -81,8 +121,8 @@ pub(super) fn over_its_variable(
         medians.map(in_unit).collect()
     };
     Some(ForceLaw {
-        equation: first.name.clone(),
-        unit: first.unit.clone(),
+        equation: equation.to_owned(),
+        unit: unit.to_owned(),
         variable: quantity.name.to_string(),
         variable_unit: quantity.unit.to_string(),
         points: steps.iter().step_by(stride).map(of).collect(),
@@ -95,12 +135,8 @@ pub(super) fn over_its_variable(
     })
 }
 
-/// The steps of all runs.
-fn steps(
-    bench: &Bench<'_>,
-    comparison: &Comparison,
-    equation: usize,
-) -> Result<Vec<Step>, DiagnoseError> {
+/// The steps of all runs, by equation.
+fn steps(bench: &Bench<'_>, comparison: &Comparison) -> Result<Vec<Vec<Step>>, DiagnoseError> {
     let (nominal, best) = (comparison.nominal(), comparison.best());
     let setup = bench.setup(&nominal.members);
     let estimation = Estimation::new(&setup, &bench.recordings)?;
@@ -110,7 +146,8 @@ fn steps(
     let model = bench.effects.with(&bench.locked(&best.members));
     let with = &best.fit.values[..model.info().parameter_len()];
     let without = bench.without(best);
-    let mut steps = Vec::new();
+    let mut steps: Vec<Vec<Step>> = Vec::new();
+    steps.resize_with(bench.effects.info().speeds, Vec::new);
     for (index, recording) in bench.recordings.iter().enumerate() {
         let states = estimation.smoothed(&values, index)?;
         let several = together(bench, recording);
@@ -118,16 +155,20 @@ fn steps(
             let rows = row..(row + several).min(states.len());
             let forces = Forces::new(model, recording, &states, rows.start + rows.len() / 2);
             let missing = mean_missing(model, recording, &states, rows, &without);
-            let own = |force: Vec<f64>| force[equation];
-            steps.push(Step {
-                is_early: 2 * row < states.len(),
-                variables: forces.variables(),
-                force: own(missing),
-                law: own(forces.between(with, &without)),
-            });
+            let law = forces.between(with, &without);
+            for (equation, steps) in steps.iter_mut().enumerate() {
+                let (force, law) = (missing[equation], law[equation]);
+                if force.is_finite() && law.is_finite() {
+                    steps.push(Step {
+                        is_early: 2 * row < states.len(),
+                        variables: forces.variables(),
+                        force,
+                        law,
+                    });
+                }
+            }
         }
     }
-    steps.retain(|step| step.force.is_finite() && step.law.is_finite());
     Ok(steps)
 }
 

@@ -9,6 +9,8 @@ pub struct Pictures {
     pub traces: Vec<Trace>,
     /// The missing force; `None` without a gap in the equations.
     pub force_law: Option<ForceLaw>,
+    /// Of a robot, the missing torque of each joint over its rate and over its position.
+    pub joints: Vec<[ForceLaw; 2]>,
 }
 
 /// The missing force of each equation over time.

@@ -1,7 +1,7 @@
 //! Missing forces over time and over their variables, and forces of inputs with those predicted by inverse dynamics.
 
 use super::super::force_history::median;
-use super::super::force_law::{Step, over_its_variable};
+use super::super::force_law::{Step, over_its_variable, over_rates_and_positions};
 use super::super::localise::force_unit;
 use super::super::report::{ForceHistory, MissingForce, Pictures, Trace, Where};
 use super::motions::{Motion, Motions};
@@ -21,16 +21,19 @@ pub(super) fn of(
     test: Option<&Motions>,
     place: &Where,
 ) -> Pictures {
+    let info = model.info();
+    let all = (0..info.speeds).map(|equation| steps(model, found, training, equation));
+    let all: Vec<Vec<Step>> = all.collect();
     let force_law = place.equations.first().and_then(|first| {
-        let info = model.info();
         let mut names = info.states[..info.speeds].iter().map(|own| &*own.name);
         let equation = names.position(|name| name == first.name)?;
-        over_its_variable(info, first, &steps(model, found, training, equation))
+        over_its_variable(info, first, &all[equation])
     });
     Pictures {
         force_history: force_history(model, found, training),
         traces: test.map_or_else(Vec::new, |test| traces(model, found, test)),
         force_law,
+        joints: over_rates_and_positions(model, &all),
     }
 }
 

@@ -101,6 +101,8 @@ pub struct Simulated {
     pub held_from: Option<f64>,
     /// A remark on recorded inputs that are held by default.
     pub smooth: Option<String>,
+    /// Coordinates in the first row of a recorded run whose inputs drive the motion, if it begins elsewhere.
+    pub begins: Option<String>,
 }
 
 impl Motion {
@@ -241,6 +243,7 @@ impl Motion {
             .recorded_until()
             .filter(|until| until + interval < self.t_end);
         let smooth = plan.recorded_smooth().and_then(smooth_inputs);
+        let begins = plan.recorded_begins().map(str::to_owned);
         let wiring = plan.wiring(&setup, self.t_end)?;
         Ok(Ready {
             wiring,
@@ -251,6 +254,7 @@ impl Motion {
             undriven,
             held_from,
             smooth,
+            begins,
         })
     }
 
@@ -328,6 +332,7 @@ pub(crate) struct Ready {
     undriven: bool,
     held_from: Option<f64>,
     smooth: Option<String>,
+    begins: Option<String>,
 }
 
 impl Ready {
@@ -360,6 +365,7 @@ impl Ready {
             undriven: self.undriven,
             held_from: self.held_from,
             smooth: self.smooth.clone(),
+            begins: self.begins.clone(),
         })
     }
 }

@@ -96,7 +96,7 @@ pub fn draft(
 }
 
 /// Whether a file is a recording, by its extension.
-fn is_recording(path: &Path) -> bool {
+pub fn is_recording(path: &Path) -> bool {
     let extension = path.extension().unwrap_or_default().to_ascii_lowercase();
     ["csv", "c3d", "mcap", "npz", "parquet", "tsv"]
         .iter()

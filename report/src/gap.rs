@@ -24,8 +24,8 @@ pub use law::law_sentence;
 pub use numbers::{is_determined, percent, share};
 pub use page::page;
 pub use words::{
-    before_sentence, events, hints, imperfections, joined, left_out, refit_sentence, said,
-    sentence, values,
+    before_sentence, events, hints, imperfections, joined, left_out, ranges, refit_sentence, said,
+    sentence,
 };
 
 pub use crate::text::short;

@@ -109,6 +109,13 @@ impl Plan {
         self.recorded.as_ref().map(|table| table.smooth.as_slice())
     }
 
+    /// Where a recorded run begins, if the motion does not, see [`Table::begins`].
+    pub fn recorded_begins(&self) -> Option<&str> {
+        self.recorded
+            .as_ref()
+            .and_then(|table| table.begins.as_deref())
+    }
+
     fn take(&mut self, field: Field, input: usize, setup: &Setup<'_>) -> Result<(), Error> {
         if self.set.contains(&input) {
             let name = &setup.declared_inputs()[input].name;

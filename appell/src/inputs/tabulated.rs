@@ -6,7 +6,7 @@ use std::path::Path;
 use appell_recordings::between::Smooth;
 use appell_recordings::csv::Rows;
 use appell_recordings::limits::MAX_MISTAKES;
-use appell_recordings::{DataError, MANIFEST, Role};
+use appell_recordings::{DataError, DataSet, MANIFEST, Measured, Role, Run};
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
@@ -29,6 +29,8 @@ pub struct Table {
     pub until: f64,
     /// Held inputs that change smoothly, with the relative error of holding them; only if the interpolation is not stated.
     pub smooth: Vec<(String, f64)>,
+    /// Coordinates as a run of a data set measures them in its first row, where the motion begins elsewhere.
+    pub begins: Option<String>,
 }
 
 /// The inputs of a CSV file, for a motion until a time in s.
@@ -98,6 +100,7 @@ pub fn read(
         given: columns.inputs.iter().map(|column| column.input).collect(),
         until: to,
         smooth: smooth.collect(),
+        begins: columns.begins,
     })
 }
 
@@ -127,6 +130,7 @@ fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Resu
         let message = format!("{missing}; append one of {}", names.join(", "));
         return Err(Error::request(Field::Recorded, message));
     };
+    let begins = begins(&set, &set.runs[place], setup);
     let run = set.runs.swap_remove(place);
     let mut inputs: Vec<Column> = Vec::new();
     for (channel, values) in set.channels.iter().zip(run.values) {
@@ -149,7 +153,11 @@ fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Resu
     // Time is counted from the start of the run, whatever the logger's clock.
     let start = run.times.first().copied().unwrap_or(0.0);
     let times = run.times.iter().map(|t| t - start).collect();
-    Ok(Columns { times, inputs })
+    Ok(Columns {
+        times,
+        inputs,
+        begins,
+    })
 }
 
 /// The inputs of a CSV file.
@@ -172,6 +180,36 @@ fn tabulated(
 struct Columns {
     times: Vec<f64>,
     inputs: Vec<Column>,
+    begins: Option<String>,
+}
+
+/// `hip = 0.347 rad, knee = -0.783 rad`: measured coordinates in the first row of a run, if the motion begins elsewhere.
+fn begins(set: &DataSet, run: &Run, setup: &Setup<'_>) -> Option<String> {
+    /// Difference, relative to the motion, from which on the start is another one.
+    const ELSEWHERE: f64 = 0.1;
+    let mut is_elsewhere = false;
+    let mut places = Vec::new();
+    for (channel, values) in set.channels.iter().zip(&run.values) {
+        let Role::Measures(Measured::Coordinate(coordinate)) = channel.role else {
+            continue;
+        };
+        let Some(first) = values.iter().copied().find(|value| value.is_finite()) else {
+            continue;
+        };
+        let state = setup.info.speeds + coordinate;
+        let most = values.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        let least = values.iter().copied().fold(f64::INFINITY, f64::min);
+        is_elsewhere |= (first - setup.initial[state]).abs() > ELSEWHERE * (most - least);
+        let quantity = &setup.info.states[state];
+        let value = format!("{:.3e}", first / quantity.scale).parse::<f64>();
+        places.push(format!(
+            "{} = {} {}",
+            quantity.name,
+            value.unwrap_or(first),
+            quantity.unit
+        ));
+    }
+    is_elsewhere.then(|| places.join(", "))
 }
 
 /// A column of an input.
@@ -205,6 +243,7 @@ impl<R: BufRead> Reader<R> {
         let mut columns = Columns {
             times: Vec::new(),
             inputs,
+            begins: None,
         };
         let Some(time) = time else {
             let help = "name the column of times in seconds `t`";

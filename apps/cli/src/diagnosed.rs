@@ -8,7 +8,7 @@ use appell_gap::diagnose::{Ahead, Experiment, GapVerdict, Hypothesis, Report};
 
 use appell_report::gap::{
     Headline, before_sentence, divided, doubts, events, hints, imperfections, is_determined,
-    joined, law_sentence, left_of_forces, left_out, percent, said, share, short, values,
+    joined, law_sentence, left_of_forces, left_out, percent, ranges, said, share, short,
 };
 use appell_report::text::number;
 
@@ -295,7 +295,7 @@ fn line(report: &Report, hypothesis: &Hypothesis) -> String {
     format!(
         "{probability}  {}  {}",
         said(report, hypothesis),
-        values(hypothesis).join(", ")
+        ranges(hypothesis).join(", ")
     )
 }
 

@@ -298,6 +298,7 @@ pub(crate) fn restored(
         undriven: false,
         held_from,
         smooth: None,
+        begins: None,
     };
     Ok(Simulated {
         model: Arc::clone(model),

@@ -255,6 +255,11 @@ impl Gap {
         Some(appell::diagnosis::experiment_inputs(&self.set, experiment))
     }
 
+    /// The robot file that was diagnosed, if it is one.
+    fn _robot(&self) -> Option<&str> {
+        Some(&self.set.robot.as_ref()?.file)
+    }
+
     /// Text and file of the diagnosed spec.
     fn _spec(&self) -> (&str, &str) {
         (&self.set.spec.file, &self.set.spec.text)

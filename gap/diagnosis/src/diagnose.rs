@@ -61,6 +61,7 @@ mod horizon;
 mod imperfection;
 mod imperfections;
 mod initial;
+mod instead;
 mod law;
 mod localise;
 mod nominal;

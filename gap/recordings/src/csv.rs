@@ -14,7 +14,7 @@ use crate::clock::Clock;
 use crate::finding::listed;
 use crate::limits::{MAX_FILE, MAX_LINE, MAX_MISTAKES};
 use crate::table::{Table, checked, too_many};
-use crate::time::{NoTime, Stated, TimeColumn, Times};
+use crate::time::{NoTime, Stated, TimeColumn, Times, origin};
 use crate::{DataError, Finding, FindingKind, episode, motive};
 
 /// Reads the columns of the channels and the times. `budget` counts down the numbers that may still come.
@@ -187,7 +187,13 @@ impl<R: BufRead> CsvFile<R> {
                 continue;
             }
             let t = match places.time.times {
-                Times::Column(index) => self.number(index, |t| t * places.time.scale()),
+                Times::Column(index) => {
+                    let (t, scale) = (self.number(index, |t| t), places.time.scale());
+                    if start.is_none() && t.is_finite() {
+                        start = Some(origin(t, scale));
+                    }
+                    scale * (t - start.unwrap_or(0.0))
+                }
                 Times::Parts([seconds, nanoseconds]) => {
                     let seconds = self.number(seconds, |t| t);
                     let start = *start.get_or_insert(seconds);

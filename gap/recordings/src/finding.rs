@@ -104,6 +104,7 @@ impl FindingKind {
             | Self::NoiseDisagrees
             | Self::NoiseBound
             | Self::NoInput
+            | Self::NoTolerance
             | Self::NoTestRun => Severity::Warning,
             Self::RepeatedTime
             | Self::CutOff
@@ -115,7 +116,6 @@ impl FindingKind {
             | Self::Unwrapped
             | Self::UnknownColumn
             | Self::Quantised
-            | Self::NoTolerance
             | Self::Split => Severity::Note,
         }
     }

@@ -157,7 +157,8 @@ impl DataSet {
             }
         }
         if !self.parameters.is_empty() && self.parameters.iter().all(|own| own.std.is_none()) {
-            let message = "no parameter has a tolerance `std`, so all are taken as they are";
+            let message = "no parameter has a tolerance `std`, so all are taken as exact: an effect has to make up for \
+                           whatever differs";
             self.findings
                 .push(Finding::new(FindingKind::NoTolerance, message));
         }

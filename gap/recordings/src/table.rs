@@ -7,7 +7,7 @@ use crate::channel::Channel;
 use crate::clock::{Clock, Sampling};
 use crate::finding::{counted, listed};
 use crate::limits::{MAX_NUMBERS, MAX_TIME, MAX_VALUE, MIN_ROWS, MIN_STEP};
-use crate::time::{NoTime, Stated, TIME, TimeColumn, Times};
+use crate::time::{NoTime, Stated, TIME, TimeColumn, Times, origin};
 use crate::{DataError, Finding, FindingKind, episode, topics};
 
 /// The numbers of a run.
@@ -176,7 +176,9 @@ impl Columns {
         };
         let times = &self.values[index];
         let Some(unit) = self.clock.unit(index, &time.name) else {
-            let times = times.iter().map(|t| t * time.scale()).collect();
+            let (first, scale) = (times.iter().find(|t| t.is_finite()), time.scale());
+            let start = first.map_or(0.0, |first| origin(*first, scale));
+            let times = times.iter().map(|t| scale * (t - start)).collect();
             return Ok((time, times));
         };
         if time.unit.as_ref().is_some_and(|unit| !unit.is_si()) {

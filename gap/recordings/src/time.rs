@@ -64,6 +64,19 @@ const WORDS: [(&str, &str); 17] = [
 /// Symbols that may follow a name without brackets.
 const SYMBOLS: [&str; 4] = ["s", "ms", "us", "ns"];
 
+/// Times in s from which on they are those of a calendar.
+const CALENDAR: f64 = 1e8;
+
+/// The origin of the times of a file, in their unit of `scale` s: its first time where that is one of a calendar, which in
+/// seconds would leave no digits for the steps.
+pub(crate) fn origin(first: f64, scale: f64) -> f64 {
+    if (scale * first).abs() > CALENDAR {
+        first
+    } else {
+        0.0
+    }
+}
+
 /// Description of the times.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Stated {

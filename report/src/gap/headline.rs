@@ -8,8 +8,8 @@ use super::law::written;
 use super::numbers::{compared, is_determined, percent, share};
 use super::shares::refitted;
 use super::words::{
-    NO_GAP, REFITTED, equivalents, first_of, joined, moved, name_of, needs_refit, percent_of,
-    refit_moves, refit_sentence, sentence, size,
+    NO_GAP, REFITTED, equivalents, first_of, is_one_of_many, joined, moved, name_of, needs_refit,
+    percent_of, refit_moves, refit_sentence, sentence, size,
 };
 use crate::text::{horizon, short, with_unit};
 
@@ -86,7 +86,10 @@ fn sizes(report: &Report) -> Vec<String> {
         let effect = value.name.rsplit_once('.').map_or("", |(effect, _)| effect);
         let is_slight = slight.iter().any(|part| part.name == effect);
         let slight = is_slight.then(|| "predictions hardly change with it".to_owned());
-        let known = value.yardstick.as_ref().filter(|_| value.is_determined);
+        let is_one_of_many = is_one_of_many(first, value);
+        let known = value.yardstick.as_ref();
+        let known =
+            known.filter(|known| value.is_determined && (known.is_large || !is_one_of_many));
         let remarks: Vec<String> = known.map(compared).into_iter().chain(slight).collect();
         let mut text = size(first, value);
         if !remarks.is_empty() {

@@ -8,6 +8,9 @@ use super::numbers::{bounded, measured, part_of_all, sized};
 use super::shares::{refitted, refitted_share, shares};
 use crate::text::{short, with_unit};
 
+/// Number of sizes of one kind that a sentence lists.
+const FEW: usize = 2;
+
 /// The verdict where nothing is missing, and the condition for it.
 pub(super) const NO_GAP: &str = "no gap beyond measurement and process noise";
 pub(super) const REFITTED: &str = " once parameters are re-fitted";
@@ -76,14 +79,51 @@ pub(super) fn name_of(effects: &[String]) -> String {
 
 /// `, delay = 0.012 ± 0.001 s`
 fn values_after(hypothesis: &Hypothesis) -> String {
-    let values = values(hypothesis);
+    let values = ranges(hypothesis);
     values.iter().flat_map(|value| [", ", value]).collect()
 }
 
 /// The values of a hypothesis, each with half of its 95 % interval.
-pub fn values(hypothesis: &Hypothesis) -> Vec<String> {
+pub(super) fn values(hypothesis: &Hypothesis) -> Vec<String> {
     let values = hypothesis.parameters.iter();
     values.map(|value| size(hypothesis, value)).collect()
+}
+
+/// The same in few words: sizes of one kind at many places as a range, `coefficient at 6 places = 3.1 … 23.6 N*m*s/rad`.
+pub fn ranges(hypothesis: &Hypothesis) -> Vec<String> {
+    let mut ranges = Vec::new();
+    for group in hypothesis
+        .parameters
+        .chunk_by(|a, b| kind(a) == kind(b) && a.unit == b.unit)
+    {
+        if group.len() <= FEW {
+            ranges.extend(group.iter().map(|value| size(hypothesis, value)));
+            continue;
+        }
+        let sizes = group.iter().map(|value| value.value);
+        let low = sizes.clone().fold(f64::INFINITY, f64::min);
+        let high = sizes.fold(f64::NEG_INFINITY, f64::max);
+        let high = with_unit(&short(high), &group[0].unit);
+        let (_, what) = kind(&group[0]);
+        ranges.push(format!(
+            "{what} at {} places = {} … {high}",
+            group.len(),
+            short(low)
+        ));
+    }
+    ranges
+}
+
+/// The effect of a size, and what it is without the name of its place.
+fn kind(value: &Value) -> (&str, &str) {
+    let (effect, own) = value.name.rsplit_once('.').unwrap_or(("", &value.name));
+    (effect, own.rsplit_once('_').map_or(own, |(_, what)| what))
+}
+
+/// Whether a hypothesis has many sizes of the kind of one.
+pub(super) fn is_one_of_many(hypothesis: &Hypothesis, value: &Value) -> bool {
+    let alike = hypothesis.parameters.iter();
+    alike.filter(|other| kind(other) == kind(value)).count() > FEW
 }
 
 /// `force = 0.412 ± 0.041 N`

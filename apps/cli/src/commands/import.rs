@@ -139,6 +139,12 @@ impl Import {
                 }
             }
         }
+        let is_actuator = |one: &LeftOut| one.what.starts_with("actuator/");
+        if !self.actuators && robot.left_out.iter().any(is_actuator) {
+            tell(
+                "with `--actuators` the commands of the actuators are the inputs, with their gains, gear and limits\n",
+            );
+        }
         if robot.nearly_right > 0 && !self.snap {
             let count = robot.nearly_right;
             let them = if count == 1 {

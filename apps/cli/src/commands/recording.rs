@@ -47,6 +47,15 @@ impl Recording {
         if let Some(path) = &self.write {
             return self.draft(path);
         }
+        if let (None, [first, _, ..]) = (&self.model, &self.data[..])
+            && !appell::recording::is_recording(first)
+        {
+            let mechanism = first.display();
+            return Err(Error::Usage(format!(
+                "`{mechanism}` comes before its recordings where a description is drafted: add --write recording.toml; or \
+                 summarise files with the names of its spec by --model {mechanism}"
+            )));
+        }
         let set = appell::recording::read(&self.data, self.model.as_deref())?;
         if let Some(path) = &self.json {
             files::write_json(path, &appell::json::recording(&set))?;
@@ -93,6 +102,7 @@ impl Recording {
         for question in &drafted.questions {
             let _ = writeln!(told, "  ? {question}");
         }
+        told.push_str("next: write under [parameters] how well you know the numbers of the model; those of the draft are usual ones\n");
         output::print_beside(&told, &[&self.json, &self.write])
     }
 }

@@ -194,6 +194,7 @@ impl Simulate {
             undriven,
             held_from,
             smooth,
+            begins,
         } = simulated(&model, &motion)?;
         let failure = failure.or(undefined);
 
@@ -201,6 +202,11 @@ impl Simulate {
             note(&format!(
                 "the recorded inputs end at {} s; their last values are held from there on",
                 number(from)
+            ));
+        }
+        if let Some(begins) = begins {
+            note(&format!(
+                "the run begins at {begins}; to compare with it, begin there too by --initial"
             ));
         }
         if let Some(remark) = smooth {

@@ -186,13 +186,17 @@ class Diagnosis(Report):
         return self._native.experiment()
 
     def apply(self, hypothesis: int | None = None) -> Model:
-        """The model with the leading hypothesis applied, or with another one, numbered from 1."""
+        """The model with the leading hypothesis applied, or with another one, numbered from 1; of a spec."""
+        if self._native._robot() is not None:
+            raise ValueError("the mechanism is a robot file: `improved` has its text with the changes")
         return Model(self.improved(hypothesis)[0], text=True)
 
     def improved(self, hypothesis: int | None = None, file: str = "improved.toml") -> tuple[str, str]:
-        """The text of the spec with that effect, and a summary of the changes."""
+        """The text of the spec or the robot file with that effect, and a summary of the changes."""
         if hypothesis is not None and hypothesis < 1:
             raise ValueError("hypotheses are numbered from 1")
+        if (robot := self._native._robot()) is not None:
+            return _appell.corrected_robot(Path(robot), self.json, hypothesis)
         spec, text = self._native._spec()
         return _appell.apply(spec, text, self.json, hypothesis, file)
 
@@ -386,7 +390,11 @@ def _described(description: str | Path | None) -> tuple[str, str] | None:
 
 
 def _read(data: Recordings | Data, model: Model | str | Path | None) -> Recordings:
-    return data if isinstance(data, Recordings) else Recordings(data, model)
+    if not isinstance(data, Recordings):
+        return Recordings(data, model)
+    if model is not None:
+        raise ValueError("these recordings have their mechanism already: give another one where they are read")
+    return data
 
 
 def _name(model: Model | str | Path | None) -> str | None:

@@ -6,11 +6,15 @@ import json
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from . import _appell
 from ._errors import Diagnostic
 from ._model import Model
 from ._values import many
+
+if TYPE_CHECKING:
+    from ._recordings import Diagnosis
 
 
 @dataclass(frozen=True)
@@ -85,13 +89,14 @@ def import_robot(
     )
 
 
-def corrected_robot(file: str | Path, report: str, hypothesis: int | None = None) -> tuple[str, str]:
+def corrected_robot(file: str | Path, report: str | Diagnosis, hypothesis: int | None = None) -> tuple[str, str]:
     """The text of an MJCF or URDF file with the leading hypothesis of a gap report, or with another one, numbered from 1,
-    and a summary of the changes. `report` is the text of the report, such as that of `Diagnosis.json`.
+    and a summary of the changes. `report` is a diagnosis or the text of its report.
     """
     if hypothesis is not None and hypothesis < 1:
         raise ValueError("hypotheses are numbered from 1")
-    return _appell.corrected_robot(Path(file), report, hypothesis)
+    text = report if isinstance(report, str) else report.json
+    return _appell.corrected_robot(Path(file), text, hypothesis)
 
 
 def sample_robot(folder: str | Path) -> list[str]:

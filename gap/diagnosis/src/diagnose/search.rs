@@ -5,7 +5,7 @@
 
 use std::collections::BTreeSet;
 
-use appell_estimate::{Estimation, Unknown};
+use appell_estimate::Estimation;
 
 use super::DiagnoseError;
 use super::bench::Bench;
@@ -56,7 +56,7 @@ pub(super) enum Look {
 
 /// A search for hypotheses.
 pub(super) struct Search<'b, 'a> {
-    bench: &'b Bench<'a>,
+    pub(super) bench: &'b Bench<'a>,
     /// The fitted hypotheses, the nominal model first.
     pub(super) fits: Vec<Fitted>,
     /// Hypotheses whose fit failed, with the reason.
@@ -135,7 +135,7 @@ impl<'b, 'a> Search<'b, 'a> {
                     self.take(0, set);
                 }
             }
-            self.try_lags();
+            self.try_instead();
             if let Some(best) = self.best().filter(|&best| best > 0)
                 && !self.goes_on(best, &mut look)?
             {
@@ -366,7 +366,7 @@ impl<'b, 'a> Search<'b, 'a> {
 
     /// Keeps the better of two fits of a hypothesis. A search that ended before an optimum gives a lower bound of its
     /// evidence.
-    fn keep(&mut self, fitted: Fitted) {
+    pub(super) fn keep(&mut self, fitted: Fitted) {
         let mut fits = self.fits.iter_mut();
         match fits.find(|own| own.members == fitted.members) {
             Some(own) if own.evidence.log() < fitted.evidence.log() => *own = fitted,
@@ -463,7 +463,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// Resets the values of a member of a fit.
-    fn take_away(
+    pub(super) fn take_away(
         &self,
         member: usize,
         whole: &Fitted,
@@ -490,7 +490,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// A delayed channel loses rows: its likelihood is that of the nominal model plus the gain on the remaining rows.
-    fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
+    pub(super) fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
         let bench = self.bench;
         let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
         if fitted.members.iter().any(is_late) {
@@ -522,57 +522,6 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// To first order a lag of a channel is a delay. The best hypotheses with a delay are also fitted with a lag
-    /// instead.
-    fn try_lags(&mut self) {
-        let Some(best) = self.best() else {
-            return;
-        };
-        let log = self.log_posterior(&self.fits[best]);
-        let tied = |fitted: &&Fitted| fitted.is_there() && log - self.log_posterior(fitted) < TIED;
-        let tied: Vec<Fitted> = self.fits.iter().filter(tied).cloned().collect();
-        for fitted in tied {
-            for &late in &fitted.members {
-                if let Ok(Some(fitted)) = self.fitted_with_lag(&fitted, late) {
-                    self.keep(fitted);
-                }
-            }
-        }
-    }
-
-    /// A hypothesis in which a lag replaces the delay of a channel; `None` for other members, and
-    /// if the lag would be too short to be distinguished.
-    fn fitted_with_lag(
-        &self,
-        whole: &Fitted,
-        late: usize,
-    ) -> Result<Option<Fitted>, DiagnoseError> {
-        let bench = self.bench;
-        let Acts::Late(channel) = bench.candidate(late).acts else {
-            return Ok(None);
-        };
-        let mut candidates = bench.effects.candidates.iter();
-        let slow = candidates.position(|own| own.acts == Acts::Slow(channel));
-        let delay = whole.fit.values[whole.layout.place(Unknown::SensorDelay(channel))?];
-        let Some(slow) = slow.filter(|&slow| !bench.is_too_short(slow, &[delay])) else {
-            return Ok(None);
-        };
-        let mut members = whole.members.clone();
-        members.retain(|&own| own != late);
-        members.push(slow);
-        members.sort_unstable();
-        let setup = bench.setup(&members);
-        let estimation = Estimation::new(&setup, &bench.recordings)?;
-        let mut start = bench.carried(whole, &estimation);
-        start[estimation.layout().place(Unknown::SensorDelay(channel))?] = 0.0;
-        let Some(free) = bench.of_signal(Acts::Slow(channel), &setup) else {
-            return Ok(None);
-        };
-        start[estimation.layout().place(free.unknown)?] = delay;
-        let fitted = bench.fit(&members, &estimation, &start)?;
-        Ok(Some(fitted))
-    }
-
     /// A hypothesis without a member, from the optimum with it.
     fn fitted_without(&self, whole: &Fitted, idle: usize) -> Result<Fitted, DiagnoseError> {
         let bench = self.bench;
@@ -588,7 +537,7 @@ impl<'b, 'a> Search<'b, 'a> {
     }
 
     /// The most probable hypothesis.
-    fn best(&self) -> Option<usize> {
+    pub(super) fn best(&self) -> Option<usize> {
         let there = (0..self.fits.len()).filter(|&i| self.fits[i].is_there());
         let log = |i: usize| self.log_posterior(&self.fits[i]);
         there.max_by(|&a, &b| log(a).total_cmp(&log(b)))

@@ -121,7 +121,12 @@ fn by_number(log: &Log, columns: &[usize], quantities: &[Quantity], bound: &[Bou
             let own = all.filter(|(_, quantity)| quantity.kind == kind);
             own.map(|(index, _)| index).collect()
         };
-        let wanted = of(kind);
+        let mut wanted = of(kind);
+        if wanted.is_empty() && kind == Kind::Torque {
+            // The torques of joints without actuators in the file are the inputs.
+            wanted = of(Kind::Command);
+            wanted.retain(|&input| !quantities[input].has_angle);
+        }
         let mut pair = |column: usize, quantity: Option<&usize>, doubt: Option<String>| {
             found.extend(quantity.map(|&quantity| Bound {
                 column,

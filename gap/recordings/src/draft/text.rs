@@ -102,20 +102,24 @@ impl Content<'_> {
     }
 
     fn parameters(&self, to: &mut String) -> std::fmt::Result {
-        writeln!(
-            to,
-            "\n[parameters]  # tolerances, one standard deviation; these are usual: keep those of what you know so well"
-        )?;
         if let Some(robot) = self.robot {
+            writeln!(
+                to,
+                "\n[parameters]  # tolerances, one standard deviation; these are usual: write how well you know yours"
+            )?;
             let has = |attribute: &str| {
                 let pattern = format!("*.{attribute}");
                 robot.numbers(&pattern).next().is_some()
             };
             for (attribute, tolerance) in TOLERANCES.iter().filter(|(own, _)| has(own)) {
-                writeln!(to, "# \"*.{attribute}\" = {tolerance}")?;
+                writeln!(to, "\"*.{attribute}\" = {tolerance}")?;
             }
             return Ok(());
         }
+        writeln!(
+            to,
+            "\n[parameters]  # tolerances, one standard deviation; these are usual: keep those of what you know so well"
+        )?;
         for own in &self.names.parameters {
             let label = &own.label;
             let value = label.unit.from_si(own.value);

@@ -289,13 +289,13 @@ fn a_description_is_drafted_once_and_accepted() {
         "x = { measures = \"x\", unit = \"m\", noise_std = ",
         "x_vel = { measures = \"x.velocity\", unit = \"m/s\"",
         "servo = { input = \"servo\", unit = \"m\" }  # position follows after 30 ms",
-        "# \"*.mass\" = { std = \"3 %\" }",
+        "\"*.mass\" = { std = \"3 %\" }",
         "test = [\"c.csv\"]",
     ] {
         assert!(text.contains(expected), "{expected}: {text}");
     }
     folder.done(&["recording", "."]);
-    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    folder.done(&["identify", "--data", "."]);
     // What is there stays.
     folder.write("recording.toml", "mine");
     folder.fails(2, &asked, &["recording.toml` exists already", "--force"]);

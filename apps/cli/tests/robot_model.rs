@@ -84,3 +84,36 @@ fn numbers_of_a_robot_file_are_identified() {
     assert_eq!(found["parameters"][0]["name"], "cart.mass");
     assert_close(number(&found, "parameters/0/value"), 1.0, 0.02, "mass");
 }
+
+#[test]
+fn a_motion_beside_a_recorded_run_is_told_where_that_begins() {
+    let folder = rig::dry(0.0);
+    folder.write("robot.xml", ROBOT);
+    folder.write("recording.toml", DESCRIPTION);
+    let simulate = |start: &str| {
+        let start = format!("x={start}");
+        let asked = [
+            "simulate",
+            "robot.xml",
+            "--t-end-s",
+            "1",
+            "--initial",
+            &start,
+            "--inputs",
+            "recording.toml:a.csv",
+        ];
+        folder.done(&asked).stderr
+    };
+    let remarks = simulate("3");
+    let (_, begins) = remarks.split_once("the run begins at x = ").expect("a remark");
+    let (begins, _) = begins.split_once(' ').expect("a number");
+    assert!(!simulate(begins).contains("begins at"));
+}
+
+#[test]
+fn a_robot_file_before_its_logs_asks_what_is_wanted() {
+    let folder = rig::dry(0.0);
+    folder.write("robot.xml", ROBOT);
+    let asked = ["recording", "robot.xml", "a.csv"];
+    folder.fails(2, &asked, &["--write recording.toml", "--model robot.xml"]);
+}

@@ -173,3 +173,22 @@ fn a_log_of_three_rows_is_read_and_told_to_be_short() {
     let mut findings = set.findings.iter();
     assert!(findings.any(|finding| finding.kind == FindingKind::FewRows));
 }
+
+#[test]
+fn stamps_of_a_calendar_count_from_the_first_row() {
+    let folder = Folder::new();
+    let swing = swing(200, 1, 1e-3);
+    let mut lines = swing.lines();
+    let mut text = format!("stamp_ms{}\n", &lines.next().unwrap()[1..]);
+    for (row, line) in lines.enumerate() {
+        let (_, rest) = line.split_once(',').unwrap();
+        writeln!(text, "{},{rest}", 1_690_000_000_000_u64 + 4 * row as u64).unwrap();
+    }
+    folder.write("run.csv", text);
+    let channels = format!("{SWING}\nstamp_ms = {{ time = true, unit = \"ms\" }}");
+    folder.write("recording.toml", pendulum(&channels, &["run.csv"], &[]));
+    let set = folder.read().unwrap();
+    // In seconds since 1970 a step would be wrong by some 1e-7 s.
+    let of_row = |row: usize| (set.runs[0].times[row] - 0.004 * row as f64).abs();
+    assert!((0..200).all(|row| of_row(row) < 1e-12));
+}

@@ -122,7 +122,7 @@ fn columns_units_and_runs_are_found_and_the_draft_is_accepted() {
         line(text, "servo_2").ends_with("# position follows after 40 ms"),
         "{text}"
     );
-    assert!(text.contains("# \"*.kp\" = { std = \"2 %\" }"), "{text}");
+    assert!(text.contains("\n\"*.kp\" = { std = \"2 %\" }"), "{text}");
     assert!(
         text.contains("fit  = [\"a.csv\", \"b.csv\"]\ntest = [\"c.csv\"]"),
         "{text}"
@@ -353,4 +353,27 @@ fn episodes_of_one_file_are_drafted_as_runs() {
     );
     folder.write("recording.toml", text);
     assert_eq!(folder.read().unwrap().runs.len(), 3);
+}
+
+#[test]
+fn torques_by_number_are_the_inputs_of_a_urdf() {
+    let robot = r#"<robot name="arm"><link name="base"/>
+      <link name="upper"><inertial><origin xyz="0.1 0 0"/><mass value="1"/>
+        <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <link name="fore"><inertial><origin xyz="0.1 0 0"/><mass value="0.5"/>
+        <inertia ixx="0.01" iyy="0.01" izz="0.01" ixy="0" ixz="0" iyz="0"/></inertial></link>
+      <joint name="shoulder" type="continuous"><parent link="base"/><child link="upper"/><axis xyz="0 1 0"/></joint>
+      <joint name="elbow" type="continuous"><parent link="upper"/><child link="fore"/>
+        <origin xyz="0.3 0 0"/><axis xyz="0 1 0"/></joint></robot>"#;
+    let form = Form {
+        names: ["t", "q1", "q2", "dq1", "dq2", "tau1", "tau2"],
+        ..PLAIN
+    };
+    let folder = rig(&form);
+    folder.write("robot.urdf", robot);
+    let text = draft(&folder, "robot.urdf").text;
+    for (column, joint) in [("tau1", "shoulder"), ("tau2", "elbow")] {
+        let line = line(&text, column);
+        assert!(line.contains(&format!("input = \"tau_{joint}\"")), "{text}");
+    }
 }

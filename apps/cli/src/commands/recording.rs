@@ -48,6 +48,8 @@ impl Recording {
             return self.draft(path);
         }
         if let (None, [first, _, ..]) = (&self.model, &self.data[..])
+            && first.is_file()
+            && !first.ends_with("recording.toml")
             && !appell::recording::is_recording(first)
         {
             let mechanism = first.display();

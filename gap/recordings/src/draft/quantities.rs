@@ -106,6 +106,18 @@ fn of_robot(mechanism: &Mechanism, robot: &Robot) -> Vec<Quantity> {
         quantity.is_note = !actuator.is_servo;
         all.push(quantity);
     }
+    if names.actuators.is_empty() {
+        // A file without actuators, such as a URDF: efforts of the joints, `tau_elbow`.
+        for own in mechanism.inputs.iter() {
+            let name = &own.label.name;
+            let mut joints = names.joints.iter();
+            let axis = joints.position(|joint| name.ends_with(&format!("_{}", joint.coordinate)));
+            let mut quantity = Quantity::new(Kind::Command, name, &own.label, axis);
+            let joint = axis.map(|axis| words(&names.joints[axis].name));
+            quantity.words.extend(joint);
+            all.push(quantity);
+        }
+    }
     all
 }
 

@@ -105,7 +105,9 @@ fn a_motion_beside_a_recorded_run_is_told_where_that_begins() {
         folder.done(&asked).stderr
     };
     let remarks = simulate("3");
-    let (_, begins) = remarks.split_once("the run begins at x = ").expect("a remark");
+    let (_, begins) = remarks
+        .split_once("the run begins at x = ")
+        .expect("a remark");
     let (begins, _) = begins.split_once(' ').expect("a number");
     assert!(!simulate(begins).contains("begins at"));
 }

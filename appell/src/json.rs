@@ -6,6 +6,7 @@ mod identification;
 mod inverse;
 mod motion;
 mod recording;
+mod robot;
 
 use appell_recordings::DataSet;
 use appell_runtime::model::Quantity;
@@ -21,6 +22,7 @@ pub use identification::identification;
 pub use inverse::inverse;
 pub use motion::{extrema, motion};
 pub use recording::recording;
+pub use robot::robot;
 
 use crate::capture::Converted;
 use crate::check::{Checked, Thorough};

@@ -8,10 +8,9 @@ pub use appell_robots::{
     Options, SNAP, Without,
 };
 use appell_robots::{Change, Corrected, Failure, MAX_FILE};
-use serde_json::{Value, json};
 use walkdir::WalkDir;
 
-use crate::{Error, Field, Source, check, files};
+use crate::{Error, Field, Source, files};
 
 /// Largest mesh, in bytes.
 const MAX_MESH: u64 = 1 << 28;
@@ -118,22 +117,6 @@ pub fn find(folder: &Path) -> Result<Vec<(PathBuf, Format)>, Error> {
         found.extend(format.map(|format| (entry.into_path(), format)));
     }
     Ok(found)
-}
-
-/// The result of importing a robot file, as JSON.
-pub fn entry(file: &str, robot: &Imported) -> Value {
-    let left_out = robot.left_out.iter();
-    let left_out = left_out
-        .map(|one| json!({ "what": one.what, "file": one.file, "lines": one.lines, "effect": one.effect }))
-        .collect::<Vec<_>>();
-    let warnings = robot.warnings.iter();
-    let warnings = warnings
-        .map(|report| json!({ "file": report.file(), "findings": check::findings(report) }))
-        .collect::<Vec<_>>();
-    json!({
-        "file": file, "ok": true, "name": robot.name, "format": robot.format.word(), "bodies": robot.bodies,
-        "joints": robot.joints, "nearly_right_angles": robot.nearly_right, "warnings": warnings, "left_out": left_out,
-    })
 }
 
 /// The spec of a robot, as if it were read from a file.

@@ -62,7 +62,10 @@ pub(crate) fn import_robot(
         robot::read(&file, root.as_deref(), &options)
     })?
     .raise(py)?;
-    Ok((robot.spec.clone(), robot::entry(&name, &robot).to_string()))
+    Ok((
+        robot.spec.clone(),
+        appell::json::robot(&name, &robot).to_string(),
+    ))
 }
 
 /// Writes a folder with a robot arm as URDF and as MJCF; the names of the files.

@@ -19,7 +19,7 @@ use appell_report::identification;
 #[command(after_long_help = "\
 Examples:
   appell identify rig/my_rig.toml --data rig --plot predicted.svg
-  appell identify --data robot --free elbow.damping,elbow.frictionloss")]
+  appell identify --data rig --free m")]
 pub(crate) struct Identify {
     /// Mechanism of the recordings: a shipped one, a spec or a robot file [default: the one that a data set names]
     model: Option<String>,

@@ -52,7 +52,7 @@ impl List {
             rows.push(row(file.to_string(), format, &robot));
             let file = path.to_string_lossy();
             entries.push(match &robot {
-                Ok(robot) => robot::entry(&file, robot),
+                Ok(robot) => appell::json::robot(&file, robot),
                 Err(failure) => check::failed(&file, failure),
             });
             bar.inc(1);

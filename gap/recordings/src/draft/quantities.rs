@@ -108,7 +108,7 @@ fn of_robot(mechanism: &Mechanism, robot: &Robot) -> Vec<Quantity> {
     }
     if names.actuators.is_empty() {
         // A file without actuators, such as a URDF: efforts of the joints, `tau_elbow`.
-        for own in mechanism.inputs.iter() {
+        for own in &mechanism.inputs {
             let name = &own.label.name;
             let mut joints = names.joints.iter();
             let axis = joints.position(|joint| name.ends_with(&format!("_{}", joint.coordinate)));

@@ -98,6 +98,11 @@ impl DataSet {
         appell::recording::warnings(&self.0)
     }
 
+    /// The file of the mechanism.
+    fn _file(&self) -> &str {
+        &self.0.spec.file
+    }
+
     #[pyo3(signature = (free, also, drifting, shooting, progress))]
     fn _identify(
         &self,

@@ -87,6 +87,7 @@ class DataSet:
     @property
     def warnings(self) -> list[str]:
         """Warnings about the data that may affect conclusions."""
+    def _file(self) -> str: ...
     def _identify(
         self,
         free: list[str] | None,

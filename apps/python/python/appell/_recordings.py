@@ -392,9 +392,17 @@ def _described(description: str | Path | None) -> tuple[str, str] | None:
 def _read(data: Recordings | Data, model: Model | str | Path | None) -> Recordings:
     if not isinstance(data, Recordings):
         return Recordings(data, model)
-    if model is not None:
-        raise ValueError("these recordings have their mechanism already: give another one where they are read")
+    if model is not None and not _is_of(data._file(), model):
+        raise ValueError("these recordings have another mechanism: give this one where they are read")
     return data
+
+
+def _is_of(file: str, model: Model | str | Path) -> bool:
+    """Whether a model is that of a file, or has none."""
+    name = model._reference if isinstance(model, Model) else str(model)
+    if name is None or name in (file, Path(file).stem):
+        return True
+    return Path(name).exists() and Path(file).exists() and Path(name).samefile(file)
 
 
 def _name(model: Model | str | Path | None) -> str | None:

@@ -37,13 +37,20 @@ impl Robot {
     /// What its equations lack although the motion is another one without it, a sentence each.
     pub fn remarks(&self) -> Vec<String> {
         let filters = self.imported.dictionary.actuators.iter();
-        let filters = filters.filter(|one| one.lag > 0.0 || one.delay > 0.0);
-        let filters = filters.map(|one| {
-            format!(
-                "the actuator {} follows its command at once here: its filter of {} s and its delay of {} s act on the \
-                 inputs of a data set alone",
-                one.name, one.lag, one.delay
-            )
+        let filters = filters.filter_map(|one| {
+            let known = [("filter", one.lag), ("delay", one.delay)].into_iter();
+            let known = known.filter(|(_, seconds)| *seconds > 0.0);
+            let known: Vec<String> = known
+                .map(|(what, seconds)| format!("the {what} of {seconds} s"))
+                .collect();
+            (!known.is_empty()).then(|| {
+                format!(
+                    "the actuator {} follows its command at once here; {} of the file acts on the inputs of a data set \
+                     alone",
+                    one.name,
+                    known.join(" with ")
+                )
+            })
         });
         let left_out = self.imported.left_out.iter().filter_map(|one| {
             let effect = one.effect?;

@@ -29,6 +29,21 @@ impl From<Engine> for appell::engine::Engine {
     }
 }
 
+/// The source of a MODEL.
+pub(crate) fn source(model: &str) -> Result<Source, Error> {
+    source_with(model, &[])
+}
+
+/// The same; numbers of a robot file that are set are parameters.
+fn source_with(model: &str, set: &[Assignment]) -> Result<Source, Error> {
+    let numbers: Vec<&str> = set.iter().map(|one| one.name.as_str()).collect();
+    let source = Source::find_with(model, &numbers)?;
+    // What the equations of a robot file lack although it changes the motion.
+    let lacking = source.robot.iter().flat_map(|robot| robot.remarks());
+    lacking.for_each(|remark| note(&remark));
+    Ok(source)
+}
+
 /// The model of a MODEL; without an engine, emitted code if shipped, else machine code. Of a robot file, numbers that are
 /// set are parameters.
 pub(crate) fn model(
@@ -36,21 +51,13 @@ pub(crate) fn model(
     set: &[Assignment],
     engine: Option<Engine>,
 ) -> Result<Model, Error> {
-    let numbers: Vec<&str> = set.iter().map(|one| one.name.as_str()).collect();
-    let source = Source::find_with(model, &numbers)?;
-    remark(&source);
+    let source = source_with(model, set)?;
     made(|| Model::of(source, engine.map(Into::into)))
 }
 
 /// The equations with the adjoints that estimation needs.
 pub(crate) fn model_for_estimation(source: Source) -> Result<Model, Error> {
     made(|| Model::for_estimation(source))
-}
-
-/// What the equations of a robot file lack although it changes the motion.
-fn remark(source: &Source) {
-    let left_out = source.robot.iter().flat_map(|robot| robot.remarks());
-    left_out.for_each(|remark| note(&remark));
 }
 
 fn made(make: impl FnOnce() -> Result<Model, appell::Error>) -> Result<Model, Error> {

@@ -9,7 +9,7 @@ use appell::{Source, files};
 use serde_json::{Value, json};
 
 use crate::failure::{self, Error};
-use crate::{output, progress};
+use crate::{engine, output, progress};
 
 /// Validates specs and summarises the mechanisms they describe.
 ///
@@ -79,7 +79,7 @@ impl Check {
 
     /// Checks one spec. Returns its JSON entry, and a failure if equations disagree.
     fn check(&self, model: &str, quiet: bool) -> Result<(Value, Option<Error>), Error> {
-        let source = Source::find(model)?;
+        let source = engine::source(model)?;
         let spinner = progress::spinner(&format!("deriving {}", source.file));
         let checked = source.check();
         spinner.finish_and_clear();

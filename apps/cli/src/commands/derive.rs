@@ -9,6 +9,7 @@ use appell_codegen::program::FunctionKind;
 
 use crate::choice::{Choice, one_of};
 use crate::destinations::extension;
+use crate::engine;
 use crate::failure::Error;
 use crate::{output, progress};
 
@@ -157,7 +158,7 @@ const EXTENTS: [Choice<Extent>; 6] = [
 
 impl Derive {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let source = Source::find(&self.model)?;
+        let source = engine::source(&self.model)?;
         let format = self.format()?;
         let linear = self.stage == Extent::Linear && format.is_page();
         if !linear && !self.about.is_empty() {

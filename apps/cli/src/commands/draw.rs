@@ -2,10 +2,10 @@
 
 use std::path::PathBuf;
 
+use crate::engine;
 use crate::failure::Error;
 use crate::{picture, progress};
 use appell::setup::Assignment;
-use appell::source::Source;
 
 /// Draws the mechanism at its initial state, angles marked, as SVG, PNG or PDF.
 ///
@@ -31,7 +31,7 @@ pub(crate) struct Draw {
 
 impl Draw {
     pub(super) fn run(&self) -> Result<(), Error> {
-        let source = Source::find(&self.model)?;
+        let source = engine::source(&self.model)?;
         let spinner = progress::spinner("deriving the equations of motion");
         let svg = source.drawing_at(&self.set, &self.initial);
         spinner.finish_and_clear();

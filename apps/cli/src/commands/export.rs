@@ -2,10 +2,11 @@
 
 use std::path::PathBuf;
 
+use appell::files;
 use appell::fmu::{Fmu, InputsOfStep, Options};
-use appell::{Source, files};
 
 use crate::destinations::extension;
+use crate::engine;
 use crate::failure::Error;
 use crate::{output, progress};
 
@@ -61,7 +62,7 @@ impl Export {
                 output::shell(&instead.to_string_lossy())
             )));
         }
-        let source = Source::find(&self.model)?;
+        let source = engine::source(&self.model)?;
         let spinner = progress::spinner("deriving and compiling the equations of motion");
         let fmu = source.fmu(&Options {
             sources_only: self.sources_only,

@@ -177,6 +177,16 @@ impl Comparison {
         let mut asked = BTreeSet::new();
         loop {
             let sum: f64 = self.fits.iter().map(|(_, probability)| probability).sum();
+            if sum <= 0.0 {
+                // Beside what is left out the others were too improbable for a number.
+                let evidence = |(own, _): &&mut (Fitted, f64)| own.evidence.log();
+                let left = self.fits.iter_mut();
+                let best = left.max_by(|a, b| evidence(a).total_cmp(&evidence(b)));
+                let Some((_, probability)) = best else { break };
+                *probability = 1.0;
+                self.fits.sort_by(|(_, a), (_, b)| b.total_cmp(a));
+                continue;
+            }
             for (_, probability) in &mut self.fits {
                 *probability /= sum;
             }

@@ -104,7 +104,7 @@ pub(super) fn judged<'a>(
         if let Some((_, windows)) = &mut found
             && bench.is_of_robot
         {
-            windows.without_imitations(&bench, &over)?;
+            windows.without_imitations(&bench, &over);
         }
         found
     };
@@ -183,16 +183,15 @@ impl Comparison {
     /// Over windows, where there is no process noise, effects may imitate disturbances: a robot's hypotheses are left out
     /// if one step ahead, with process noise, they predict worse than the nominal model or than with fewer effects. A
     /// filter does not carry the coordinates that effects add.
-    fn without_imitations(
-        &mut self,
-        bench: &Bench<'_>,
-        over: &Bench<'_>,
-    ) -> Result<(), DiagnoseError> {
+    fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>) {
         let one_step = |fitted: &Fitted| {
-            let taken = bench.taken(over, fitted);
+            let taken = bench.taken(over, fitted).ok();
             taken.map(|taken| taken.fit.log_likelihood)
         };
-        let nominal = one_step(self.nominal())?;
+        // One-step predictions that diverge tell nothing.
+        let Some(nominal) = one_step(self.nominal()) else {
+            return;
+        };
         let all: Vec<Fitted> = self.fits.iter().map(|(own, _)| own.clone()).collect();
         let within = |fitted: &Fitted| {
             let is_part = |own: &&Fitted| {
@@ -208,9 +207,9 @@ impl Comparison {
             if fitted.members.iter().any(adds) {
                 return None;
             }
-            let fewer = within(fitted).and_then(|fewer| one_step(fewer).ok());
+            let fewer = within(fitted).and_then(&one_step);
             let least = fewer.map_or(nominal, |fewer| fewer.max(nominal));
-            let gain = one_step(fitted).ok()? - least;
+            let gain = one_step(fitted)? - least;
             (gain < -TIED).then(|| {
                 format!(
                     "it predicts windows better, but one step ahead it lowers the log likelihood by {:.0}: over windows \
@@ -219,7 +218,6 @@ impl Comparison {
                 )
             })
         });
-        Ok(())
     }
 }
 

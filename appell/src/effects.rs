@@ -182,6 +182,7 @@ fn magnitudes(mechanism: &Mechanism) -> Scales {
         reached: vec![Some([-1.0, 1.0]); coordinates],
         loads: vec![1.0; mechanism.loads.iter().count()],
         channels: channels.map(|one| one.label.name.clone()).collect(),
+        coordinates: (0..coordinates).map(Some).collect(),
         uncertain: (0..mechanism.parameters.iter().count()).collect(),
     }
 }

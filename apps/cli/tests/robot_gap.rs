@@ -1,8 +1,10 @@
 //! From a robot file and recordings to a corrected robot file.
 
+use std::fmt::Write as _;
+
 use serde_json::Value;
 
-use crate::rig;
+use crate::rig::{self, Noise};
 use crate::support::Folder;
 
 /// The carriage of the rig as a robot file.
@@ -231,6 +233,118 @@ fn what_mjcf_cannot_express_stands_in_a_comment() {
     folder.write("report.json", &nothing);
     folder.done(&apply);
     assert_eq!(folder.read("better.xml"), ROBOT);
+}
+
+/// Two links whose servos close their loops over the encoders.
+const LINKS: &str = r#"<mujoco model="two_links">
+  <worldbody>
+    <body name="upper">
+      <inertial pos="0.1 0 0" mass="0.4" diaginertia="0.0004 0.002 0.002"/>
+      <joint name="shoulder" axis="0 1 0" armature="0.005" damping="0.05"/>
+      <body name="fore" pos="0.25 0 0">
+        <inertial pos="0.1 0 0" mass="0.3" diaginertia="0.0003 0.001 0.001"/>
+        <joint name="elbow" axis="0 1 0" armature="0.005" damping="0.05"/>
+      </body>
+    </body>
+  </worldbody>
+  <actuator>
+    <position name="shoulder_servo" joint="shoulder" kp="20" kv="0.8"/>
+    <position name="elbow_servo" joint="elbow" kp="12" kv="0.5"/>
+  </actuator>
+</mujoco>
+"#;
+
+/// A run of the links whose commands are sums of sines with a phase.
+fn run_of_links(folder: &Folder, phase: f64, noise: &mut Noise) -> String {
+    let command = |row: u32| {
+        let t = 0.01 * f64::from(row);
+        let slow = [(1.1 * t + phase).sin(), (1.7 * t).sin()];
+        let fast = [(3.7 * t).sin(), (4.3 * t + phase).cos()];
+        let of =
+            |mean: f64, large: f64, joint: usize| mean + large * slow[joint] + 0.3 * fast[joint];
+        [of(0.4, 0.6, 0), of(0.7, 0.7, 1)]
+    };
+    let mut commands = "t,shoulder_servo,elbow_servo\n".to_owned();
+    for row in 0..600 {
+        let [shoulder, elbow] = command(row);
+        let _ = writeln!(commands, "{},{shoulder},{elbow}", 0.01 * f64::from(row));
+    }
+    folder.write("commands.csv", &commands);
+    let [shoulder, elbow] = command(0);
+    let starts = [format!("shoulder={shoulder}"), format!("elbow={elbow}")];
+    let asked =
+        "simulate true.xml --t-end-s 5.99 --dt-s 0.01 --inputs commands.csv --csv motion.csv";
+    let mut asked: Vec<&str> = asked.split(' ').collect();
+    asked.extend(["--initial", &starts[0], "--initial", &starts[1]]);
+    folder.done(&asked);
+    let motion = folder.read("motion.csv");
+    let mut motion = motion.lines().filter(|line| !line.starts_with('#'));
+    let names: Vec<&str> = motion.next().expect("a heading").split(',').collect();
+    let column = |name: &str| names.iter().position(|own| *own == name).expect("a column");
+    let columns = [column("shoulder"), column("elbow")];
+    let mut run = "t,shoulder,elbow,shoulder_cmd,elbow_cmd\n".to_owned();
+    for (row, line) in (0..).zip(motion) {
+        let values: Vec<&str> = line.split(',').collect();
+        let [shoulder, elbow] = columns.map(|column| {
+            let value: f64 = values[column].parse().expect("a number");
+            value + 2e-4 * noise.next()
+        });
+        let commands = command(row);
+        let t = 0.01 * f64::from(row);
+        let _ = writeln!(
+            run,
+            "{t},{shoulder},{elbow},{},{}",
+            commands[0], commands[1]
+        );
+    }
+    run
+}
+
+#[test]
+fn the_offset_of_an_encoder_within_the_loop_of_its_servo_is_found() {
+    let folder = Folder::new();
+    folder.write("robot.xml", LINKS);
+    let offset = r#"<joint name="elbow" ref="1.7188734""#;
+    folder.write("true.xml", &LINKS.replace(r#"<joint name="elbow""#, offset));
+    let description = r#"
+mechanism = "robot.xml"
+[parameters]
+"*.mass" = { std = "3 %" }
+"*.com" = { std = 1e-4, unit = "m" }
+"*.kp" = { std = "2 %" }
+"*.kv" = { std = "5 %" }
+"*.damping" = { std = "15 %" }
+[channels]
+shoulder = { measures = "shoulder", unit = "rad", noise_std = 2e-4 }
+elbow = { measures = "elbow", unit = "rad", noise_std = 2e-4 }
+shoulder_cmd = { input = "shoulder_servo", unit = "rad" }
+elbow_cmd = { input = "elbow_servo", unit = "rad" }
+[runs]
+fit  = ["a.csv", "b.csv"]
+test = ["c.csv"]
+"#;
+    folder.write("recording.toml", description);
+    let mut noise = Noise::seeded(7);
+    for (phase, name) in [(0.0, "a.csv"), (1.0, "b.csv"), (2.0, "c.csv")] {
+        folder.write(name, &run_of_links(&folder, phase, &mut noise));
+    }
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
+    let first = &report["which"][0];
+    assert_eq!(first["effects"], serde_json::json!(["sensor_bias@elbow"]));
+    let bias = first["parameters"][0]["value"].as_f64().expect("a number");
+    assert!((bias - 0.03).abs() < 0.006, "{first}");
+    // The coordinate is what the encoder shows: in the file the joint has another zero.
+    folder.done(&[
+        "apply",
+        "robot.xml",
+        "--report",
+        "report.json",
+        "-o",
+        "better.xml",
+    ]);
+    let zero = number_after(&folder.read("better.xml"), "ref=\"");
+    assert!((zero - bias.to_degrees()).abs() < 1e-3, "{zero}");
 }
 
 /// The carriage as a URDF.

@@ -31,6 +31,7 @@ mod place;
 mod site;
 mod site_kind;
 mod stem;
+mod term;
 
 pub(crate) use candidate::Part;
 pub use candidate::{Acts, Candidate};
@@ -41,11 +42,11 @@ pub(crate) use hysteresis::Hysteresis;
 pub use library::shipped;
 pub(crate) use load::controlled;
 pub(crate) use memory::Memory;
-pub(crate) use model::ACTING;
 pub use model::{EffectModel, ModelError, candidates, with_candidates, written};
 pub use site::Scales;
 pub(crate) use site::driven;
 pub use site_kind::SiteKind;
+pub use term::Term;
 
 #[cfg(test)]
 mod tests {
@@ -152,6 +153,7 @@ fr = { kind = "damper", coordinate = "th", damping = "c" }
             reached: vec![Some([-1.0, 1.0]); 2],
             loads: vec![1.0; 5],
             channels: vec!["th".to_owned(), "s".to_owned()],
+            coordinates: vec![Some(0), Some(1)],
             uncertain: vec![0, 1, 2],
         };
         let effects = shipped().expect("a library");

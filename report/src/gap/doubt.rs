@@ -38,8 +38,9 @@ fn of(hypothesis: &Hypothesis) -> Vec<String> {
     };
     let values = hypothesis.parameters.iter();
     // An input that acts as u + p u acts 1 + p times.
-    let inputs = changes.inputs.iter().filter_map(|(input, adds)| {
-        let gain = adds.strip_suffix(&format!("*{input}"))?;
+    let inputs = changes.inputs.iter().filter_map(|term| {
+        let input = &term.quantity;
+        let gain = term.adds.strip_suffix(&format!("*{input}"))?;
         let named = |value: &&Value| value.name.replace(['@', '.'], "_") == gain;
         let value = values.clone().find(named)?;
         doubt(

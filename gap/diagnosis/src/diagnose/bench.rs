@@ -40,7 +40,7 @@ const COARSE: Effort = Effort {
     floor: f64::NEG_INFINITY,
 };
 /// The same for shares of a gap, which are needed to a hundredth.
-const SHARES: Effort = Effort {
+pub(super) const SHARES: Effort = Effort {
     gain: 0.5,
     steps: 12,
     floor: f64::NEG_INFINITY,
@@ -483,15 +483,6 @@ impl<'a> Bench<'a> {
         self.weighed(estimation, start, free, Fit::quick, self.effort())
     }
 
-    /// Fits the noise levels alone.
-    pub(super) fn levelled(
-        &self,
-        estimation: &Estimation<'_>,
-        start: &[f64],
-    ) -> Result<Fit, DiagnoseError> {
-        self.fit_free(estimation, start, &self.problem.levels)
-    }
-
     /// Fits a hypothesis with the accuracy that shares of a gap need.
     pub(super) fn fit_roughly(
         &self,
@@ -534,7 +525,7 @@ impl<'a> Bench<'a> {
 
 impl Bench<'_> {
     /// A fit with weighted rows: the objective is divided by the weight, so that the prior is scaled instead.
-    fn weighed(
+    pub(super) fn weighed(
         &self,
         estimation: &Estimation<'_>,
         start: &[f64],

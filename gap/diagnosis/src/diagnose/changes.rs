@@ -1,28 +1,25 @@
 //! The changes of the spec under a hypothesis, so that the spec can be improved without the recordings.
 
-use std::collections::BTreeMap;
-
 use appell_estimate::{Coordinate, Measured, Unknown};
 use appell_spec::compose::Composition;
 use appell_spec::edit::{EditError, set_deviations, set_parameters};
 use appell_spec::mechanism::{Parameter, ParameterId};
 use appell_spec::units::{self, Unit};
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Serialize};
 use toml_edit::{DocumentMut, Item};
 
 use super::bench::Bench;
 use super::evidence::Fitted;
 use super::{ChangeError, DiagnoseError};
-use crate::effects::{ACTING, Acts, Candidate, EffectModel, ModelError, Part, with_candidates};
+use crate::effects::{Acts, Candidate, EffectModel, ModelError, Part, Term, with_candidates};
 
 /// Changes of a spec.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct Changes {
     /// Items to add, in the spec language, with the fitted values.
     pub items: String,
-    /// Terms added to an input wherever it acts: its name and an expression.
-    #[serde(serialize_with = "write_added", deserialize_with = "read_added")]
-    pub inputs: Vec<(String, String)>,
+    /// Terms added to an input wherever it acts, or to a coordinate in the geometry.
+    pub inputs: Vec<Term>,
     /// Parameters of the items, without switches.
     #[serde(skip)]
     pub brought: Vec<Refitted>,
@@ -68,23 +65,6 @@ pub struct SignalEffect {
     pub measures: Option<String>,
 }
 
-/// A term of an input in the file of a report.
-#[derive(Serialize, Deserialize)]
-struct Added {
-    input: String,
-    adds: String,
-}
-
-fn write_added<S: Serializer>(inputs: &[(String, String)], to: S) -> Result<S::Ok, S::Error> {
-    let added = inputs.iter().cloned();
-    to.collect_seq(added.map(|(input, adds)| Added { input, adds }))
-}
-
-fn read_added<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(String, String)>, D::Error> {
-    let added: Vec<Added> = Deserialize::deserialize(from)?;
-    Ok(added.into_iter().map(|one| (one.input, one.adds)).collect())
-}
-
 impl Refitted {
     /// Its difference from the stated value in stated standard deviations, if there is a tolerance.
     pub fn moved_by(&self) -> Option<f64> {
@@ -111,15 +91,7 @@ impl Changes {
             return Err(ChangeError::There { name });
         }
         let mut composition = Composition::new(&text)?;
-        let mut sums: BTreeMap<&str, String> = BTreeMap::new();
-        for (input, adds) in &self.inputs {
-            let sum = sums.entry(input).or_insert_with(|| input.clone());
-            sum.push_str(" + ");
-            sum.push_str(adds);
-        }
-        for (input, sum) in sums {
-            composition.substitute(&ACTING, input, &sum);
-        }
+        Term::add(self.inputs.iter(), &mut composition, None);
         composition.add_noted(&self.items, note)?;
         Ok(composition.text())
     }

@@ -38,8 +38,11 @@ pub(super) struct Comparison {
     pub(super) unknown: f64,
     /// The laws of the remainder of the best hypothesis.
     pub(super) left: Option<Leftover>,
-    /// Mean square error of the best hypothesis over windows, relative to that of the nominal model.
+    /// Mean square error of the best hypothesis over windows, relative to that of the nominal model, of a robot as its
+    /// file states it.
     pub(super) stays: f64,
+    /// Log likelihood of that model.
+    from: f64,
     /// Index of the nominal model among the fits.
     pub(super) nominal: usize,
 }
@@ -100,7 +103,12 @@ impl Comparison {
 
     /// Sets the probability that no effect of the library explains the gap.
     pub(super) fn weigh_unknown(&mut self, bench: &Bench<'_>) -> Result<(), DiagnoseError> {
-        self.left = if bench.leaves_nothing(self.best())? {
+        // Nor can a law close more than what stays.
+        let is_closed = bench.is_of_robot
+            && bench.is_over_windows()
+            && !self.best().members.is_empty()
+            && self.left_of_gap(bench) < IMMATERIAL;
+        self.left = if is_closed || bench.leaves_nothing(self.best())? {
             None
         } else {
             leftover(bench, self.best())?
@@ -109,14 +117,18 @@ impl Comparison {
         Ok(())
     }
 
+    /// Part of the mean square error over windows that stays.
+    fn left_of_gap(&self, bench: &Bench<'_>) -> f64 {
+        bench.left(self.best().fit.log_likelihood - self.from)
+    }
+
     /// The same by the laws that are known for the residual.
     fn weigh_left(&mut self, bench: &Bench<'_>) {
         let members = self.best().members.len();
         let odds = match (bench.is_over_windows(), members) {
             (true, 0) => MUCH,
             (true, _) => {
-                let gain = self.best().fit.log_likelihood - self.nominal().fit.log_likelihood;
-                self.stays = bench.left(gain);
+                self.stays = self.left_of_gap(bench);
                 unlisted_beside_an_effect(self.rest(bench)) + unlisted(self.stays)
             }
             (false, 0) => unlisted_beside_nothing(self.rest(bench)),
@@ -259,6 +271,7 @@ impl Comparison {
         let own = self.fits.into_iter().map(|(own, _)| own);
         let mut search = Search::new(bench, nominal, own.chain(known));
         search.failed = self.failed;
+        search.stated = Some(self.from);
         Self::found(bench, search)
     }
 
@@ -329,8 +342,11 @@ impl Comparison {
         let nominal = fits
             .iter()
             .position(|(fitted, _)| fitted.members.is_empty());
+        let nominal = nominal.unwrap_or(0);
+        let likelihood = fits[nominal].0.fit.log_likelihood;
         Ok(Self {
-            nominal: nominal.unwrap_or(0),
+            nominal,
+            from: search.stated.unwrap_or(likelihood).min(likelihood),
             fits,
             failed: search.failed,
             independent,

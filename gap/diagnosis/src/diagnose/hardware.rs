@@ -10,7 +10,7 @@ use appell_estimate::{Coordinate, Free, Unknown};
 use appell_runtime::model::{At, Model};
 use nalgebra::DMatrix;
 
-use crate::effects::EffectModel;
+use crate::effects::{Candidate, EffectModel, Family};
 
 /// ln 1000, the range of ln d′, where d′ is the size of an effect over its standard deviation: about 1000 for an effect
 /// that dominates the motion. Rounded to two digits, as in the calibration.
@@ -44,7 +44,9 @@ impl Hardware {
             .iter()
             .map(|own| if own.unit == "1" { PURE } else { f64::INFINITY });
         let mut alike: Vec<f64> = of_pure.collect();
-        for candidate in &effects.candidates {
+        // The offset of an encoder changes the mass matrix, but is no inertia.
+        let may_add = |own: &&Candidate| own.family != Family::Sensor;
+        for candidate in effects.candidates.iter().filter(may_add) {
             for (index, _) in effects.own(candidate) {
                 if alike[index].is_infinite()
                     && let Some(growth) = growth(effects.beside(&[]), index)
@@ -167,6 +169,7 @@ omega = { value = "dot(phi)", unit = "rad/s" }
             reached: vec![None; mechanism.coordinates.len()],
             loads: vec![0.0; mechanism.loads.len()],
             channels: vec!["phi".to_owned()],
+            coordinates: vec![Some(0)],
             uncertain: vec![0],
         };
         let effects = shipped().expect("a library");

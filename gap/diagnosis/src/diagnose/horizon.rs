@@ -104,7 +104,7 @@ pub(super) fn judged<'a>(
         if let Some((_, windows)) = &mut found
             && bench.is_of_robot
         {
-            windows.without_imitations(&bench, &over);
+            windows.without_imitations(&bench, &over, &nominal);
         }
         found
     };
@@ -182,12 +182,9 @@ pub(super) fn judged<'a>(
 impl Comparison {
     /// Over windows, where there is no process noise, effects may imitate disturbances: a robot's hypotheses are left out
     /// if one step ahead, with process noise, they predict worse than the nominal model or than with fewer effects. A
-    /// filter does not carry the coordinates that effects add.
-    fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>) {
-        let one_step = |fitted: &Fitted| {
-            let taken = bench.taken(over, fitted).ok();
-            taken.map(|taken| taken.fit.log_likelihood)
-        };
+    /// filter does not carry the coordinates that effects add. `levels` are those of the nominal model one step ahead.
+    fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
+        let one_step = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();
         // One-step predictions that diverge tell nothing.
         let Some(nominal) = one_step(self.nominal()) else {
             return;

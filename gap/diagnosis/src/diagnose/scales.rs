@@ -39,6 +39,7 @@ pub(super) fn of(set: &DataSet) -> Scales {
     };
     let loads = mechanism.loads.iter();
     let loads = loads.map(|load| controlled(load).map_or(0.0, |(_, law)| largest_of(set, law)));
+    let measured = || set.channels.iter().filter(|channel| channel.is_measured());
     let tolerant = |index: &usize| set.parameters[*index].std.is_some_and(|std| std > 0.0);
     Scales {
         rates,
@@ -48,11 +49,12 @@ pub(super) fn of(set: &DataSet) -> Scales {
             .collect(),
         reached: (0..mechanism.coordinates.len()).map(reached).collect(),
         loads: loads.collect(),
-        channels: set
-            .channels
-            .iter()
-            .filter(|channel| channel.is_measured())
-            .map(|channel| channel.column.clone())
+        channels: measured().map(|channel| channel.column.clone()).collect(),
+        coordinates: measured()
+            .map(|channel| match channel.role {
+                Role::Measures(Measured::Coordinate(coordinate)) => Some(coordinate),
+                _ => None,
+            })
             .collect(),
         uncertain: (0..set.parameters.len()).filter(tolerant).collect(),
     }

@@ -63,6 +63,8 @@ pub(super) struct Search<'b, 'a> {
     pub(super) failed: Vec<(Vec<usize>, String)>,
     /// Sets that need no further fit.
     settled: BTreeSet<Vec<usize>>,
+    /// Log likelihood of the model as stated, once it is known.
+    pub(super) stated: Option<f64>,
 }
 
 impl<'b, 'a> Search<'b, 'a> {
@@ -77,6 +79,7 @@ impl<'b, 'a> Search<'b, 'a> {
             fits: vec![nominal],
             failed: Vec::new(),
             settled: BTreeSet::new(),
+            stated: None,
         };
         for fitted in known {
             search.keep(fitted);
@@ -156,6 +159,7 @@ impl<'b, 'a> Search<'b, 'a> {
     fn start_from_stated(&mut self) -> Result<(), DiagnoseError> {
         let stated = self.bench.stated()?;
         let [nominal, from] = [&self.fits[0], &stated].map(|fitted| fitted.fit.log_likelihood);
+        self.stated = Some(from);
         let scanned = scanned(self.bench, &stated)?;
         let all = scanned.iter().map(|set| set.log_posterior);
         let most = all.fold(nominal, f64::max);
@@ -287,7 +291,28 @@ impl<'b, 'a> Search<'b, 'a> {
                 && !is_fitted
                 && !self.settled.contains(&set.members)
         };
-        sets.iter().filter(is_new).take(most).collect()
+        let mut told = BTreeSet::new();
+        let is_other = |set: &&Set| {
+            !self.bench.is_of_robot || {
+                let names = names(self.bench.effects, &set.members);
+                !self.is_hopeless(&names) && told.insert(names)
+            }
+        };
+        let new = sets.iter().filter(is_new).filter(is_other);
+        new.take(most).collect()
+    }
+
+    /// Whether effects of these names, maybe with other components, are far below the best hypothesis.
+    fn is_hopeless(&self, of: &[String]) -> bool {
+        let log = |own: &Fitted| self.log_posterior(own);
+        let best = self
+            .best()
+            .map_or(f64::NEG_INFINITY, |best| log(&self.fits[best]));
+        self.fits.iter().any(|own| {
+            own.fit.is_optimum()
+                && log(own) < best - SLACK
+                && names(self.bench.effects, &own.members) == of
+        })
     }
 
     /// Whether the best hypothesis is valid, if necessary with the candidate that it lacks.

@@ -1,10 +1,10 @@
 //! The estimation problem of free-running predictions over windows: there is no process noise, the noise variance is
 //! that of the prediction errors, and small differences do not count.
 
-use appell_estimate::{Estimation, Free, Unknown};
+use appell_estimate::{Effort, Estimation, Fit, Free, Layout, Unknown};
 
 use super::DiagnoseError;
-use super::bench::Bench;
+use super::bench::{Bench, SHARES};
 use super::calibration::TIED;
 use super::evidence::Fitted;
 use super::scales::deviation;
@@ -150,22 +150,50 @@ impl Bench<'_> {
 
     /// A fit of another problem on the rows and with the noise levels of this one.
     pub(super) fn taken(&self, from: &Self, fitted: &Fitted) -> Result<Fitted, DiagnoseError> {
+        self.with_levels(
+            from,
+            fitted,
+            (&self.problem.start, &self.layout),
+            self.effort(),
+        )
+    }
+
+    /// The log likelihood of a fit of another problem on these rows, with noise levels from those of the nominal model.
+    pub(super) fn as_it_is(
+        &self,
+        from: &Self,
+        fitted: &Fitted,
+        nominal: &Fitted,
+    ) -> Result<f64, DiagnoseError> {
+        let levels = (&nominal.fit.values[..], &nominal.layout);
+        let taken = self.with_levels(from, fitted, levels, SHARES)?;
+        Ok(taken.fit.log_likelihood)
+    }
+
+    /// A fit of another problem with noise levels that are fitted from initial ones.
+    fn with_levels(
+        &self,
+        from: &Self,
+        fitted: &Fitted,
+        (levels, places): (&[f64], &Layout),
+        effort: Effort,
+    ) -> Result<Fitted, DiagnoseError> {
         let setup = self.setup(&fitted.members);
         let estimation = Estimation::new(&setup, &self.recordings)?;
         let layout = estimation.layout();
         let mut values = from.carried(fitted, &estimation);
         for free in &self.problem.levels {
-            values[layout.place(free.unknown)?] =
-                self.problem.start[self.layout.place(free.unknown)?];
+            values[layout.place(free.unknown)?] = levels[places.place(free.unknown)?];
         }
         for index in 0..estimation.setup().disturbances.len() {
-            let place = layout.place(Unknown::Disturbance(index))?;
-            values[place] = self.problem.start[self.layout.place(Unknown::Disturbance(index))?];
+            let unknown = Unknown::Disturbance(index);
+            values[layout.place(unknown)?] = levels[places.place(unknown)?];
         }
         self.begin(&estimation, &mut values)?;
         self.hide(&fitted.members, &estimation, &mut values)?;
         self.loosen(&estimation, &mut values)?;
-        let fit = self.levelled(&estimation, &values)?;
+        let free = &self.problem.levels;
+        let fit = self.weighed(&estimation, &values, free, Fit::quick, effort)?;
         Ok(Fitted {
             members: fitted.members.clone(),
             layout,

@@ -7,6 +7,8 @@ use super::effect::{Effect, EffectError, Family, Filter};
 use super::load::Stated;
 use super::place::Source;
 use super::site::{Site, Sites};
+use super::site_kind::SiteKind;
+use super::term::Term;
 
 /// Site name of an effect at all drives.
 const DRIVES: &str = "drives";
@@ -107,8 +109,8 @@ pub struct Candidate {
     /// For a law with a hidden state: initial standard deviations of its rate and of its coordinate, the last one of
     /// the model, which is not measured and has no process noise.
     pub(crate) hides: Option<[f64; 2]>,
-    /// Additions to inputs: name and expression.
-    pub(crate) added: Vec<(String, String)>,
+    /// Terms added to quantities of the spec.
+    pub(crate) added: Vec<Term>,
     /// The load that it limits, with the term added to its expression.
     pub(super) limits: Option<(Stated, String)>,
     /// Number of effects as which it counts in the prior.
@@ -266,8 +268,14 @@ impl Candidate {
                 let id = unused(id, mechanism);
                 let candidate = Self::new(effect, &site, &id, variant)?;
                 // The input of a servo is a set-point; what its actuator adds is a term of the load.
-                let adds_to = |name: &str| candidate.added.iter().any(|(own, _)| own == name);
-                if !(adds_to(&site.name) && sites.is_servo(&site.name)) {
+                let adds_to = |name: &str| candidate.added.iter().any(|own| own.quantity == name);
+                // The bias of an encoder in the loop of a servo is another effect of the same name.
+                let is_in_loop = effect.filter == Some(Filter::Bias)
+                    && sites
+                        .of(SiteKind::Encoder)
+                        .iter()
+                        .any(|own| own.index == site.index);
+                if !(adds_to(&site.name) && sites.is_servo(&site.name) || is_in_loop) {
                     candidates.push(candidate);
                 }
             }
@@ -348,10 +356,7 @@ impl Candidate {
         let mut document: DocumentMut = filled
             .parse()
             .map_err(|e: toml_edit::TomlError| source.unwritten(e.message()))?;
-        let added = match document.remove("input") {
-            Some(input) => texts(&input),
-            None => Vec::new(),
-        };
+        let added = Term::of(&mut document);
         let load = document.remove("load");
         let limits = load.iter().flat_map(texts).map(|(_, text)| text).next();
         let limits = site.stated.clone().zip(limits);
@@ -468,7 +473,7 @@ pub(super) fn filled(text: &str, words: &[(&str, &str)]) -> String {
     text
 }
 
-fn texts(item: &Item) -> Vec<(String, String)> {
+pub(super) fn texts(item: &Item) -> Vec<(String, String)> {
     let Some(table) = item.as_table_like() else {
         return Vec::new();
     };

@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which the library is listed.
-const FILES: [(&str, &str); 35] = files![
+const FILES: [(&str, &str); 36] = files![
     "viscous_friction",
     "coulomb_friction",
     "directional_friction",
@@ -42,6 +42,7 @@ const FILES: [(&str, &str); 35] = files![
     "backlash_sliding",
     "backlash_turning",
     "sensor_bias",
+    "encoder_bias",
     "sensor_scale",
     "sensor_delay",
     "sensor_filter",

@@ -23,11 +23,8 @@ use appell_spec::{Mechanism, Report};
 use super::effect::{Effect, EffectError};
 use super::load::Stated;
 use super::site::{Scales, Sites, number};
-use super::{Candidate, Drive, Part};
+use super::{Candidate, Drive, Part, Term};
 use appell_recordings::Spec;
-
-/// Sections in whose expressions inputs act.
-pub(crate) const ACTING: [&str; 2] = ["loads", "constraints"];
 
 /// Placeholder of the centre of mass of a body after the preceding offsets.
 const LAST_CENTRE: &str = "{last_centre}";
@@ -383,21 +380,8 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
             }
         }
     }
-    let mut inputs: Vec<&String> = Vec::new();
-    for candidate in candidates {
-        inputs.extend(candidate.added.iter().map(|(input, _)| input));
-    }
-    inputs.sort_unstable();
-    inputs.dedup();
-    for input in inputs {
-        let added = candidates.iter().flat_map(|candidate| &candidate.added);
-        let added = added
-            .filter(|(own, _)| own == input)
-            .map(|(_, text)| text.as_str());
-        let parts: Vec<&str> = std::iter::once(input.as_str()).chain(added).collect();
-        spec.substitute(&ACTING, input, &parts.join(" + "));
-        stated.substitute(&["definitions"], input, &parts.join(" + "));
-    }
+    let terms = candidates.iter().flat_map(|candidate| &candidate.added);
+    Term::add(terms, &mut spec, Some(&mut stated));
     spec.add(&stated.text())?;
     // Inputs in the items of other candidates are not substituted.
     let mut centres: BTreeMap<&str, &str> = BTreeMap::new();

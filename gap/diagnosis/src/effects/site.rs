@@ -7,7 +7,7 @@ use appell_spec::mechanism::{
     ParameterId, PseudoVelocity,
 };
 use appell_spec::units::{Dimension, Unit};
-use num_traits::Zero;
+use num_traits::{ToPrimitive, Zero};
 
 use super::extent::Extent;
 use super::load::{Stated, controlled};
@@ -28,6 +28,8 @@ pub struct Scales {
     pub loads: Vec<f64>,
     /// Columns of the measured channels.
     pub channels: Vec<String>,
+    /// The coordinate that each of them measures.
+    pub coordinates: Vec<Option<usize>>,
     /// Parameters with a tolerance, whose errors may exceed it.
     pub uncertain: Vec<usize>,
 }
@@ -140,6 +142,7 @@ impl<'m> Sites<'m> {
                 .loads()
                 .filter(|load| self.is_servo(&load.name))
                 .collect(),
+            SiteKind::Encoder => self.encoders().collect(),
             SiteKind::Wheel => self.wheels(),
             SiteKind::Contact => self.contacts(),
             SiteKind::Gravity => self.gravity().into_iter().collect(),
@@ -263,12 +266,44 @@ impl<'m> Sites<'m> {
         loads.filter_map(site)
     }
 
+    /// Channels of coordinates along which an actuator acts.
+    fn encoders(&self) -> impl Iterator<Item = Site> {
+        let channels = self.scales.channels.iter().zip(&self.scales.coordinates);
+        let channels = channels.enumerate();
+        channels.filter_map(|(index, (column, coordinate))| {
+            let mut ids = self.mechanism.coordinates.ids();
+            let q = ids.find(|q| Some(q.index()) == *coordinate)?;
+            let is_over = |load: &Load| {
+                let LoadKind::Generalized { velocity, .. } = &load.kind else {
+                    return false;
+                };
+                velocity.kind == ExprKind::Quantity(Quantity::Rate(q)) && self.is_input(&load.name)
+            };
+            let [unit, _] = self.kind(q)?;
+            self.mechanism.loads.iter().any(is_over).then(|| Site {
+                name: column.clone(),
+                index,
+                words: vec![
+                    (
+                        "coordinate",
+                        self.mechanism.coordinates[q].label.name.clone(),
+                    ),
+                    ("unit", unit.to_owned()),
+                ],
+                ..Site::default()
+            })
+        })
+    }
+
     /// Whether a load is the actuator of the input of this name.
     pub(super) fn is_servo(&self, name: &str) -> bool {
         let mut loads = self.mechanism.loads.iter();
+        self.is_input(name) && loads.any(|load| load.name == name && controlled(load).is_some())
+    }
+
+    fn is_input(&self, name: &str) -> bool {
         let mut inputs = self.mechanism.inputs.iter();
         inputs.any(|input| input.label.name == name)
-            && loads.any(|load| load.name == name && controlled(load).is_some())
     }
 
     /// Coordinates whose rates are pseudo-velocities and appear in no other one, if there are inputs; the
@@ -466,7 +501,7 @@ impl<'m> Sites<'m> {
             _ => None,
         })?;
         let mut words = self.across();
-        words.push(("gravity", self.written(gravity)?));
+        words.push(("gravity", self.written(gravity, "m/s^2")?));
         Some(Site {
             name: "gravity".to_owned(),
             index: 0,
@@ -520,12 +555,13 @@ impl<'m> Sites<'m> {
         }
     }
 
-    /// A constant expression in the language of the spec.
-    fn written(&self, expr: &Expr) -> Option<String> {
+    /// A parameter or a number, as an expression in the language of the spec.
+    fn written(&self, expr: &Expr, unit: &str) -> Option<String> {
         match &expr.kind {
             ExprKind::Quantity(Quantity::Parameter(p)) => {
                 Some(self.mechanism.parameters[*p].label.name.clone())
             }
+            ExprKind::Number(n) if !n.is_zero() => Some(format!("{} [{unit}]", n.to_f64()?)),
             _ => None,
         }
     }

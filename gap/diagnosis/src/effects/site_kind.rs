@@ -37,10 +37,12 @@ pub enum SiteKind {
     Load,
     /// Such a load with the name of its input, the actuator of a robot.
     Servo,
+    /// A measured coordinate that the actuator of a robot drives: a load with the name of its input.
+    Encoder,
 }
 
 /// Keyword, kind and description.
-const WORDS: [(&str, SiteKind, &str); 17] = [
+const WORDS: [(&str, SiteKind, &str); 18] = [
     (
         "coordinate",
         SiteKind::Coordinate,
@@ -89,6 +91,11 @@ const WORDS: [(&str, SiteKind, &str); 17] = [
         "servo",
         SiteKind::Servo,
         "such a load with the name of its input, the actuator of a robot",
+    ),
+    (
+        "encoder",
+        SiteKind::Encoder,
+        "measured coordinate driven by the actuator of a robot: a load with the name of its input",
     ),
 ];
 
@@ -141,6 +148,7 @@ impl SiteKind {
             Self::Gravity => &[&["gravity"], ACROSS],
             Self::Input => &[&["unit", "largest", "narrow"]],
             Self::Load | Self::Servo => &[&["expression", "unit", "largest", "narrow"]],
+            Self::Encoder => &[&["coordinate", "unit"]],
             Self::Contact | Self::Parameter | Self::Channel => &[],
         }
     }

@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
 use super::hardware::LN_1000;
+use crate::effects::Acts;
 
 /// Sizes below this many standard deviations cannot be distinguished from zero.
 const SMALLEST: f64 = 1.0;
@@ -146,12 +147,11 @@ impl Evidence {
         if members.is_empty() {
             sizes.clear();
         }
-        let all = sizes.iter().map(|(_, size)| *size);
         let evidence = Self {
             log_likelihood: fit.log_likelihood,
             occam,
             by_inputs,
-            smallest: all.fold(f64::INFINITY, f64::min),
+            smallest: smallest(bench, members, &sizes),
         };
         (evidence, sizes)
     }
@@ -160,6 +160,32 @@ impl Evidence {
     pub(super) fn log(&self) -> f64 {
         self.log_likelihood + self.by_inputs + self.occam
     }
+}
+
+/// The smallest size; of an effect at all drives the median counts, for some of them may not have it.
+fn smallest(bench: &Bench<'_>, members: &[usize], sizes: &[(Unknown, f64)]) -> f64 {
+    let of_drives = members.iter().filter(|&&member| {
+        let own = bench.candidate(member);
+        own.is_of_drives() && own.acts == Acts::Items
+    });
+    let mut sizes = sizes.to_vec();
+    let mut medians = Vec::new();
+    for &member in of_drives {
+        let own = bench.own(bench.candidate(member));
+        let is_own = |unknown: Unknown| {
+            let mut own = own.iter();
+            own.any(|(index, _)| Unknown::Parameter(*index) == unknown)
+        };
+        let mut all: Vec<f64> = (sizes.iter())
+            .filter(|(unknown, _)| is_own(*unknown))
+            .map(|(_, size)| *size)
+            .collect();
+        all.sort_by(f64::total_cmp);
+        medians.extend(all.get(all.len() / 2));
+        sizes.retain(|(unknown, _)| !is_own(*unknown));
+    }
+    let others = sizes.into_iter().map(|(_, size)| size);
+    others.chain(medians).fold(f64::INFINITY, f64::min)
 }
 
 /// Logarithm of the integral of an unnormalised normal density with this information, and its standard deviations.

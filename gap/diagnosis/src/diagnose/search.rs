@@ -38,8 +38,9 @@ const BY_SLOPES: [f64; 2] = [0.5, 0.25];
 const PARTS: [f64; 4] = [0.5, 0.2, 0.05, 0.01];
 /// Log posterior of the values below that of the best hypothesis from which a slow search is given up.
 pub(super) const SLACK: f64 = 40.0;
-/// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated, and of
-/// the gain of the best single effect that others have to promise.
+/// Part of the gain of the re-fitted parameters that a delay of all drives has to reach with the others as stated, of the
+/// gain of the best single effect that others have to promise, and of the gain of the best hypothesis that a single effect
+/// of a robot has to reach for sets about it.
 const IMITATED: f64 = 0.5;
 /// Why a fit does not count.
 const NO_EVIDENCE: &str = "its parameters are not identifiable";
@@ -241,6 +242,10 @@ impl<'b, 'a> Search<'b, 'a> {
         };
         let mut singles: Vec<Fitted> = self.fits.iter().filter(is_single).cloned().collect();
         singles.sort_by(|a, b| self.log_posterior(b).total_cmp(&self.log_posterior(a)));
+        if self.bench.is_of_robot {
+            let [none, most] = [0, best].map(|fit| self.log_posterior(&self.fits[fit]));
+            singles.retain(|own| self.log_posterior(own) - none > IMITATED * (most - none));
+        }
         let mut told: BTreeSet<Vec<String>> = BTreeSet::new();
         singles.retain(|single| told.insert(names(self.bench.effects, &single.members)));
         singles.truncate(SINGLES);
@@ -442,8 +447,10 @@ impl<'b, 'a> Search<'b, 'a> {
         let bench = self.bench;
         let put = |part: f64, start: &mut [f64]| -> Result<(), DiagnoseError> {
             for sizes in &set.sizes {
+                let is_known = from.members.contains(&sizes.candidate);
+                let part = if is_known { 1.0 } else { part };
                 place(bench, estimation, &sizes.times(part), start)?;
-                if from.members.contains(&sizes.candidate) {
+                if is_known {
                     // Its shape has been estimated already.
                     for (index, part) in bench.own(bench.candidate(sizes.candidate)) {
                         if part.is_shape() {
@@ -456,7 +463,7 @@ impl<'b, 'a> Search<'b, 'a> {
         };
         let without = start.to_vec();
         put(1.0, start)?;
-        if !bench.is_of_robot || !from.members.is_empty() {
+        if !bench.is_of_robot {
             return Ok(());
         }
         let likelihood = |values: &[f64]| {

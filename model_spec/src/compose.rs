@@ -52,7 +52,7 @@ impl Composition {
     /// Substitutes an expression for a name in all expressions of the sections.
     pub fn substitute(&mut self, sections: &[&str], name: &str, by: &str) {
         for section in sections {
-            let keys = expressions(section);
+            let keys = keys(section);
             let Some(items) = self
                 .document
                 .get_mut(section)
@@ -61,15 +61,8 @@ impl Composition {
                 continue;
             };
             for (_, item) in items.iter_mut() {
-                let Some(table) = item.as_table_like_mut() else {
-                    continue;
-                };
-                for (key, item) in table.iter_mut() {
-                    if keys.contains(&key.get())
-                        && let Some(value) = item.as_value_mut()
-                    {
-                        replace(value, name, by);
-                    }
+                if let Some(table) = item.as_table_like_mut() {
+                    replace_in(table, &keys, name, by);
                 }
             }
         }
@@ -112,21 +105,42 @@ fn comment(own: &mut dyn TableLike, name: &str, note: &str) {
     }
 }
 
-/// Keys of a section that hold expressions.
-fn expressions(section: &str) -> Vec<&'static str> {
+/// Keys of a section.
+fn keys(section: &str) -> Vec<&'static Key> {
     let section = SECTIONS.iter().find(|known| known.name == section);
-    let keys: Vec<&'static Key> = match section.map(|section| &section.shape) {
+    match section.map(|section| &section.shape) {
         Some(Shape::Items(keys, _) | Shape::Table(keys)) => keys.iter().collect(),
         Some(Shape::Kinds(kinds)) => kinds.iter().flat_map(|kind| kind.keys).collect(),
         Some(Shape::States) | None => Vec::new(),
-    };
-    let hold = |key: &&Key| {
-        matches!(
-            key.form,
-            Form::Expression | Form::Components | Form::Matrix | Form::Inertia(_)
-        )
-    };
-    keys.into_iter().filter(hold).map(|key| key.name).collect()
+    }
+}
+
+/// Substitutes an expression for a name in the expressions of a table.
+fn replace_in(table: &mut dyn TableLike, keys: &[&'static Key], name: &str, by: &str) {
+    for (key, item) in table.iter_mut() {
+        let mut forms = keys.iter().filter(|own| own.name == key.get());
+        let form = forms.find_map(|own| match own.form {
+            Form::Expression | Form::Components | Form::Matrix | Form::Inertia(_) => Some(None),
+            Form::Tables(inner) => Some(Some(inner)),
+            _ => None,
+        });
+        match (form, item) {
+            (Some(None), Item::Value(value)) => replace(value, name, by),
+            (Some(Some(inner)), Item::Value(Value::Array(tables))) => {
+                let inner: Vec<&Key> = inner.iter().collect();
+                for table in tables.iter_mut().filter_map(Value::as_inline_table_mut) {
+                    replace_in(table, &inner, name, by);
+                }
+            }
+            (Some(Some(inner)), Item::ArrayOfTables(tables)) => {
+                let inner: Vec<&Key> = inner.iter().collect();
+                for table in tables.iter_mut() {
+                    replace_in(table, &inner, name, by);
+                }
+            }
+            _ => {}
+        }
+    }
 }
 
 fn replace(value: &mut Value, name: &str, by: &str) {
@@ -190,6 +204,8 @@ mass   = \"m\"
 
 [loads]
 push = { kind = \"force\", on = \"F\", vector = [\"F + 2 [F]\", 0, \"F_1\"] }
+[frames]
+arm = { parent = \"ground\", turns = [{ about_axis = \"x\", by = \"pi/2\" }, { about_axis = \"z\", by = \"q\" }] }
 ";
 
     #[test]
@@ -245,5 +261,17 @@ centre = \"C\"
         assert_eq!(push["on"].as_str(), Some("F"));
         assert_eq!(push["vector"][0].as_str(), Some("(F + b) + 2 [F]"));
         assert_eq!(push["vector"][2].as_str(), Some("F_1"));
+    }
+
+    #[test]
+    fn expressions_of_several_turns_are_replaced() {
+        let mut spec = Composition::new(SPEC).unwrap();
+        spec.substitute(&["frames"], "q", "q - b");
+        let read: DocumentMut = spec.text().parse().unwrap();
+        let turns = read["frames"]["arm"]["turns"].as_array().unwrap();
+        let by = turns
+            .iter()
+            .map(|turn| turn.as_inline_table().unwrap()["by"].as_str());
+        assert_eq!(by.collect::<Vec<_>>(), [Some("pi/2"), Some("(q - b)")]);
     }
 }

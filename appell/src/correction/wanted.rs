@@ -368,7 +368,7 @@ impl<'h> Wanted<'h> {
             "spring" => Change::Spring {
                 joint: self.joint(site)?,
                 stiffness: value("stiffness")?,
-                relaxed_at: 0.0,
+                relaxed_at: value("preload").unwrap_or(0.0) / value("stiffness")?,
             },
             "backlash" => Change::Play {
                 joint: self.joint(site)?,

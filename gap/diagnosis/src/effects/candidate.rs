@@ -245,11 +245,13 @@ impl Candidate {
         }
     }
 
-    /// All candidates of an effect in a mechanism, by site and variant.
+    /// All candidates of an effect in a mechanism, by site and variant, beside those of other effects, which may have the
+    /// same name.
     pub(super) fn all(
         effect: &Effect,
         mechanism: &Mechanism,
         sites: &Sites<'_>,
+        others: &[Self],
     ) -> Result<Vec<Self>, EffectError> {
         let mut candidates = Vec::new();
         for site in sites.of(effect.site) {
@@ -265,7 +267,10 @@ impl Candidate {
                 } else {
                     stem
                 };
-                let id = unused(id, mechanism);
+                let mut id = unused(id, mechanism);
+                while others.iter().any(|own| own.stem == id) {
+                    id += "_too";
+                }
                 let candidate = Self::new(effect, &site, &id, variant)?;
                 // The input of a servo is a set-point; what its actuator adds is a term of the load.
                 let adds_to = |name: &str| candidate.added.iter().any(|own| own.quantity == name);

@@ -9,12 +9,13 @@ macro_rules! files {
 }
 
 /// Files in the order in which the library is listed.
-const FILES: [(&str, &str); 36] = files![
+const FILES: [(&str, &str); 37] = files![
     "viscous_friction",
     "coulomb_friction",
     "directional_friction",
     "stribeck_friction",
     "spring",
+    "spring_with_preload",
     "stop",
     "coupling_elastic",
     "coupling_feedback",

@@ -99,7 +99,7 @@ pub fn candidates(
     let sites = Sites::of_spec(mechanism, scales, &spec.text);
     let mut all = Vec::new();
     for effect in effects {
-        let own = Candidate::all(effect, mechanism, &sites)?;
+        let own = Candidate::all(effect, mechanism, &sites, &all)?;
         own.iter()
             .try_for_each(|candidate| check(spec, candidate))?;
         all.extend(own);

@@ -142,6 +142,10 @@ impl<'m> Sites<'m> {
                 .loads()
                 .filter(|load| self.is_servo(&load.name))
                 .collect(),
+            SiteKind::Joint => moving
+                .filter(|&q| self.kind(q).is_some() && self.is_joint(q))
+                .map(|q| self.coordinate(q))
+                .collect(),
             SiteKind::Encoder => self.encoders().collect(),
             SiteKind::Wheel => self.wheels(),
             SiteKind::Contact => self.contacts(),
@@ -266,33 +270,38 @@ impl<'m> Sites<'m> {
         loads.filter_map(site)
     }
 
-    /// Channels of coordinates along which an actuator acts.
+    /// Whether a load with the name of an input acts along a coordinate.
+    fn is_joint(&self, q: CoordinateId) -> bool {
+        let mut loads = self.mechanism.loads.iter();
+        loads.any(|load| {
+            let LoadKind::Generalized { velocity, .. } = &load.kind else {
+                return false;
+            };
+            velocity.kind == ExprKind::Quantity(Quantity::Rate(q)) && self.is_input(&load.name)
+        })
+    }
+
+    /// Channels of the joints of a robot.
     fn encoders(&self) -> impl Iterator<Item = Site> {
         let channels = self.scales.channels.iter().zip(&self.scales.coordinates);
-        let channels = channels.enumerate();
-        channels.filter_map(|(index, (column, coordinate))| {
-            let mut ids = self.mechanism.coordinates.ids();
-            let q = ids.find(|q| Some(q.index()) == *coordinate)?;
-            let is_over = |load: &Load| {
-                let LoadKind::Generalized { velocity, .. } = &load.kind else {
-                    return false;
-                };
-                velocity.kind == ExprKind::Quantity(Quantity::Rate(q)) && self.is_input(&load.name)
-            };
-            let [unit, _] = self.kind(q)?;
-            self.mechanism.loads.iter().any(is_over).then(|| Site {
-                name: column.clone(),
-                index,
-                words: vec![
-                    (
-                        "coordinate",
-                        self.mechanism.coordinates[q].label.name.clone(),
-                    ),
-                    ("unit", unit.to_owned()),
-                ],
-                ..Site::default()
+        channels
+            .enumerate()
+            .filter_map(|(index, (column, coordinate))| {
+                let mut joints = self
+                    .mechanism
+                    .coordinates
+                    .ids()
+                    .filter(|&q| self.is_joint(q));
+                let q = joints.find(|q| Some(q.index()) == *coordinate)?;
+                let [unit, _] = self.kind(q)?;
+                let name = &self.mechanism.coordinates[q].label.name;
+                Some(Site {
+                    name: column.clone(),
+                    index,
+                    words: vec![("coordinate", name.clone()), ("unit", unit.to_owned())],
+                    ..Site::default()
+                })
             })
-        })
     }
 
     /// Whether a load is the actuator of the input of this name.

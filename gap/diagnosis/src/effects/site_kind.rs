@@ -37,12 +37,14 @@ pub enum SiteKind {
     Load,
     /// Such a load with the name of its input, the actuator of a robot.
     Servo,
-    /// A measured coordinate that the actuator of a robot drives: a load with the name of its input.
+    /// A coordinate that the actuator of a robot drives: a load with the name of its input.
+    Joint,
+    /// A channel that measures such a coordinate.
     Encoder,
 }
 
 /// Keyword, kind and description.
-const WORDS: [(&str, SiteKind, &str); 18] = [
+const WORDS: [(&str, SiteKind, &str); 19] = [
     (
         "coordinate",
         SiteKind::Coordinate,
@@ -93,9 +95,14 @@ const WORDS: [(&str, SiteKind, &str); 18] = [
         "such a load with the name of its input, the actuator of a robot",
     ),
     (
+        "joint",
+        SiteKind::Joint,
+        "coordinate driven by the actuator of a robot: a load with the name of its input",
+    ),
+    (
         "encoder",
         SiteKind::Encoder,
-        "measured coordinate driven by the actuator of a robot: a load with the name of its input",
+        "measured column of such a coordinate",
     ),
 ];
 
@@ -136,7 +143,7 @@ impl SiteKind {
     /// Lists of placeholders at such a site, in addition to `effect` and `site`.
     pub(super) fn words(self) -> &'static [&'static [&'static str]] {
         match self {
-            Self::Coordinate | Self::Slider | Self::Hinge => &[OF_COORDINATE, ACROSS],
+            Self::Coordinate | Self::Slider | Self::Hinge | Self::Joint => &[OF_COORDINATE, ACROSS],
             Self::DrivenSlider | Self::DrivenHinge => {
                 &[OF_COORDINATE, ACROSS, OF_DRIVEN, LATER_DRIVEN]
             }

@@ -410,10 +410,13 @@ fn every_effect_has_a_law_a_picture_sites_and_an_example() {
         for key in ["law", "picture", "sites"] {
             assert_ne!(effect[key], "", "{effect}");
         }
-        // No shipped spec has a controller in it.
-        let is_of_controllers = effect["site"] == "load" || effect["site"] == "servo";
+        // No shipped spec has a controller in it, or the actuators of a robot.
+        let of_robots = ["load", "servo", "joint", "encoder"].map(serde_json::Value::from);
         let has_example = effect["example"]["sites"] != serde_json::json!([]);
-        assert!(has_example || is_of_controllers, "{effect}");
+        assert!(
+            has_example || of_robots.contains(&effect["site"]),
+            "{effect}"
+        );
     }
     let told = folder
         .done(&["effects", "spring", "--model", "pendulum"])

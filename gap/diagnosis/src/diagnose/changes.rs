@@ -91,7 +91,8 @@ impl Changes {
             return Err(ChangeError::There { name });
         }
         let mut composition = Composition::new(&text)?;
-        Term::add(self.inputs.iter(), &mut composition, None);
+        let terms: Vec<&Term> = self.inputs.iter().collect();
+        Term::add(&terms, &mut composition, None);
         composition.add_noted(&self.items, note)?;
         Ok(composition.text())
     }

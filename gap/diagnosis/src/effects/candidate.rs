@@ -8,7 +8,7 @@ use super::load::Stated;
 use super::place::Source;
 use super::site::{Site, Sites};
 use super::site_kind::SiteKind;
-use super::term::Term;
+use super::term::{Term, texts};
 
 /// Site name of an effect at all drives.
 const DRIVES: &str = "drives";
@@ -476,16 +476,6 @@ pub(super) fn filled(text: &str, words: &[(&str, &str)]) -> String {
         text = text.replace(&format!("{{{word}}}"), meaning);
     }
     text
-}
-
-pub(super) fn texts(item: &Item) -> Vec<(String, String)> {
-    let Some(table) = item.as_table_like() else {
-        return Vec::new();
-    };
-    let pairs = table.iter();
-    pairs
-        .filter_map(|(name, item)| Some((name.to_owned(), item.as_str()?.to_owned())))
-        .collect()
 }
 
 /// Replaces a product such as `0.5*12.3` by its value.

@@ -381,7 +381,7 @@ pub fn with_candidates(text: &str, candidates: &[Candidate]) -> Result<String, E
         }
     }
     let terms = candidates.iter().flat_map(|candidate| &candidate.added);
-    Term::add(terms, &mut spec, Some(&mut stated));
+    Term::add(&terms.collect::<Vec<_>>(), &mut spec, Some(&mut stated));
     spec.add(&stated.text())?;
     // Inputs in the items of other candidates are not substituted.
     let mut centres: BTreeMap<&str, &str> = BTreeMap::new();

@@ -1,10 +1,10 @@
 //! A term that an effect adds to a quantity of the spec wherever that acts.
 
+use std::collections::BTreeSet;
+
 use appell_spec::compose::Composition;
 use serde::{Deserialize, Serialize};
-use toml_edit::DocumentMut;
-
-use super::candidate::texts;
+use toml_edit::{DocumentMut, Item};
 
 /// Sections in whose expressions inputs act.
 const ACTING: [&str; 2] = ["loads", "constraints"];
@@ -41,29 +41,35 @@ impl Term {
     }
 
     /// Adds terms to a spec; `stated` are definitions in which inputs act too.
-    pub(crate) fn add<'t>(
-        terms: impl Iterator<Item = &'t Self> + Clone,
+    pub(crate) fn add(
+        terms: &[&Self],
         spec: &mut Composition,
         mut stated: Option<&mut Composition>,
     ) {
-        let mut quantities: Vec<(&str, bool)> = terms
-            .clone()
-            .map(|term| (term.quantity.as_str(), term.in_geometry))
-            .collect();
-        quantities.sort_unstable();
-        quantities.dedup();
+        let of = |term: &&Self| (term.quantity.clone(), term.in_geometry);
+        let quantities: BTreeSet<(String, bool)> = terms.iter().map(of).collect();
         for (quantity, in_geometry) in quantities {
-            let own = terms.clone();
-            let own = own
-                .filter(|own| (own.quantity.as_str(), own.in_geometry) == (quantity, in_geometry));
+            let own = terms.iter().filter(|own| own.quantity == quantity);
+            let own = own.filter(|own| own.in_geometry == in_geometry);
             let added = own.map(|own| own.adds.as_str());
-            let sum: Vec<&str> = std::iter::once(quantity).chain(added).collect();
+            let sum: Vec<&str> = std::iter::once(&*quantity).chain(added).collect();
             let sum = sum.join(" + ");
             let sections = if in_geometry { GEOMETRY } else { ACTING };
-            spec.substitute(&sections, quantity, &sum);
+            spec.substitute(&sections, &quantity, &sum);
             if let Some(stated) = stated.as_mut().filter(|_| !in_geometry) {
-                stated.substitute(&["definitions"], quantity, &sum);
+                stated.substitute(&["definitions"], &quantity, &sum);
             }
         }
     }
+}
+
+/// The texts of a section, with their names.
+pub(super) fn texts(item: &Item) -> Vec<(String, String)> {
+    let Some(table) = item.as_table_like() else {
+        return Vec::new();
+    };
+    let pairs = table.iter();
+    pairs
+        .filter_map(|(name, item)| Some((name.to_owned(), item.as_str()?.to_owned())))
+        .collect()
 }

@@ -365,11 +365,14 @@ impl<'h> Wanted<'h> {
         let change = match kind {
             // Its number is among those that were fitted.
             "parameter_error" => return Some(Vec::new()),
-            "spring" => Change::Spring {
-                joint: self.joint(site)?,
-                stiffness: value("stiffness")?,
-                relaxed_at: value("preload").unwrap_or(0.0) / value("stiffness")?,
-            },
+            "spring" => {
+                let stiffness = value("stiffness").filter(|stiffness| *stiffness != 0.0)?;
+                Change::Spring {
+                    joint: self.joint(site)?,
+                    stiffness,
+                    relaxed_at: value("preload").unwrap_or(0.0) / stiffness,
+                }
+            }
             "backlash" => Change::Play {
                 joint: self.joint(site)?,
                 gap: 2.0 * value("half_gap")?,

@@ -21,6 +21,8 @@
 //!
 //! [input]                            # terms added to an input wherever it acts
 //!
+//! [geometry]                         # terms added to a coordinate in frames and points
+//!
 //! [load]                             # terms added to the expression of a load
 //!
 //! [channel]                          # quantities measured instead of a coordinate or pseudo-velocity; an empty

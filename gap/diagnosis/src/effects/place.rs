@@ -127,10 +127,12 @@ impl Source {
         Some(last)
     }
 
-    /// The section `[input]`, whose terms appear within expressions of the spec itself.
+    /// The section `[input]` or `[geometry]`, whose terms appear within expressions of the spec itself.
     fn input(&self) -> Option<Span> {
         let (table, _) = DeTable::parse_recoverable(&self.text);
-        let inputs = table.get_ref().get("input")?.get_ref().as_table()?;
+        let mut sections = ["input", "geometry"].into_iter();
+        let section = sections.find_map(|section| table.get_ref().get(section))?;
+        let inputs = section.get_ref().as_table()?;
         inputs.values().next().map(Spanned::span)
     }
 }

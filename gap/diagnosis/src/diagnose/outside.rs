@@ -6,7 +6,7 @@
 //! do not affect (P. J. Rousseeuw and C. Croux, *Alternatives to the median absolute deviation*, Journal of the American
 //! Statistical Association 88, 1993, on scales by quantiles).
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use appell_estimate::{Estimation, Recording};
 use appell_recordings::{DataSet, Part};
@@ -31,6 +31,10 @@ const QUANTILE: f64 = 1.645;
 const OUTSIDE: f64 = 8.0;
 /// Largest part of outlying predictions: more frequent ones have a cause in the mechanism.
 const RARE: f64 = 0.1;
+/// Smallest number of overlapping predictions that an event spoils: a force changes the speeds, and with them the
+/// predictions from all origins shortly before, while the torque of a joint at the moment when its friction turns round is
+/// off in a single one.
+const LASTING: usize = 2;
 /// Largest number of reported windows.
 const MOST_WINDOWS: usize = 20;
 
@@ -181,15 +185,16 @@ fn scale(mut sizes: Vec<f64>) -> f64 {
     (ordinary / QUANTILE).max(f64::MIN_POSITIVE)
 }
 
-/// Merges errors of overlapping predictions into events. An event begins where the first of them ends, and ends when the
+/// Merges errors of overlapping predictions into events, and leaves out those in a single one. An event begins where the first of them ends, and ends when the
 /// filter has converged again.
 fn together(mut errors: Vec<Error>) -> Vec<Error> {
     errors.sort_by(|a, b| a.run.cmp(&b.run).then(a.from.total_cmp(&b.from)));
-    let mut events: Vec<(Error, [f64; 2])> = Vec::new();
+    let mut events: Vec<(Error, [f64; 2], BTreeSet<u64>)> = Vec::new();
     for one in errors {
         match events.last_mut() {
-            Some((event, [_, last])) if event.run == one.run && one.from <= event.to => {
+            Some((event, [_, last], origins)) if event.run == one.run && one.from <= event.to => {
                 *last = one.from;
+                origins.insert(one.from.to_bits());
                 event.to = event.to.max(one.to);
                 if one.times > event.times {
                     (event.times, event.channel) = (one.times, one.channel);
@@ -197,11 +202,13 @@ fn together(mut errors: Vec<Error>) -> Vec<Error> {
             }
             _ => {
                 let ends = [one.to - (one.to - one.from) / EACH, one.from];
-                events.push((one, ends));
+                let origins = BTreeSet::from([one.from.to_bits()]);
+                events.push((one, ends, origins));
             }
         }
     }
-    let narrowed = events.into_iter().map(|(event, [first, last])| Error {
+    events.retain(|(_, _, origins)| origins.len() >= LASTING);
+    let narrowed = events.into_iter().map(|(event, [first, last], _)| Error {
         from: first.min(last),
         to: first.max(last),
         ..event

@@ -19,11 +19,11 @@ use crate::data::unknown::Unknown;
 use crate::estimation::Estimation;
 use crate::kalman::filter::{Innovation, Pass};
 use crate::kalman::tape::{Record, SampleTape};
-use crate::matrix::{add_scaled, dot, multiply};
+use crate::matrix::{add_scaled, dot, multiply, multiply_add};
 use crate::motion::command;
 use crate::motion::plant::{Place, Plant, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{Span, added_by_rate};
+use crate::motion::transition::{Span, added_by_rate, by_constant_rates};
 
 /// Direction of differentiation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -155,8 +155,10 @@ pub(super) struct Forward<'p, 'a> {
     /// By each direction, n rows.
     z: Vec<f64>,
     moved: Vec<f64>,
-    /// Half of the increment of a step.
+    /// Direct effect on the rates.
     added: Vec<f64>,
+    /// Increments of a step by constant rates.
+    increments: Vec<f64>,
     by_parameters: Vec<f64>,
     by_states: Vec<f64>,
     by_inputs: Vec<f64>,
@@ -217,6 +219,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             z,
             moved: zeros(n * columns),
             added: zeros(n * columns),
+            increments: zeros(n * n),
             by_parameters: zeros(info.state_len() * info.parameter_len()),
             by_states: zeros(info.state_len() * info.state_len()),
             by_inputs: zeros(info.state_len() * info.input_len()),
@@ -294,10 +297,9 @@ impl<'p, 'a> Forward<'p, 'a> {
         }
     }
 
-    /// Z ← F (Z + H) + H, where H is half of the increment of the step, by the slopes at its
-    /// midpoint.
+    /// Z ← F Z + H, where H is the increment by the direct effect on the rates, with that at the midpoint of the step.
     fn advance(&mut self, advance: Advance, tape: &mut [f64]) {
-        let (n, columns, half) = (self.pass.sizes.n, self.columns, 0.5 * advance.h);
+        let (n, columns) = (self.pass.sizes.n, self.columns);
         let info = self.estimation.setup().model.info();
         let (states, parameters) = (info.state_len(), info.parameter_len());
         // Lags may be as short as the step: their slopes follow its stages.
@@ -306,7 +308,7 @@ impl<'p, 'a> Forward<'p, 'a> {
         let plant = self.pass.system.plant;
         let on = self.pass.sizes.step(tape);
         let middle = &on.stages.z[n..2 * n];
-        let (values, t) = (self.pass.values, advance.t + half);
+        let (values, t) = (self.pass.values, advance.t + 0.5 * advance.h);
         let place = Place::new(self.pass.system.layout, values, t, middle, on.held);
         self.added.fill(0.0);
         if self.directions.iter().any(is_parameter) {
@@ -316,7 +318,7 @@ impl<'p, 'a> Forward<'p, 'a> {
             if let Direction::Value(Unknown::Parameter(index)) = *direction {
                 for state in 0..states {
                     self.added[state * columns + column] =
-                        half * self.by_parameters[state * parameters + index];
+                        self.by_parameters[state * parameters + index];
                 }
             }
         }
@@ -338,7 +340,7 @@ impl<'p, 'a> Forward<'p, 'a> {
                         continue;
                     }
                     let row = &mut self.added[i * columns + first..][..shapes.count];
-                    add_scaled(half * column, &self.tried, row);
+                    add_scaled(column, &self.tried, row);
                     let root = &on.root[i * n..(i + 1) * n];
                     let variance = dot(root, root);
                     if variance > 0.0 {
@@ -359,15 +361,15 @@ impl<'p, 'a> Forward<'p, 'a> {
                     let (by_states, by_inputs) = (&mut self.by_states, &mut self.by_inputs);
                     let by = by_input(plant, place, &mut self.scratch, by_states, by_inputs, input);
                     for (state, by) in by.into_iter().enumerate() {
-                        self.added[state * columns + column] -= half * slope * by;
+                        self.added[state * columns + column] -= slope * by;
                     }
                 }
             }
         }
-        add_scaled(1.0, &self.added, &mut self.z);
+        by_constant_rates(&on.stages, n, advance.h, &mut self.increments);
         multiply(on.f, &self.z, n, &mut self.moved);
+        multiply_add(&self.increments, &self.added, n, &mut self.moved);
         std::mem::swap(&mut self.z, &mut self.moved);
-        add_scaled(1.0, &self.added, &mut self.z);
         for (column, added) in lagged {
             for (state, added) in added.into_iter().enumerate() {
                 self.z[state * columns + column] += added;

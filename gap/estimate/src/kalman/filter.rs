@@ -21,7 +21,7 @@ use crate::motion::closure::Closure;
 use crate::motion::command::{self, Averaging, Switch};
 use crate::motion::plant::{Place, Plant, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_PARTS, Span, step};
+use crate::motion::transition::{MOST_PARTS, Span, step, within};
 
 /// The innovation of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -281,8 +281,7 @@ impl<'a> Pass<'a> {
         if parts > 1 {
             self.tape.truncate(tape);
             self.records.pop();
-            let parts = parts.min(MOST_PARTS / of).max(2);
-            return self.advance_in_parts(advance, of, parts);
+            return self.advance_in_parts(advance, of, within(parts, of));
         }
         if self.is_disturbed {
             let layout = self.system.layout;

@@ -11,7 +11,7 @@ use crate::motion::closure::Closure;
 use crate::motion::command::{self, Averaging, Switch};
 use crate::motion::plant::{Place, Scratch, StateSpace};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, is_uneven};
+use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
 
 /// Prediction error of a measured scalar.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -139,8 +139,10 @@ struct Walk<'a> {
     scratch: Scratch,
     closure: Option<Closure>,
     /// States and rates of the stages.
-    stage: Vec<f64>,
+    stages: Vec<f64>,
     rates: Vec<f64>,
+    /// ∂ż/∂z at the first stage.
+    slopes: Vec<f64>,
 }
 
 impl<'a> Walk<'a> {
@@ -155,8 +157,9 @@ impl<'a> Walk<'a> {
             held: vec![0.0; pass.sizes.commands],
             scratch: pass.system.plant.scratch(),
             closure: pass.closure.clone(),
-            stage: vec![0.0; n],
-            rates: vec![0.0; 4 * n],
+            stages: vec![0.0; WEIGHTS.len() * n],
+            rates: vec![0.0; WEIGHTS.len() * n],
+            slopes: vec![0.0; n * n],
         }
     }
 
@@ -281,28 +284,44 @@ impl<'a> Walk<'a> {
     /// A step, or parts of it if it is too long.
     fn step(&mut self, advance: Advance, of: u32) {
         let (Advance { t, h, .. }, n) = (advance, self.z.len());
-        let mut after = self.z.clone();
-        self.stage.copy_from_slice(&self.z);
+        let plant = self.system.plant;
+        let has_corners = self.system.setup.has_corners && self.closure.is_none();
+        let is_checked = has_corners && of < MOST_PARTS;
+        let own = plant.info().state_len();
+        let (mut after, mut parts) = (self.z.clone(), 1);
+        self.stages[..n].copy_from_slice(&self.z);
         for (stage, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if stage == 0 { 0.0 } else { STAGES[stage - 1] };
-            let (t, z) = (t + part * h, &self.stage);
+            let (stages, later) = self.stages.split_at_mut((stage + 1) * n);
+            let (t, z) = (t + part * h, &stages[stage * n..]);
             let place = Place::new(self.system.layout, self.values, t, z, &self.held);
             let rates = &mut self.rates[stage * n..(stage + 1) * n];
-            self.system.plant.rates(place, &mut self.scratch, rates);
+            if is_checked && stage == 0 {
+                plant.jacobian(place, &mut self.scratch, rates, &mut self.slopes);
+                parts = decays(&self.slopes, n, own, h);
+                if parts > 1 {
+                    break;
+                }
+            } else {
+                plant.rates(place, &mut self.scratch, rates);
+            }
             add_scaled(h * weight, rates, &mut after);
             if let Some(next) = STAGES.get(stage) {
-                self.stage.copy_from_slice(&self.z);
-                add_scaled(h * next, rates, &mut self.stage);
+                later[..n].copy_from_slice(&self.z);
+                add_scaled(h * next, rates, &mut later[..n]);
             }
         }
-        let has_corners = self.system.setup.has_corners && self.closure.is_none();
-        let is_cut = has_corners && of < MOST_PARTS;
-        if is_cut && is_uneven(&self.rates, n, self.system.plant.info().state_len()) {
-            for part in advance.parts(2) {
-                self.step(part, 2 * of);
-            }
-        } else {
+        if is_checked && parts == 1 {
+            let is_uneven = is_uneven(&self.stages, &self.rates, &self.slopes, own);
+            parts += u32::from(is_uneven);
+        }
+        if parts == 1 {
             self.z = after;
+            return;
+        }
+        let parts = within(parts, of);
+        for part in advance.parts(parts) {
+            self.step(part, of * parts);
         }
     }
 }

@@ -127,11 +127,11 @@ pub(crate) fn step(
             .step_by(n + 1)
             .for_each(|entry| *entry += 1.0);
     }
-    1 + u32::from(is_uneven(stages.k, n, own))
+    1 + u32::from(is_uneven(stages.z, stages.k, &stages.a[..nn], own))
 }
 
 /// Number of parts of a step that are shorter than the decay time of the first `own` states.
-fn decays(a: &[f64], n: usize, own: usize, h: f64) -> u32 {
+pub(crate) fn decays(a: &[f64], n: usize, own: usize, h: f64) -> u32 {
     // The trace of A² is the sum of the squares of the eigenvalues.
     let pairs = (0..own).flat_map(|i| (0..own).map(move |j| a[i * n + j] * a[j * n + i]));
     let fastest = pairs.sum::<f64>().abs().sqrt();
@@ -139,6 +139,27 @@ fn decays(a: &[f64], n: usize, own: usize, h: f64) -> u32 {
     #[allow(clippy::cast_possible_truncation, clippy::cast_sign_loss)]
     let parts = (h * fastest / STIFF).ceil() as u32;
     parts.clamp(1, MOST_PARTS)
+}
+
+/// The parts into which a part of a step, one of `of`, is cut.
+pub(crate) fn within(parts: u32, of: u32) -> u32 {
+    parts.min(MOST_PARTS / of).max(2)
+}
+
+/// Increments of a step by a constant additional rate of each state, a column for each.
+pub(crate) fn by_constant_rates(stages: &Stages<'_>, n: usize, h: f64, added: &mut [f64]) {
+    let nn = n * n;
+    added.fill(0.0);
+    let (mut moved, mut k) = (vec![0.0; nn], vec![0.0; nn]);
+    for (i, weight) in WEIGHTS.into_iter().enumerate() {
+        multiply(&stages.a[i * nn..(i + 1) * nn], &moved, n, &mut k);
+        k.iter_mut().step_by(n + 1).for_each(|entry| *entry += 1.0);
+        add_scaled(h * weight, &k, added);
+        if let Some(part) = STAGES.get(i) {
+            std::mem::swap(&mut moved, &mut k);
+            moved.iter_mut().for_each(|entry| *entry *= part * h);
+        }
+    }
 }
 
 /// Increment of a step by an additional rate of one state, given at each stage.
@@ -162,17 +183,21 @@ pub(crate) fn added_by_rate(
     added
 }
 
-/// Whether the rates of the first `own` states differ between stages more than in a smooth motion.
-pub(crate) fn is_uneven(k: &[f64], n: usize, own: usize) -> bool {
-    let [k1, k2, k3, k4] = [0, 1, 2, 3].map(|stage| &k[stage * n..(stage + 1) * n]);
+/// Whether the rates of the first `own` states at the stages are far from those of a linear system, however fast it is,
+/// with the slopes of the first stage and an input that grows with time.
+pub(crate) fn is_uneven(z: &[f64], k: &[f64], slopes: &[f64], own: usize) -> bool {
+    let n = z.len() / WEIGHTS.len();
+    let at = |of: &[f64], stage: usize, i: usize| of[stage * n + i];
     (0..own).any(|i| {
-        let odds = (k1[i] - k2[i] - k3[i] + k4[i]).abs() + (k3[i] - k2[i]).abs();
-        let most = k1[i]
-            .abs()
-            .max(k2[i].abs())
-            .max(k3[i].abs())
-            .max(k4[i].abs());
-        odds > UNEVEN * most
+        let row = &slopes[i * n..(i + 1) * n];
+        let bend = |stage: usize| {
+            let moved = (0..n).map(|j| row[j] * (at(z, stage, j) - z[j]));
+            at(k, stage, i) - k[i] - moved.sum::<f64>()
+        };
+        let [second, third, last] = [1, 2, 3].map(bend);
+        let odds = (last - third - second).abs() + (third - second).abs();
+        let most = (0..WEIGHTS.len()).map(|stage| at(k, stage, i).abs());
+        odds > UNEVEN * most.fold(0.0, f64::max)
     })
 }
 

@@ -14,7 +14,7 @@ use crate::motion::closure::Closure;
 use crate::motion::command::{self, Averaging, Switch};
 use crate::motion::plant::{Place, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
-use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, is_uneven};
+use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
 
 /// A segment. Derivatives with respect to its initial state, then to the free values.
 pub(super) struct Segment {
@@ -153,33 +153,45 @@ impl<'a> SegmentIntegrator<'a> {
         let Advance { t, h, .. } = advance;
         let (n, width) = (self.n, self.width);
         let (before, by_before) = (self.z.clone(), self.by.clone());
-        let (mut stage, mut by_stage) = (before.clone(), by_before.clone());
+        let (mut stages, mut by_stage) = (before.repeat(WEIGHTS.len()), by_before.clone());
         let (mut rates, mut by_rates) = (vec![0.0; 4 * n], vec![0.0; n * width]);
-        let (mut slopes, held) = (vec![0.0; n * n], self.held.clone());
+        let (mut slopes, held) = (vec![0.0; 4 * n * n], self.held.clone());
+        let plant = self.estimation.plant();
+        let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
+        let is_checked = has_corners && of < MOST_PARTS;
+        let own = plant.info().state_len();
+        let mut parts = 1;
         for (i, weight) in WEIGHTS.into_iter().enumerate() {
             let part = if i == 0 { 0.0 } else { STAGES[i - 1] };
             let (layout, t) = (self.estimation.layout(), t + part * h);
-            let place = Place::new(layout, self.values, t, &stage, &held);
-            let plant = self.estimation.plant();
+            let place = Place::new(layout, self.values, t, &stages[i * n..][..n], &held);
             let rates = &mut rates[i * n..(i + 1) * n];
-            plant.jacobian(place, &mut self.scratch, rates, &mut slopes);
-            multiply(&slopes, &by_stage, n, &mut by_rates);
+            let slopes = &mut slopes[i * n * n..][..n * n];
+            plant.jacobian(place, &mut self.scratch, rates, slopes);
+            if is_checked {
+                parts = decays(slopes, n, own, h);
+                if parts > 1 {
+                    break;
+                }
+            }
+            multiply(slopes, &by_stage, n, &mut by_rates);
             self.unknowns_in_rates(place, rates, &mut by_rates);
             add_scaled(h * weight, rates, &mut self.z);
             add_scaled(h * weight, &by_rates, &mut self.by);
             if let Some(next) = STAGES.get(i) {
-                stage.copy_from_slice(&before);
-                add_scaled(h * next, rates, &mut stage);
+                add_scaled(h * next, rates, &mut stages[(i + 1) * n..][..n]);
                 by_stage.copy_from_slice(&by_before);
                 add_scaled(h * next, &by_rates, &mut by_stage);
             }
         }
-        let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
-        let is_cut = has_corners && of < MOST_PARTS;
-        if is_cut && is_uneven(&rates, n, self.estimation.plant().info().state_len()) {
+        if is_checked && parts == 1 {
+            parts += u32::from(is_uneven(&stages, &rates, &slopes[..n * n], own));
+        }
+        if parts > 1 {
             (self.z, self.by) = (before, by_before);
-            for part in advance.parts(2) {
-                self.advance(part, 2 * of);
+            let parts = within(parts, of);
+            for part in advance.parts(parts) {
+                self.advance(part, of * parts);
             }
         }
     }

@@ -165,6 +165,8 @@ pub(crate) struct Found {
     pub(crate) value: Option<f64>,
     pub(crate) std: Option<f64>,
     pub(crate) unit: String,
+    /// Value without the effect.
+    pub(crate) without: Option<f64>,
 }
 
 impl GapReport {

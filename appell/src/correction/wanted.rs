@@ -490,7 +490,16 @@ impl<'h> Wanted<'h> {
         } else {
             format!(" = {}", written.join(", "))
         };
-        let (format, remedy) = (self.format.word(), remedy(kind, self.format));
+        let factor = match (kind, sizes.as_slice()) {
+            ("sensor_scale", [(_, found)]) => found.value.zip(Some(found.without.unwrap_or(1.0))),
+            _ => None,
+        };
+        let factor = factor.map(|(scale, without)| 1.0 + scale - without);
+        let remedy = factor.map_or_else(
+            || remedy(kind, self.format).to_owned(),
+            |factor| format!("multiply its readings by {}", number(factor.recip())),
+        );
+        let format = self.format.word();
         self.remarks
             .push(format!("not in {format}: {effect}{written}: {remedy}"));
     }
@@ -529,7 +538,6 @@ fn element_of(name: &str) -> Option<(&str, &str)> {
 fn remedy(kind: &str, format: Format) -> &'static str {
     match kind {
         "sensor_bias" => "subtract it where the channel is read",
-        "sensor_scale" => "divide where the channel is read",
         "sensor_delay" => "shift the times of the channel",
         "sensor_filter" => "undo the low-pass filter where the channel is read",
         "actuator_dead_zone" => "add it to the command, with its sign, before it is sent",

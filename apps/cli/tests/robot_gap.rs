@@ -203,7 +203,7 @@ fn what_mjcf_cannot_express_stands_in_a_comment() {
         "better.xml",
     ];
     let told = folder.done(&apply).stdout;
-    let line = "not in MJCF: sensor_scale@x = 1.02100: divide where the channel is read";
+    let line = "not in MJCF: sensor_scale@x = 1.02100: multiply its readings by 0.979432";
     assert!(told.contains(line), "{told}");
     let better = folder.read("better.xml");
     assert!(
@@ -254,8 +254,38 @@ const LINKS: &str = r#"<mujoco model="two_links">
 </mujoco>
 "#;
 
+/// Diagnoses runs of the links as a file says they are; returns the first hypothesis.
+fn diagnosed_links(folder: &Folder, truth: &str) -> Value {
+    folder.write("robot.xml", LINKS);
+    let description = r#"
+mechanism = "robot.xml"
+[parameters]
+"*.mass" = { std = "3 %" }
+"*.com" = { std = 1e-4, unit = "m" }
+"*.kp" = { std = "2 %" }
+"*.kv" = { std = "5 %" }
+"*.damping" = { std = "15 %" }
+[channels]
+shoulder = { measures = "shoulder", unit = "rad", noise_std = 2e-4 }
+elbow = { measures = "elbow", unit = "rad", noise_std = 2e-4 }
+shoulder_cmd = { input = "shoulder_servo", unit = "rad" }
+elbow_cmd = { input = "elbow_servo", unit = "rad" }
+[runs]
+fit  = ["a.csv", "b.csv"]
+test = ["c.csv"]
+"#;
+    folder.write("recording.toml", description);
+    let mut noise = Noise::seeded(7);
+    for (phase, name) in [(0.0, "a.csv"), (1.0, "b.csv"), (2.0, "c.csv")] {
+        folder.write(name, &run_of_links(folder, truth, phase, &mut noise));
+    }
+    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
+    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
+    report["which"][0].clone()
+}
+
 /// A run of the links whose commands are sums of sines with a phase.
-fn run_of_links(folder: &Folder, phase: f64, noise: &mut Noise) -> String {
+fn run_of_links(folder: &Folder, truth: &str, phase: f64, noise: &mut Noise) -> String {
     let command = |row: u32| {
         let t = 0.01 * f64::from(row);
         let slow = [(1.1 * t + phase).sin(), (1.7 * t).sin()];
@@ -272,9 +302,9 @@ fn run_of_links(folder: &Folder, phase: f64, noise: &mut Noise) -> String {
     folder.write("commands.csv", &commands);
     let [shoulder, elbow] = command(0);
     let starts = [format!("shoulder={shoulder}"), format!("elbow={elbow}")];
-    let asked =
-        "simulate true.xml --t-end-s 5.99 --dt-s 0.01 --inputs commands.csv --csv motion.csv";
+    let asked = "--t-end-s 5.99 --dt-s 0.01 --inputs commands.csv --csv motion.csv";
     let mut asked: Vec<&str> = asked.split(' ').collect();
+    asked.splice(0..0, ["simulate", truth]);
     asked.extend(["--initial", &starts[0], "--initial", &starts[1]]);
     folder.done(&asked);
     let motion = folder.read("motion.csv");
@@ -300,51 +330,46 @@ fn run_of_links(folder: &Folder, phase: f64, noise: &mut Noise) -> String {
     run
 }
 
+const APPLY: [&str; 6] = [
+    "apply",
+    "robot.xml",
+    "--report",
+    "report.json",
+    "-o",
+    "better.xml",
+];
+
 #[test]
 fn the_offset_of_an_encoder_within_the_loop_of_its_servo_is_found() {
     let folder = Folder::new();
-    folder.write("robot.xml", LINKS);
     let offset = r#"<joint name="elbow" ref="1.7188734""#;
     folder.write("true.xml", &LINKS.replace(r#"<joint name="elbow""#, offset));
-    let description = r#"
-mechanism = "robot.xml"
-[parameters]
-"*.mass" = { std = "3 %" }
-"*.com" = { std = 1e-4, unit = "m" }
-"*.kp" = { std = "2 %" }
-"*.kv" = { std = "5 %" }
-"*.damping" = { std = "15 %" }
-[channels]
-shoulder = { measures = "shoulder", unit = "rad", noise_std = 2e-4 }
-elbow = { measures = "elbow", unit = "rad", noise_std = 2e-4 }
-shoulder_cmd = { input = "shoulder_servo", unit = "rad" }
-elbow_cmd = { input = "elbow_servo", unit = "rad" }
-[runs]
-fit  = ["a.csv", "b.csv"]
-test = ["c.csv"]
-"#;
-    folder.write("recording.toml", description);
-    let mut noise = Noise::seeded(7);
-    for (phase, name) in [(0.0, "a.csv"), (1.0, "b.csv"), (2.0, "c.csv")] {
-        folder.write(name, &run_of_links(&folder, phase, &mut noise));
-    }
-    folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
-    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
-    let first = &report["which"][0];
+    let first = diagnosed_links(&folder, "true.xml");
     assert_eq!(first["effects"], serde_json::json!(["sensor_bias@elbow"]));
     let bias = first["parameters"][0]["value"].as_f64().expect("a number");
     assert!((bias - 0.03).abs() < 0.006, "{first}");
     // The coordinate is what the encoder shows: in the file the joint has another zero.
-    folder.done(&[
-        "apply",
-        "robot.xml",
-        "--report",
-        "report.json",
-        "-o",
-        "better.xml",
-    ]);
+    folder.done(&APPLY);
     let zero = number_after(&folder.read("better.xml"), "ref=\"");
     assert!((zero - bias.to_degrees()).abs() < 1e-3, "{zero}");
+}
+
+#[test]
+fn the_scale_of_an_encoder_within_the_loop_of_its_servo_is_found() {
+    let folder = Folder::new();
+    folder.write("robot.xml", LINKS);
+    folder.done(&["import", "robot.xml", "--actuators", "-o", "plain.toml"]);
+    let turned = folder.read("plain.toml");
+    let turned = turned.replace("by = \"elbow\"", "by = \"elbow/1.04\"");
+    folder.write("true.toml", &turned);
+    let first = diagnosed_links(&folder, "true.toml");
+    assert_eq!(first["effects"], serde_json::json!(["sensor_scale@elbow"]));
+    let size = first["parameters"][0]["value"].as_f64().expect("a number");
+    assert!((size - 0.04).abs() < 0.006, "{first}");
+    folder.done(&APPLY);
+    let better = folder.read("better.xml");
+    let factor = number_after(&better, "multiply its readings by ");
+    assert!((factor - 1.0 / (1.0 + size)).abs() < 1e-4, "{better}");
 }
 
 /// The carriage as a URDF.

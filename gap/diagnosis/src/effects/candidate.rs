@@ -274,8 +274,8 @@ impl Candidate {
                 let candidate = Self::new(effect, &site, &id, variant)?;
                 // The input of a servo is a set-point; what its actuator adds is a term of the load.
                 let adds_to = |name: &str| candidate.added.iter().any(|own| own.quantity == name);
-                // The bias of an encoder in the loop of a servo is another effect of the same name.
-                let is_in_loop = effect.filter == Some(Filter::Bias)
+                // Those of an encoder in the loop of a servo are other effects of the same names.
+                let is_in_loop = matches!(effect.filter, Some(Filter::Bias | Filter::Scale))
                     && sites
                         .of(SiteKind::Encoder)
                         .iter()

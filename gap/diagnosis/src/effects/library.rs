@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which the library is listed.
-const FILES: [(&str, &str); 37] = files![
+const FILES: [(&str, &str); 38] = files![
     "viscous_friction",
     "coulomb_friction",
     "directional_friction",
@@ -44,6 +44,7 @@ const FILES: [(&str, &str); 37] = files![
     "backlash_turning",
     "sensor_bias",
     "encoder_bias",
+    "encoder_scale",
     "sensor_scale",
     "sensor_delay",
     "sensor_filter",

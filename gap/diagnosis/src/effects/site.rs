@@ -37,8 +37,8 @@ pub struct Scales {
 /// Width, relative to the largest input, over which a corner is smoothed.
 const NARROW: f64 = 0.005;
 
-/// Number of drives from which a common cause at all of them is considered.
-const MANY_DRIVES: usize = 3;
+/// Number of drives from which a common cause at all of them is considered, and of a robot.
+const MANY_DRIVES: [usize; 2] = [3, 2];
 
 /// Number of coordinates beyond which only neighbours form pairs.
 const MANY_PAIRS: usize = 3;
@@ -343,7 +343,8 @@ impl<'m> Sites<'m> {
     /// The names of driven coordinates, or of the inputs, where there are many, as in a robot.
     pub(super) fn drives(&self, kind: SiteKind) -> Vec<&str> {
         let driven = driven(self.mechanism);
-        if driven.len() < MANY_DRIVES {
+        let is_of_robot = driven.iter().all(|&q| self.is_joint(q));
+        if driven.len() < MANY_DRIVES[usize::from(is_of_robot)] {
             return Vec::new();
         }
         if kind == SiteKind::Input {

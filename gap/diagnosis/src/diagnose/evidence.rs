@@ -162,7 +162,7 @@ impl Evidence {
     }
 }
 
-/// The smallest size; of an effect at all drives the median counts, for some of them may not have it.
+/// The smallest size; of an effect at all drives the one that most of them exceed counts, for some may not have it.
 fn smallest(bench: &Bench<'_>, members: &[usize], sizes: &[(Unknown, f64)]) -> f64 {
     let of_drives = members.iter().filter(|&&member| {
         let own = bench.candidate(member);
@@ -181,7 +181,7 @@ fn smallest(bench: &Bench<'_>, members: &[usize], sizes: &[(Unknown, f64)]) -> f
             .map(|(_, size)| *size)
             .collect();
         all.sort_by(f64::total_cmp);
-        medians.extend(all.get(all.len() / 2));
+        medians.extend(all.get(all.len().saturating_sub(1) / 2));
         sizes.retain(|(unknown, _)| !is_own(*unknown));
     }
     let others = sizes.into_iter().map(|(_, size)| size);

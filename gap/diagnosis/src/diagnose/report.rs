@@ -552,8 +552,15 @@ fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
     which[0].probability *= (law / IMMATERIAL).clamp(DOUBT, 1.0);
     let removed = before - which[0].probability;
     let others: f64 = which[1..].iter().map(|one| one.probability).sum();
-    for one in &mut which[1..] {
-        one.probability += removed * one.probability / others.max(f64::MIN_POSITIVE);
+    match which {
+        // Beside a certain law the best of the others had too small a probability for a number.
+        [_, next, ..] if others == 0.0 => next.probability = removed,
+        [_, rest @ ..] => {
+            for one in rest {
+                one.probability += removed * one.probability / others;
+            }
+        }
+        [] => {}
     }
     which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
     !which[0].is_unknown()
@@ -612,7 +619,7 @@ mod tests {
 
     #[test]
     fn a_law_that_closes_nothing_is_no_gap() {
-        let first = |budget: &[(&str, f64)]| {
+        let first = |unknown: f64, budget: &[(&str, f64)]| {
             let budget = budget.iter().map(|&(name, closed)| Share {
                 name: name.to_owned(),
                 closed,
@@ -624,9 +631,9 @@ mod tests {
                 ..far(1.0, true)
             };
             let mut which = [
-                hypothesis(Some(UNKNOWN), 0.95),
-                hypothesis(None, 0.04),
-                hypothesis(Some("coulomb_friction@x"), 0.01),
+                hypothesis(Some(UNKNOWN), unknown),
+                hypothesis(None, 0.8 * (1.0 - unknown)),
+                hypothesis(Some("coulomb_friction@x"), 0.2 * (1.0 - unknown)),
             ];
             let changes = forget_immaterial_law(&mut which, &far);
             let sum: f64 = which.iter().map(|one| one.probability).sum();
@@ -640,15 +647,18 @@ mod tests {
             &[(REFIT, 1.05), (REST, -0.05)][..],
             &[(REFIT, 0.996), (LAW, 0.0), (REST, 0.004)],
         ] {
-            let (effects, probability) = first(budget);
+            let (effects, probability) = first(0.95, budget);
             assert!(effects.is_empty() && (0.7..0.8).contains(&probability));
+            // Beside a law that was certain no other has a share.
+            let (effects, probability) = first(1.0, budget);
+            assert!(effects.is_empty() && (0.9..1.0).contains(&probability));
         }
         // The law closes a part, or much stays.
         for budget in [
             &[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)],
             &[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)],
         ] {
-            assert_eq!(first(budget), (vec![UNKNOWN.to_owned()], 0.95));
+            assert_eq!(first(0.95, budget), (vec![UNKNOWN.to_owned()], 0.95));
         }
     }
 

@@ -19,7 +19,9 @@ use crate::effects::{Acts, Part};
 /// Values that are tried, in s.
 const TRIED: [f64; 7] = [0.002, 0.005, 0.012, 0.025, 0.045, 0.08, 0.13];
 /// Limits that are tried, relative to the stated value of the first variant.
-const LIMITS: [f64; 9] = [2.8, 2.1, 1.6, 1.2, 0.9, 0.66, 0.5, 0.37, 0.28];
+const LIMITS: [f64; 13] = [
+    2.8, 2.1, 1.6, 1.2, 0.9, 0.66, 0.5, 0.37, 0.28, 0.2, 0.14, 0.1, 0.07,
+];
 /// Loss in log likelihood that tells that a limit is too low.
 const WORSE: f64 = 10.0;
 /// Factors on the best of them, tried in turn.

@@ -277,7 +277,8 @@ impl<'a> Pass<'a> {
         let plant = self.system.plant;
         let own = if is_cut { plant.info().state_len() } else { 0 };
         let after = [&mut *on.after, &mut *on.f];
-        let parts = step(plant, span, &mut self.scratch, &mut on.stages, after, own);
+        let (scratch, stages) = (&mut self.scratch, &mut on.stages);
+        let parts = step(plant, span, scratch, stages, after, own, self.is_disturbed);
         if parts > 1 {
             self.tape.truncate(tape);
             self.records.pop();

@@ -16,8 +16,10 @@ pub(crate) const WEIGHTS: [f64; 4] = [1.0 / 6.0, 1.0 / 3.0, 1.0 / 3.0, 1.0 / 6.0
 
 /// Largest number of parts of a step.
 pub(crate) const MOST_PARTS: u32 = 256;
-/// Relative error of a rate at which a step is halved.
+/// Relative error of a rate, beyond that of a linear system, at which a step is halved; and the relative change of a rate
+/// at which one with process noise is.
 const UNEVEN: f64 = 0.1;
+const FAST: f64 = 0.5;
 /// Largest step relative to the shortest decay time: longer ones are unstable.
 const STIFF: f64 = 2.3;
 
@@ -76,7 +78,8 @@ impl<'a> Span<'a> {
 
 /// Fills the stages from the state in the first one; writes z⁺ and F. Returns the number of equal parts in which the
 /// step has to be taken instead, where the rates of the first `own` states have a kink, such as that of regularised dry
-/// friction, or decay fast; 1 otherwise.
+/// friction, or decay fast; 1 otherwise. Process noise, half of which enters before a step and half of it after, asks for
+/// steps in which the rates change little.
 pub(crate) fn step(
     plant: &Plant<'_>,
     span: Span<'_>,
@@ -84,6 +87,7 @@ pub(crate) fn step(
     stages: &mut Stages<'_>,
     [after, f]: [&mut [f64]; 2],
     own: usize,
+    is_disturbed: bool,
 ) -> u32 {
     let (n, h) = (plant.n, span.h);
     let nn = n * n;
@@ -127,7 +131,8 @@ pub(crate) fn step(
             .step_by(n + 1)
             .for_each(|entry| *entry += 1.0);
     }
-    1 + u32::from(is_uneven(stages.z, stages.k, &stages.a[..nn], own))
+    let is_cut = is_uneven(stages.z, stages.k, &stages.a[..nn], own);
+    1 + u32::from(is_cut || is_disturbed && change(stages.k, n, own))
 }
 
 /// Number of parts of a step that are shorter than the decay time of the first `own` states.
@@ -187,17 +192,31 @@ pub(crate) fn added_by_rate(
 /// with the slopes of the first stage and an input that grows with time.
 pub(crate) fn is_uneven(z: &[f64], k: &[f64], slopes: &[f64], own: usize) -> bool {
     let n = z.len() / WEIGHTS.len();
-    let at = |of: &[f64], stage: usize, i: usize| of[stage * n + i];
-    (0..own).any(|i| {
+    differ(k, n, own, UNEVEN, |stage, i| {
         let row = &slopes[i * n..(i + 1) * n];
-        let bend = |stage: usize| {
-            let moved = (0..n).map(|j| row[j] * (at(z, stage, j) - z[j]));
-            at(k, stage, i) - k[i] - moved.sum::<f64>()
-        };
-        let [second, third, last] = [1, 2, 3].map(bend);
+        let moved = (0..n).map(|j| row[j] * (z[stage * n + j] - z[j]));
+        k[i] + moved.sum::<f64>()
+    })
+}
+
+/// Whether the rates of the first `own` states change by more than a part between the stages.
+fn change(k: &[f64], n: usize, own: usize) -> bool {
+    differ(k, n, own, FAST, |_, i| k[i])
+}
+
+/// Whether rates at the stages differ from expected ones and a part that grows with time by more than a part of them.
+fn differ(
+    k: &[f64],
+    n: usize,
+    own: usize,
+    part: f64,
+    expected: impl Fn(usize, usize) -> f64,
+) -> bool {
+    (0..own).any(|i| {
+        let [second, third, last] = [1, 2, 3].map(|stage| k[stage * n + i] - expected(stage, i));
         let odds = (last - third - second).abs() + (third - second).abs();
-        let most = (0..WEIGHTS.len()).map(|stage| at(k, stage, i).abs());
-        odds > UNEVEN * most.fold(0.0, f64::max)
+        let most = k.iter().skip(i).step_by(n).map(|rate| rate.abs());
+        odds > part * most.fold(0.0, f64::max)
     })
 }
 

@@ -6,7 +6,8 @@
 use super::command;
 use super::plant::{Place, Plant, Scratch, Sums};
 use crate::matrix::{
-    add, add_scaled, dot, multiply, multiply_transposed, pieces, set_identity, transposed_multiply,
+    add, add_scaled, dot, multiply, multiply_transposed, pieces, scale, set_identity,
+    transposed_multiply,
 };
 
 /// Positions of the stages after the first, as fractions of the step.
@@ -162,7 +163,7 @@ pub(crate) fn by_constant_rates(stages: &Stages<'_>, n: usize, h: f64, added: &m
         add_scaled(h * weight, &k, added);
         if let Some(part) = STAGES.get(i) {
             std::mem::swap(&mut moved, &mut k);
-            moved.iter_mut().for_each(|entry| *entry *= part * h);
+            scale(part * h, &mut moved);
         }
     }
 }

@@ -9,7 +9,7 @@ macro_rules! files {
 }
 
 /// Files in the order in which the library is listed.
-const FILES: [(&str, &str); 38] = files![
+const FILES: [(&str, &str); 39] = files![
     "viscous_friction",
     "coulomb_friction",
     "directional_friction",
@@ -33,6 +33,7 @@ const FILES: [(&str, &str); 38] = files![
     "actuator_bias",
     "servo_gain",
     "servo_bias",
+    "servo_saturation",
     "actuator_lag",
     "actuator_delay",
     "actuator_saturation",

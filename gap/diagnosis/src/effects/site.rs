@@ -137,7 +137,10 @@ impl<'m> Sites<'m> {
                 .collect(),
             SiteKind::Reached => moving.filter_map(|q| self.reached(q)).collect(),
             SiteKind::Pair => self.pairs(),
-            SiteKind::Load => self.loads().collect(),
+            SiteKind::Load => self
+                .loads()
+                .filter(|load| !self.is_servo(&load.name))
+                .collect(),
             SiteKind::Servo => self
                 .loads()
                 .filter(|load| self.is_servo(&load.name))

@@ -51,6 +51,15 @@ fn number_after(text: &str, before: &str) -> f64 {
     number.parse().expect("a number")
 }
 
+const APPLY: [&str; 6] = [
+    "apply",
+    "robot.xml",
+    "--report",
+    "report.json",
+    "-o",
+    "better.xml",
+];
+
 #[test]
 fn friction_is_found_from_a_robot_file_and_written_into_it() {
     let folder = rig();
@@ -65,15 +74,7 @@ fn friction_is_found_from_a_robot_file_and_written_into_it() {
     let fitted = &report["which"][0]["changes"]["parameters"][0];
     assert_eq!(fitted["name"], "cart.mass");
 
-    let apply = [
-        "apply",
-        "robot.xml",
-        "--report",
-        "report.json",
-        "-o",
-        "better.xml",
-    ];
-    let told = folder.done(&apply).stdout;
+    let told = folder.done(&APPLY).stdout;
     assert!(told.contains("frictionloss"), "{told}");
     let better = folder.read("better.xml");
     let friction = number_after(&better, "frictionloss=\"");
@@ -194,15 +195,7 @@ fn what_mjcf_cannot_express_stands_in_a_comment() {
         "parameters": [{ "name": "sensor_scale@x.scale", "value": 1.021, "std": 0.001, "unit": "1" }],
         "changes": { "items": "", "inputs": [], "parameters": [], "beside": [] } }] }"#;
     folder.write("report.json", report);
-    let apply = [
-        "apply",
-        "robot.xml",
-        "--report",
-        "report.json",
-        "-o",
-        "better.xml",
-    ];
-    let told = folder.done(&apply).stdout;
+    let told = folder.done(&APPLY).stdout;
     let line = "not in MJCF: sensor_scale@x = 1.02100: multiply its readings by 0.979432";
     assert!(told.contains(line), "{told}");
     let better = folder.read("better.xml");
@@ -231,7 +224,7 @@ fn what_mjcf_cannot_express_stands_in_a_comment() {
         .replace("[\"sensor_scale@x\"]", "[]")
         .replace("sensor_scale@x.scale", "a");
     folder.write("report.json", &nothing);
-    folder.done(&apply);
+    folder.done(&APPLY);
     assert_eq!(folder.read("better.xml"), ROBOT);
 }
 
@@ -329,15 +322,6 @@ fn run_of_links(folder: &Folder, truth: &str, phase: f64, noise: &mut Noise) -> 
     }
     run
 }
-
-const APPLY: [&str; 6] = [
-    "apply",
-    "robot.xml",
-    "--report",
-    "report.json",
-    "-o",
-    "better.xml",
-];
 
 #[test]
 fn the_offset_of_an_encoder_within_the_loop_of_its_servo_is_found() {

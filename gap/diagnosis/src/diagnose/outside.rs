@@ -185,8 +185,8 @@ fn scale(mut sizes: Vec<f64>) -> f64 {
     (ordinary / QUANTILE).max(f64::MIN_POSITIVE)
 }
 
-/// Merges errors of overlapping predictions into events, and leaves out those in a single one. An event begins where the first of them ends, and ends when the
-/// filter has converged again.
+/// Merges errors of overlapping predictions into events, and leaves out those in a single one. An event begins where the
+/// first of them ends, and ends when the filter has converged again.
 fn together(mut errors: Vec<Error>) -> Vec<Error> {
     errors.sort_by(|a, b| a.run.cmp(&b.run).then(a.from.total_cmp(&b.from)));
     let mut events: Vec<(Error, [f64; 2], BTreeSet<u64>)> = Vec::new();

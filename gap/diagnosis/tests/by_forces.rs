@@ -245,6 +245,36 @@ fn a_drive_that_is_too_weak_has_a_gain_and_no_friction() {
 }
 
 #[test]
+fn a_payload_beside_the_centre_of_its_link_is_found_with_its_place() {
+    let folder = recorded(&ARM.replace("[bodies]", TOOL), [0.3, 1.9, 4.1]);
+    let effects = appell_gap::effects::shipped().unwrap();
+    let set = folder.read().unwrap();
+    let report = diagnose(&set, &effects, &Options::default(), |_| ()).unwrap();
+    assert_eq!(material(&report), ["payload@fore"], "{:?}", report.which);
+    for (name, true_value) in [
+        ("payload@fore.mass", 0.5),
+        ("payload@fore.x", 0.1),
+        ("payload@fore.y", 0.05),
+        ("payload@fore.z", -0.12),
+    ] {
+        let mut values = report.which[0].parameters.iter();
+        let value = values.find(|value| value.name == name).unwrap();
+        let off = (value.value - true_value).abs();
+        assert!(
+            off < 3.0 * value.std && off < 0.1 * true_value.abs().max(0.1),
+            "{name}: {value:?}"
+        );
+    }
+}
+
+/// A tool beside the last link.
+const TOOL: &str = r#"
+tool = { from = "G_2", in = "fore", at = ["0.1 [m]", "0.05 [m]", "-0.12 [m]"] }
+[bodies]
+tool = { centre = "tool", mass = "0.5 [kg]" }
+"#;
+
+#[test]
 fn what_the_library_lacks_gets_no_name_of_it() {
     let report = report(
         "ripple = { kind = \"generalized\", coordinate = \"q2\", force = \"3 [N*m]*sin(25*q2)\" }\n",

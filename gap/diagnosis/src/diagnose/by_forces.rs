@@ -36,6 +36,9 @@ const FEWEST: usize = 3;
 /// The same for a robot that was read from its file.
 const FEWEST_OF_FILE: usize = 2;
 
+/// Largest number of searches, each with the forces at the shapes that the one before found.
+const ROUNDS: usize = 3;
+
 /// Whether the recordings determine the residual force of every equation.
 pub(super) fn applies(set: &DataSet, options: &Options) -> bool {
     determines_forces(set, options, FEWEST)
@@ -104,13 +107,25 @@ pub(super) fn diagnose(
     stage: &mut impl FnMut(&'static str),
 ) -> Result<Report, DiagnoseError> {
     stage("evaluating the forces of the recorded motions");
-    let fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
-    let training = Motions::of(&fit, model)?;
+    let mut fit = set.only(OfSet::Fit).bound_to(&model.mechanism);
+    let mut training = Motions::of(&fit, model)?;
     stage("fitting the effects to the forces");
-    let found = Search::new(model, &fit, &training).found();
-    let found = found.ok_or(BaseError::NotFinite)?;
+    let mut shapes: Vec<(usize, f64)> = Vec::new();
+    let mut rounds = ROUNDS;
+    let found = loop {
+        let search = Search::new(model, &fit, &training);
+        let found = search.found().ok_or(BaseError::NotFinite)?;
+        rounds -= 1;
+        let Some(moved) = search.moved(found.best()).filter(|_| rounds > 0) else {
+            break found;
+        };
+        shapes = moved;
+        fit = shaped(&fit, &shapes);
+        training = Motions::of(&fit, model)?;
+    };
     stage("predicting the forces of the held-out runs");
-    let motions = |set: &DataSet| Motions::of(&set.bound_to(&model.mechanism), model);
+    let motions =
+        |set: &DataSet| Motions::of(&shaped(&set.bound_to(&model.mechanism), &shapes), model);
     let test = Some(set.only(OfSet::Test)).filter(|test| !test.runs.is_empty());
     let test = test.map(|test| motions(&test)).transpose()?;
     let before = before.map(motions).transpose()?;
@@ -119,6 +134,15 @@ pub(super) fn diagnose(
         before: before.as_ref(),
     };
     report::report(model, &fit, &found, &training, &held_out, options)
+}
+
+/// A data set with other values of some parameters.
+fn shaped(set: &DataSet, shapes: &[(usize, f64)]) -> DataSet {
+    let mut set = set.clone();
+    for &(parameter, value) in shapes {
+        set.parameters[parameter].value = value;
+    }
+    set
 }
 
 /// Whether a candidate is a parameter or adds forces that are linear in its sizes.

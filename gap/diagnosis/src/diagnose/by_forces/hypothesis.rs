@@ -29,8 +29,8 @@ const CHANCE: f64 = 0.05;
 pub(super) struct Open {
     /// Its column.
     pub(super) column: usize,
-    /// Prior standard deviation about its stated value; `None` for sizes.
-    pub(super) std: Option<f64>,
+    /// Prior mean and standard deviation of its difference; `None` for sizes.
+    pub(super) prior: Option<[f64; 2]>,
     /// Range of its difference.
     pub(super) range: [f64; 2],
 }
@@ -40,6 +40,8 @@ pub(super) struct Member {
     /// Its index.
     pub(super) candidate: usize,
     pub(super) open: Vec<Open>,
+    /// Products of its size and its shapes.
+    pub(super) shapes: Vec<Open>,
     /// Whether it requires all of its sizes.
     pub(super) is_whole: bool,
 }
@@ -55,7 +57,7 @@ impl Member {
 pub(super) struct Hypothesis {
     /// Indices of the candidates; none for the nominal model.
     pub(super) members: Vec<usize>,
-    /// Difference of every variable parameter from its stated value.
+    /// Difference of every variable from its stated value.
     pub(super) changes: DVector<f64>,
     /// Standard deviation of each parameter that is free and not at a limit.
     pub(super) deviations: Vec<Option<f64>>,
@@ -64,6 +66,24 @@ pub(super) struct Hypothesis {
     pub(super) log_likelihood: f64,
     /// Logarithm of the evidence.
     pub(super) log: f64,
+}
+
+impl Hypothesis {
+    /// Change and standard deviation of a parameter, where it was free.
+    pub(super) fn change(&self, motions: &Motions, parameter: usize) -> (f64, Option<f64>) {
+        let Some(column) = motions.column(parameter) else {
+            return (0.0, None);
+        };
+        let (change, deviation) = (self.changes[column], self.deviations[column]);
+        let Some(shaped) = motions.variables[column].shapes else {
+            return (change, deviation);
+        };
+        let size = motions.column(shaped.size).map(|own| self.changes[own]);
+        match size.filter(|size| *size != 0.0).zip(deviation) {
+            Some((size, deviation)) => (change / size, Some(deviation / size.abs())),
+            None => (0.0, None),
+        }
+    }
 }
 
 /// The most probable differences of some parameters, and the inverse of their covariance.
@@ -95,7 +115,7 @@ pub(super) struct Squares {
 
 impl Squares {
     pub(super) fn of(motions: &Motions) -> Self {
-        let columns = motions.parameters.len();
+        let columns = motions.variables.len();
         let speeds = motions.all().next().map_or(0, |one| one.residual.len());
         let mut equations = vec![DMatrix::zeros(columns + 1, columns + 1); speeds];
         let mut count = 0.0;
@@ -181,6 +201,7 @@ impl Squares {
     pub(super) fn fitted(&self, members: &[Member], others: &[Open]) -> Option<Hypothesis> {
         let mut open: Vec<Open> = others.to_vec();
         open.extend(members.iter().flat_map(|member| &member.open));
+        open.extend(members.iter().flat_map(|member| &member.shapes));
         loop {
             let solved = self.solved(&open)?;
             let is_against = |&i: &usize| {
@@ -197,6 +218,14 @@ impl Squares {
             }
             return self.evaluated(members, &open, solved);
         }
+    }
+
+    /// Value of a variable whose forces are as large as those that the nominal model misses.
+    pub(super) fn scale(&self, column: usize) -> f64 {
+        let nominal = self.variances(&[], &DVector::zeros(0));
+        let equations = self.equations.iter().zip(nominal);
+        let squares = equations.map(|(squares, variance)| squares[(column, column)] / variance);
+        (self.equations.len() as f64 * self.count / squares.sum::<f64>()).sqrt()
     }
 
     /// The most probable values of the free parameters.
@@ -227,8 +256,8 @@ impl Squares {
             let (value, deviation) = (values[place], deviations[place]);
             changes[one.column] = value;
             known[one.column] = Some(deviation);
-            occam += if let Some(std) = one.std {
-                -0.5 * (value / std).powi(2) - std.ln() - 0.5 * TAU.ln()
+            occam += if let Some([mean, std]) = one.prior {
+                -0.5 * ((value - mean) / std).powi(2) - std.ln() - 0.5 * TAU.ln()
             } else {
                 let d = (value.abs() / deviation).max(1.0);
                 let sides = if one.range[0] < 0.0 { 2.0_f64 } else { 1.0 };
@@ -284,8 +313,9 @@ impl Squares {
                 }
             }
             for (i, own) in open.iter().enumerate() {
-                if let Some(std) = own.std {
+                if let Some([mean, std]) = own.prior {
                     information[(i, i)] += 1.0 / (std * std);
+                    right[i] += mean / (std * std);
                 }
             }
             let next = solve(&information, &right)?;

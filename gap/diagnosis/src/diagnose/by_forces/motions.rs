@@ -23,6 +23,25 @@ const NEAR: f64 = 1e-5;
 /// A lever below this is rounding.
 const NO_LEVER: f64 = 1e-6;
 
+/// A parameter that a hypothesis may change.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Variable {
+    /// Its index.
+    pub(super) parameter: usize,
+    /// The size beside which it shapes an effect.
+    pub(super) shapes: Option<Shaped>,
+}
+
+/// Forces are bilinear in a size s and a shape z, as in the mass of a payload and its place: s f(z) = s f(z₀) + s (z − z₀) f′.
+/// The variable of a shape is the product s (z − z₀).
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shaped {
+    /// Index of the size.
+    pub(super) size: usize,
+    /// Prior standard deviation of the shape.
+    pub(super) std: f64,
+}
+
 /// A recorded motion.
 pub(super) struct Motion {
     /// Time in s.
@@ -35,32 +54,23 @@ pub(super) struct Motion {
     pub(super) driven: DVector<f64>,
     /// M ω̇ + b − Π with the parameters of the data set.
     pub(super) residual: DVector<f64>,
-    /// Its derivatives by the variable parameters.
+    /// Its derivatives by the variables.
     pub(super) slopes: DMatrix<f64>,
     /// Its variances due to the noise of the channels.
     pub(super) noise: DVector<f64>,
 }
 
 impl Motion {
-    /// For a model with the parameters `p`, of which `parameters` are variable.
-    fn of(model: &dyn Model, moment: Moment, p: &[f64], parameters: &[usize]) -> Self {
+    /// For a model with the parameters `p`.
+    fn of(model: &dyn Model, moment: Moment, p: &[f64], variables: &[Variable]) -> Self {
         let info = model.info();
         let residual = demand(model, &moment, p);
         let mut without = moment.clone();
         without.u[..info.declared_inputs].fill(0.0);
-        let mut slopes = DMatrix::zeros(info.speeds, parameters.len());
+        let mut slopes = DMatrix::zeros(info.speeds, variables.len());
         let mut moved = p.to_vec();
-        for (mut slope, &parameter) in slopes.column_iter_mut().zip(parameters) {
-            let step = match p[parameter] {
-                0.0 => STEP,
-                value => PART * value.abs(),
-            };
-            let mut at = |side: f64| {
-                moved[parameter] = p[parameter] + side * step;
-                demand(model, &moment, &moved)
-            };
-            slope.copy_from(&((at(1.0) - at(-1.0)) / (2.0 * step)));
-            moved[parameter] = p[parameter];
+        for (mut slope, variable) in slopes.column_iter_mut().zip(variables) {
+            slope.copy_from(&derivative(model, &moment, &mut moved, *variable));
         }
         Self {
             t: moment.t,
@@ -114,9 +124,9 @@ impl Motion {
 
 /// The recorded motions of some runs.
 pub(super) struct Motions {
-    /// The variable parameters: those of the mechanism with a tolerance, and sizes of effects.
-    pub(super) parameters: Vec<usize>,
-    /// E⁻¹ ∂E/∂p where Π = E u + …, by the column of the parameter; without those that are zero.
+    /// Parameters of the mechanism with a tolerance, sizes and shapes of effects.
+    pub(super) variables: Vec<Variable>,
+    /// E⁻¹ ∂E/∂p where Π = E u + …, by the column of the variable; without those that are zero.
     pub(super) levers: Vec<(usize, DMatrix<f64>)>,
     /// Segments without missing samples, each with the name of its run.
     pub(super) stretches: Vec<(String, Vec<Motion>)>,
@@ -128,7 +138,7 @@ impl Motions {
         let model = effects.beside(&[]);
         let info = model.info();
         let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
-        let parameters = varying(set, effects);
+        let variables = variables(set, effects);
         let runs = set.all(OfSet::Fit);
         let stretches = recorded(&runs, model, &p)?.stretches;
         let coordinates: Vec<[usize; 2]> = (coordinates(set).into_iter())
@@ -138,22 +148,28 @@ impl Motions {
             })
             .collect();
         let first = stretches.iter().find_map(|one| one.moments.first());
-        let levers = first.map_or_else(Vec::new, |first| levers(model, first, &p, &parameters));
+        let levers = first.map_or_else(Vec::new, |first| levers(model, first, &p, &variables));
         let count: usize = stretches.iter().map(|one| one.moments.len()).sum();
         let stride = count.div_ceil(MOST).max(1);
         let stretches = stretches.into_iter().map(|stretch| {
             let moments = stretch.moments.into_iter().zip(&stretch.spreads);
             let motions = moments.step_by(stride).map(|(moment, spread)| {
-                let motion = Motion::of(model, moment.clone(), &p, &parameters);
+                let motion = Motion::of(model, moment.clone(), &p, &variables);
                 motion.noisy(model, &moment, spread, &p, &coordinates)
             });
             (set.runs[stretch.run].name.clone(), motions.collect())
         });
         Ok(Self {
             stretches: stretches.collect(),
-            parameters,
+            variables,
             levers,
         })
+    }
+
+    /// The column of a parameter.
+    pub(super) fn column(&self, parameter: usize) -> Option<usize> {
+        let mut variables = self.variables.iter();
+        variables.position(|own| own.parameter == parameter)
     }
 
     pub(super) fn all(&self) -> impl Iterator<Item = &Motion> {
@@ -197,6 +213,38 @@ fn mean(length: usize, all: impl Iterator<Item = DVector<f64>>) -> DVector<f64> 
     sum / f64::max(count, 1.0)
 }
 
+/// Derivative of M ω̇ + b − Π by a variable.
+fn derivative(
+    model: &dyn Model,
+    moment: &Moment,
+    p: &mut [f64],
+    variable: Variable,
+) -> DVector<f64> {
+    let index = variable.parameter;
+    let value = p[index];
+    let step = match variable.shapes {
+        Some(shaped) => shaped.std,
+        None if value == 0.0 => STEP,
+        None => PART * value.abs(),
+    };
+    let mut at = |side: f64| {
+        p[index] = value + side * step;
+        match variable.shapes {
+            None => demand(model, moment, p),
+            Some(Shaped { size, .. }) => {
+                let size = Variable {
+                    parameter: size,
+                    shapes: None,
+                };
+                derivative(model, moment, p, size)
+            }
+        }
+    };
+    let slope = (at(1.0) - at(-1.0)) / (2.0 * step);
+    p[index] = value;
+    slope
+}
+
 /// M ω̇ + b − Π.
 fn demand(model: &dyn Model, moment: &Moment, p: &[f64]) -> DVector<f64> {
     let (t, x, u) = (moment.t, moment.x.as_slice(), moment.u.as_slice());
@@ -206,13 +254,13 @@ fn demand(model: &dyn Model, moment: &Moment, p: &[f64]) -> DVector<f64> {
     demand
 }
 
-/// Relative change of the forces of unit inputs by the parameters. Each input drives a coordinate, so that these forces
+/// Relative change of the forces of unit inputs by the variables. Each input drives a coordinate, so that these forces
 /// do not depend on the motion.
 fn levers(
     model: &dyn Model,
     first: &Moment,
     p: &[f64],
-    parameters: &[usize],
+    variables: &[Variable],
 ) -> Vec<(usize, DMatrix<f64>)> {
     let inputs = model.info().declared_inputs;
     let of = |input: Option<usize>| {
@@ -221,7 +269,7 @@ fn levers(
         if let Some(input) = input {
             moment.u[input] = 1.0;
         }
-        Motion::of(model, moment, p, parameters)
+        Motion::of(model, moment, p, variables)
     };
     let without = of(None);
     let unit: Vec<Motion> = (0..inputs).map(|input| of(Some(input))).collect();
@@ -236,19 +284,32 @@ fn levers(
         let lever = &inverse * DMatrix::from_columns(&slopes);
         (lever.amax() > NO_LEVER).then_some((column, lever))
     };
-    (0..parameters.len()).filter_map(lever).collect()
+    (0..variables.len()).filter_map(lever).collect()
 }
 
-/// Parameters with a tolerance, and sizes of the effects.
-fn varying(set: &DataSet, effects: &EffectModel) -> Vec<usize> {
-    let info = effects.info();
-    let mut varying: Vec<usize> = (0..set.parameters.len())
+/// Parameters with a tolerance, sizes of the effects, and shapes of effects of one size.
+fn variables(set: &DataSet, effects: &EffectModel) -> Vec<Variable> {
+    let plain = |parameter: usize| Variable {
+        parameter,
+        shapes: None,
+    };
+    let mut variables: Vec<Variable> = (0..set.parameters.len())
         .filter(|&index| set.parameters[index].std.is_some_and(|std| std > 0.0))
+        .map(plain)
         .collect();
     for candidate in &effects.candidates {
-        let sizes = candidate.parameters.iter();
-        let sizes = sizes.filter(|(_, part)| *part == Part::Size);
-        varying.extend(sizes.filter_map(|(name, _)| info.parameter_index(name)));
+        let own = effects.own(candidate);
+        let sizes = own.iter().filter(|(_, part)| *part == Part::Size);
+        let sizes: Vec<usize> = sizes.map(|(index, _)| *index).collect();
+        variables.extend(sizes.iter().copied().map(plain));
+        let [size] = sizes[..] else { continue };
+        variables.extend(own.iter().filter_map(|&(parameter, part)| match part {
+            Part::Shape(Some(std)) => Some(Variable {
+                parameter,
+                shapes: Some(Shaped { size, std }),
+            }),
+            _ => None,
+        }));
     }
-    varying
+    variables
 }

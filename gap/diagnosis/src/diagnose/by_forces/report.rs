@@ -20,7 +20,7 @@ use super::hypothesis::Hypothesis;
 use super::motions::{Motion, Motions};
 use super::pictures;
 use super::search::{Findings, Search};
-use crate::effects::{Acts, EffectModel, Part};
+use crate::effects::{Acts, EffectModel};
 
 /// Length of a block of correlated errors in s.
 const BLOCK_S: f64 = 2.0;
@@ -137,15 +137,6 @@ fn which(
     Ok(which)
 }
 
-/// Change and standard deviation of a parameter, where it was free.
-fn change(fitted: &Hypothesis, motions: &Motions, parameter: usize) -> (f64, Option<f64>) {
-    let mut parameters = motions.parameters.iter();
-    let column = parameters.position(|own| *own == parameter);
-    column.map_or((0.0, None), |column| {
-        (fitted.changes[column], fitted.deviations[column])
-    })
-}
-
 /// Values of the members of a hypothesis; a size at its limit has no deviation.
 fn values(
     model: &EffectModel,
@@ -160,13 +151,15 @@ fn values(
         let own = match candidate.acts {
             Acts::Parameter(parameter) => vec![(parameter, "value")],
             _ => (model.own(candidate).into_iter())
-                .filter(|(_, part)| *part == Part::Size)
+                .filter(|(index, _)| motions.column(*index).is_some())
                 .map(|(index, _)| (index, candidate.short(&info.parameters[index].name)))
                 .collect(),
         };
         for (index, short) in own {
             let quantity = &info.parameters[index];
-            let (change, deviation) = change(fitted, motions, index);
+            let (change, deviation) = fitted.change(motions, index);
+            let shaped = motions.column(index);
+            let shaped = shaped.and_then(|column| motions.variables[column].shapes);
             let stated = set.parameters[index].value;
             let value = stated + change;
             let told = Value {
@@ -175,13 +168,19 @@ fn values(
                 std: deviation.unwrap_or(f64::NAN) / quantity.scale,
                 unit: quantity.unit.to_string(),
                 without: None,
-                is_determined: true,
+                is_determined: deviation
+                    .zip(shaped)
+                    .is_none_or(|(own, z)| own < 0.5 * z.std),
                 yardstick: match candidate.acts {
+                    _ if shaped.is_some() => None,
                     Acts::Parameter(_) => Yardstick::of_parameter(value, stated),
                     _ => yardstick(model, motions, index, change),
                 },
             };
-            values.push(told.of_size(stated / quantity.scale));
+            values.push(match shaped {
+                Some(_) => told,
+                None => told.of_size(stated / quantity.scale),
+            });
         }
     }
     values
@@ -195,8 +194,7 @@ fn yardstick(
     size: f64,
 ) -> Option<Yardstick> {
     let names = model.info().speed_quantities();
-    let mut parameters = motions.parameters.iter();
-    let column = parameters.position(|own| *own == parameter)?;
+    let column = motions.column(parameter)?;
     let mut squares = vec![[0.0; 2]; names.len()];
     for motion in motions.all() {
         for (equation, [added, driven]) in squares.iter_mut().enumerate() {
@@ -218,7 +216,7 @@ fn changes(
     let info = model.info();
     let all = 0..info.parameter_len();
     let changed = all.map(|index| {
-        let (change, deviation) = change(fitted, motions, index);
+        let (change, deviation) = fitted.change(motions, index);
         let shape = info.parameters[index].value;
         let stated = set.parameters.get(index).map_or(shape, |own| own.value);
         (stated + change, deviation)
@@ -241,7 +239,7 @@ pub(super) fn added(
     motions: &Motions,
     motion: &Motion,
 ) -> DVector<f64> {
-    let mut sizes = DVector::zeros(motions.parameters.len());
+    let mut sizes = DVector::zeros(motions.variables.len());
     for &member in &fitted.members {
         let candidate = model.candidate(member);
         let own = match candidate.acts {
@@ -252,8 +250,8 @@ pub(super) fn added(
                 .map(|(index, _)| *index)
                 .collect(),
         };
-        for (column, parameter) in motions.parameters.iter().enumerate() {
-            if own.contains(parameter) {
+        for (column, variable) in motions.variables.iter().enumerate() {
+            if own.contains(&variable.parameter) {
                 sizes[column] = fitted.changes[column];
             }
         }
@@ -312,7 +310,7 @@ fn how_far(
 ) -> Result<HowFar, DiagnoseError> {
     let (refitted, best) = (found.nominal(), found.best());
     let errors = |changes: &DVector<f64>| errors(test, changes, &found.noise);
-    let stated = errors(&DVector::zeros(training.parameters.len()));
+    let stated = errors(&DVector::zeros(training.variables.len()));
     let (refit, effect) = (errors(&refitted.changes), errors(&best.changes));
     let floor = 1.0;
     let paired = Paired::of(&[&stated, &refit, &effect]);
@@ -384,7 +382,7 @@ fn detectable(model: &EffectModel, found: &Findings, motions: &Motions) -> Vec<D
             _ => model.own(candidate).first().map(|(index, _)| *index),
         };
         let Some(parameter) = parameter else { continue };
-        let (_, deviation) = change(fitted, motions, parameter);
+        let (_, deviation) = fitted.change(motions, parameter);
         let effect = candidate.name();
         let is_told = told.iter().any(|own| own.effect == effect);
         if let Some(deviation) = deviation.filter(|_| !is_told) {

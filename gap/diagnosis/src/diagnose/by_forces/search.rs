@@ -21,6 +21,10 @@ const KEPT: usize = 6;
 const MOST_EFFECTS: usize = 4;
 /// Hypotheses below this probability are not reported.
 const IMPROBABLE: f64 = 1e-4;
+/// Where a shape is further away than this part of its prior deviation, its forces are evaluated there.
+const FAR: f64 = 0.2;
+/// Number of fits in which the prior of shapes follows the size.
+const SHAPED: usize = 3;
 /// Largest number of candidates of a hypothesis; components of a vector count as one effect.
 const MOST_MEMBERS: usize = 6;
 
@@ -199,17 +203,48 @@ impl<'s> Search<'s> {
         let open = sizes.filter_map(|(name, _)| {
             let parameter = info.parameter_index(name)?;
             Some(Open {
-                column: self.column(parameter)?,
-                std: None,
+                column: self.motions.column(parameter)?,
+                prior: None,
                 range: info.parameters[parameter].range,
             })
         });
         open.collect()
     }
 
-    fn column(&self, parameter: usize) -> Option<usize> {
-        let mut parameters = self.motions.parameters.iter();
-        parameters.position(|own| *own == parameter)
+    /// The products of a candidate's size with its shapes.
+    fn shapes(&self, candidate: usize, size: f64) -> Vec<Open> {
+        let own = self.effects.own(&self.effects.candidates[candidate]);
+        let open = own.iter().filter_map(|&(index, _)| {
+            let column = self.motions.column(index)?;
+            let shaped = self.motions.variables[column].shapes?;
+            let stated = self.effects.info().parameters[index].value;
+            Some(Open {
+                column,
+                prior: Some(
+                    [stated - self.set.parameters[index].value, shaped.std].map(|own| size * own),
+                ),
+                range: [f64::NEG_INFINITY, f64::INFINITY],
+            })
+        });
+        open.collect()
+    }
+
+    /// The shapes of a hypothesis, where one of them is far from where its forces were evaluated.
+    pub(super) fn moved(&self, fitted: &Hypothesis) -> Option<Vec<(usize, f64)>> {
+        let mut is_far = false;
+        let mut shapes = Vec::new();
+        for variable in &self.motions.variables {
+            let Some(shaped) = variable.shapes else {
+                continue;
+            };
+            let (change, deviation) = fitted.change(self.motions, variable.parameter);
+            if deviation.is_some() {
+                is_far |= change.abs() > FAR * shaped.std;
+                let value = self.set.parameters[variable.parameter].value;
+                shapes.push((variable.parameter, value + change));
+            }
+        }
+        is_far.then_some(shapes)
     }
 
     /// A parameter within its tolerance.
@@ -217,8 +252,8 @@ impl<'s> Search<'s> {
         let own = self.set.parameters.get(parameter)?;
         let range = self.effects.info().parameters[parameter].range;
         Some(Open {
-            column: self.column(parameter)?,
-            std: Some(own.std.filter(|std| *std > 0.0)?),
+            column: self.motions.column(parameter)?,
+            prior: Some([0.0, own.std.filter(|std| *std > 0.0)?]),
             range: possible(range, *own).map(|end| end - own.value),
         })
     }
@@ -232,12 +267,13 @@ impl<'s> Search<'s> {
         let tolerance = |parameter: usize| {
             let own = self.tolerance(parameter)?;
             let value = self.set.parameters[parameter].value;
-            let std = own.std.filter(|_| wrong(parameter));
-            let wider = std.map(|std| (WRONG * value.abs()).max(std));
-            Some(Open {
-                std: wider.or(own.std),
-                ..own
-            })
+            let wider = |[mean, std]: [f64; 2]| [mean, (WRONG * value.abs()).max(std)];
+            let prior = if wrong(parameter) {
+                own.prior.map(wider)
+            } else {
+                own.prior
+            };
+            Some(Open { prior, ..own })
         };
         let all = 0..self.set.parameters.len();
         let (of_members, others): (Vec<usize>, Vec<usize>) =
@@ -253,10 +289,36 @@ impl<'s> Search<'s> {
             Member {
                 candidate: member,
                 open,
+                shapes: Vec::new(),
                 is_whole: !self.effects.candidates[member].is_of_drives(),
             }
         });
-        squares.fitted(&own.collect::<Vec<_>>(), &others)
+        self.shaped(squares, own.collect(), &others)
+    }
+
+    /// With shapes, whose products with the size have a prior that follows the size.
+    fn shaped(
+        &self,
+        squares: &Squares,
+        mut members: Vec<Member>,
+        others: &[Open],
+    ) -> Option<Hypothesis> {
+        let mut fitted: Option<Hypothesis> = None;
+        for _ in 0..SHAPED {
+            for member in &mut members {
+                let [size] = member.open[..] else { continue };
+                let size = match &fitted {
+                    Some(fitted) => fitted.changes[size.column].abs(),
+                    None => squares.scale(size.column),
+                };
+                member.shapes = self.shapes(member.candidate, size);
+            }
+            fitted = Some(squares.fitted(&members, others)?);
+            if members.iter().all(|member| member.shapes.is_empty()) {
+                break;
+            }
+        }
+        fitted
     }
 
     /// Indices of the re-fitted parameters, their differences and the information about these.

@@ -39,8 +39,8 @@ pub fn convert(skeleton: &Path, captures: &[PathBuf]) -> Result<Converted, Error
     for path in captures {
         let run = file_name(path, &runs)?;
         let (capture, found) = Capture::read(path, &skeleton)?;
-        let found = found.iter().map(appell_report::recording::sentence);
-        findings.extend(found.map(|finding| format!("{run}: {finding}")));
+        let found = appell_report::recording::sentences(&found);
+        findings.extend(found.iter().map(|finding| format!("{run}: {finding}")));
         rides.push(Ride::of(&skeleton, &capture));
         runs.push(run);
     }

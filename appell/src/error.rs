@@ -249,7 +249,7 @@ impl Error {
                 _ => Class::Request,
             },
             Self::Base(error) => match error {
-                BaseError::NoInput { .. } => Class::Data,
+                BaseError::NoInput { .. } | BaseError::Differs { .. } => Class::Data,
                 _ => Class::Computation,
             },
             Self::Several(all) => all.iter().map(Self::class).max().unwrap_or(Class::Request),

@@ -9,7 +9,7 @@ pub use appell_recordings::{
     Role, Run, Spec,
 };
 use appell_recordings::{Draft, MANIFEST};
-use appell_report::recording::sentence;
+use appell_report::recording::sentences;
 use appell_report::text::number;
 use appell_spec::Severity;
 
@@ -88,7 +88,7 @@ pub fn draft(
         let set = with_doubts(set)?;
         let doubtful =
             |finding: &&Finding| matches!(finding.kind, FindingKind::Unit | FindingKind::Sign);
-        let doubts = set.findings.iter().filter(doubtful).map(sentence);
+        let doubts = sentences(set.findings.iter().filter(doubtful));
         drafted.questions.extend(doubts);
         drafted.set = Some(set);
     }
@@ -267,5 +267,5 @@ pub fn warnings(set: &DataSet) -> Vec<String> {
     let grave = findings.filter(|finding| {
         finding.kind.severity() == Severity::Warning || finding.kind == FindingKind::SmoothInput
     });
-    grave.map(sentence).collect()
+    sentences(grave)
 }

@@ -22,8 +22,8 @@ pub fn text(set: &DataSet) -> String {
     if !set.findings.is_empty() {
         text.push('\n');
     }
-    for finding in &set.findings {
-        let _ = writeln!(text, "{}", sentence(finding));
+    for line in sentences(&set.findings) {
+        let _ = writeln!(text, "{line}");
     }
     text
 }
@@ -41,7 +41,25 @@ fn runs(set: &DataSet) -> String {
             run.sampling.gaps.len().to_string(),
         ]);
     }
-    table.text()
+    let mut text = table.text();
+    for run in &set.runs {
+        for difference in &run.differences {
+            let mut all = set.mechanism.parameters.iter();
+            let own = all.find(|own| own.label.name == difference.parameter);
+            let Some(unit) = own.map(|own| &own.label.unit) else {
+                continue;
+            };
+            let by = unit.from_si(difference.by);
+            let _ = writeln!(
+                text,
+                "in {}: {} differs by {by:+} {} from the other runs",
+                run.name,
+                set.named(&difference.parameter),
+                unit.text
+            );
+        }
+    }
+    text
 }
 
 /// Role of a run.
@@ -86,17 +104,41 @@ pub fn role(role: Role) -> &'static str {
     }
 }
 
-/// `warning: run.csv:12: theta: 3 values of 200 missing`
-pub fn sentence(finding: &Finding) -> String {
+/// `warning: run.csv:12: theta: 3 values of 200 missing`, about some channels.
+fn sentence(finding: &Finding, channels: &[&str]) -> String {
     let mut text = format!("{}: ", severity(finding));
     if let Some(run) = &finding.run {
         let line = finding.line.map(|line| format!(":{line}"));
         let _ = write!(text, "{run}{}: ", line.unwrap_or_default());
     }
-    if let Some(channel) = &finding.channel {
-        let _ = write!(text, "{channel}: ");
+    match channels {
+        [] => {}
+        [first, second, rest @ ..] if rest.len() > 1 => {
+            let _ = write!(text, "{first}, {second} and {} more: ", rest.len());
+        }
+        few => {
+            let _ = write!(text, "{}: ", few.join(", "));
+        }
     }
     text + &finding.message
+}
+
+/// Findings as lines; the same one about several channels of a run is one line.
+pub fn sentences<'f>(findings: impl IntoIterator<Item = &'f Finding>) -> Vec<String> {
+    let findings: Vec<&Finding> = findings.into_iter().collect();
+    let about = |finding: &&Finding| Finding {
+        channel: None,
+        ..(*finding).clone()
+    };
+    let same = findings.chunk_by(|one, next| one.channel.is_some() && about(one) == about(next));
+    let line = |same: &[&Finding]| {
+        let channels: Vec<&str> = same
+            .iter()
+            .filter_map(|own| own.channel.as_deref())
+            .collect();
+        sentence(same[0], &channels)
+    };
+    same.map(line).collect()
 }
 
 /// The word for the severity of a finding.

@@ -7,11 +7,14 @@ use serde_json::{Value, json};
 /// Runs, channels, noise, parameters and findings of a data set.
 pub fn recording(set: &DataSet) -> Value {
     let runs = set.runs.iter().map(|run| {
+        let differences = run.differences.iter();
+        let differences = differences.map(|own| json!({ "name": own.parameter, "by": own.by }));
         json!({
             "run": run.name, "part": part(run), "rows": run.times.len(),
             "from_s": run.times.first(), "to_s": run.times.last(),
             "step_s": run.sampling.step, "shortest_step_s": run.sampling.shortest,
             "longest_step_s": run.sampling.longest, "gaps_s": run.sampling.gaps,
+            "differences": differences.collect::<Vec<_>>(),
         })
     });
     let channels = set.channels.iter().map(|channel| {

@@ -147,6 +147,11 @@ pub fn fit(
     regressor: &Regressor,
     structure: &Structure,
 ) -> Result<Fit, BaseError> {
+    if let Some(run) = set.runs.iter().find(|run| !run.differences.is_empty()) {
+        return Err(BaseError::Differs {
+            run: run.name.clone(),
+        });
+    }
     let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
     let recorded = moments::recorded(set, model, &p)?;
     regression::fit(&Equations::new(regressor), structure, &recorded, model, &p)

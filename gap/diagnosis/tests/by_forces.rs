@@ -267,6 +267,28 @@ fn a_payload_beside_the_centre_of_its_link_is_found_with_its_place() {
     }
 }
 
+/// The tool is in the first and the third run.
+#[test]
+fn a_known_payload_of_some_runs_is_no_gap() {
+    let folder = recorded(ARM, [0.3, 1.9, 4.1]);
+    let with = ARM.replace("[bodies]", TOOL);
+    folder
+        .write("a.csv", run(&with, 0.3))
+        .write("c.csv", run(&with, 4.1));
+    let verdict = || {
+        let effects = appell_gap::effects::shipped().unwrap();
+        let set = folder.read().unwrap();
+        diagnose(&set, &effects, &Options::default(), |_| ())
+            .unwrap()
+            .verdict
+    };
+    assert_ne!(verdict(), GapVerdict::NoGap);
+    let payload = "payload = { on = \"G_2\", mass = 0.5, at = [0.1, 0.05, -0.12] }";
+    let known = format!("{RECORDED}[run.\"a.csv\"]\n{payload}\n[run.\"c.csv\"]\n{payload}\n");
+    folder.write("recording.toml", known);
+    assert_eq!(verdict(), GapVerdict::NoGap);
+}
+
 /// A tool beside the last link.
 const TOOL: &str = r#"
 tool = { from = "G_2", in = "fore", at = ["0.1 [m]", "0.05 [m]", "-0.12 [m]"] }

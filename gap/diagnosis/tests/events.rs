@@ -16,22 +16,22 @@ const NOISE: f64 = 1e-4;
 const PARTS: u32 = 50;
 
 /// The true rig.
-struct Rig {
-    mass: f64,
-    stiffness: f64,
-    damping: f64,
-    friction: f64,
+pub(crate) struct Rig {
+    pub(crate) mass: f64,
+    pub(crate) stiffness: f64,
+    pub(crate) damping: f64,
+    pub(crate) friction: f64,
     /// A force in N and its times in s.
-    push: (f64, [f64; 2]),
+    pub(crate) push: (f64, [f64; 2]),
     /// Rows for which a command is held; or it runs on smoothly.
-    held: Option<u32>,
+    pub(crate) held: Option<u32>,
     /// Standard deviation in N of a gust with a correlation time of half a second.
-    gust: f64,
+    pub(crate) gust: f64,
     /// Whether a digital controller commands the force by the recorded positions.
-    is_controlled: bool,
+    pub(crate) is_controlled: bool,
 }
 
-const RIGHT: Rig = Rig {
+pub(crate) const RIGHT: Rig = Rig {
     mass: 1.0,
     stiffness: 20.0,
     damping: 0.5,
@@ -42,7 +42,7 @@ const RIGHT: Rig = Rig {
     is_controlled: false,
 };
 
-fn run(rig: &Rig, seed: u64) -> String {
+pub(crate) fn run(rig: &Rig, seed: u64) -> String {
     let mut dice = Random::new(seed);
     let waves: Vec<[f64; 2]> = (1..=6)
         .map(|k| [1.7 * f64::from(k), dice.between(0.0, 6.3)])

@@ -8,6 +8,7 @@ mod again;
 mod base;
 mod by_forces;
 mod decay;
+mod differences;
 mod engine;
 mod events;
 mod fuzz;

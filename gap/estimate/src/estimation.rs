@@ -1,5 +1,6 @@
 //! Likelihood of recordings under a model, with gradient and innovations.
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::{Mutex, MutexGuard, PoisonError};
 
@@ -25,6 +26,8 @@ const MOST_BYTES: f64 = (1_u64 << 34) as f64;
 pub struct Estimation<'a> {
     setup: &'a Setup<'a>,
     plant: Plant<'a>,
+    /// Of runs with parameters of their own.
+    plants: BTreeMap<usize, Plant<'a>>,
     recordings: &'a [Recording],
     layout: Layout,
     knots: Vec<f64>,
@@ -37,13 +40,25 @@ impl<'a> Estimation<'a> {
     pub fn new(setup: &'a Setup<'a>, recordings: &'a [Recording]) -> Result<Self, EstimateError> {
         setup.check(recordings)?;
         fits_in_memory(setup, recordings)?;
-        let plant = Plant::new(setup)?;
+        let plant = Plant::new(setup, &[])?;
+        let mut plants = BTreeMap::new();
+        let layout = Layout::of(setup, recordings.len());
+        for (run, recording) in recordings.iter().enumerate() {
+            let differences = recording.differences();
+            for &(parameter, _) in differences {
+                layout.place(Unknown::Parameter(parameter))?;
+            }
+            if !differences.is_empty() {
+                plants.insert(run, Plant::new(setup, differences)?);
+            }
+        }
         Ok(Self {
             setup,
             knots: plant.knots(),
             plant,
+            plants,
             recordings,
-            layout: Layout::of(setup, recordings.len()),
+            layout,
             tapes: Mutex::default(),
         })
     }
@@ -58,15 +73,15 @@ impl<'a> Estimation<'a> {
         self.setup
     }
 
-    /// The equations of all states.
-    pub(super) fn plant(&self) -> &Plant<'a> {
-        &self.plant
+    /// The equations of all states in a run.
+    pub(super) fn plant(&self, run: usize) -> &Plant<'a> {
+        self.plants.get(&run).unwrap_or(&self.plant)
     }
 
-    fn system(&self) -> StateSpace<'_> {
+    fn system(&self, run: usize) -> StateSpace<'_> {
         StateSpace {
             setup: self.setup,
-            plant: &self.plant,
+            plant: self.plant(run),
             layout: self.layout,
         }
     }
@@ -179,7 +194,7 @@ impl<'a> Estimation<'a> {
         let recording = &self.recordings[run];
         let actions = self.actions(run, values);
         let tape = keeps.then(|| self.blank_tape());
-        Pass::over(self.system(), values, run, recording, &actions, tape)
+        Pass::over(self.system(run), values, run, recording, &actions, tape)
     }
 
     /// The tapes; a poisoned lock is ignored, as no code panics while holding it.
@@ -203,7 +218,7 @@ impl<'a> Estimation<'a> {
         tape: Option<Vec<f64>>,
     ) -> Pass<'b> {
         let recording = &self.recordings[run];
-        Pass::new(self.system(), values, run, recording, actions, tape)
+        Pass::new(self.system(run), values, run, recording, actions, tape)
     }
 
     /// Steps, changes of inputs and samples of a run.

@@ -151,6 +151,7 @@ fn split(runs: &mut Vec<Run>, findings: &mut Vec<Finding>) {
             .collect(),
         earlier: Vec::new(),
         between: Vec::new(),
+        differences: run.differences.clone(),
     };
     *runs = vec![
         piece(0..fitted, Part::Fit),

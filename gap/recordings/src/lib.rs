@@ -12,7 +12,7 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `manifest.rs`, `fields.rs` | content of `recording.toml`, with positions |
+//! | `manifest.rs`, `differences.rs`, `fields.rs` | content of `recording.toml`, with positions |
 //! | `channels.rs`, `column.rs` | its channels: patterns; a line with unit and scale |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
 //! | `format.rs` | a run from a file of any format, by its extension |
@@ -47,6 +47,7 @@ mod channels;
 mod clock;
 mod column;
 pub mod csv;
+mod differences;
 mod draft;
 mod episode;
 mod error;
@@ -83,6 +84,7 @@ use std::path::Path;
 pub use bare::{read_bare, read_bare_frames};
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
+pub use differences::Difference;
 pub use draft::{Draft, Drafted};
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
@@ -161,6 +163,7 @@ fn assemble<'s>(
         time,
         mut channels,
         runs,
+        mut differences,
     } = manifest;
     let mut findings = Vec::new();
     let mut budget = limits::MAX_NUMBERS;
@@ -172,7 +175,9 @@ fn assemble<'s>(
             .and_then(|source| source.read(&time, &channels, &mut budget));
         match table {
             Ok(table) => {
-                read_runs.push(run::read(name, part, table, &channels, &mut findings));
+                let differences = differences.remove(&name).unwrap_or_default();
+                let run = run::read(name, part, table, &channels, &mut findings);
+                read_runs.push(Run { differences, ..run });
             }
             Err(error) => errors.push(error),
         }

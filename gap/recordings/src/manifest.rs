@@ -19,8 +19,12 @@
 //! [runs]
 //! fit  = ["run1.csv", "run2.csv"]
 //! test = ["run3.csv"]
+//!
+//! [run."run2.csv"]                         # what differs in a run (differences.rs)
+//! payload = { on = "arm", mass = 1.5, at = [0, 0, 0.08] }
 //! ```
 
+use std::collections::BTreeMap;
 use std::path::Path;
 
 use appell_spec::expr::Span;
@@ -32,6 +36,7 @@ use toml::de::DeTable;
 
 use crate::channel::Channel;
 use crate::channels::channels;
+use crate::differences::{self, Difference};
 use crate::fields::{Fields, Tolerance, Value};
 use crate::limits::MAX_RUNS;
 use crate::named::Named;
@@ -49,6 +54,8 @@ pub(crate) struct Manifest {
     pub(crate) time: Stated,
     pub(crate) channels: Vec<Channel>,
     pub(crate) runs: Vec<(String, Part)>,
+    /// Of runs that differ from the others.
+    pub(crate) differences: BTreeMap<String, Vec<Difference>>,
 }
 
 const KEYS: &[&str] = &[
@@ -60,7 +67,9 @@ const KEYS: &[&str] = &[
     "parameters",
     "channels",
     "runs",
+    differences::SECTION,
 ];
+
 /// Reads a description; `instead` replaces the mechanism that it names. `columns` are those of a run.
 pub(crate) fn read(
     path: &Path,
@@ -91,13 +100,20 @@ pub(crate) fn read(
         return Err(fields.report().into());
     };
     let options = robot::options(&mut fields, table);
-    let keys = parameter_keys(table);
+    let mut keys = parameter_keys(table);
+    keys.extend(differences::keys(table));
     let robot = Robot::read(Path::new(&spec.file), &spec.text, keys, &options)?;
     let (spec, robot) = match robot {
         Some((spec, robot)) => (spec, Some(robot)),
         None => (spec, None),
     };
-    let mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
+    let mut mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
+    let payloads = differences::payloads(&mut fields, table);
+    let (spec, payloads) =
+        differences::with_payloads(&mut fields, &payloads, spec, &mechanism, robot.as_ref());
+    if !payloads.is_empty() {
+        mechanism = appell_spec::load(&spec.file, &spec.text)?.mechanism;
+    }
     let description = fields.string(table, "description");
     let named = Named {
         mechanism: &mechanism,
@@ -107,6 +123,8 @@ pub(crate) fn read(
     let columns = || columns(&first_run(table)?);
     let (time, channels) = channels(&mut fields, table, named, &columns);
     let runs = runs(&mut fields, table, path.parent().unwrap_or(Path::new("")));
+    let differences =
+        differences::of_runs(&mut fields, table, named, &parameters, &payloads, &runs);
     if fields.is_wrong() {
         return Err(fields.report().into());
     }
@@ -119,6 +137,7 @@ pub(crate) fn read(
         time,
         channels,
         runs,
+        differences,
     })
 }
 
@@ -212,7 +231,7 @@ fn parameters(fields: &mut Fields<'_>, table: &DeTable<'_>, named: Named<'_>) ->
 
 /// Reads a parameter. One of a robot, `stated` in its file, needs no value; it may be a factor, of a number that is
 /// `one` in SI.
-fn parameter(
+pub(crate) fn parameter(
     fields: &mut Fields<'_>,
     value: &Value<'_>,
     own: &appell_spec::mechanism::Parameter,

@@ -103,6 +103,10 @@ impl DataSet {
             let commanded: Vec<f64> = commanded.collect();
             let seen = rows.flat_map(|row| measured.iter().map(move |&c| run.values[c][row]));
             let recording = Recording::new(run.times.clone(), commanded.clone(), seen.collect())?;
+            let differences = run.differences.iter().filter_map(|difference| {
+                Some((info.parameter_index(&difference.parameter)?, difference.by))
+            });
+            let recording = recording.with_differences(differences.collect());
             let listed = |rows: &[Row]| -> (Vec<f64>, Vec<f64>) {
                 let values = rows.iter().flat_map(|row| {
                     let values = inputs.iter();

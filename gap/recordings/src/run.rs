@@ -72,6 +72,7 @@ pub(crate) fn read(
         sampling,
         earlier: Vec::new(),
         between: Vec::new(),
+        differences: Vec::new(),
     }
 }
 

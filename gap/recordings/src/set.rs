@@ -6,6 +6,7 @@ use appell_spec::{Mechanism, mechanism};
 
 use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
+use crate::differences::Difference;
 use crate::finding::{Finding, FindingKind};
 use crate::robot::Robot;
 
@@ -99,6 +100,8 @@ pub struct Run {
     pub earlier: Vec<Row>,
     /// Of a subsampled window all rows from its first to its last one: the inputs at their full rate.
     pub between: Vec<Row>,
+    /// Parameters that differ from those of the other runs.
+    pub differences: Vec<Difference>,
 }
 
 /// A row: its time, and a value for each channel.
@@ -134,6 +137,18 @@ impl DataSet {
         let robot = self.robot.as_ref();
         let of_file = robot.and_then(|robot| robot.dictionary.in_spec(name));
         of_file.unwrap_or(name)
+    }
+
+    /// The values of the parameters in a run, in the order of the spec, in SI.
+    pub fn parameters_in(&self, run: &Run) -> Vec<f64> {
+        let mut values: Vec<f64> = self.parameters.iter().map(|own| own.value).collect();
+        for difference in &run.differences {
+            let mut names = self.mechanism.parameters.iter().map(|own| &own.label.name);
+            if let Some(index) = names.position(|name| *name == difference.parameter) {
+                values[index] += difference.by;
+            }
+        }
+        values
     }
 
     /// Adds a doubt about a channel.

@@ -217,6 +217,7 @@ fn cut(run: &Run, rows: Range<usize>) -> Run {
         values: values.map(|column| column[rows.clone()].to_vec()).collect(),
         earlier: earlier(run, rows.start),
         between: Vec::new(),
+        differences: run.differences.clone(),
     }
 }
 
@@ -236,6 +237,7 @@ mod tests {
             times: times.clone(),
             earlier: Vec::new(),
             between: Vec::new(),
+            differences: Vec::new(),
         };
         let runs = [run("a"), run("b")];
         let windows = [

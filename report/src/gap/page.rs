@@ -494,8 +494,8 @@ fn recordings(set: &DataSet, report: &Report) -> Markup {
         @if let Some(rows) = left_out(report) {
             p class="faint" { (rows) "." }
         }
-        @for finding in &set.findings {
-            p class="faint" { (crate::recording::sentence(finding)) }
+        @for line in crate::recording::sentences(&set.findings) {
+            p class="faint" { (line) }
         }
     }
 }

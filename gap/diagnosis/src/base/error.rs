@@ -35,6 +35,14 @@ pub enum BaseError {
         /// The parameters that multiply inputs.
         parameters: Vec<String>,
     },
+    /// A run with parameters of its own.
+    #[error(
+        "base parameters are those of one mechanism, and the run `{run}` has parameters of its own; estimate without it"
+    )]
+    Differs {
+        /// Its name.
+        run: String,
+    },
     /// The equations have no finite values on the recorded motions.
     #[error("inverse dynamics has no finite values on the recorded motions")]
     NotFinite,

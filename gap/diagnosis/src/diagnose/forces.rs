@@ -40,12 +40,14 @@ pub(super) struct Forces<'s> {
     ends: [&'s [f64]; 2],
     /// Means between them.
     inputs: Vec<f64>,
+    /// Parameters of the run that differ from those of all runs.
+    differences: &'s [(usize, f64)],
 }
 
 impl<'s> Forces<'s> {
     pub(super) fn new(
         model: &'s dyn Model,
-        recording: &Recording,
+        recording: &'s Recording,
         states: &'s [Smoothed],
         row: usize,
     ) -> Self {
@@ -57,7 +59,16 @@ impl<'s> Forces<'s> {
             times: [recording.times()[row - 1], recording.times()[row]],
             ends: [row - 1, row].map(|row| &states[row].state[..info.state_len()]),
             inputs,
+            differences: recording.differences(),
         }
+    }
+
+    fn in_run(&self, p: &[f64]) -> Vec<f64> {
+        let mut p = p.to_vec();
+        for &(parameter, by) in self.differences {
+            p[parameter] += by;
+        }
+        p
     }
 
     fn step(&self) -> f64 {
@@ -89,7 +100,7 @@ impl<'s> Forces<'s> {
 
     fn rates(&self, t: f64, x: &[f64], p: &[f64]) -> Vec<f64> {
         let mut rates = vec![0.0; x.len()];
-        let u = &self.inputs;
+        let (u, p) = (&self.inputs, &self.in_run(p));
         self.model.rates(At { t, x, u, p }, &mut rates);
         rates
     }
@@ -101,7 +112,7 @@ impl<'s> Forces<'s> {
             t: self.times[0],
             x: &middle[..self.ends[0].len()],
             u: &self.inputs,
-            p,
+            p: &self.in_run(p),
         };
         let (mut mass, mut bias) = (vec![0.0; speeds * speeds], vec![0.0; speeds]);
         let mut forces = vec![0.0; speeds];

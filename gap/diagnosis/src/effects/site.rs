@@ -122,10 +122,12 @@ impl<'m> Sites<'m> {
                 .collect(),
             SiteKind::DrivenSlider => self.driven(is_length),
             SiteKind::DrivenHinge => self.driven(is_angle),
+            // Of a point without mass, which is a payload of some runs, nothing is unknown.
             SiteKind::Body => self
                 .mechanism
                 .bodies
                 .ids()
+                .filter(|&body| !self.is_massless_point(body))
                 .map(|body| self.body(body))
                 .collect(),
             SiteKind::RigidBody => self
@@ -177,6 +179,15 @@ impl<'m> Sites<'m> {
                 columns.map(site).collect()
             }
         }
+    }
+
+    fn is_massless_point(&self, body: BodyId) -> bool {
+        let body = &self.mechanism.bodies[body];
+        let stated = |quantity| match quantity {
+            Quantity::Parameter(id) => self.mechanism.parameters[id].value,
+            _ => f64::NAN,
+        };
+        body.frame.is_none() && body.mass.value(&stated) == 0.0
     }
 
     fn dimension(&self, coordinate: CoordinateId) -> Dimension {

@@ -69,9 +69,13 @@ impl<'a> Balance<'a> {
         }
     }
 
+    /// Training runs, those of the mechanism as stated where there are any.
     fn runs(&self) -> impl Iterator<Item = &'a Run> {
-        let runs = self.set.runs.iter();
-        runs.filter(|run| run.part == Part::Fit).take(MOST[0])
+        let runs = self.set.runs.iter().filter(|run| run.part == Part::Fit);
+        let is_as_stated = |run: &Run| run.differences.is_empty();
+        let any = runs.clone().any(is_as_stated);
+        runs.filter(move |run| !any || is_as_stated(run))
+            .take(MOST[0])
     }
 
     /// The relative residual of each equation, rate and output, where the recordings determine it; above one

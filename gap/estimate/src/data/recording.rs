@@ -27,6 +27,8 @@ pub struct Recording {
     lines: Vec<[f64; 2]>,
     /// The inputs of outputs at their full rate, and whether outputs are means over the interval about their row.
     of_outputs: Option<(Held, bool)>,
+    /// Parameters of the run, each with its difference from the value of all runs.
+    differences: Vec<(usize, f64)>,
 }
 
 /// A row of inputs.
@@ -170,6 +172,7 @@ impl Recording {
             earlier: Earlier::default(),
             lines: Vec::new(),
             of_outputs: None,
+            differences: Vec::new(),
             columns,
         })
     }
@@ -187,6 +190,19 @@ impl Recording {
             }
         }
         self
+    }
+
+    /// The same recording of a mechanism that differs from that of the other runs: parameters, each with its difference
+    /// in SI.
+    #[must_use]
+    pub fn with_differences(mut self, differences: Vec<(usize, f64)>) -> Self {
+        self.differences = differences;
+        self
+    }
+
+    /// Parameters that differ from those of the other runs, each with its difference in SI.
+    pub fn differences(&self) -> &[(usize, f64)] {
+        &self.differences
     }
 
     /// The same recording with inputs that were held between more rows than it has: from row to row each is the line with
@@ -405,6 +421,7 @@ impl Recording {
                 .unwrap_or_default()
                 .to_vec(),
             of_outputs: self.of_outputs.clone(),
+            differences: self.differences.clone(),
         }
     }
 

@@ -81,7 +81,7 @@ impl LevelScaling {
 /// Acceleration of each pseudo-velocity per unit force in its own equation, at the start of the
 /// runs: geometric mean.
 fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, EstimateError> {
-    let (layout, plant) = (estimation.layout(), estimation.plant());
+    let (layout, plant) = (estimation.layout(), estimation.plant(0));
     let (n, s) = (plant.n, plant.speeds);
     let mut scratch = plant.scratch();
     let mut logs = vec![0.0; s];
@@ -96,7 +96,9 @@ fn mobilities(estimation: &Estimation<'_>, values: &[f64]) -> Result<Vec<f64>, E
             .step_by(s + 1)
             .for_each(|entry| *entry = 1.0);
         let place = Place::new(layout, values, t, z, &commands);
-        plant.accelerations(place, &mut scratch, &mut columns);
+        estimation
+            .plant(run)
+            .accelerations(place, &mut scratch, &mut columns);
         for (log, mobility) in logs.iter_mut().zip(columns.iter().step_by(s + 1)) {
             *log += mobility.abs().ln() / runs.len() as f64;
         }

@@ -24,6 +24,8 @@ pub(crate) struct Plant<'a> {
     /// Those of the lagging channels.
     pub(super) filters: Vec<Filter>,
     drifting: &'a [usize],
+    /// Parameters of the run, each with its difference from the value of all runs.
+    differences: &'a [(usize, f64)],
     signals: Vec<Signal>,
     /// Number of all states.
     pub(crate) n: usize,
@@ -115,13 +117,17 @@ pub(crate) struct Sums<'a> {
 }
 
 impl<'a> Plant<'a> {
-    pub(crate) fn new(setup: &'a Setup<'a>) -> Result<Self, SignalError> {
+    pub(crate) fn new(
+        setup: &'a Setup<'a>,
+        differences: &'a [(usize, f64)],
+    ) -> Result<Self, SignalError> {
         let info = setup.model.info();
         Ok(Self {
             model: setup.model,
             lagging: &setup.lagging,
             filters: Filter::all(setup),
             drifting: &setup.drifting,
+            differences,
             signals: info
                 .signals
                 .iter()
@@ -185,6 +191,9 @@ impl<'a> Plant<'a> {
         }
         for (state, parameter) in self.drifts() {
             p[parameter] = place.z[state];
+        }
+        for &(parameter, difference) in self.differences {
+            p[parameter] += difference;
         }
         let derived = self.info().signal_inputs.iter();
         for (u, &(signal, order)) in u[declared..].iter_mut().zip(derived) {

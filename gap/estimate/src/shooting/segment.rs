@@ -12,7 +12,7 @@ use crate::estimation::Estimation;
 use crate::matrix::{add_scaled, dot, multiply};
 use crate::motion::closure::Closure;
 use crate::motion::command::{self, Averaging, Switch};
-use crate::motion::plant::{Place, Scratch, Sums};
+use crate::motion::plant::{Place, Plant, Scratch, Sums};
 use crate::motion::timeline::{Action, Advance};
 use crate::motion::transition::{MOST_PARTS, STAGES, WEIGHTS, decays, is_uneven, within};
 
@@ -52,7 +52,7 @@ impl<'a> SegmentIntegrator<'a> {
         run: usize,
         unknowns: &'a [(Unknown, f64)],
     ) -> Self {
-        let plant = estimation.plant();
+        let plant = estimation.plant(run);
         let (n, width) = (plant.n, plant.n + unknowns.len());
         Self {
             estimation,
@@ -120,7 +120,7 @@ impl<'a> SegmentIntegrator<'a> {
         let (run, t, plant) = (
             self.run,
             self.recording.times()[row],
-            self.estimation.plant(),
+            self.estimation.plant(self.run),
         );
         let (layout, z) = (self.estimation.layout(), state.as_slice());
         let place = Place::new(layout, self.values, t, z, &self.held);
@@ -156,7 +156,7 @@ impl<'a> SegmentIntegrator<'a> {
         let (mut stages, mut by_stage) = (before.repeat(WEIGHTS.len()), by_before.clone());
         let (mut rates, mut by_rates) = (vec![0.0; 4 * n], vec![0.0; n * width]);
         let (mut slopes, held) = (vec![0.0; 4 * n * n], self.held.clone());
-        let plant = self.estimation.plant();
+        let plant = self.estimation.plant(self.run);
         let has_corners = self.estimation.setup().has_corners && self.closure.is_none();
         let is_checked = has_corners && of < MOST_PARTS;
         let own = plant.info().state_len();
@@ -198,7 +198,7 @@ impl<'a> SegmentIntegrator<'a> {
 
     /// Adds the direct effect of the free values on the rates.
     fn unknowns_in_rates(&mut self, place: Place<'_>, rates: &[f64], by_rates: &mut [f64]) {
-        let plant = self.estimation.plant();
+        let plant = self.estimation.plant(self.run);
         let (states, count) = (plant.info().state_len(), plant.info().parameter_len());
         let is_parameter =
             |&(unknown, _): &(Unknown, f64)| matches!(unknown, Unknown::Parameter(_));
@@ -235,7 +235,7 @@ impl<'a> SegmentIntegrator<'a> {
         let delay = only.map_or(0.0, |channel| self.values[layout.sensor_delay(channel)]);
         let (n, t) = (self.n, self.recording.times()[row] - delay);
         let count = if setup.reads_outputs() {
-            self.estimation.plant().info().output_len()
+            self.estimation.plant(self.run).info().output_len()
         } else {
             0
         };
@@ -243,7 +243,7 @@ impl<'a> SegmentIntegrator<'a> {
         let held = command::of_reading(self.recording, row, &self.held, setup, layout, self.values);
         let place = Place::new(layout, self.values, t, &self.z, &held);
         if count > 0 {
-            let (plant, scratch) = (self.estimation.plant(), &mut self.scratch);
+            let (plant, scratch) = (self.estimation.plant(self.run), &mut self.scratch);
             let averaging = Averaging::of(self.recording, row, setup, layout, self.values);
             let z = plant.mean_state(place, scratch, averaging.as_ref());
             let place = Place { z: &z, ..place };
@@ -275,7 +275,12 @@ impl<'a> SegmentIntegrator<'a> {
                     {
                         add_scaled(-weight * scale * slope, by, line);
                     }
-                    by_parameters = output_slope(self.estimation, place, &mut self.scratch, output);
+                    by_parameters = output_slope(
+                        self.estimation.plant(self.run),
+                        place,
+                        &mut self.scratch,
+                        output,
+                    );
                     outputs[output]
                 }
             };
@@ -302,12 +307,11 @@ impl<'a> SegmentIntegrator<'a> {
 
 /// Derivatives of an output with respect to the parameters.
 fn output_slope(
-    estimation: &Estimation<'_>,
+    plant: &Plant<'_>,
     place: Place<'_>,
     scratch: &mut Scratch,
     output: usize,
 ) -> Vec<f64> {
-    let plant = estimation.plant();
     let count = plant.info().output_len();
     let mut weights = vec![0.0; count];
     weights[output] = 1.0;

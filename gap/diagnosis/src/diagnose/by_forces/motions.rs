@@ -138,6 +138,7 @@ impl Motions {
         let model = effects.beside(&[]);
         let info = model.info();
         let p: Vec<f64> = set.parameters.iter().map(|own| own.value).collect();
+        let of_runs: Vec<Vec<f64>> = set.runs.iter().map(|run| set.parameters_in(run)).collect();
         let variables = variables(set, effects);
         let runs = set.all(OfSet::Fit);
         let stretches = recorded(&runs, model, &p)?.stretches;
@@ -153,9 +154,10 @@ impl Motions {
         let stride = count.div_ceil(MOST).max(1);
         let stretches = stretches.into_iter().map(|stretch| {
             let moments = stretch.moments.into_iter().zip(&stretch.spreads);
+            let p = &of_runs[stretch.run];
             let motions = moments.step_by(stride).map(|(moment, spread)| {
-                let motion = Motion::of(model, moment.clone(), &p, &variables);
-                motion.noisy(model, &moment, spread, &p, &coordinates)
+                let motion = Motion::of(model, moment.clone(), p, &variables);
+                motion.noisy(model, &moment, spread, p, &coordinates)
             });
             (set.runs[stretch.run].name.clone(), motions.collect())
         });

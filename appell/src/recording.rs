@@ -8,7 +8,7 @@ pub use appell_recordings::{
     Channel, DataError, DataSet, Drafted, Finding, FindingKind, Frame, Measured, Parameter, Part,
     Role, Run, Spec,
 };
-use appell_recordings::{Draft, MANIFEST};
+use appell_recordings::{Draft, Logged, MANIFEST};
 use appell_report::recording::sentences;
 use appell_report::text::number;
 use appell_spec::Severity;
@@ -57,6 +57,36 @@ pub fn draft(
     path: &Path,
     rate_hz: Option<f64>,
 ) -> Result<Drafted, Error> {
+    let runs = runs
+        .iter()
+        .map(|run| Ok((beside(path, run)?, Logged::File(run.clone()))));
+    drafted(
+        mechanism,
+        &runs.collect::<Result<Vec<_>, Error>>()?,
+        path,
+        rate_hz,
+    )
+}
+
+/// The same of recordings in memory.
+pub fn draft_frames(
+    mechanism: &str,
+    frames: &[Frame],
+    path: &Path,
+    rate_hz: Option<f64>,
+) -> Result<Drafted, Error> {
+    let runs = frames
+        .iter()
+        .map(|frame| (frame.name.clone(), Logged::Frame(frame)));
+    drafted(mechanism, &runs.collect::<Vec<_>>(), path, rate_hz)
+}
+
+fn drafted(
+    mechanism: &str,
+    runs: &[(String, Logged<'_>)],
+    path: &Path,
+    rate_hz: Option<f64>,
+) -> Result<Drafted, Error> {
     if runs.is_empty() {
         let message = "a draft needs the mechanism and its recordings";
         return Err(Error::request(Field::Recordings, message));
@@ -75,12 +105,10 @@ pub fn draft(
         Some(shipped) => shipped.name.to_owned(),
         None => beside(path, Path::new(mechanism))?,
     };
-    let runs = runs.iter().map(|run| Ok((beside(path, run)?, run.clone())));
-    let runs = runs.collect::<Result<Vec<_>, Error>>()?;
     let draft = Draft {
         mechanism: Spec::from(&source),
         named,
-        runs: &runs,
+        runs,
         rate_hz,
     };
     let mut drafted = draft.write(path)?;

@@ -87,6 +87,25 @@ impl DataSet {
         Ok(Self(Arc::new(set.raise(py)?)))
     }
 
+    /// The drafted text of a `recording.toml` at a path, and what the recordings do not tell.
+    #[staticmethod]
+    fn _draft(
+        py: Python<'_>,
+        paths: Vec<PathBuf>,
+        frames: Option<Vec<NamedColumns<'_>>>,
+        model: String,
+        path: PathBuf,
+        rate_hz: Option<f64>,
+    ) -> PyResult<(String, Vec<String>)> {
+        let frames = frames.map(|frames| frames.into_iter().map(frame).collect::<Vec<_>>());
+        let drafted = watched(py, None, move |_| match &frames {
+            None => appell::recording::draft(&model, &paths, &path, rate_hz),
+            Some(frames) => appell::recording::draft_frames(&model, frames, &path, rate_hz),
+        })?;
+        let drafted = drafted.raise(py)?;
+        Ok((drafted.text, drafted.questions))
+    }
+
     /// Runs, channels, noise and findings as JSON.
     fn json(&self) -> String {
         appell::json::recording(&self.0).to_string()

@@ -161,6 +161,22 @@ def test_frames_of_any_library_are_runs_by_name():
         appell.Recordings.from_frames({"first": {"t": [0, 1], "theta": [0, 1]}}, "pendulum", rate_hz=10)
 
 
+def test_frames_are_drafted_and_the_draft_reads_them(tmp_path):
+    frames = {}
+    for name, phase in [("first", 0.0), ("second", 0.7)]:
+        t = np.arange(0, 3, 0.01)
+        frames[name] = {"t": t, "theta": 0.1 * np.cos(3 * t + phase), "tau": np.sign(np.sin(2 * t + phase))}
+    draft = appell.Recordings.draft(frames, "pendulum", path=tmp_path / "recording.toml")
+    assert "theta" in draft.text
+    assert appell.Recordings(frames, description=draft.text).channels == ["theta", "tau"]
+    assert draft.write().read_text() == draft.text
+    with pytest.raises(FileExistsError):
+        draft.write()
+    untimed = {name: {"theta": frame["theta"], "tau": frame["tau"]} for name, frame in frames.items()}
+    draft = appell.Recordings.draft(untimed, "pendulum", rate_hz=100)
+    assert np.allclose(appell.Recordings(untimed, description=draft.text)["first"]["t"], np.arange(300) / 100)
+
+
 def test_a_frame_of_pandas_is_a_run():
     pandas = pytest.importorskip("pandas")
     frame = pandas.DataFrame(swing(0))

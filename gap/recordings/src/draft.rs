@@ -28,7 +28,7 @@ use self::text::Content;
 use self::words::Kind;
 use crate::limits::MAX_RUNS;
 use crate::robot::Robot;
-use crate::{DataError, DataSet, FindingKind, Source, Spec, assemble, episode, manifest};
+use crate::{DataError, DataSet, FindingKind, Frame, Source, Spec, assemble, episode, manifest};
 
 /// What a description is drafted from.
 pub struct Draft<'d> {
@@ -36,10 +36,18 @@ pub struct Draft<'d> {
     pub mechanism: Spec,
     /// Its name, or its path relative to the description.
     pub named: String,
-    /// The recordings: their paths relative to the description, and where they are.
-    pub runs: &'d [(String, PathBuf)],
+    /// The recordings: their names, of files their paths relative to the description, and where they are.
+    pub runs: &'d [(String, Logged<'d>)],
     /// Rows per second, where no column is the time.
     pub rate_hz: Option<f64>,
+}
+
+/// Where a recording is.
+pub enum Logged<'d> {
+    /// In a file.
+    File(PathBuf),
+    /// In memory.
+    Frame(&'d Frame),
 }
 
 /// A drafted description.
@@ -122,11 +130,13 @@ impl Draft<'_> {
         let manifest = manifest::read(path, text, &[], mechanism, &|_| None)?;
         assemble(manifest, |name| {
             let (file, episodes) = episode::split(path.parent()?, name);
-            let (_, path) = self.runs.iter().find(|(own, _)| own == file)?;
-            let path = path.clone();
-            Some(match episodes {
-                Some(episodes) => Source::Episode(path, *episodes.start()),
-                None => Source::File(path),
+            let (_, logged) = self.runs.iter().find(|(own, _)| own == file)?;
+            Some(match (logged, episodes) {
+                (Logged::Frame(frame), _) => Source::Frame(frame),
+                (Logged::File(path), Some(episodes)) => {
+                    Source::Episode(path.clone(), *episodes.start())
+                }
+                (Logged::File(path), None) => Source::File(path.clone()),
             })
         })
     }

@@ -85,7 +85,7 @@ pub use bare::{read_bare, read_bare_frames};
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
 pub use differences::Difference;
-pub use draft::{Draft, Drafted};
+pub use draft::{Draft, Drafted, Logged};
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;

@@ -3,7 +3,7 @@
 
 use std::fmt::Write as _;
 
-use appell_recordings::{Draft, Drafted, Spec};
+use appell_recordings::{Draft, Drafted, Frame, Logged, Spec};
 
 use crate::common::Folder;
 
@@ -85,7 +85,8 @@ fn rig(form: &Form) -> Folder {
 }
 
 fn draft(folder: &Folder, mechanism: &str) -> Drafted {
-    let runs = ["a.csv", "b.csv", "c.csv"].map(|run| (run.to_owned(), folder.path(run)));
+    let runs =
+        ["a.csv", "b.csv", "c.csv"].map(|run| (run.to_owned(), Logged::File(folder.path(run))));
     let file = folder.path(mechanism);
     let draft = Draft {
         mechanism: Spec {
@@ -297,7 +298,7 @@ fn a_draft_of_foreign_columns_is_refused() {
         names: ["t", "a", "b", "c", "d", "e", "f"],
         ..PLAIN
     });
-    let runs = [("a.csv".to_owned(), folder.path("a.csv"))];
+    let runs = [("a.csv".to_owned(), Logged::File(folder.path("a.csv")))];
     let draft = Draft {
         mechanism: Spec {
             file: "robot.xml".to_owned(),
@@ -319,6 +320,35 @@ fn a_draft_of_foreign_columns_is_refused() {
 }
 
 #[test]
+fn frames_are_drafted_as_their_files_are() {
+    let folder = rig(&PLAIN);
+    let of_files = draft(&folder, "robot.xml");
+    let frames = ["a.csv", "b.csv", "c.csv"].map(|name| {
+        let (columns, values) = appell_recordings::columns(&folder.path(name)).unwrap();
+        Frame {
+            name: name.to_owned(),
+            columns,
+            values,
+        }
+    });
+    let runs = frames
+        .each_ref()
+        .map(|own| (own.name.clone(), Logged::Frame(own)));
+    let of_frames = Draft {
+        mechanism: Spec {
+            file: folder.path("robot.xml").to_string_lossy().into_owned(),
+            text: ROBOT.to_owned(),
+        },
+        named: "robot.xml".to_owned(),
+        runs: &runs,
+        rate_hz: None,
+    };
+    let of_frames = of_frames.write(&folder.path("recording.toml")).unwrap();
+    assert_eq!(of_frames.text, of_files.text);
+    assert_eq!(of_frames.questions, of_files.questions);
+}
+
+#[test]
 fn episodes_of_one_file_are_drafted_as_runs() {
     let folder = rig(&PLAIN);
     let mut all = String::new();
@@ -334,7 +364,7 @@ fn episodes_of_one_file_are_drafted_as_runs() {
         }
     }
     folder.write("all.csv", all);
-    let runs = [("all.csv".to_owned(), folder.path("all.csv"))];
+    let runs = [("all.csv".to_owned(), Logged::File(folder.path("all.csv")))];
     let draft = Draft {
         mechanism: Spec {
             file: folder.path("robot.xml").to_string_lossy().into_owned(),

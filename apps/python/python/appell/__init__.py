@@ -20,7 +20,7 @@ from ._errors import ComputationError, DataError, Diagnostic, EndsEarly, Error, 
 from ._model import Derivation, Model, Quantity
 from ._motion import Motion, Motions
 from ._notebook import Page, Picture
-from ._recordings import Diagnosis, Identification, Recordings, base_parameters, diagnose, identify, sample_rig
+from ._recordings import Diagnosis, Draft, Identification, Recordings, base_parameters, diagnose, identify, sample_rig
 from ._results import Appell, Design, Energies, InverseDynamics, Jacobians, Linear, OutputJacobians, SteadyMotion
 from ._robots import LeftOut, Robot, corrected_robot, import_robot, sample_robot
 from ._values import Vector, labelled
@@ -28,7 +28,7 @@ from ._values import Vector, labelled
 __version__ = _version("appell")
 
 __all__ = [
-    "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "EndsEarly", "Energies",
+    "Appell", "ComputationError", "DataError", "Derivation", "Design", "Diagnosis", "Diagnostic", "Draft", "EndsEarly", "Energies",
     "Ensemble", "Error",
     "Identification", "InverseDynamics", "Jacobians", "LeftOut", "Linear", "Model", "Motion", "Motions", "OutputJacobians", "Page", "Picture", "Quantity", "Recordings",
     "RequestError", "Robot", "SpecError", "SteadyMotion", "Unstable", "Vector", "base_parameters", "corrected_robot", "diagnose", "ensemble", "identify", "import_robot", "labelled", "load", "sample_rig",

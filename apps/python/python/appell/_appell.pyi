@@ -83,6 +83,14 @@ class DataSet:
         frames: Sequence[tuple[str, Sequence[tuple[str, Vector]]]] | None = None,
         description: tuple[str, str] | None = None,
     ) -> DataSet: ...
+    @staticmethod
+    def _draft(
+        paths: Sequence[str],
+        frames: Sequence[tuple[str, Sequence[tuple[str, Vector]]]] | None,
+        model: str,
+        path: str,
+        rate_hz: float | None,
+    ) -> tuple[str, list[str]]: ...
     def json(self) -> str: ...
     @property
     def warnings(self) -> list[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -19,6 +20,24 @@ from ._values import many
 Paths = str | Path | Sequence[str | Path]
 # A folder or files; or data frames, and mappings of columns, one or several.
 Data = Any
+
+
+@dataclass(frozen=True)
+class Draft:
+    """A drafted description of recordings."""
+
+    text: str
+    """The text of a `recording.toml`, for `description` or for a file."""
+    questions: list[str]
+    """What the recordings do not tell, a sentence each."""
+    path: Path
+    """Where it belongs."""
+
+    def write(self, *, force: bool = False) -> Path:
+        """Writes the file; without `force` an existing one is left as it is."""
+        with self.path.open("w" if force else "x", encoding="utf-8") as file:
+            file.write(self.text)
+        return self.path
 
 
 class Recordings(_appell.DataSet, Report):
@@ -73,6 +92,31 @@ class Recordings(_appell.DataSet, Report):
             raise ValueError(f"rate_hz is the number of rows per second, not {rate_hz}")
         timed = {name: _timed(frame, rate_hz) for name, frame in frames.items()}
         return cls(timed, model, description=description)
+
+    @staticmethod
+    def draft(
+        data: Data,
+        model: str | Path,
+        *,
+        path: str | Path = "recording.toml",
+        rate_hz: float | None = None,
+    ) -> Draft:
+        """Drafts the description of frames or files of a mechanism: a shipped one, a spec or a robot file.
+
+        Columns are found by their names and by their motion. `path` is where the description will be; models are named
+        relative to it.
+
+        >>> import appell, numpy as np
+        >>> t = np.arange(0, 3, 0.01)
+        >>> swing = {"time": t, "theta": 0.1 * np.cos(3 * t), "tau": np.sign(np.sin(t))}
+        >>> draft = appell.Recordings.draft({"day1": swing, "day2": swing}, "pendulum")
+        >>> appell.Recordings({"day1": swing, "day2": swing}, description=draft.text).channels
+        ['theta', 'tau']
+        """
+        frames = _frames(data)
+        paths = [] if frames is not None else [data] if isinstance(data, (str, Path)) else list(data)
+        text, questions = _appell.DataSet._draft([str(own) for own in paths], frames, str(model), str(path), rate_hz)
+        return Draft(text, questions, Path(path))
 
     @cached_property
     def _fields(self) -> dict[str, Any]:

@@ -1,7 +1,6 @@
 //! The recordings that a draft is made from: their columns, and which of them are the times.
 
-use std::path::PathBuf;
-
+use super::Logged;
 use crate::episode::{is_episode, number};
 use crate::limits::{MAX_RUNS, MIN_ROWS};
 use crate::time::{self, TIME, may_be_time, unit_of};
@@ -49,19 +48,35 @@ pub(super) enum Clock {
     Unknown,
 }
 
+impl Logged<'_> {
+    /// The name in messages.
+    fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.to_string_lossy().into_owned(),
+            Self::Frame(frame) => frame.name.clone(),
+        }
+    }
+}
+
 impl Log {
     /// Reads the first runs.
-    pub(super) fn read(files: &[(String, PathBuf)], rate: Option<f64>) -> Result<Self, DataError> {
+    pub(super) fn read(
+        recordings: &[(String, Logged<'_>)],
+        rate: Option<f64>,
+    ) -> Result<Self, DataError> {
         let mut names: Vec<String> = Vec::new();
         let (mut tables, mut named) = (Vec::new(), Vec::new());
-        for (name, path) in files {
+        for (name, logged) in recordings {
             let has_episodes = names.iter().any(|name| is_episode(name));
             if tables.len() >= MOST_RUNS && !has_episodes {
                 named.push(name.clone());
                 continue;
             }
-            let (own, values) = format::columns_of(path)?;
-            let file = path.to_string_lossy();
+            let (own, values) = match logged {
+                Logged::File(path) => format::columns_of(path)?,
+                Logged::Frame(frame) => (frame.columns.clone(), frame.values.clone()),
+            };
+            let file = logged.name();
             if values.iter().map(Vec::len).max().unwrap_or(0) < MIN_ROWS {
                 let message = format!("a draft needs {MIN_ROWS} rows of numbers and more");
                 return Err(DataError::whole(file, message));
@@ -70,7 +85,7 @@ impl Log {
                 names.clone_from(&own);
             }
             let values = in_order(&names, &own, values).ok_or_else(|| {
-                let first = files[0].1.display();
+                let first = recordings[0].1.name();
                 DataError::whole(file, format!("the columns differ from those of {first}"))
             })?;
             for (episode, mut values) in episodes(&names, values) {

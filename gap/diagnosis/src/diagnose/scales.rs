@@ -6,6 +6,7 @@ use appell_recordings::{DataSet, Measured, Role, Run};
 
 use crate::effects::{Scales, controlled};
 use crate::slope::{Slope, WINDOW};
+pub(super) use extremes::exerted;
 use extremes::{largest_of, reached};
 
 /// Number of points along a run at which rates are evaluated.

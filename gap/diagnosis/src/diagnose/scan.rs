@@ -13,6 +13,7 @@ use super::DiagnoseError;
 use super::bench::Bench;
 use super::evidence::Fitted;
 use super::initial::{SizeEstimates, place};
+use super::scales::exerted;
 use super::sets::Set;
 use crate::effects::{Acts, Part};
 
@@ -46,6 +47,10 @@ pub(super) fn scanned(bench: &Bench<'_>, stated: &Fitted) -> Result<Vec<Set>, Di
         let members = [limit];
         let mut scan = Scan::of(bench, stated, &members, Some(shape));
         let first = bench.effects.info().parameters[shape].value;
+        // A force that is measured shows its limit.
+        if let Some(force) = exerted(&bench.set, &bench.candidate(limit).site) {
+            scan.attempt(force)?;
+        }
         for factor in LIMITS {
             // Below a limit that the drive exceeds, all others are worse.
             let likelihood = scan.attempt(factor * first)?;

@@ -1,7 +1,8 @@
 //! Ranges of coordinates and largest loads in recordings.
 
 use appell_recordings::{DataSet, Measured, Role, Run};
-use appell_spec::expr::{Expr, ExprKind, Quantity};
+use appell_spec::expr::{Expr, ExprKind, Quantity, Response};
+use appell_spec::mechanism::Output;
 
 use super::PLACES;
 use crate::slope::{Slope, WINDOW};
@@ -32,6 +33,36 @@ pub(super) fn reached(set: &DataSet, column: usize) -> Option<[f64; 2]> {
     let most = *rows.get(rows.len() - 1 - beyond)?;
     let came_back = !least.1 || !most.1;
     (came_back && most.0 > least.0).then_some([least.0, most.0])
+}
+
+/// The largest magnitude of a load that an output measures, but for rare rows.
+pub(in super::super) fn exerted(set: &DataSet, load: &str) -> Option<f64> {
+    let loads = &set.mechanism.loads;
+    let is_of_load = |output: &Output| match output.value.kind {
+        ExprKind::Quantity(Quantity::Response(Response::Force(own, None))) => {
+            loads[own].name == load
+        }
+        _ => false,
+    };
+    let output = set.mechanism.outputs.iter().position(is_of_load)?;
+    let role = Role::Measures(Measured::Output(output));
+    let column = set
+        .channels
+        .iter()
+        .position(|channel| channel.role == role)?;
+    let values = set.runs.iter().flat_map(|run| &run.values[column]);
+    let mut sizes: Vec<f64> = values
+        .filter(|value| value.is_finite())
+        .map(|value| value.abs())
+        .collect();
+    sizes.sort_by(f64::total_cmp);
+    #[expect(
+        clippy::cast_possible_truncation,
+        clippy::cast_sign_loss,
+        reason = "a part of them"
+    )]
+    let rare = (RARE * sizes.len() as f64).ceil() as usize;
+    sizes.get(sizes.len().checked_sub(rare)?).copied()
 }
 
 /// The largest magnitude of an expression along the runs; zero if one of its quantities was not recorded.

@@ -44,8 +44,9 @@ def arguments():
 
 def about(given):
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
-    command = f"benches/robots_gap/run.py {given.folder.name}" + " --peer" * given.peer
-    return {"command": command, "date": datetime.date.today().isoformat(), "commit": commit.stdout.strip(),
+    folder = given.folder.name
+    command = f"benches/robots_gap/run.py {folder}" + " --peer" * given.peer
+    return {"folder": folder, "command": command, "date": datetime.date.today().isoformat(), "commit": commit.stdout.strip(),
             "mujoco": mujoco.__version__}
 
 
@@ -68,7 +69,7 @@ def main():
     if given.out:
         given.out.write_text(json.dumps({case.name: {"appell": own, "peer": peer} for case, own, peer in results}, indent=1))
     if given.write:
-        given.page.write_text(tables.replaced(given.page.read_text(), tables.block(about(given), found, peers)))
+        given.page.write_text(tables.replaced(given.page.read_text(), given.folder.name, tables.block(about(given), found, peers)))
 
 
 if __name__ == "__main__":

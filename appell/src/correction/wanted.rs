@@ -468,8 +468,14 @@ impl<'h> Wanted<'h> {
     fn measured(&self, effect: &str, channel: &str) -> Option<String> {
         let mut signals = self.of_spec.signal_effects.iter();
         let own = signals.find(|own| own.effect == effect);
-        let quantity = own.and_then(|own| own.measures.as_deref());
-        self.joint(quantity.unwrap_or(channel))
+        let measures = own.and_then(|own| own.measures.as_deref());
+        // Within the loop of a servo the geometry tells.
+        let letter = |c: char| if c.is_alphanumeric() { c } else { '_' };
+        let stem: String = effect.chars().map(letter).chain(['_']).collect();
+        let mut terms = self.of_spec.inputs.iter();
+        let term = terms.find(|term| term.in_geometry && term.adds.contains(&stem));
+        let turned = term.map(|term| term.quantity.as_str());
+        self.joint(measures.or(turned).unwrap_or(channel))
     }
 
     /// A comment on an effect that the format cannot express.

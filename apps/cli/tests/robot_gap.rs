@@ -260,7 +260,7 @@ mechanism = "robot.xml"
 "*.damping" = { std = "15 %" }
 [channels]
 shoulder = { measures = "shoulder", unit = "rad", noise_std = 2e-4 }
-elbow = { measures = "elbow", unit = "rad", noise_std = 2e-4 }
+elbow_pos = { measures = "elbow", unit = "rad", noise_std = 2e-4 }
 shoulder_cmd = { input = "shoulder_servo", unit = "rad" }
 elbow_cmd = { input = "elbow_servo", unit = "rad" }
 [runs]
@@ -305,7 +305,7 @@ fn run_of_links(folder: &Folder, truth: &str, phase: f64, noise: &mut Noise) -> 
     let names: Vec<&str> = motion.next().expect("a heading").split(',').collect();
     let column = |name: &str| names.iter().position(|own| *own == name).expect("a column");
     let columns = [column("shoulder"), column("elbow")];
-    let mut run = "t,shoulder,elbow,shoulder_cmd,elbow_cmd\n".to_owned();
+    let mut run = "t,shoulder,elbow_pos,shoulder_cmd,elbow_cmd\n".to_owned();
     for (row, line) in (0..).zip(motion) {
         let values: Vec<&str> = line.split(',').collect();
         let [shoulder, elbow] = columns.map(|column| {
@@ -329,7 +329,10 @@ fn the_offset_of_an_encoder_within_the_loop_of_its_servo_is_found() {
     let offset = r#"<joint name="elbow" ref="1.7188734""#;
     folder.write("true.xml", &LINKS.replace(r#"<joint name="elbow""#, offset));
     let first = diagnosed_links(&folder, "true.xml");
-    assert_eq!(first["effects"], serde_json::json!(["sensor_bias@elbow"]));
+    assert_eq!(
+        first["effects"],
+        serde_json::json!(["sensor_bias@elbow_pos"])
+    );
     let bias = first["parameters"][0]["value"].as_f64().expect("a number");
     assert!((bias - 0.03).abs() < 0.006, "{first}");
     // The coordinate is what the encoder shows: in the file the joint has another zero.
@@ -347,7 +350,10 @@ fn the_scale_of_an_encoder_within_the_loop_of_its_servo_is_found() {
     let turned = turned.replace("by = \"elbow\"", "by = \"elbow/1.04\"");
     folder.write("true.toml", &turned);
     let first = diagnosed_links(&folder, "true.toml");
-    assert_eq!(first["effects"], serde_json::json!(["sensor_scale@elbow"]));
+    assert_eq!(
+        first["effects"],
+        serde_json::json!(["sensor_scale@elbow_pos"])
+    );
     let size = first["parameters"][0]["value"].as_f64().expect("a number");
     assert!((size - 0.04).abs() < 0.006, "{first}");
     folder.done(&APPLY);

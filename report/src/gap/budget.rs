@@ -7,9 +7,10 @@ use super::elements::{bare_bar, code, table};
 use super::numbers::{is_determined, percent, share};
 
 /// `coulomb_friction@theta 66 % [24 %, 77 %], ... ; 8 % [4 %, 9 %] stays`, the largest part first; `None` where no
-/// run was held out.
+/// run was held out, or where these do not determine the shares.
 pub fn divided(report: &Report) -> Option<String> {
-    let far = report.how_far.as_ref()?;
+    let far = report.how_far.as_ref();
+    let far = far.filter(|far| is_determined(far.closed, far.closed_ci95))?;
     let (stays, mut parts): (Vec<&Share>, Vec<&Share>) =
         far.budget.iter().partition(|part| part.is_rest());
     parts.sort_by(|a, b| b.closed.total_cmp(&a.closed));
@@ -54,7 +55,7 @@ pub(super) fn budget(report: &Report, far: &HowFar) -> Markup {
         ]
     });
     html! {
-        @if !far.budget.is_empty() {
+        @if !far.budget.is_empty() && is_determined(far.closed, far.closed_ci95) {
             (table(["part", "of the gap", "share, with 95 % interval"], rows, 2))
             p class="faint" {
                 @if report.is_by_forces { "Shares of the mean square of the missing forces" } @else {

@@ -302,7 +302,8 @@ fn error(report: &Report, far: &HowFar) -> String {
     }
     // More than the re-fitted parameters differs from the stated model.
     let mut budget = far.budget.iter();
-    let has_more = budget.any(|part| part.is_effect() || part.is_law());
+    let has_more = is_determined(far.closed, far.closed_ci95)
+        && budget.any(|part| part.is_effect() || part.is_law());
     if let Some(refit) = refitted(&far.budget).filter(|_| has_more) {
         let closed = percent(refit.closed);
         let _ = write!(text, ", {closed} by re-fitted parameters alone");

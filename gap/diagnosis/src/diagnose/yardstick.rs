@@ -5,7 +5,8 @@
 //! separately, and user-defined effects are compared as well.
 
 use appell_estimate::Estimation;
-use appell_runtime::model::{At, Model};
+use appell_runtime::model::{At, Model, Quantity};
+use appell_spec::units::{self, Dimension};
 use serde::Serialize;
 
 use super::DiagnoseError;
@@ -47,14 +48,21 @@ impl Yardstick {
     /// Of forces that are added along pseudo-velocities, against those applied by the stated model; both are sums of
     /// squares, and the largest ratio counts.
     pub(super) fn of_forces<'s>(
-        squares: impl Iterator<Item = ([f64; 2], &'s str)>,
+        squares: impl Iterator<Item = ([f64; 2], &'s Quantity)>,
     ) -> Option<Self> {
         let ratios = squares.filter_map(|([added, applied], speed)| {
             let is_there = added > 0.0 && applied > ROUNDING * added;
             is_there.then(|| ((added / applied).sqrt(), speed))
         });
         let (ratio, speed) = ratios.max_by(|a, b| a.0.total_cmp(&b.0))?;
-        let of = format!("the rms force applied along {speed}");
+        // An angle has no dimension.
+        let is_angular = units::parse(&speed.unit).is_ok_and(|unit| {
+            Dimension::NONE
+                .rate()
+                .is_ok_and(|rate| rate == unit.dimension)
+        });
+        let force = if is_angular { "torque" } else { "force" };
+        let of = format!("the rms {force} applied along {}", speed.name);
         Self::new(ratio, of, 0.0..=f64::INFINITY)
     }
 
@@ -169,6 +177,6 @@ impl<'b> Yardsticks<'b> {
             return Yardstick::new(ratio, of, -1.0..=REFLECTED);
         }
         let named = squares.into_iter().zip(names);
-        Yardstick::of_forces(named.map(|(squares, speed)| (squares, &*speed.name)))
+        Yardstick::of_forces(named.map(|(squares, speed)| (squares, speed)))
     }
 }

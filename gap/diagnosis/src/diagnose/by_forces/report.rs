@@ -203,7 +203,7 @@ fn yardstick(
         }
     }
     let named = squares.into_iter().zip(names);
-    Yardstick::of_forces(named.map(|(squares, speed)| (squares, &*speed.name)))
+    Yardstick::of_forces(named.map(|(squares, speed)| (squares, speed)))
 }
 
 /// The changes of the spec under a hypothesis.

@@ -20,21 +20,14 @@ use toml::de::DeTable;
 
 use crate::fields::{Fields, Value};
 use crate::named::Named;
+use crate::parameters::parameter;
 use crate::robot::Robot;
-use crate::{Parameter, Part, Spec, manifest};
+use crate::set::Difference;
+use crate::{Parameter, Part, Spec};
 
 /// The section.
 pub(crate) const SECTION: &str = "run";
 const KEYS: &[&str] = &["payload", "parameters"];
-
-/// A parameter of a run that differs from that of all runs.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Difference {
-    /// Name of the parameter in the spec.
-    pub parameter: String,
-    /// Its value in the run minus that of all runs, in SI.
-    pub by: f64,
-}
 
 /// A weight on a body in some runs.
 pub(crate) struct Payload {
@@ -248,7 +241,7 @@ pub(crate) fn of_runs(
             for (index, one) in found {
                 let label = &named.mechanism.parameters[ParameterId::new(index)];
                 let stated = named.robot.is_some().then(|| parameters[index]);
-                let Some(read) = manifest::parameter(fields, value, label, stated, one) else {
+                let Some(read) = parameter(fields, value, label, stated, one) else {
                     break;
                 };
                 all.entry(run.clone()).or_default().push(Difference {

@@ -17,7 +17,7 @@ mod quantities;
 mod text;
 mod words;
 
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use appell_robots::Options;
 
@@ -28,7 +28,7 @@ use self::text::Content;
 use self::words::Kind;
 use crate::limits::MAX_RUNS;
 use crate::robot::Robot;
-use crate::{DataError, DataSet, FindingKind, Frame, Source, Spec, assemble, episode, manifest};
+use crate::{DataError, DataSet, FindingKind, Logged, Source, Spec, assemble, episode, manifest};
 
 /// What a description is drafted from.
 pub struct Draft<'d> {
@@ -40,14 +40,6 @@ pub struct Draft<'d> {
     pub runs: &'d [(String, Logged<'d>)],
     /// Rows per second, where no column is the time.
     pub rate_hz: Option<f64>,
-}
-
-/// Where a recording is.
-pub enum Logged<'d> {
-    /// In a file.
-    File(PathBuf),
-    /// In memory.
-    Frame(&'d Frame),
 }
 
 /// A drafted description.

@@ -18,6 +18,24 @@ pub struct Frame {
     pub values: Vec<Vec<f64>>,
 }
 
+/// Where a recording is.
+pub enum Logged<'f> {
+    /// In a file.
+    File(PathBuf),
+    /// In memory.
+    Frame(&'f Frame),
+}
+
+impl Logged<'_> {
+    /// The name in messages.
+    pub(crate) fn name(&self) -> String {
+        match self {
+            Self::File(path) => path.to_string_lossy().into_owned(),
+            Self::Frame(frame) => frame.name.clone(),
+        }
+    }
+}
+
 /// Where a run comes from.
 pub(crate) enum Source<'s> {
     File(PathBuf),

@@ -12,7 +12,7 @@
 //!
 //! | file | idea |
 //! |---|---|
-//! | `manifest.rs`, `differences.rs`, `fields.rs` | content of `recording.toml`, with positions |
+//! | `manifest.rs`, `parameters.rs`, `differences.rs`, `fields.rs` | content of `recording.toml`, with positions |
 //! | `channels.rs`, `column.rs` | its channels: patterns; a line with unit and scale |
 //! | `bare.rs` | files without one: columns with names of the spec; which part is held out |
 //! | `format.rs` | a run from a file of any format, by its extension |
@@ -67,6 +67,7 @@ mod named;
 mod noise;
 mod npz;
 mod observed;
+mod parameters;
 #[cfg(feature = "parquet")]
 mod parquet;
 mod quantum;
@@ -84,15 +85,14 @@ use std::path::Path;
 pub use bare::{read_bare, read_bare_frames};
 pub use channel::{Channel, Measured, Role};
 pub use clock::Sampling;
-pub use differences::Difference;
-pub use draft::{Draft, Drafted, Logged};
+pub use draft::{Draft, Drafted};
 pub use error::DataError;
 pub use finding::{Finding, FindingKind};
 pub use format::columns_of as columns;
-pub use frame::Frame;
+pub use frame::{Frame, Logged};
 pub use level::{Noise, NoiseSource};
 pub use robot::Robot;
-pub use set::{DataSet, Parameter, Part, Reading, Row, Run, Spec};
+pub use set::{DataSet, Difference, Parameter, Part, Reading, Row, Run, Spec};
 
 use frame::Source;
 use manifest::Manifest;

@@ -6,7 +6,6 @@ use appell_spec::{Mechanism, mechanism};
 
 use crate::channel::{Channel, Role};
 use crate::clock::Sampling;
-use crate::differences::Difference;
 use crate::finding::{Finding, FindingKind};
 use crate::robot::Robot;
 
@@ -102,6 +101,15 @@ pub struct Run {
     pub between: Vec<Row>,
     /// Parameters that differ from those of the other runs.
     pub differences: Vec<Difference>,
+}
+
+/// A parameter of a run that differs from that of all runs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Name of the parameter in the spec.
+    pub parameter: String,
+    /// Its value in the run minus that of all runs, in SI.
+    pub by: f64,
 }
 
 /// A row: its time, and a value for each channel.

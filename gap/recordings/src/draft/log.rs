@@ -1,10 +1,9 @@
 //! The recordings that a draft is made from: their columns, and which of them are the times.
 
-use super::Logged;
 use crate::episode::{is_episode, number};
 use crate::limits::{MAX_RUNS, MIN_ROWS};
 use crate::time::{self, TIME, may_be_time, unit_of};
-use crate::{DataError, format};
+use crate::{DataError, Logged, format};
 
 /// Runs that the quantities and units are found from; the others only have to have the same columns.
 const MOST_RUNS: usize = 4;
@@ -46,16 +45,6 @@ pub(super) enum Clock {
     Rate(f64),
     /// Nothing; the rate has to be stated.
     Unknown,
-}
-
-impl Logged<'_> {
-    /// The name in messages.
-    fn name(&self) -> String {
-        match self {
-            Self::File(path) => path.to_string_lossy().into_owned(),
-            Self::Frame(frame) => frame.name.clone(),
-        }
-    }
 }
 
 impl Log {

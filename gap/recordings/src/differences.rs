@@ -10,6 +10,7 @@
 //! A payload is a body of the spec without mass, whose mass differs in its runs.
 
 use std::collections::BTreeMap;
+use std::collections::btree_map::Entry;
 use std::fmt::Write as _;
 
 use appell_spec::compose::Composition;
@@ -150,22 +151,23 @@ pub(crate) fn with_payloads(
     mechanism: &Mechanism,
     robot: Option<&Robot>,
 ) -> (Spec, Vec<(String, Difference)>) {
-    let mut bodies: Vec<(&str, [f64; 3], String)> = Vec::new();
+    // Payloads of one place are one body.
+    let mut bodies: BTreeMap<(&str, [u64; 3]), String> = BTreeMap::new();
     let (mut items, mut differences) = (String::new(), Vec::new());
     for payload in payloads {
-        let same = |(on, at, _): &&(&str, [f64; 3], String)| *on == payload.on && *at == payload.at;
-        let name = match bodies.iter().find(same) {
-            Some((.., name)) => name.clone(),
-            None => {
+        let place = (payload.on.as_str(), payload.at.map(f64::to_bits));
+        let count = bodies.len();
+        let name = match bodies.entry(place) {
+            Entry::Occupied(known) => known.get().clone(),
+            Entry::Vacant(other) => {
                 let Some((point, frame)) = carrier(mechanism, robot, &payload.on) else {
                     let known = mechanism.bodies.iter().map(|body| body.name.as_str());
                     fields.unknown("body", &payload.on, payload.place.clone(), known);
                     continue;
                 };
-                let name = free_name(mechanism, bodies.len());
+                let name = free_name(mechanism, count);
                 items.push_str(&body(&name, point, frame, payload.at));
-                bodies.push((&payload.on, payload.at, name.clone()));
-                name
+                other.insert(name).clone()
             }
         };
         differences.push((

@@ -177,6 +177,6 @@ impl<'b> Yardsticks<'b> {
             return Yardstick::new(ratio, of, -1.0..=REFLECTED);
         }
         let named = squares.into_iter().zip(names);
-        Yardstick::of_forces(named.map(|(squares, speed)| (squares, speed)))
+        Yardstick::of_forces(named)
     }
 }

@@ -203,7 +203,7 @@ fn yardstick(
         }
     }
     let named = squares.into_iter().zip(names);
-    Yardstick::of_forces(named.map(|(squares, speed)| (squares, speed)))
+    Yardstick::of_forces(named)
 }
 
 /// The changes of the spec under a hypothesis.

@@ -6,7 +6,7 @@ use appell_recordings::{DataSet, Finding, Part, Role, Run};
 use appell_spec::Severity;
 
 use crate::tables::Table;
-use crate::text::number;
+use crate::text::{number, short};
 
 /// The summary as text tables, in the units of the files.
 pub fn text(set: &DataSet) -> String {
@@ -50,9 +50,11 @@ fn runs(set: &DataSet) -> String {
                 continue;
             };
             let by = unit.from_si(difference.by);
+            let sign = if by < 0.0 { "" } else { "+" };
+            let by = short(by);
             let _ = writeln!(
                 text,
-                "in {}: {} differs by {by:+} {} from the other runs",
+                "in {}: {} differs by {sign}{by} {} from the other runs",
                 run.name,
                 set.named(&difference.parameter),
                 unit.text

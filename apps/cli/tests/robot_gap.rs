@@ -170,6 +170,29 @@ fn an_unknown_number_or_joint_of_a_robot_is_named_with_its_line() {
 }
 
 #[test]
+fn what_differs_in_a_run_of_a_robot_has_the_names_of_its_file() {
+    let folder = rig();
+    let differs = "[run.\"b.csv\"]\npayload = { on = \"cart\", mass = 0.5, at = [0, 0, 0.1] }\n\
+                   parameters = { \"cart.mass\" = { value = 1.2 }, \"x.damping\" = { value = 0.1 } }\n";
+    folder.write("recording.toml", &format!("{DESCRIPTION}{differs}"));
+    let told = folder.done(&["recording", "."]).stdout;
+    for line in [
+        "in b.csv: known_payload_1_mass differs by +0.500 kg from the other runs",
+        "in b.csv: x.damping differs by +0.1",
+        "in b.csv: cart.mass differs by +0.2",
+    ] {
+        assert!(told.contains(line), "{told}");
+    }
+    let wrong = differs.replace("on = \"cart\"", "on = \"card\"");
+    folder.write("recording.toml", &format!("{DESCRIPTION}{wrong}"));
+    folder.fails(
+        3,
+        &["recording", "."],
+        &["recording.toml:", "no body `card`", "cart"],
+    );
+}
+
+#[test]
 fn an_actuator_may_have_the_name_of_its_joint() {
     let folder = rig();
     folder.write("robot.xml", &ROBOT.replace("name=\"F\"", "name=\"x\""));

@@ -34,6 +34,8 @@ pub enum GapVerdict {
 
 /// Largest unexplained part of an explained gap.
 const MOST: f64 = 0.5;
+/// Mean square error relative to that of the noise up to which predictions are as good as they can be.
+const NEAR: f64 = 2.0;
 /// Part of its probability that `unknown` keeps where its law closes nothing.
 const DOUBT: f64 = 0.05;
 
@@ -536,8 +538,8 @@ impl Report {
     }
 }
 
-/// Reduces the probability of a leading `unknown` by what its law closes, where all else closes the gap: a law that
-/// closes nothing is no gap, however significant it is. Returns whether another hypothesis leads then.
+/// Reduces the probability of a leading `unknown` by what its law closes, where all else closes the gap up to errors near
+/// the noise: a law that closes nothing is no gap, however significant it is. Returns whether another hypothesis leads then.
 fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
     let closed = |is_it: fn(&Share) -> bool| {
         let parts = far.budget.iter().filter(|part| is_it(part));
@@ -545,7 +547,10 @@ fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
     };
     let (law, rest) = (closed(Share::is_law), closed(Share::is_rest));
     let leads = which.first().is_some_and(Hypothesis::is_unknown);
-    if far.budget.is_empty() || !leads || law + rest > IMMATERIAL {
+    let floor = far.noise_floor.powi(2);
+    let without_law = floor + (law + rest) * (far.nominal.powi(2) - floor);
+    let is_nothing = law + rest <= IMMATERIAL && without_law <= NEAR * floor;
+    if far.budget.is_empty() || !leads || !is_nothing {
         return false;
     }
     let before = which[0].probability;
@@ -645,7 +650,7 @@ mod tests {
         // Re-fitted parameters close all of it, with and without a measured law.
         for budget in [
             &[(REFIT, 1.05), (REST, -0.05)][..],
-            &[(REFIT, 0.996), (LAW, 0.0), (REST, 0.004)],
+            &[(REFIT, 0.999), (LAW, 0.0), (REST, 0.001)],
         ] {
             let (effects, probability) = first(0.95, budget);
             assert!(effects.is_empty() && (0.7..0.8).contains(&probability));
@@ -653,10 +658,11 @@ mod tests {
             let (effects, probability) = first(1.0, budget);
             assert!(effects.is_empty() && (0.9..1.0).contains(&probability));
         }
-        // The law closes a part, or much stays.
+        // The law closes a part, or much stays, or a part that is small and many times the noise.
         for budget in [
             &[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)],
             &[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)],
+            &[(REFIT, 0.985), (LAW, 0.014), (REST, 0.001)],
         ] {
             assert_eq!(first(0.95, budget), (vec![UNKNOWN.to_owned()], 0.95));
         }

@@ -549,12 +549,19 @@ fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
     let leads = which.first().is_some_and(Hypothesis::is_unknown);
     let floor = far.noise_floor.powi(2);
     let without_law = floor + (law + rest) * (far.nominal.powi(2) - floor);
-    let is_nothing = law + rest <= IMMATERIAL && without_law <= NEAR * floor;
+    // Errors that the noise explains leave nothing for a law.
+    let is_noise = far.refitted <= far.noise_floor;
+    let is_nothing = is_noise || law + rest <= IMMATERIAL && without_law <= NEAR * floor;
     if far.budget.is_empty() || !leads || !is_nothing {
         return false;
     }
     let before = which[0].probability;
-    which[0].probability *= (law / IMMATERIAL).clamp(DOUBT, 1.0);
+    let kept = if is_noise {
+        DOUBT
+    } else {
+        (law / IMMATERIAL).clamp(DOUBT, 1.0)
+    };
+    which[0].probability *= kept;
     let removed = before - which[0].probability;
     let others: f64 = which[1..].iter().map(|one| one.probability).sum();
     match which {

@@ -85,6 +85,7 @@ mod twins;
 mod unknown;
 mod unmodelled;
 mod value;
+mod verdict;
 mod whiteness;
 mod window_bench;
 mod windows;

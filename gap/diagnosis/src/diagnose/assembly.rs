@@ -66,7 +66,7 @@ pub(super) fn assemble(
     beside_their_twins(&mut which);
     let tied = tied(&which);
     let top = &which[0];
-    let verdict = verdict(top, &tied);
+    let verdict = GapVerdict::of(top, &tied);
     let keep = shortened(&which);
     let best = comparison.best();
     let leading = rivals
@@ -121,16 +121,6 @@ pub(super) fn assemble(
         pictures: None,
         experiment: None,
     })
-}
-
-/// The verdict, from the most probable hypothesis and those that are tied.
-pub(super) fn verdict(top: &Hypothesis, tied: &[Vec<Vec<String>>]) -> GapVerdict {
-    match top.effects.first().map(String::as_str) {
-        None => GapVerdict::NoGap,
-        Some(UNKNOWN) if tied.is_empty() => GapVerdict::Unexplained,
-        Some(_) if tied.is_empty() => GapVerdict::Explained,
-        Some(_) => GapVerdict::Ambiguous,
-    }
 }
 
 /// The hypotheses without those of negligible probability; `None` if these have some together.

@@ -4,7 +4,7 @@ use appell_estimate::chi_squared_probability;
 use appell_recordings::DataSet;
 use nalgebra::DVector;
 
-use super::super::assembly::{DETECTABLE, found, shortened, tied, verdict};
+use super::super::assembly::{DETECTABLE, found, shortened, tied};
 use super::super::budget::{self, Ends};
 use super::super::calibration::IMMATERIAL;
 use super::super::changes::{Changes, Equations};
@@ -57,7 +57,7 @@ pub(super) fn report(
         }),
         None => None,
     };
-    let first = verdict(&which[0], &tied);
+    let first = GapVerdict::of(&which[0], &tied);
     let stayed = nominal.variances.iter().zip(&best.variances);
     let names = model.info().speed_quantities().iter();
     Ok(Report {

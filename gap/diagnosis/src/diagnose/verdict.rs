@@ -1,0 +1,276 @@
+//! The verdict: what the leading hypothesis says, after predictions of the held-out runs.
+
+use super::calibration::IMMATERIAL;
+use super::report::{HowFar, Hypothesis, Report, Share, UNKNOWN, Where};
+
+/// The result in one word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum GapVerdict {
+    /// No gap beyond measurement and process noise.
+    NoGap,
+    /// One hypothesis wins.
+    Explained,
+    /// A gap with several explanations that cannot be distinguished.
+    Ambiguous,
+    /// A gap that no effect of the library explains.
+    Unexplained,
+}
+
+/// Largest unexplained part of an explained gap.
+const MOST: f64 = 0.5;
+/// Mean square error relative to that of the noise up to which predictions are as good as they can be.
+const NEAR: f64 = 2.0;
+/// Part of its probability that `unknown` keeps where its law closes nothing.
+const DOUBT: f64 = 0.05;
+
+impl GapVerdict {
+    /// The verdict, from the most probable hypothesis and those that are tied.
+    pub(super) fn of(top: &Hypothesis, tied: &[Vec<Vec<String>>]) -> Self {
+        match top.effects.first().map(String::as_str) {
+            None => Self::NoGap,
+            Some(UNKNOWN) if tied.is_empty() => Self::Unexplained,
+            Some(_) if tied.is_empty() => Self::Explained,
+            Some(_) => Self::Ambiguous,
+        }
+    }
+
+    /// The verdict after predictions of the held-out runs: an effect that does not improve them explains nothing, nor
+    /// do effects that leave most of the gap if simulations rank the hypotheses.
+    pub(super) fn after(
+        self,
+        which: &[Hypothesis],
+        far: Option<&HowFar>,
+        is_by_simulation: bool,
+    ) -> Self {
+        let Some(far) = far else { return self };
+        let names_effects = matches!(self, Self::Explained | Self::Ambiguous)
+            && which.iter().any(|one| !one.parameters.is_empty());
+        let stays = far.budget.iter().find(|part| part.is_rest());
+        let most_stays = stays.is_some_and(|part| part.closed > MOST);
+        // An effect that closes nothing is no explanation, however significant it is.
+        let closes = far
+            .budget
+            .iter()
+            .any(|part| part.is_effect() && part.is_material);
+        if self == Self::Explained && names_effects && !far.budget.is_empty() && !closes {
+            return Self::Ambiguous;
+        }
+        if names_effects && (far.is_worse || is_by_simulation && most_stays) {
+            Self::Unexplained
+        } else {
+            self
+        }
+    }
+
+    /// Its keyword.
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::NoGap => "no_gap",
+            Self::Explained => "explained",
+            Self::Ambiguous => "ambiguous",
+            Self::Unexplained => "unexplained",
+        }
+    }
+}
+
+impl Report {
+    /// The verdict after predictions of the held-out runs.
+    pub(super) fn settle(&mut self, far: Option<&HowFar>, is_by_simulation: bool) {
+        if let Some(far) = far
+            && forget_immaterial_law(&mut self.which, far)
+        {
+            self.verdict = GapVerdict::of(&self.which[0], &self.tied);
+            if self.verdict == GapVerdict::NoGap {
+                self.place = Where::nowhere();
+            }
+        }
+        self.verdict = self.verdict.after(&self.which, far, is_by_simulation);
+    }
+}
+
+impl HowFar {
+    /// Part of its probability that a law of no effect of the library keeps: a law that closes nothing is no gap, however
+    /// significant it is, if all else closes the gap up to errors near the noise, or if the noise explains the errors.
+    fn kept_of_law(&self) -> f64 {
+        let closed = |is_it: fn(&Share) -> bool| {
+            let parts = self.budget.iter().filter(|part| is_it(part));
+            parts.map(|part| part.closed).sum::<f64>()
+        };
+        let (law, rest) = (closed(Share::is_law), closed(Share::is_rest));
+        let [floor, nominal, refitted] =
+            [self.noise_floor, self.nominal, self.refitted].map(|error| error.powi(2));
+        // Errors far below the floor are no sign of noise: process noise has taken the place of a systematic error.
+        let is_noise = (refitted..=NEAR * refitted).contains(&floor);
+        let without_law = floor + (law + rest) * (nominal - floor);
+        let is_closed_otherwise = law + rest <= IMMATERIAL && without_law <= NEAR * floor;
+        match (is_noise, is_closed_otherwise) {
+            (true, _) => DOUBT,
+            (false, true) => (law / IMMATERIAL).clamp(DOUBT, 1.0),
+            (false, false) => 1.0,
+        }
+    }
+}
+
+/// Reduces the probability of a leading `unknown` by what its law closes. Returns whether another hypothesis leads then.
+fn forget_immaterial_law(which: &mut [Hypothesis], far: &HowFar) -> bool {
+    if far.budget.is_empty() || !which.first().is_some_and(Hypothesis::is_unknown) {
+        return false;
+    }
+    let before = which[0].probability;
+    which[0].probability *= far.kept_of_law();
+    let removed = before - which[0].probability;
+    let others: f64 = which[1..].iter().map(|one| one.probability).sum();
+    match which {
+        // Beside a certain law the best of the others had too small a probability for a number.
+        [_, next, ..] if others == 0.0 => next.probability = removed,
+        [_, rest @ ..] => {
+            for one in rest {
+                one.probability += removed * one.probability / others;
+            }
+        }
+        [] => {}
+    }
+    which.sort_by(|a, b| b.probability.total_cmp(&a.probability));
+    !which[0].is_unknown()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::report::{LAW, REFIT, REST};
+    use super::super::value::Value;
+    use super::*;
+
+    fn far(closed: f64, is_material: bool) -> HowFar {
+        let share = |name: &str, closed: f64, is_material| Share {
+            name: name.to_owned(),
+            closed,
+            interval: [closed - 0.01, closed + 0.01],
+            is_material,
+        };
+        HowFar {
+            horizon_s: 1.0,
+            nominal: 10.0,
+            refitted: 9.0,
+            with_effect: 1.0,
+            noise_floor: 0.5,
+            closed,
+            closed_ci95: [closed - 0.01, closed + 0.01],
+            closed_vs_refitted: closed,
+            budget: vec![
+                share(REFIT, 0.99 - closed, true),
+                share("coulomb_friction@x", closed, is_material),
+                share(REST, 0.01, false),
+            ],
+            channels: Vec::new(),
+            before: None,
+            bettered_ci95: [[0.9, 1.0]; 2],
+            is_worse: false,
+            runs: Vec::new(),
+        }
+    }
+
+    fn hypothesis(effect: Option<&str>, probability: f64) -> Hypothesis {
+        Hypothesis {
+            effects: effect.iter().map(|&name| name.to_owned()).collect(),
+            probability,
+            same_as: None,
+            log_bayes_factor: None,
+            parameters: Vec::new(),
+            changes: None,
+        }
+    }
+
+    /// The first hypothesis and its probability after a report of how far `unknown` predicts.
+    fn first(unknown: f64, far: &HowFar) -> (Vec<String>, f64) {
+        let mut which = [
+            hypothesis(Some(UNKNOWN), unknown),
+            hypothesis(None, 0.8 * (1.0 - unknown)),
+            hypothesis(Some("coulomb_friction@x"), 0.2 * (1.0 - unknown)),
+        ];
+        let changes = forget_immaterial_law(&mut which, far);
+        let sum: f64 = which.iter().map(|one| one.probability).sum();
+        assert!((sum - 1.0).abs() < 1e-12, "{sum}");
+        assert_eq!(changes, !which[0].is_unknown());
+        let [first, ..] = which;
+        (first.effects, first.probability)
+    }
+
+    fn with_budget(budget: &[(&str, f64)]) -> HowFar {
+        let budget = budget.iter().map(|&(name, closed)| Share {
+            name: name.to_owned(),
+            closed,
+            interval: [closed; 2],
+            is_material: closed > 0.02,
+        });
+        HowFar {
+            budget: budget.collect(),
+            ..far(1.0, true)
+        }
+    }
+
+    #[test]
+    fn a_law_that_closes_nothing_is_no_gap() {
+        // Re-fitted parameters close all of it, with and without a measured law.
+        for budget in [
+            &[(REFIT, 1.05), (REST, -0.05)][..],
+            &[(REFIT, 0.999), (LAW, 0.0), (REST, 0.001)],
+        ] {
+            let (effects, probability) = first(0.95, &with_budget(budget));
+            assert!(effects.is_empty() && (0.7..0.8).contains(&probability));
+            // Beside a law that was certain no other has a share.
+            let (effects, probability) = first(1.0, &with_budget(budget));
+            assert!(effects.is_empty() && (0.9..1.0).contains(&probability));
+        }
+        // The law closes a part, or much stays, or a part that is small and many times the noise.
+        for budget in [
+            &[(REFIT, 0.7), (LAW, 0.29), (REST, 0.01)],
+            &[(REFIT, 0.6), (LAW, 0.0), (REST, 0.4)],
+            &[(REFIT, 0.985), (LAW, 0.014), (REST, 0.001)],
+        ] {
+            assert_eq!(
+                first(0.95, &with_budget(budget)),
+                (vec![UNKNOWN.to_owned()], 0.95)
+            );
+        }
+    }
+
+    #[test]
+    fn errors_that_the_noise_explains_leave_no_law() {
+        // Nothing of the gap closes, as there is none.
+        let far = |error: f64, noise_floor: f64| HowFar {
+            nominal: error,
+            refitted: error,
+            noise_floor,
+            ..with_budget(&[(REFIT, 0.0), (REST, 1.0)])
+        };
+        let (effects, _) = first(0.95, &far(14.2, 14.7));
+        assert!(effects.is_empty());
+        // Errors above the noise, and far below what process noise would do.
+        for far in [far(14.2, 12.0), far(112.0, 505.0)] {
+            assert_eq!(first(0.95, &far), (vec![UNKNOWN.to_owned()], 0.95));
+        }
+    }
+
+    #[test]
+    fn what_closes_nothing_explains_nothing() {
+        let which = [Hypothesis {
+            effects: vec!["coulomb_friction@x".to_owned()],
+            probability: 0.95,
+            same_as: None,
+            log_bayes_factor: Some(40.0),
+            parameters: vec![Value {
+                name: "coulomb_friction@x.force".to_owned(),
+                value: 0.2,
+                std: 0.01,
+                unit: "N".to_owned(),
+                without: Some(0.0),
+                is_determined: true,
+                yardstick: None,
+            }],
+            changes: None,
+        }];
+        let after = |far: &HowFar| GapVerdict::Explained.after(&which, Some(far), false);
+        assert_eq!(after(&far(0.9, true)), GapVerdict::Explained);
+        assert_eq!(after(&far(0.001, false)), GapVerdict::Ambiguous);
+    }
+}

@@ -183,6 +183,7 @@ fn magnitudes(mechanism: &Mechanism) -> Scales {
         loads: vec![1.0; mechanism.loads.iter().count()],
         channels: channels.map(|one| one.label.name.clone()).collect(),
         coordinates: (0..coordinates).map(Some).collect(),
+        speeds: vec![None; coordinates],
         uncertain: (0..mechanism.parameters.iter().count()).collect(),
     }
 }

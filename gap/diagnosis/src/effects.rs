@@ -154,6 +154,7 @@ fr = { kind = "damper", coordinate = "th", damping = "c" }
             loads: vec![1.0; 5],
             channels: vec!["th".to_owned(), "s".to_owned()],
             coordinates: vec![Some(0), Some(1)],
+            speeds: vec![None; 2],
             uncertain: vec![0, 1, 2],
         };
         let effects = shipped().expect("a library");

@@ -1,8 +1,23 @@
 //! Products of small matrices, stored row by row.
 
+use nalgebra::{DMatrixView, DMatrixViewMut};
+
+/// Number of products of numbers from which the packing of a blocked product is worth its time.
+const LARGE: usize = 4096;
+
 /// `c += a b`: `a` has `inner` columns, `b` as many rows.
 pub(super) fn multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let columns = b.len() / inner;
+    if a.len() * columns >= LARGE {
+        // By columns they are the transposed matrices: cᵀ += bᵀ aᵀ.
+        let rows = a.len() / inner;
+        let [a, b] = [
+            DMatrixView::from_slice(a, inner, rows),
+            DMatrixView::from_slice(b, columns, inner),
+        ];
+        DMatrixViewMut::from_slice(c, columns, rows).gemm(1.0, &b, &a, 1.0);
+        return;
+    }
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
         for (&factor, b) in a.iter().zip(b.chunks_exact(columns)) {
             // Most gradients of coordinates and outputs have one or two nonzero entries.
@@ -19,9 +34,16 @@ pub(super) fn multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     multiply_add(a, b, inner, c);
 }
 
-/// `c += aᵀ b`: both have `inner` rows.
-pub(super) fn transposed_multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
+/// `c = aᵀ b`: both have `inner` rows.
+pub(super) fn transposed_multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let (rows, columns) = (a.len() / inner, b.len() / inner);
+    c.fill(0.0);
+    if a.len() * columns >= LARGE {
+        let a = DMatrixView::from_slice(a, rows, inner).transpose();
+        let b = DMatrixView::from_slice(b, columns, inner);
+        DMatrixViewMut::from_slice(c, columns, rows).gemm(1.0, &b, &a, 1.0);
+        return;
+    }
     for (a, b) in a.chunks_exact(rows).zip(b.chunks_exact(columns)) {
         for (&factor, c) in a.iter().zip(c.chunks_exact_mut(columns)) {
             if factor != 0.0 {
@@ -31,15 +53,16 @@ pub(super) fn transposed_multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mu
     }
 }
 
-/// `c = aᵀ b`
-pub(super) fn transposed_multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
-    c.fill(0.0);
-    transposed_multiply_add(a, b, inner, c);
-}
-
 /// `c += a bᵀ`: both have `inner` columns.
 pub(super) fn multiply_transposed_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let columns = b.len() / inner;
+    if a.len() * columns >= LARGE {
+        let rows = a.len() / inner;
+        let a = DMatrixView::from_slice(a, inner, rows);
+        let b = DMatrixView::from_slice(b, inner, columns).transpose();
+        DMatrixViewMut::from_slice(c, columns, rows).gemm(1.0, &b, &a, 1.0);
+        return;
+    }
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
         for (b, c) in b.chunks_exact(inner).zip(c) {
             *c += dot(a, b);

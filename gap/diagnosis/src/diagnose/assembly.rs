@@ -283,11 +283,11 @@ fn imperfections(bench: &Bench<'_>, fitted: &Fitted) -> Vec<Value> {
         .collect()
 }
 
-/// The name of a size; of an effect at all drives, with the drive.
+/// The name of a size; of an effect at a group of sites, with the site.
 fn named(candidate: &Candidate, short: &str) -> String {
     let name = candidate.name();
     match candidate.sites().as_slice() {
-        [drive] if candidate.is_of_drives() => format!("{name}.{drive}_{short}"),
+        [drive] if candidate.is_of_group() => format!("{name}.{drive}_{short}"),
         _ => format!("{name}.{short}"),
     }
 }

@@ -280,6 +280,12 @@ impl<'a> Bench<'a> {
         Ok(self.weight * (of(&after, to)? - of(&before, from)?))
     }
 
+    /// Whether members delay channels.
+    pub(super) fn is_late(&self, members: &[usize]) -> bool {
+        let mut members = members.iter();
+        members.any(|&member| matches!(self.candidate(member).acts, Acts::Late(_)))
+    }
+
     /// Indices of the parameters of a candidate, with their roles.
     pub(super) fn own(&self, candidate: &Candidate) -> Vec<(usize, Role)> {
         self.effects.own(candidate)
@@ -510,7 +516,18 @@ impl<'a> Bench<'a> {
         start: &[f64],
     ) -> Result<Fitted, DiagnoseError> {
         let free = self.free(members, estimation.setup());
-        let fit = self.weighed(estimation, start, &free, search, effort)?;
+        let fit = if self.is_over_windows() && self.is_late(members) {
+            // With the delay the states at the beginnings of the windows change.
+            let mut start = start.to_vec();
+            self.begin_later(estimation, &mut start)?;
+            start = self
+                .weighed(estimation, &start, &free, search, effort)?
+                .values;
+            self.begin_later(estimation, &mut start)?;
+            self.weighed(estimation, &start, &free, search, effort)?
+        } else {
+            self.weighed(estimation, start, &free, search, effort)?
+        };
         let by_inputs = for_kicks(&self.input_innovations, self.weight, estimation, &fit)?;
         let evidence = Evidence::of(self, members, &fit, by_inputs);
         Ok(Fitted {

@@ -277,6 +277,7 @@ impl Comparison {
 
     /// The result of a search.
     fn found(bench: &Bench<'_>, mut search: Search<'_, '_>) -> Result<Self, DiagnoseError> {
+        search.recount_late();
         // Searches that were given up need no word.
         let log = |own: &Fitted| search.log_posterior(own);
         let best = search

@@ -166,7 +166,7 @@ impl Evidence {
 fn smallest(bench: &Bench<'_>, members: &[usize], sizes: &[(Unknown, f64)]) -> f64 {
     let of_drives = members.iter().filter(|&&member| {
         let own = bench.candidate(member);
-        own.is_of_drives() && own.acts == Acts::Items
+        own.is_of_group() && own.acts == Acts::Items
     });
     let mut sizes = sizes.to_vec();
     let mut medians = Vec::new();

@@ -170,6 +170,7 @@ omega = { value = "dot(phi)", unit = "rad/s" }
             loads: vec![0.0; mechanism.loads.len()],
             channels: vec!["phi".to_owned()],
             coordinates: vec![Some(0)],
+            speeds: vec![None],
             uncertain: vec![0],
         };
         let effects = shipped().expect("a library");

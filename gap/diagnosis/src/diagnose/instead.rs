@@ -45,7 +45,7 @@ impl Search<'_, '_> {
         let acts = bench.candidate(member).acts;
         let instead = match acts {
             Acts::Late(channel) => lag(bench, whole, channel)?,
-            Acts::Delay(input) if !bench.candidate(member).is_of_drives() => {
+            Acts::Delay(input) if !bench.candidate(member).is_of_group() => {
                 delays_of_encoder(bench, whole, input)?
             }
             _ => None,
@@ -119,7 +119,9 @@ fn delays_of_encoder(
             }
             _ => false,
         };
-        let late = candidate(bench, Acts::Late(channel)).filter(|_| is_of_joint);
+        let late = of_group(bench, Acts::Late(channel));
+        let late = late.or_else(|| candidate(bench, Acts::Late(channel)));
+        let late = late.filter(|_| is_of_joint);
         members.extend(late.map(|late| (late, Unknown::SensorDelay(channel))));
     }
     Ok((!members.is_empty()).then_some(Instead {
@@ -144,5 +146,11 @@ fn driven(bench: &Bench<'_>, input: usize) -> Option<usize> {
 /// The candidate with an action.
 fn candidate(bench: &Bench<'_>, acts: Acts) -> Option<usize> {
     let mut candidates = bench.effects.candidates.iter();
-    candidates.position(|own| own.acts == acts && !own.is_of_drives())
+    candidates.position(|own| own.acts == acts && !own.is_of_group())
+}
+
+/// The same of a group of sites.
+fn of_group(bench: &Bench<'_>, acts: Acts) -> Option<usize> {
+    let mut candidates = bench.effects.candidates.iter();
+    candidates.position(|own| own.acts == acts && own.is_of_group())
 }

@@ -48,11 +48,11 @@ pub(super) fn of_count(model: &EffectModel, effects: usize) -> f64 {
     }
 }
 
-/// The prior probability of a vector is shared by its subsets of components; an effect at all drives has no subsets.
+/// The prior probability of a vector is shared by its subsets of components; an effect at a group of sites has none.
 pub(super) fn of_components(model: &EffectModel, name: &str) -> f64 {
     let components = model.candidates.iter();
     let is_own = |own: &&Candidate| own.is_component && own.name() == name;
-    let components = components.filter(|own| is_own(own) && !own.is_of_drives());
+    let components = components.filter(|own| is_own(own) && !own.is_of_group());
     let choices = (1_u64 << components.count().min(32)) - 1;
     -(choices.max(1) as f64).ln()
 }

@@ -57,6 +57,12 @@ pub(super) fn of(set: &DataSet) -> Scales {
                 _ => None,
             })
             .collect(),
+        speeds: measured()
+            .map(|channel| match channel.role {
+                Role::Measures(Measured::PseudoVelocity(speed)) => Some(speed),
+                _ => None,
+            })
+            .collect(),
         uncertain: (0..set.parameters.len()).filter(tolerant).collect(),
     }
 }

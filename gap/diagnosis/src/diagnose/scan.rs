@@ -183,7 +183,7 @@ fn groups(bench: &Bench<'_>) -> Vec<Vec<usize>> {
     let of = |is_own: fn(Acts) -> bool| -> Vec<usize> {
         (0..bench.effects.candidates.len())
             .filter(|&member| {
-                bench.candidate(member).is_of_drives() && is_own(bench.candidate(member).acts)
+                bench.candidate(member).is_of_group() && is_own(bench.candidate(member).acts)
             })
             .collect()
     };

@@ -379,7 +379,7 @@ impl<'b, 'a> Search<'b, 'a> {
     fn keep_without_idle(&mut self, whole: &Fitted) {
         let bench = self.bench;
         let is_idle =
-            |&&own: &&usize| !bench.candidate(own).is_of_drives() && whole.is_idle(bench, own);
+            |&&own: &&usize| !bench.candidate(own).is_of_group() && whole.is_idle(bench, own);
         let idle = whole.members.iter().filter(is_idle);
         for &idle in idle.filter(|_| whole.members.len() > 1) {
             let rest = whole.members.iter().filter(|&&own| own != idle);
@@ -488,9 +488,9 @@ impl<'b, 'a> Search<'b, 'a> {
         if !self.bench.is_of_robot {
             return f64::NEG_INFINITY;
         }
-        let is_late = |&member: &usize| matches!(self.bench.candidate(member).acts, Acts::Late(_));
+        let is_late = |members: &[usize]| self.bench.is_late(members);
         let mut best = (self.best().map(|best| &self.fits[best])).into_iter();
-        let comparable = best.find(|best| !best.members.iter().chain(members).any(is_late));
+        let comparable = best.find(|best| !is_late(&best.members) && !is_late(members));
         comparable.map_or(f64::NEG_INFINITY, |best| best.fit.log_posterior - SLACK)
     }
 
@@ -521,16 +521,31 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// A delayed channel loses rows: its likelihood is that of the nominal model plus the gain on the remaining rows.
+    /// A delayed channel loses rows: its likelihood is that of the best hypothesis without delayed channels plus the gain
+    /// on the remaining rows. What both explain counts on all rows.
     pub(super) fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
-        let bench = self.bench;
-        let is_late = |&member: &usize| matches!(bench.candidate(member).acts, Acts::Late(_));
-        if fitted.members.iter().any(is_late) {
-            let nominal = &self.fits[0];
-            let gain = bench.gain_of_late(nominal, fitted)?;
-            fitted.evidence.log_likelihood = nominal.evidence.log_likelihood + gain;
+        if !self.bench.is_late(&fitted.members) {
+            return Ok(());
         }
+        let others = self
+            .fits
+            .iter()
+            .filter(|own| own.is_there() && !self.bench.is_late(&own.members));
+        let best = others.max_by(|a, b| self.log_posterior(a).total_cmp(&self.log_posterior(b)));
+        let best = best.unwrap_or(&self.fits[0]);
+        let gain = self.bench.gain_of_late(best, fitted)?;
+        fitted.evidence.log_likelihood = best.evidence.log_likelihood + gain;
         Ok(())
+    }
+
+    /// The same for all hypotheses, after a search; without a likelihood on these rows they keep theirs.
+    pub(super) fn recount_late(&mut self) {
+        for place in 0..self.fits.len() {
+            let mut evidence = self.fits[place].clone();
+            if self.count_late(&mut evidence).is_ok() {
+                self.fits[place] = evidence;
+            }
+        }
     }
 
     /// Removes each member of the best hypothesis in turn and refits from the optimum: a member may have been needed
@@ -542,7 +557,7 @@ impl<'b, 'a> Search<'b, 'a> {
         {
             let whole = self.fits[best].clone();
             // What acts at all drives has no idle part.
-            let is_whole = |member: usize| !self.bench.candidate(member).is_of_drives();
+            let is_whole = |member: usize| !self.bench.candidate(member).is_of_group();
             for &idle in whole.members.iter().filter(|&&member| is_whole(member)) {
                 if let Ok(fitted) = self.fitted_without(&whole, idle) {
                     self.keep(fitted);

@@ -243,8 +243,8 @@ impl<'b, 'a> Sets<'b, 'a> {
             }
         }
         for (name, components) in vectors {
-            let is_of_drives = |(own, _): &(usize, _)| self.bench.candidate(*own).is_of_drives();
-            let subsets: Vec<Vec<usize>> = if components.iter().all(is_of_drives) {
+            let is_of_group = |(own, _): &(usize, _)| self.bench.candidate(*own).is_of_group();
+            let subsets: Vec<Vec<usize>> = if components.iter().all(is_of_group) {
                 vec![(0..components.len()).collect()]
             } else {
                 subsets(components.len(), TOGETHER)

@@ -28,6 +28,24 @@ impl Bench<'_> {
         Ok(())
     }
 
+    /// The states at the first rows of windows that delayed channels show there only after their delay.
+    pub(super) fn begin_later(
+        &self,
+        estimation: &Estimation<'_>,
+        values: &mut [f64],
+    ) -> Result<(), DiagnoseError> {
+        let mut later = values.to_vec();
+        self.begin(estimation, &mut later)?;
+        let layout = estimation.layout();
+        for run in 0..estimation.recordings().len() {
+            for state in 0..self.effects.info().state_len() {
+                let initial = layout.place(Unknown::Initial { run, state })?;
+                values[initial] = later[initial];
+            }
+        }
+        Ok(())
+    }
+
     /// Values of a hypothesis for another filter, as far as both have them.
     pub(super) fn carried(&self, from: &Fitted, to: &Estimation<'_>) -> Vec<f64> {
         self.carried_by(from, to, Some)

@@ -6,12 +6,9 @@ use toml_edit::{DocumentMut, InlineTable, Item, Table, TableLike, Value};
 use super::effect::{Effect, EffectError, Family, Filter};
 use super::load::Stated;
 use super::place::Source;
-use super::site::{Site, Sites};
+use super::site::{DRIVES, Site, Sites};
 use super::site_kind::SiteKind;
 use super::term::{Term, texts};
-
-/// Site name of an effect at all drives.
-const DRIVES: &str = "drives";
 
 /// How a candidate acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -85,8 +82,8 @@ pub struct Candidate {
     pub kind: String,
     /// Name of the site.
     pub site: String,
-    /// The drives on which it acts, where it is an effect at all of them; of a component one of them.
-    pub(super) drives: Vec<String>,
+    /// The sites on which it acts, where it is one effect at several of them; of a component one of them.
+    pub(super) group: Vec<String>,
     /// Family of the effect.
     pub family: Family,
     /// One sentence.
@@ -162,7 +159,7 @@ impl Candidate {
         Self {
             kind: "law".to_owned(),
             site: speed.to_owned(),
-            drives: Vec::new(),
+            group: Vec::new(),
             family: Family::Force,
             about: format!("measured force along {speed}"),
             is_component: false,
@@ -186,16 +183,16 @@ impl Candidate {
         self.kind == "law"
     }
 
-    /// Whether it acts at all drives.
-    pub(crate) fn is_of_drives(&self) -> bool {
-        !self.drives.is_empty()
+    /// Whether it is a single effect at several sites, such as all drives.
+    pub(crate) fn is_of_group(&self) -> bool {
+        !self.group.is_empty()
     }
 
     /// Its sites in the mechanism.
     pub(crate) fn sites(&self) -> Vec<String> {
-        match self.drives.as_slice() {
+        match self.group.as_slice() {
             [] => vec![self.site.clone()],
-            drives => drives.to_vec(),
+            group => group.to_vec(),
         }
     }
 
@@ -286,21 +283,24 @@ impl Candidate {
             }
         }
         if effect.is_together {
-            candidates.extend(Self::together(effect, mechanism, sites)?);
+            for (name, members) in sites.groups(effect.site) {
+                candidates.extend(Self::together(effect, mechanism, sites, &name, &members)?);
+            }
         }
         Ok(candidates)
     }
 
-    /// An effect at all drives, with sizes for each of them; of signals, a component for each drive.
+    /// An effect at a group of sites, with sizes for each of them; of signals, a component for each site.
     fn together(
         effect: &Effect,
         mechanism: &Mechanism,
         sites: &Sites<'_>,
+        group: &str,
+        members: &[String],
     ) -> Result<Vec<Self>, EffectError> {
-        let drives = sites.drives(effect.site);
         let mut places = sites.of(effect.site);
-        places.retain(|site| drives.contains(&site.name.as_str()));
-        let stem = unused(format!("{}_{DRIVES}", effect.name), mechanism);
+        places.retain(|site| members.contains(&site.name));
+        let stem = unused(format!("{}_{}", effect.name, identifier(group)), mechanism);
         let own = places.iter().map(|site| {
             let id = format!("{stem}_{}", identifier(&site.name));
             Self::new(effect, site, &id, &effect.variants[0])
@@ -309,11 +309,16 @@ impl Candidate {
         let [first, _, ..] = own.as_slice() else {
             return Ok(Vec::new());
         };
-        let about = effect.about.replace("{site}", "every drive");
+        let all = if group == DRIVES {
+            "every drive"
+        } else {
+            group
+        };
+        let about = effect.about.replace("{site}", all);
         if first.acts != Acts::Items {
             let component = |one: Self| Self {
-                drives: vec![one.site],
-                site: DRIVES.to_owned(),
+                group: vec![one.site],
+                site: group.to_owned(),
                 about: about.clone(),
                 is_component: true,
                 ..one
@@ -326,8 +331,8 @@ impl Candidate {
             merge(&mut items, &part);
         }
         Ok(vec![Self {
-            site: DRIVES.to_owned(),
-            drives: places.iter().map(|place| place.name.clone()).collect(),
+            site: group.to_owned(),
+            group: places.iter().map(|place| place.name.clone()).collect(),
             about,
             parameters: own.iter().flat_map(|one| one.parameters.clone()).collect(),
             stem,
@@ -413,7 +418,7 @@ impl Candidate {
         Ok(Self {
             kind: effect.name.clone(),
             site: site.name.clone(),
-            drives: Vec::new(),
+            group: Vec::new(),
             family: effect.family,
             about: self::filled(&effect.about, &words),
             is_component: effect.is_vector,

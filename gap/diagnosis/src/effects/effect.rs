@@ -8,7 +8,7 @@
 //! words    = { part = "0.5" }        # further placeholders and their texts
 //! variants = [{ axis = "x" }]        # separate hypotheses, each with its own placeholders
 //! vector   = true                    # the variants are components of one vector
-//! together = true                    # also as one hypothesis at all drives, where there are many
+//! together = true                    # also as one hypothesis at all drives, where there are many, or at the channels of an encoder
 //! counts   = 2                       # number of effects as which it counts in the prior
 //! switch   = "{effect}_on"           # a parameter that is 1 with the effect and 0 without
 //! filter   = "lag"                   # outside the equations of motion: lag, delay, bias, scale, late, slow

@@ -4,7 +4,7 @@
 use appell_spec::expr::{Expr, ExprKind, Quantity};
 use appell_spec::mechanism::{
     BodyId, Constraint, ConstraintKind, CoordinateId, InputId, Load, LoadKind, Mechanism,
-    ParameterId, PseudoVelocity,
+    ParameterId, PseudoVelocity, SpeedId,
 };
 use appell_spec::units::{Dimension, Unit};
 use num_traits::{ToPrimitive, Zero};
@@ -30,12 +30,17 @@ pub struct Scales {
     pub channels: Vec<String>,
     /// The coordinate that each of them measures.
     pub coordinates: Vec<Option<usize>>,
+    /// The pseudo-velocity that each of them measures.
+    pub speeds: Vec<Option<usize>>,
     /// Parameters with a tolerance, whose errors may exceed it.
     pub uncertain: Vec<usize>,
 }
 
 /// Width, relative to the largest input, over which a corner is smoothed.
 const NARROW: f64 = 0.005;
+
+/// Name of the site of an effect at all drives.
+pub(super) const DRIVES: &str = "drives";
 
 /// Number of drives from which a common cause at all of them is considered, and of a robot.
 const MANY_DRIVES: [usize; 2] = [3, 2];
@@ -354,8 +359,30 @@ impl<'m> Sites<'m> {
         speeds.iter().enumerate().filter_map(of).collect()
     }
 
+    /// Groups of sites at which an effect may have a common cause, with their names: all drives, where there are many, or
+    /// the position and the rate that an encoder of a robot gives, under the name of its joint.
+    pub(super) fn groups(&self, kind: SiteKind) -> Vec<(String, Vec<String>)> {
+        if kind != SiteKind::Channel {
+            let drives = self.drives(kind).into_iter().map(str::to_owned);
+            return vec![(DRIVES.to_owned(), drives.collect())];
+        }
+        let joints = self.mechanism.coordinates.ids();
+        let groups = joints.filter(|&q| self.is_joint(q)).map(|q| {
+            let measures = |channel: usize| {
+                let speed = self.scales.speeds[channel].map(SpeedId::new);
+                self.scales.coordinates[channel] == Some(q.index())
+                    || speed.is_some() && speed == self.mechanism.speed_of(q)
+            };
+            let columns = self.scales.channels.iter().enumerate();
+            let own = columns.filter(|(channel, _)| measures(*channel));
+            let name = self.mechanism.coordinates[q].label.name.clone();
+            (name, own.map(|(_, column)| column.clone()).collect())
+        });
+        groups.collect()
+    }
+
     /// The names of driven coordinates, or of the inputs, where there are many, as in a robot.
-    pub(super) fn drives(&self, kind: SiteKind) -> Vec<&str> {
+    fn drives(&self, kind: SiteKind) -> Vec<&str> {
         let driven = driven(self.mechanism);
         let is_of_robot = driven.iter().all(|&q| self.is_joint(q));
         if driven.len() < MANY_DRIVES[usize::from(is_of_robot)] {

@@ -38,7 +38,7 @@ impl<'n> Stem<'n> {
         Candidate {
             kind: "law".to_owned(),
             site: self.site.to_owned(),
-            drives: Vec::new(),
+            group: Vec::new(),
             family: Family::Force,
             about,
             is_component: false,

@@ -5,7 +5,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::additions::Addition;
 use super::drift::{self, Drift};
-use super::start::{Start, forces, start};
+use super::start::{Start, forces, start, of_channels};
 use super::{IdentifyError, Options};
 use appell_recordings::{Channel, DataSet, Parameter};
 
@@ -193,14 +193,11 @@ pub(crate) fn begin(
     values: &mut [f64],
 ) -> Result<Vec<Start>, IdentifyError> {
     let (layout, setup) = (estimation.layout(), estimation.setup());
-    let mut noise = Vec::new();
-    for channel in 0..setup.channels.len() {
-        noise.push(values[layout.place(Unknown::Noise(channel))?]);
-    }
+    let channels = of_channels(estimation, values)?;
     let parameters = values[..setup.model.info().parameter_len()].to_vec();
     let mut starts = Vec::new();
     for (run, recording) in estimation.recordings().iter().enumerate() {
-        let start = start(setup, &noise, &parameters, recording);
+        let start = start(setup, &channels, &parameters, recording);
         for (state, (&expected, &spread)) in start.state.iter().zip(&start.spread).enumerate() {
             values[layout.place(Unknown::Initial { run, state })?] = expected;
             values[layout.place(Unknown::Spread { run, state })?] = spread;

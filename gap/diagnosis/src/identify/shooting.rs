@@ -5,7 +5,7 @@ use appell_estimate::{Estimation, Free, Recording, Shooting, Unknown};
 
 use super::IdentifyError;
 use super::problem::Problem;
-use super::start::start;
+use super::start::{of_channels, start};
 
 /// Least number of rows of a segment.
 const ROWS: usize = 10;
@@ -26,15 +26,12 @@ pub(super) fn shots(
         )
     };
     let free: Vec<Free> = problem.wanted.iter().filter(is_shot).copied().collect();
-    let mut noise = Vec::new();
-    for channel in 0..setup.channels.len() {
-        noise.push(values[layout.place(Unknown::Noise(channel))?]);
-    }
+    let channels = of_channels(estimation, values)?;
     let parameters = &values[..setup.model.info().parameter_len()];
     let guess = |part: &Recording| {
         let lags = setup.lagging.iter().map(|&input| part.inputs(0)[input]);
         let drifting = setup.drifting.iter().map(|&index| parameters[index]);
-        let state = start(setup, &noise, parameters, part).state;
+        let state = start(setup, &channels, parameters, part).state;
         state.into_iter().chain(lags).chain(drifting).collect()
     };
     let rows = rows(estimation.recordings());

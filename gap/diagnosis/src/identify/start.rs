@@ -1,9 +1,10 @@
 //! Initial values of a fit: states at the first rows, magnitudes of forces.
 
-use appell_estimate::{Measured, Recording, Setup};
+use appell_estimate::{Channel, Estimation, Measured, Recording, Setup, Unknown};
 use appell_runtime::model::{At, Model, ModelInfo};
 use nalgebra::{DMatrix, DVector};
 
+use super::IdentifyError;
 use crate::slope::{Slope, WINDOW};
 
 /// Number of points along a run at which slopes and forces are evaluated.
@@ -23,11 +24,31 @@ pub(crate) struct Start {
     pub(crate) spread: Vec<f64>,
 }
 
-/// States at the first row: measured ones as measured, other pseudo-velocities from slopes of the
+/// Noise and delays of the channels.
+pub(super) fn of_channels(
+    estimation: &Estimation<'_>,
+    values: &[f64],
+) -> Result<[Vec<f64>; 2], IdentifyError> {
+    let layout = estimation.layout();
+    let channels = estimation.setup().channels.iter().enumerate();
+    let of = |(index, channel): (usize, &Channel)| {
+        let noise = values[layout.place(Unknown::Noise(index))?];
+        let delay = match channel.longest_delay {
+            Some(_) => values[layout.place(Unknown::SensorDelay(index))?],
+            None => 0.0,
+        };
+        Ok((noise, delay))
+    };
+    let both: Vec<(f64, f64)> = channels.map(of).collect::<Result<_, IdentifyError>>()?;
+    let (noise, delays) = both.into_iter().unzip();
+    Ok([noise, delays])
+}
+
+/// States at the first row: measured ones as measured, at the time at which delayed channels show them; other pseudo-velocities from slopes of the
 /// coordinates, the rest as in the spec, known to one SI unit.
 pub(super) fn start(
     setup: &Setup<'_>,
-    noise: &[f64],
+    [noise, delays]: &[Vec<f64>; 2],
     parameters: &[f64],
     recording: &Recording,
 ) -> Start {
@@ -39,9 +60,7 @@ pub(super) fn start(
     let columns = columns(setup, info);
     for (state, column) in columns.iter().enumerate() {
         let Some(column) = *column else { continue };
-        let rows = 0..recording.times().len();
-        let mut values = rows.map(|row| recording.measured(row)[column]);
-        if let Some(first) = values.find(|value| !value.is_nan()) {
+        if let Some(first) = shown_at(recording, column, delays[column]) {
             start.state[state] = first;
             start.spread[state] = CAUTION * noise[column];
         }
@@ -57,6 +76,23 @@ pub(super) fn start(
         }
     }
     start
+}
+
+/// The reading of a channel at a time after the first one, between two readings in proportion.
+fn shown_at(recording: &Recording, column: usize, after: f64) -> Option<f64> {
+    let times = recording.times().iter().enumerate();
+    let readings = times.map(|(row, &t)| (t, recording.measured(row)[column]));
+    let mut readings = readings.filter(|(_, value)| !value.is_nan());
+    let (begins, mut value) = readings.next()?;
+    let (at, mut before) = (begins + after, begins);
+    for (t, next) in readings {
+        if before >= at {
+            break;
+        }
+        let part = ((at - before) / (t - before)).min(1.0);
+        (before, value) = (t, value + part * (next - value));
+    }
+    Some(value)
 }
 
 /// The column of each state, if it is measured.

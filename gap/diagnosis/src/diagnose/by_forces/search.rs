@@ -290,7 +290,7 @@ impl<'s> Search<'s> {
                 candidate: member,
                 open,
                 shapes: Vec::new(),
-                is_whole: !self.effects.candidates[member].is_of_drives(),
+                is_whole: !self.effects.candidates[member].is_of_group(),
             }
         });
         self.shaped(squares, own.collect(), &others)

@@ -53,6 +53,7 @@ def about(given):
 def main():
     given = arguments()
     wanted = list(cases(given.folder, given.names))
+    begun = about(given)  # the tree may change while the cases run
 
     def one(case):
         began = time.time()
@@ -69,7 +70,7 @@ def main():
     if given.out:
         given.out.write_text(json.dumps({case.name: {"appell": own, "peer": peer} for case, own, peer in results}, indent=1))
     if given.write:
-        given.page.write_text(tables.replaced(given.page.read_text(), given.folder.name, tables.block(about(given), found, peers)))
+        given.page.write_text(tables.replaced(given.page.read_text(), given.folder.name, tables.block(begun, found, peers)))
 
 
 if __name__ == "__main__":

@@ -45,6 +45,7 @@ mod by_forces;
 mod calibration;
 mod changes;
 mod coloured;
+mod common;
 mod compare;
 mod error;
 mod evidence;
@@ -117,7 +118,7 @@ use screen::Screen;
 
 /// Version of the engine. Every change that affects a number of some report increments it, so that scores and
 /// calibration can state the version to which they belong.
-pub const ENGINE: u32 = 21;
+pub const ENGINE: u32 = 22;
 
 /// Largest number of rows and of measured values in a fit: with more, statistical errors are far below modelling errors.
 const MOST_ROWS: usize = 4000;

@@ -5,12 +5,14 @@
 //! recordings, not to its unit: the logarithm of d′, the size in its own standard deviations, is uniform from 1 to a
 //! thousand. Levels of measurement and process noise are common to all hypotheses; they are not averaged but maximised.
 
+use std::collections::BTreeMap;
 use std::f64::consts::TAU;
 
 use appell_estimate::{Fit, Free, Layout, Unknown};
 use nalgebra::{DMatrix, DVector};
 
 use super::bench::Bench;
+use super::common;
 use super::hardware::LN_1000;
 use crate::effects::Acts;
 
@@ -98,9 +100,10 @@ impl Evidence {
             bench.hardware.of_error(free.unknown, error)
         };
         let whole = fit.covariance();
+        let mut densities = BTreeMap::new();
         for (place, &i) in open.iter().enumerate() {
             let free = &fit.free[i];
-            occam += if let Some((density, times)) = of_error(free, fit.coordinates[i]) {
+            let density = if let Some((density, times)) = of_error(free, fit.coordinates[i]) {
                 sizes.push((free.unknown, times));
                 density
             } else if let Some([expected, deviation]) = free.prior {
@@ -136,7 +139,10 @@ impl Evidence {
                 let hardware = &bench.hardware;
                 hardware.of_size(free.unknown, size, in_value, two_sided) + stretch
             };
+            occam += density;
+            densities.insert(i, density);
         }
+        occam += common::of_groups(bench, members, fit, &densities);
         // A member whose size is zero, at its limit, is not significant.
         for i in own..fit.free.len() {
             let free = &fit.free[i];

@@ -5,7 +5,7 @@ use appell_runtime::model::{ModelInfo, Quantity};
 
 use super::additions::Addition;
 use super::drift::{self, Drift};
-use super::start::{Start, forces, start, of_channels};
+use super::start::{Start, forces, of_channels, start};
 use super::{IdentifyError, Options};
 use appell_recordings::{Channel, DataSet, Parameter};
 

@@ -103,6 +103,8 @@ pub struct Simulated {
     pub smooth: Option<String>,
     /// Coordinates in the first row of a recorded run whose inputs drive the motion, if it begins elsewhere.
     pub begins: Option<String>,
+    /// What differs in that run from the other runs, and so from the model, a sentence for each parameter.
+    pub differs: Vec<String>,
 }
 
 impl Motion {
@@ -244,6 +246,7 @@ impl Motion {
             .filter(|until| until + interval < self.t_end);
         let smooth = plan.recorded_smooth().and_then(smooth_inputs);
         let begins = plan.recorded_begins().map(str::to_owned);
+        let differs = plan.recorded_differs().to_vec();
         let wiring = plan.wiring(&setup, self.t_end)?;
         Ok(Ready {
             wiring,
@@ -255,6 +258,7 @@ impl Motion {
             held_from,
             smooth,
             begins,
+            differs,
         })
     }
 
@@ -333,6 +337,7 @@ pub(crate) struct Ready {
     held_from: Option<f64>,
     smooth: Option<String>,
     begins: Option<String>,
+    differs: Vec<String>,
 }
 
 impl Ready {
@@ -366,6 +371,7 @@ impl Ready {
             held_from: self.held_from,
             smooth: self.smooth.clone(),
             begins: self.begins.clone(),
+            differs: self.differs.clone(),
         })
     }
 }

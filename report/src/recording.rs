@@ -2,7 +2,7 @@
 
 use std::fmt::Write as _;
 
-use appell_recordings::{DataSet, Finding, Part, Role, Run};
+use appell_recordings::{DataSet, Difference, Finding, Part, Role, Run};
 use appell_spec::Severity;
 
 use crate::tables::Table;
@@ -43,25 +43,27 @@ fn runs(set: &DataSet) -> String {
     }
     let mut text = table.text();
     for run in &set.runs {
-        for difference in &run.differences {
-            let mut all = set.mechanism.parameters.iter();
-            let own = all.find(|own| own.label.name == difference.parameter);
-            let Some(unit) = own.map(|own| &own.label.unit) else {
-                continue;
-            };
-            let by = unit.from_si(difference.by);
-            let sign = if by < 0.0 { "" } else { "+" };
-            let by = short(by);
-            let _ = writeln!(
-                text,
-                "in {}: {} differs by {sign}{by} {} from the other runs",
-                run.name,
-                set.named(&difference.parameter),
-                unit.text
-            );
+        for difference in differences(set, run) {
+            let _ = writeln!(text, "in {}: {difference}", run.name);
         }
     }
     text
+}
+
+/// What differs in a run, a sentence for each parameter: `cart.mass differs by +0.2 kg from the other runs`.
+pub fn differences(set: &DataSet, run: &Run) -> Vec<String> {
+    let sentence = |difference: &Difference| {
+        let mut all = set.mechanism.parameters.iter();
+        let own = all.find(|own| own.label.name == difference.parameter)?;
+        let (unit, name) = (&own.label.unit, set.named(&difference.parameter));
+        let by = unit.from_si(difference.by);
+        let (sign, by) = (if by < 0.0 { "" } else { "+" }, short(by));
+        Some(format!(
+            "{name} differs by {sign}{by} {} from the other runs",
+            unit.text
+        ))
+    };
+    run.differences.iter().filter_map(sentence).collect()
 }
 
 /// Role of a run.

@@ -109,6 +109,11 @@ impl Plan {
         self.recorded.as_ref().map(|table| table.smooth.as_slice())
     }
 
+    /// What differs in a recorded run from the model, see [`Table::differs`].
+    pub fn recorded_differs(&self) -> &[String] {
+        self.recorded.as_ref().map_or(&[], |table| &table.differs)
+    }
+
     /// Where a recorded run begins, if the motion does not, see [`Table::begins`].
     pub fn recorded_begins(&self) -> Option<&str> {
         self.recorded

@@ -7,6 +7,7 @@ use appell_recordings::between::Smooth;
 use appell_recordings::csv::Rows;
 use appell_recordings::limits::MAX_MISTAKES;
 use appell_recordings::{DataError, DataSet, MANIFEST, Measured, Role, Run};
+use appell_report::recording::differences;
 use appell_runtime::Signal;
 use appell_runtime::inputs::TabulatedInputs;
 use appell_runtime::model::{Interpolation, Model, Quantity, SignalTable};
@@ -31,6 +32,8 @@ pub struct Table {
     pub smooth: Vec<(String, f64)>,
     /// Coordinates as a run of a data set measures them in its first row, where the motion begins elsewhere.
     pub begins: Option<String>,
+    /// What differs in that run, which the motion does not know.
+    pub differs: Vec<String>,
 }
 
 /// The inputs of a CSV file, for a motion until a time in s.
@@ -101,6 +104,7 @@ pub fn read(
         until: to,
         smooth: smooth.collect(),
         begins: columns.begins,
+        differs: columns.differs,
     })
 }
 
@@ -131,6 +135,7 @@ fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Resu
         return Err(Error::request(Field::Recorded, message));
     };
     let begins = begins(&set, &set.runs[place], setup);
+    let differs = differences(&set, &set.runs[place]);
     let run = set.runs.swap_remove(place);
     let mut inputs: Vec<Column> = Vec::new();
     for (channel, values) in set.channels.iter().zip(run.values) {
@@ -157,6 +162,7 @@ fn recorded(description: &str, run: &str, name: &str, setup: &Setup<'_>) -> Resu
         times,
         inputs,
         begins,
+        differs,
     })
 }
 
@@ -181,6 +187,7 @@ struct Columns {
     times: Vec<f64>,
     inputs: Vec<Column>,
     begins: Option<String>,
+    differs: Vec<String>,
 }
 
 /// `hip = 0.347 rad, knee = -0.783 rad`: measured coordinates in the first row of a run, if the motion begins elsewhere.
@@ -244,6 +251,7 @@ impl<R: BufRead> Reader<R> {
             times: Vec::new(),
             inputs,
             begins: None,
+            differs: Vec::new(),
         };
         let Some(time) = time else {
             let help = "name the column of times in seconds `t`";

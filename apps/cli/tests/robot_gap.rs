@@ -177,12 +177,24 @@ fn what_differs_in_a_run_of_a_robot_has_the_names_of_its_file() {
     folder.write("recording.toml", &format!("{DESCRIPTION}{differs}"));
     let told = folder.done(&["recording", "."]).stdout;
     for line in [
-        "in b.csv: known_payload_1_mass differs by +0.500 kg from the other runs",
+        "in b.csv: payload_on_cart_mass differs by +0.500 kg from the other runs",
         "in b.csv: x.damping differs by +0.1",
         "in b.csv: cart.mass differs by +0.2",
     ] {
         assert!(told.contains(line), "{told}");
     }
+    // A motion with the commands of that run has the numbers of the model.
+    let motion = [
+        "simulate",
+        "robot.xml",
+        "--t-end-s",
+        "1",
+        "--inputs",
+        "recording.toml:b.csv",
+    ];
+    let told = folder.done(&motion).stderr;
+    let line = "in the run cart.mass differs by +0.200 kg from the other runs, which the motion leaves out";
+    assert!(told.contains(line), "{told}");
     let wrong = differs.replace("on = \"cart\"", "on = \"card\"");
     folder.write("recording.toml", &format!("{DESCRIPTION}{wrong}"));
     folder.fails(

@@ -299,6 +299,7 @@ pub(crate) fn restored(
         held_from,
         smooth: None,
         begins: None,
+        differs: Vec::new(),
     };
     Ok(Simulated {
         model: Arc::clone(model),

@@ -160,12 +160,12 @@ pub(crate) fn with_payloads(
         let name = match bodies.entry(place) {
             Entry::Occupied(known) => known.get().clone(),
             Entry::Vacant(other) => {
-                let Some((point, frame)) = carrier(mechanism, robot, &payload.on) else {
+                let Some([point, frame, own]) = carrier(mechanism, robot, &payload.on) else {
                     let known = mechanism.bodies.iter().map(|body| body.name.as_str());
                     fields.unknown("body", &payload.on, payload.place.clone(), known);
                     continue;
                 };
-                let name = free_name(mechanism, count);
+                let name = free_name(mechanism, &format!("payload_on_{own}"), count);
                 items.push_str(&body(&name, point, frame, payload.at));
                 other.insert(name).clone()
             }
@@ -189,12 +189,12 @@ pub(crate) fn with_payloads(
     (spec, differences)
 }
 
-/// The origin of a body and its frame: a point of the spec, or the centre of mass of a body.
+/// The origin of a body, its frame and its name in the spec: a point of the spec, or the centre of mass of a body.
 fn carrier<'m>(
     mechanism: &'m Mechanism,
     robot: Option<&Robot>,
     name: &str,
-) -> Option<(&'m str, &'m str)> {
+) -> Option<[&'m str; 3]> {
     let frame = |id| mechanism.frames[id].name.as_str();
     let bodies = robot.map(|robot| robot.dictionary.bodies.iter());
     let of_file = bodies.and_then(|mut bodies| bodies.find(|body| body.name == name));
@@ -203,10 +203,11 @@ fn carrier<'m>(
         let point = mechanism.points.iter().find(|point| point.name == name);
         if let Some(body) = mechanism.bodies.iter().find(|body| body.name == name) {
             let origin = point.unwrap_or(&mechanism.points[body.centre]);
-            return Some((&origin.name, frame(body.frame.unwrap_or(origin.frame))));
+            let frame = frame(body.frame.unwrap_or(origin.frame));
+            return Some([&origin.name, frame, &body.name]);
         }
         if let Some(point) = point {
-            return Some((&point.name, frame(point.frame)));
+            return Some([&point.name, frame(point.frame), &point.name]);
         }
     }
     None
@@ -256,20 +257,20 @@ pub(crate) fn of_runs(
     all
 }
 
-/// A name that is not in the spec.
-fn free_name(mechanism: &Mechanism, own: usize) -> String {
+/// A name that is not in the spec, nor that of another payload.
+fn free_name(mechanism: &Mechanism, wanted: &str, own: usize) -> String {
     let is_known = |name: &str| {
         mechanism.bodies.iter().any(|body| body.name == name)
             || mechanism.points.iter().any(|point| point.name == name)
     };
-    let mut number = own + 1;
-    loop {
-        let name = format!("known_payload_{number}");
-        if !is_known(&name) {
-            return name;
-        }
-        number += mechanism.bodies.len() + 1;
+    let mut name = match own {
+        0 => wanted.to_owned(),
+        own => format!("{wanted}_{}", own + 1),
+    };
+    while is_known(&name) {
+        name.push_str("_too");
     }
+    name
 }
 
 fn body(name: &str, point: &str, frame: &str, at: [f64; 3]) -> String {

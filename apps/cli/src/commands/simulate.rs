@@ -195,6 +195,7 @@ impl Simulate {
             held_from,
             smooth,
             begins,
+            differs,
         } = simulated(&model, &motion)?;
         let failure = failure.or(undefined);
 
@@ -207,6 +208,11 @@ impl Simulate {
         if let Some(begins) = begins {
             note(&format!(
                 "the run begins at {begins}; to compare with it, begin there too by --initial"
+            ));
+        }
+        for difference in differs {
+            note(&format!(
+                "in the run {difference}, which the motion leaves out; --set gives a parameter another value"
             ));
         }
         if let Some(remark) = smooth {

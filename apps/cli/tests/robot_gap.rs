@@ -282,8 +282,17 @@ const LINKS: &str = r#"<mujoco model="two_links">
 </mujoco>
 "#;
 
+/// Number of rows of a motion for one of its recording, every 10 ms.
+const FINE: usize = 5;
+
 /// Diagnoses runs of the links as a file says they are; returns the first hypothesis.
 fn diagnosed_links(folder: &Folder, truth: &str) -> Value {
+    let report = report_on_links(folder, truth, 0);
+    report["which"][0].clone()
+}
+
+/// The same with readings of the elbow that are late by a number of rows of the motion; returns the report.
+fn report_on_links(folder: &Folder, truth: &str, late: usize) -> Value {
     folder.write("robot.xml", LINKS);
     let description = r#"
 mechanism = "robot.xml"
@@ -296,6 +305,7 @@ mechanism = "robot.xml"
 [channels]
 shoulder = { measures = "shoulder", unit = "rad", noise_std = 2e-4 }
 elbow_pos = { measures = "elbow", unit = "rad", noise_std = 2e-4 }
+elbow_vel = { measures = "elbow.velocity", unit = "rad/s", noise_std = 2e-3 }
 shoulder_cmd = { input = "shoulder_servo", unit = "rad" }
 elbow_cmd = { input = "elbow_servo", unit = "rad" }
 [runs]
@@ -305,17 +315,22 @@ test = ["c.csv"]
     folder.write("recording.toml", description);
     let mut noise = Noise::seeded(7);
     for (phase, name) in [(0.0, "a.csv"), (1.0, "b.csv"), (2.0, "c.csv")] {
-        folder.write(name, &run_of_links(folder, truth, phase, &mut noise));
+        folder.write(name, &run_of_links(folder, truth, phase, late, &mut noise));
     }
     folder.done(&["diagnose", "--data", ".", "--json", "report.json"]);
-    let report: Value = serde_json::from_str(&folder.read("report.json")).expect("JSON");
-    report["which"][0].clone()
+    serde_json::from_str(&folder.read("report.json")).expect("JSON")
 }
 
-/// A run of the links whose commands are sums of sines with a phase.
-fn run_of_links(folder: &Folder, truth: &str, phase: f64, noise: &mut Noise) -> String {
-    let command = |row: u32| {
-        let t = 0.01 * f64::from(row);
+/// A run of the links whose commands are sums of sines with a phase; readings of the elbow are late by some rows of the
+/// motion.
+fn run_of_links(
+    folder: &Folder,
+    truth: &str,
+    phase: f64,
+    late: usize,
+    noise: &mut Noise,
+) -> String {
+    let command = |t: f64| {
         let slow = [(1.1 * t + phase).sin(), (1.7 * t).sin()];
         let fast = [(3.7 * t).sin(), (4.3 * t + phase).cos()];
         let of =
@@ -324,13 +339,14 @@ fn run_of_links(folder: &Folder, truth: &str, phase: f64, noise: &mut Noise) -> 
     };
     let mut commands = "t,shoulder_servo,elbow_servo\n".to_owned();
     for row in 0..600 {
-        let [shoulder, elbow] = command(row);
-        let _ = writeln!(commands, "{},{shoulder},{elbow}", 0.01 * f64::from(row));
+        let t = 0.01 * f64::from(row);
+        let [shoulder, elbow] = command(t);
+        let _ = writeln!(commands, "{t},{shoulder},{elbow}");
     }
     folder.write("commands.csv", &commands);
-    let [shoulder, elbow] = command(0);
+    let [shoulder, elbow] = command(0.0);
     let starts = [format!("shoulder={shoulder}"), format!("elbow={elbow}")];
-    let asked = "--t-end-s 5.99 --dt-s 0.01 --inputs commands.csv --csv motion.csv";
+    let asked = "--t-end-s 5.99 --dt-s 0.002 --inputs commands.csv --csv motion.csv";
     let mut asked: Vec<&str> = asked.split(' ').collect();
     asked.splice(0..0, ["simulate", truth]);
     asked.extend(["--initial", &starts[0], "--initial", &starts[1]]);
@@ -338,24 +354,47 @@ fn run_of_links(folder: &Folder, truth: &str, phase: f64, noise: &mut Noise) -> 
     let motion = folder.read("motion.csv");
     let mut motion = motion.lines().filter(|line| !line.starts_with('#'));
     let names: Vec<&str> = motion.next().expect("a heading").split(',').collect();
-    let column = |name: &str| names.iter().position(|own| *own == name).expect("a column");
-    let columns = [column("shoulder"), column("elbow")];
-    let mut run = "t,shoulder,elbow_pos,shoulder_cmd,elbow_cmd\n".to_owned();
-    for (row, line) in (0..).zip(motion) {
-        let values: Vec<&str> = line.split(',').collect();
-        let [shoulder, elbow] = columns.map(|column| {
-            let value: f64 = values[column].parse().expect("a number");
-            value + 2e-4 * noise.next()
-        });
-        let commands = command(row);
-        let t = 0.01 * f64::from(row);
-        let _ = writeln!(
-            run,
-            "{t},{shoulder},{elbow},{},{}",
-            commands[0], commands[1]
-        );
+    let rows: Vec<Vec<&str>> = motion.map(|line| line.split(',').collect()).collect();
+    let mut run = "t,shoulder,elbow_pos,elbow_vel,shoulder_cmd,elbow_cmd\n".to_owned();
+    for row in (0..rows.len()).step_by(FINE).filter(|row| *row >= late) {
+        let mut reading = |name: &str, row: usize, deviation: f64| {
+            let column = names.iter().position(|own| *own == name).expect("a column");
+            let value: f64 = rows[row][column].parse().expect("a number");
+            value + deviation * noise.next()
+        };
+        let shoulder = reading("shoulder", row, 2e-4);
+        let elbow = reading("elbow", row - late, 2e-4);
+        let rate = reading("v_elbow", row - late, 2e-3);
+        let t: f64 = rows[row][0].parse().expect("a time");
+        let [first, second] = command(t);
+        let _ = writeln!(run, "{t},{shoulder},{elbow},{rate},{first},{second}");
     }
     run
+}
+
+#[test]
+fn a_delay_of_an_encoder_is_one_effect_on_its_position_and_its_rate() {
+    let folder = Folder::new();
+    folder.write("true.xml", LINKS);
+    let report = report_on_links(&folder, "true.xml", 7);
+    // A servo closes its loop over the encoder itself: a command that is late by as much moves this joint alike.
+    let leading = &report["tied"][0];
+    let delay = serde_json::json!("sensor_delay@elbow");
+    let alone = report["which"][0]["effects"] == serde_json::json!([delay]);
+    let tied = leading.as_array().into_iter().flatten();
+    assert!(
+        alone || tied.into_iter().any(|own| *own == delay),
+        "{report:#}"
+    );
+    let which = report["which"].as_array().expect("hypotheses").iter();
+    let mut which = which.filter(|own| own["effects"] == serde_json::json!([delay]));
+    let own = which.next().expect("the delay of the encoder");
+    for (place, name) in ["elbow_pos", "elbow_vel"].into_iter().enumerate() {
+        let value = &own["parameters"][place];
+        assert_eq!(value["name"], format!("sensor_delay@elbow.{name}_delay"));
+        let delay = value["value"].as_f64().expect("a number");
+        assert!((delay - 0.014).abs() < 0.002, "{value}");
+    }
 }
 
 #[test]

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
 """From a robot file and logs to a corrected file, judged by MuJoCo.
 
-    python3 benches/robots_gap/run.py FOLDER [CASE ...] [--appell PROGRAM] [--peer] [--jobs N] [--reports DIR] [--out FILE] [--write]
+    python3 benches/robots_gap/run.py FOLDER [CASE ...] [--appell PROGRAM] [--peer | --peer-of FILE] [--jobs N] [--reports DIR] [--out FILE] [--write]
 
 FOLDER holds `cases/NAME/` (a recording.toml with its robot file and recordings) and `LABELS.json`. appell diagnoses a case
 and corrects the file, which is rolled out in MuJoCo on held-out runs beside the nominal file and the true one; with --peer
-so does mujoco.sysid. --write puts the table between its markers in docs/performance.md. Needs numpy and mujoco, for
+so does mujoco.sysid; --peer-of takes its results from the --out of an earlier run with --peer. --write puts the table between its markers in docs/performance.md. Needs numpy and mujoco, for
 --peer mujoco[sysid]. README.md tells more.
 """
 
@@ -33,6 +33,7 @@ def arguments():
     parser.add_argument("names", nargs="*", metavar="CASE")
     parser.add_argument("--appell", default="appell")
     parser.add_argument("--peer", action="store_true", help="run mujoco.sysid beside")
+    parser.add_argument("--peer-of", type=Path, metavar="FILE", help="the results of mujoco.sysid in an earlier --out")
     parser.add_argument("--jobs", type=int, default=1)
     parser.add_argument("--timeout", type=float, default=1800)
     parser.add_argument("--reports", type=Path, help="keep reports and corrected files there")
@@ -46,6 +47,9 @@ def about(given):
     commit = subprocess.run(["git", "-C", ROOT, "rev-parse", "--short", "HEAD"], capture_output=True, text=True, check=False)
     folder = given.folder.name
     command = f"benches/robots_gap/run.py {folder}" + " --peer" * given.peer
+    if given.peer_of:
+        day = datetime.date.fromtimestamp(given.peer_of.stat().st_mtime).isoformat()
+        command += f" --peer-of {given.peer_of.name}, a run of {day} on the same machine"
     return {"folder": folder, "command": command, "date": datetime.date.today().isoformat(), "commit": commit.stdout.strip(),
             "mujoco": mujoco.__version__}
 
@@ -53,19 +57,20 @@ def about(given):
 def main():
     given = arguments()
     wanted = list(cases(given.folder, given.names))
+    earlier = json.loads(given.peer_of.read_text()) if given.peer_of else {}
     begun = about(given)  # the tree may change while the cases run
 
     def one(case):
         began = time.time()
         own = tools.by_appell(case, given.appell, given.reports, given.timeout)
-        peer = tools.by_peer(case, given.reports, given.timeout) if given.peer else None
+        peer = tools.by_peer(case, given.reports, given.timeout) if given.peer else earlier.get(case.name, {}).get("peer")
         print(case.name, json.dumps(own), json.dumps(peer), f"{time.time() - began:.0f} s", file=sys.stderr, flush=True)
         return case, own, peer
 
     with ThreadPoolExecutor(given.jobs) as pool:
         results = list(pool.map(one, wanted))
     found = [(case, own) for case, own, _ in results]
-    peers = {case.name: peer for case, _, peer in results} if given.peer else {}
+    peers = {case.name: peer for case, _, peer in results} if given.peer or given.peer_of else {}
     print("\n".join([*tables.rows(found, peers), "", *tables.summary(found, peers)]))
     if given.out:
         given.out.write_text(json.dumps({case.name: {"appell": own, "peer": peer} for case, own, peer in results}, indent=1))

@@ -166,6 +166,12 @@ fn bodies_that_are_fixed_together_have_one_inertia() {
     assert!(after.spec.contains("mass = \"0.8 [kg]\""), "{}", after.spec);
     let inertial = "<inertial pos=\"0 0 -0.114285714286\" mass=\"0.7\" ";
     assert!(better.text.contains(inertial), "{}", better.text);
+    let told = "shank together with foot, fixed to it: mass 0.8 (was 0.4)";
+    assert!(
+        better.edits.iter().any(|edit| edit == told),
+        "{:?}",
+        better.edits
+    );
     // More than is left to the shank is taken from the foot as well.
     let lighter = Change::Mass {
         body: "shank".to_owned(),

@@ -255,6 +255,7 @@ impl<'x> Sheet<'x, '_> {
                 continue;
             }
             self.reshaped = true;
+            self.tell_whole(&group);
             if self.format == Format::Urdf {
                 self.write_links(&group)?;
                 continue;
@@ -264,6 +265,22 @@ impl<'x> Sheet<'x, '_> {
             self.add_to_total(group.after.mass - group.before.mass)?;
         }
         Ok(())
+    }
+
+    /// Tells the mass of bodies that are fixed to each other, since only that of all of them is known.
+    fn tell_whole(&mut self, group: &Group) {
+        let [before, after] = [group.before.mass, group.after.mass].map(number);
+        let others = self.others(group);
+        if others.is_empty() || before == after {
+            return;
+        }
+        let links = &self.robot.links;
+        let others = others.iter().map(|(link, _)| links[*link].name.as_str());
+        self.said.push(format!(
+            "{} together with {}, fixed to it: mass {after} (was {before})",
+            links[group.head].name,
+            others.collect::<Vec<_>>().join(", ")
+        ));
     }
 
     fn write_group(&mut self, group: &Group) -> Result<(), Refused> {

@@ -374,7 +374,7 @@ impl Pending<'_> {
         let kind = element.tag_name().name();
         let mut around = element.ancestors();
         let name = around.find_map(|own| own.attribute("name"));
-        let mut changes = Vec::new();
+        let (mut changes, mut dropped) = (Vec::new(), Vec::new());
         if let Some(renamed) = self.renamed {
             changes.push(format!("a `{renamed}` with its numbers written out"));
         }
@@ -388,10 +388,11 @@ impl Pending<'_> {
                     changes.push(format!("{key} {value} (was {before})"));
                 }
                 (None, Some(value)) => changes.push(format!("{key} {value}")),
-                (Some(_), None) if self.renamed.is_none() => changes.push(format!("no {key}")),
+                (Some(_), None) if self.renamed.is_none() => dropped.push(format!("no {key}")),
                 _ => {}
             }
         }
+        changes.append(&mut dropped);
         let name = name.map_or(String::new(), |name| format!(" {name}"));
         (!changes.is_empty()).then(|| format!("{kind}{name}: {}", changes.join(", ")))
     }

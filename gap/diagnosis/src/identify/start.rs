@@ -242,3 +242,20 @@ pub(super) fn forces(
     };
     squares.into_iter().zip(inertias).map(size).collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_late_reading_of_the_first_row_is_between_two_later_ones() {
+        let (times, inputs) = (vec![1.0, 1.1, 1.2, 1.3], Vec::new());
+        let values = vec![f64::NAN, 2.0, 6.0, 4.0];
+        let recording = Recording::new(times, inputs, values).expect("a recording");
+        // The last one stands for all later times.
+        for (after, value) in [(0.0, 2.0), (0.05, 4.0), (0.1, 6.0), (0.15, 5.0), (9.0, 4.0)] {
+            let found = shown_at(&recording, 0, after).expect("a reading");
+            assert!((found - value).abs() < 1e-9, "{after}: {found}");
+        }
+    }
+}

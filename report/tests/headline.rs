@@ -168,7 +168,7 @@ fn all_shares_of_a_sentence_are_parts_of_the_same_gap() {
     ];
     let told = sentence(&report(GapVerdict::Explained, vec![friction], budget));
     let says = "re-fitted parameters close 60.0 % of the gap; dry@x closes 30.0 % [20.0 %, 35.0 %] of the gap; 10.0 % \
-                stays, an error of 10.0 times the noise floor";
+                stays, an error of 10.0 times the noise, whose floor is 1.00";
     assert!(told.starts_with(says), "{told}");
 }
 
@@ -189,7 +189,7 @@ fn what_the_library_lacks_does_not_hide_what_parameters_close() {
     let mut report = report(GapVerdict::Unexplained, which(), budget());
     report.left = Some(left("an error of x", 70.0));
     let told = Headline::of(&report);
-    let says = "re-fitted parameters close 99.6 % of the gap; 0.4 % stays, an error of 10.0 times the noise floor; no \
+    let says = "re-fitted parameters close 99.6 % of the gap; 0.4 % stays, an error of 10.0 times the noise, whose floor is 1.00; no \
                 effect of the library explains the rest: an error of x";
     assert_eq!(told.cause, says);
     assert_eq!(
@@ -354,8 +354,7 @@ fn the_largest_part_comes_first_if_it_has_no_cause() {
         part("b@x", 0.1, [0.05, 0.2]),
         part("unexplained", 0.62, [0.5, 0.7]),
     ];
-    let says =
-        "most of the gap (62.0 %, an error of 10.0 times the noise floor) has no known cause; ";
+    let says = "most of the gap (62.0 %, an error of 10.0 times the noise, whose floor is 1.00) has no known cause; ";
     let told = Headline::of(&report).cause;
     assert!(told.starts_with(says), "{told}");
 }

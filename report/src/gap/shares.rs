@@ -136,11 +136,11 @@ fn doubted(report: &Report, effect: &str) -> Option<String> {
     Some(format!(" ({}: plausible?)", compared(known)))
 }
 
-/// `, an error of 385 times the noise floor`: a small part of the gap of a model that diverges is a large error.
+/// `, an error of 385 times the noise, whose floor is 1.2`: a small part of the gap of a model that diverges is a large error.
 fn error_left(far: &HowFar) -> Option<String> {
-    let times = far.with_effect / far.noise_floor;
-    let is_known = times.is_finite();
-    is_known.then(|| format!(", an error of {} times the noise floor", short(times)))
+    let [times, floor] = [far.with_effect, far.noise_floor].map(short);
+    let is_known = (far.with_effect / far.noise_floor).is_finite();
+    is_known.then(|| format!(", an error of {times} times the noise, whose floor is {floor}"))
 }
 
 /// A remark on an interval that hardly bounds a share.

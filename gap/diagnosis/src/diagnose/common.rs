@@ -3,49 +3,19 @@
 //! prior densities of their differences at zero (J. M. Dickey, *The weighted likelihood ratio, linear hypotheses on normal
 //! location parameters*, The Annals of Mathematical Statistics 42, 1971).
 
-use std::collections::BTreeMap;
 use std::f64::consts::{LN_2, TAU};
 
 use appell_estimate::Fit;
 use nalgebra::{DMatrix, DVector};
 
-use super::bench::Bench;
-use crate::effects::Acts;
-
-/// Change of the log evidence of a hypothesis if the sizes at a group of signals may be separate or the same, with the
-/// same probability; `densities` are the log prior densities of the values of the fit.
-pub(super) fn of_groups(
-    bench: &Bench<'_>,
-    members: &[usize],
-    fit: &Fit,
-    densities: &BTreeMap<usize, f64>,
-) -> f64 {
-    let mut groups: BTreeMap<String, Vec<usize>> = BTreeMap::new();
-    for &member in members {
-        let candidate = bench.candidate(member);
-        if candidate.is_of_group() && candidate.acts != Acts::Items {
-            groups.entry(candidate.name()).or_default().push(member);
-        }
-    }
-    groups.retain(|_, group| group.len() > 1);
-    if groups.is_empty() {
-        return 0.0;
-    }
-    let (setup, Ok(covariance)) = (bench.setup(members), fit.covariance()) else {
-        return 0.0;
-    };
-    let place = |member: &usize| {
-        let free = bench.of_signal(bench.candidate(*member).acts, &setup)?;
-        let mut all = fit.free.iter();
-        let place = all.position(|own| own.unknown == free.unknown)?;
-        Some((place, *densities.get(&place)?))
-    };
-    let gain = |group: &Vec<usize>| {
-        let places: Option<Vec<(usize, f64)>> = group.iter().map(place).collect();
-        let gain = of_common(&fit.coordinates, &covariance, &places?)?;
-        Some(gain.max(0.0) + (-gain.abs()).exp().ln_1p() - LN_2)
-    };
-    groups.values().filter_map(gain).sum()
+/// Change of the log evidence if the values of a fit with these places and log prior densities may be separate or the
+/// same, with the same probability; none if they are not determined.
+pub(super) fn of_group(fit: &Fit, places: &[(usize, f64)]) -> f64 {
+    let covariance = fit.covariance().ok();
+    let gain = covariance.and_then(|own| of_common(&fit.coordinates, &own, places));
+    gain.map_or(0.0, |gain| {
+        gain.max(0.0) + (-gain.abs()).exp().ln_1p() - LN_2
+    })
 }
 
 /// Log evidence of a common value against separate ones with these places and log prior densities.

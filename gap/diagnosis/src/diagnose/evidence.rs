@@ -142,7 +142,9 @@ impl Evidence {
             occam += density;
             densities.insert(i, density);
         }
-        occam += common::of_groups(bench, members, fit, &densities);
+        let groups = groups(bench, members, fit, &densities);
+        let of_groups = groups.iter().map(|places| common::of_group(fit, places));
+        occam += of_groups.sum::<f64>();
         // A member whose size is zero, at its limit, is not significant.
         for i in own..fit.free.len() {
             let free = &fit.free[i];
@@ -166,6 +168,36 @@ impl Evidence {
     pub(super) fn log(&self) -> f64 {
         self.log_likelihood + self.by_inputs + self.occam
     }
+}
+
+/// The places of the sizes of each effect at a group of signals, with their log prior densities.
+fn groups(
+    bench: &Bench<'_>,
+    members: &[usize],
+    fit: &Fit,
+    densities: &BTreeMap<usize, f64>,
+) -> Vec<Vec<(usize, f64)>> {
+    let mut groups: BTreeMap<String, Option<Vec<(usize, f64)>>> = BTreeMap::new();
+    let setup = bench.setup(members);
+    for candidate in members.iter().map(|&member| bench.candidate(member)) {
+        if !candidate.is_of_group() || candidate.acts == Acts::Items {
+            continue;
+        }
+        let free = bench.of_signal(candidate.acts, &setup);
+        let place = free.and_then(|free| {
+            let mut all = fit.free.iter();
+            let place = all.position(|own| own.unknown == free.unknown)?;
+            Some((place, *densities.get(&place)?))
+        });
+        let group = groups
+            .entry(candidate.name())
+            .or_insert_with(|| Some(Vec::new()));
+        *group = group
+            .take()
+            .and_then(|group| Some([group, vec![place?]].concat()));
+    }
+    let known = groups.into_values().flatten();
+    known.filter(|group| group.len() > 1).collect()
 }
 
 /// The smallest size; of an effect at all drives the one that most of them exceed counts, for some may not have it.

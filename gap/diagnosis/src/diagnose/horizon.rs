@@ -184,10 +184,18 @@ impl Comparison {
     /// if one step ahead, with process noise, they predict worse than the nominal model or than with fewer effects. A
     /// filter does not carry the coordinates that effects add. `levels` are those of the nominal model one step ahead.
     fn without_imitations(&mut self, bench: &Bench<'_>, over: &Bench<'_>, levels: &Fitted) {
-        let one_step = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();
+        let taken = |fitted: &Fitted| bench.as_it_is(over, fitted, levels).ok();
         // One-step predictions that diverge tell nothing.
-        let Some(nominal) = one_step(self.nominal()) else {
+        let Some(without) = taken(self.nominal()) else {
             return;
+        };
+        let nominal = without.fit.log_likelihood;
+        let one_step = |fitted: &Fitted| {
+            let taken = taken(fitted)?;
+            if bench.is_late(&fitted.members) {
+                return Some(nominal + bench.gain_of_late(&without, &taken).ok()?);
+            }
+            Some(taken.fit.log_likelihood)
         };
         let all: Vec<Fitted> = self.fits.iter().map(|(own, _)| own.clone()).collect();
         let within = |fitted: &Fitted| {

@@ -44,10 +44,10 @@ impl Search<'_, '_> {
         let bench = self.bench;
         let acts = bench.candidate(member).acts;
         let instead = match acts {
+            // Of a group no member is replaced alone.
+            _ if bench.candidate(member).is_of_group() => None,
             Acts::Late(channel) => lag(bench, whole, channel)?,
-            Acts::Delay(input) if !bench.candidate(member).is_of_group() => {
-                delays_of_encoder(bench, whole, input)?
-            }
+            Acts::Delay(input) => delays_of_encoder(bench, whole, input)?,
             _ => None,
         };
         let Some(instead) = instead else {

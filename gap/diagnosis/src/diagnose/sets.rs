@@ -51,7 +51,6 @@ pub(super) struct Set {
 
 /// A candidate, or some components of one vector, as one effect.
 struct Choice {
-    name: String,
     /// Number of effects as which it counts.
     counts: usize,
     /// Logarithm of its share in the prior probability of the effect.
@@ -236,7 +235,6 @@ impl<'b, 'a> Sets<'b, 'a> {
                 choices.push(Choice {
                     counts: own.counts,
                     log_prior: of_components(self.bench.effects, &name),
-                    name,
                     candidates: vec![candidate],
                     columns,
                 });
@@ -252,7 +250,6 @@ impl<'b, 'a> Sets<'b, 'a> {
             for some in subsets {
                 let own = some.iter().map(|&place| &components[place]);
                 choices.push(Choice {
-                    name: name.clone(),
                     counts: counts(self.bench.effects, &name),
                     log_prior: of_components(self.bench.effects, &name),
                     candidates: own.clone().map(|(candidate, _)| *candidate).collect(),
@@ -301,15 +298,23 @@ impl<'b, 'a> Sets<'b, 'a> {
         sets
     }
 
-    /// A set of choices with different names, at its most probable level of process noise.
+    /// A set of different choices, at its most probable level of process noise.
     fn set(&self, choices: &[usize]) -> Option<Set> {
         let choices: Vec<&Choice> = choices.iter().map(|&place| &self.choices[place]).collect();
-        let of_fixed = |choice: &&Choice| {
-            let mut fixed = self.fixed.iter();
-            fixed.any(|&own| self.bench.candidate(own).name() == choice.name)
+        // An effect at a group of sites acts like those at each of them.
+        let is_same = |one: usize, other: usize| {
+            let [one, other] = [one, other].map(|own| self.bench.candidate(own));
+            one.name() == other.name() || one.acts == other.acts && one.acts != Acts::Items
         };
-        let is_twice =
-            (1..choices.len()).any(|i| choices[..i].iter().any(|own| own.name == choices[i].name));
+        let is_like = |choice: &Choice, others: &[usize]| {
+            let mut own = choice.candidates.iter();
+            own.any(|&one| others.iter().any(|&other| is_same(one, other)))
+        };
+        let of_fixed = |choice: &&Choice| is_like(choice, &self.fixed);
+        let is_twice = (1..choices.len()).any(|i| {
+            let mut before = choices[..i].iter();
+            before.any(|own| is_like(own, &choices[i].candidates))
+        });
         if is_twice || choices.iter().any(of_fixed) {
             return None;
         }

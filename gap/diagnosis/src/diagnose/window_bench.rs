@@ -158,16 +158,15 @@ impl Bench<'_> {
         )
     }
 
-    /// The log likelihood of a fit of another problem on these rows, with noise levels from those of the nominal model.
+    /// A fit of another problem on these rows, with noise levels from those of the nominal model.
     pub(super) fn as_it_is(
         &self,
         from: &Self,
         fitted: &Fitted,
         nominal: &Fitted,
-    ) -> Result<f64, DiagnoseError> {
+    ) -> Result<Fitted, DiagnoseError> {
         let levels = (&nominal.fit.values[..], &nominal.layout);
-        let taken = self.with_levels(from, fitted, levels, SHARES)?;
-        Ok(taken.fit.log_likelihood)
+        self.with_levels(from, fitted, levels, SHARES)
     }
 
     /// A fit of another problem with noise levels that are fitted from initial ones.

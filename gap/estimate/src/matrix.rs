@@ -1,6 +1,6 @@
 //! Products of small matrices, stored row by row.
 
-use nalgebra::{DMatrixView, DMatrixViewMut};
+use nalgebra::{DMatrixView, DMatrixViewMut, Dyn, Matrix, Storage};
 
 /// Number of products of numbers from which the packing of a blocked product is worth its time.
 const LARGE: usize = 4096;
@@ -9,14 +9,7 @@ const LARGE: usize = 4096;
 pub(super) fn multiply_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let columns = b.len() / inner;
     if a.len() * columns >= LARGE {
-        // By columns they are the transposed matrices: cᵀ += bᵀ aᵀ.
-        let rows = a.len() / inner;
-        let [a, b] = [
-            DMatrixView::from_slice(a, inner, rows),
-            DMatrixView::from_slice(b, columns, inner),
-        ];
-        DMatrixViewMut::from_slice(c, columns, rows).gemm(1.0, &b, &a, 1.0);
-        return;
+        return add_product(&turned(b, columns), &turned(a, inner), c);
     }
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
         for (&factor, b) in a.iter().zip(b.chunks_exact(columns)) {
@@ -39,10 +32,7 @@ pub(super) fn transposed_multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f
     let (rows, columns) = (a.len() / inner, b.len() / inner);
     c.fill(0.0);
     if a.len() * columns >= LARGE {
-        let a = DMatrixView::from_slice(a, rows, inner).transpose();
-        let b = DMatrixView::from_slice(b, columns, inner);
-        DMatrixViewMut::from_slice(c, columns, rows).gemm(1.0, &b, &a, 1.0);
-        return;
+        return add_product(&turned(b, columns), &turned(a, rows).transpose(), c);
     }
     for (a, b) in a.chunks_exact(rows).zip(b.chunks_exact(columns)) {
         for (&factor, c) in a.iter().zip(c.chunks_exact_mut(columns)) {
@@ -57,11 +47,7 @@ pub(super) fn transposed_multiply(a: &[f64], b: &[f64], inner: usize, c: &mut [f
 pub(super) fn multiply_transposed_add(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     let columns = b.len() / inner;
     if a.len() * columns >= LARGE {
-        let rows = a.len() / inner;
-        let a = DMatrixView::from_slice(a, inner, rows);
-        let b = DMatrixView::from_slice(b, inner, columns).transpose();
-        DMatrixViewMut::from_slice(c, columns, rows).gemm(1.0, &b, &a, 1.0);
-        return;
+        return add_product(&turned(b, inner).transpose(), &turned(a, inner), c);
     }
     for (a, c) in a.chunks_exact(inner).zip(c.chunks_exact_mut(columns)) {
         for (b, c) in b.chunks_exact(inner).zip(c) {
@@ -74,6 +60,20 @@ pub(super) fn multiply_transposed_add(a: &[f64], b: &[f64], inner: usize, c: &mu
 pub(super) fn multiply_transposed(a: &[f64], b: &[f64], inner: usize, c: &mut [f64]) {
     c.fill(0.0);
     multiply_transposed_add(a, b, inner, c);
+}
+
+/// A matrix with so many columns, transposed: by columns.
+fn turned(matrix: &[f64], columns: usize) -> DMatrixView<'_, f64> {
+    DMatrixView::from_slice(matrix, columns, matrix.len() / columns)
+}
+
+/// `cᵀ += bᵀ aᵀ` of transposed matrices, by blocks.
+fn add_product<B, A>(b: &Matrix<f64, Dyn, Dyn, B>, a: &Matrix<f64, Dyn, Dyn, A>, c: &mut [f64])
+where
+    B: Storage<f64, Dyn, Dyn>,
+    A: Storage<f64, Dyn, Dyn>,
+{
+    DMatrixViewMut::from_slice(c, b.nrows(), a.ncols()).gemm(1.0, b, a, 1.0);
 }
 
 /// `y += factor x`

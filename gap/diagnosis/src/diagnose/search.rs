@@ -521,16 +521,17 @@ impl<'b, 'a> Search<'b, 'a> {
         }
     }
 
-    /// A delayed channel loses rows: its likelihood is that of the best hypothesis without delayed channels plus the gain
-    /// on the remaining rows. What both explain counts on all rows.
+    /// A delayed channel loses rows: its likelihood is that of another hypothesis plus the gain on the remaining rows. Over
+    /// windows, which have few rows, that is the best one without delayed channels, so that what both explain counts on all
+    /// rows; otherwise it is the nominal model.
     pub(super) fn count_late(&self, fitted: &mut Fitted) -> Result<(), DiagnoseError> {
         if !self.bench.is_late(&fitted.members) {
             return Ok(());
         }
-        let others = self
-            .fits
-            .iter()
-            .filter(|own| own.is_there() && !self.bench.is_late(&own.members));
+        let is_rival = |own: &&Fitted| {
+            self.bench.is_over_windows() && own.is_there() && !self.bench.is_late(&own.members)
+        };
+        let others = self.fits.iter().filter(is_rival);
         let best = others.max_by(|a, b| self.log_posterior(a).total_cmp(&self.log_posterior(b)));
         let best = best.unwrap_or(&self.fits[0]);
         let gain = self.bench.gain_of_late(best, fitted)?;

@@ -539,8 +539,11 @@ impl<'b, 'a> Search<'b, 'a> {
         Ok(())
     }
 
-    /// The same for all hypotheses, after a search; without a likelihood on these rows they keep theirs.
+    /// The same for all hypotheses over windows, after a search; without a likelihood on these rows they keep theirs.
     pub(super) fn recount_late(&mut self) {
+        if !self.bench.is_over_windows() {
+            return;
+        }
         for place in 0..self.fits.len() {
             let mut evidence = self.fits[place].clone();
             if self.count_late(&mut evidence).is_ok() {

@@ -89,10 +89,14 @@ impl Scales {
                 ));
             }
             let cost = |taken: &Rational| {
+                let inverse = taken.recip();
                 let inside = inside.iter().filter(|&&value| value != taken).count();
-                let outside = around
-                    .iter()
-                    .filter(|(value, exponent)| !times(value, taken, *exponent).is_one());
+                let outside = around.iter().filter(|(value, exponent)| match exponent {
+                    0 => !value.is_one(),
+                    1 => *value != inverse,
+                    -1 => value != taken,
+                    _ => !times(value, taken, *exponent).is_one(),
+                });
                 inside + outside.count()
             };
             let mut best = (cost(&Rational::ONE), Rational::ONE);
@@ -107,7 +111,10 @@ impl Scales {
                         value.clone()
                     }
                 });
-            for candidate in candidates.chain(inverses) {
+            let possible = candidates
+                .chain(inverses)
+                .filter(|number| !number.is_zero());
+            for candidate in possible {
                 let cost = cost(&candidate);
                 if cost < best.0 {
                     best = (cost, candidate);

@@ -138,6 +138,9 @@ impl Rational {
         if self.is_zero() && exponent < 0 {
             return None;
         }
+        if exponent == -1 {
+            return Some(self.recip());
+        }
         let base = self.to_big();
         let bits = base.numer().bits() + base.denom().bits();
         (bits * u64::from(exponent.unsigned_abs()) <= MOST_BITS || bits <= 2)
@@ -228,6 +231,13 @@ impl Mul for &Rational {
     type Output = Rational;
 
     fn mul(self, other: Self) -> Rational {
+        // A long number times one needs no common divisor.
+        if self.is_one() {
+            return other.clone();
+        }
+        if other.is_one() {
+            return self.clone();
+        }
         if let Some(product) = integers(self, other).and_then(|(a, b)| a.checked_mul(b)) {
             return Rational::from(product);
         }

@@ -9,12 +9,12 @@ use appell_gap::diagnose::{ENGINE, Options, diagnose};
 
 /// Another text here means another engine: raise [`ENGINE`] and diagnose the cases of `tests/blind` anew.
 const NUMBERS: &str = "\
-engine 22
+engine 23
 viscous_friction@theta+spring@theta 15.2
 spring@theta 9.6
 unknown NaN
  0.0
-coulomb_friction@theta+spring@theta -40.3
+coulomb_friction@theta+spring@theta -40.2
 ";
 
 #[test]

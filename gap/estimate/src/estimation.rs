@@ -121,9 +121,18 @@ impl<'a> Estimation<'a> {
 
     /// The log-likelihood of all recordings.
     pub fn log_likelihood(&self, values: &[f64]) -> Result<f64, EstimateError> {
+        self.log_likelihood_within(values, &[])
+    }
+
+    /// The same, with a largest number of steps for each run.
+    pub(crate) fn log_likelihood_within(
+        &self,
+        values: &[f64],
+        most_steps: &[usize],
+    ) -> Result<f64, EstimateError> {
         self.check(values)?;
-        let runs = self.over_runs(|run| Ok(self.pass(run, values, false)?.log_likelihood()))?;
-        Ok(runs.into_iter().sum())
+        let of_run = |run| Ok(self.pass(run, values, false, most_steps)?.log_likelihood());
+        Ok(self.over_runs(of_run)?.into_iter().sum())
     }
 
     /// The log-likelihood of all recordings and its gradient with respect to all values.
@@ -134,7 +143,7 @@ impl<'a> Estimation<'a> {
     ///
     /// [`Model::has_adjoint`]: appell_runtime::model::Model::has_adjoint
     pub fn gradient(&self, values: &[f64]) -> Result<(f64, Vec<f64>), EstimateError> {
-        let kept = self.kept(values, &[])?;
+        let kept = self.kept(values, &[], &[])?;
         Ok((kept.log_likelihood(), kept.slopes().gradient))
     }
 
@@ -148,7 +157,7 @@ impl<'a> Estimation<'a> {
     ) -> Result<Vec<Vec<f64>>, EstimateError> {
         self.check(values)?;
         self.layout.place(Unknown::Initial { run, state: 0 })?;
-        let mut pass = self.pass(run, values, true)?;
+        let mut pass = self.pass(run, values, true, &[])?;
         let score = |rows| {
             let mut gradient = vec![0.0; self.layout.len()];
             adjoint(&mut pass, rows, &mut gradient);
@@ -161,7 +170,7 @@ impl<'a> Estimation<'a> {
     pub fn innovations(&self, values: &[f64]) -> Result<Vec<Vec<Innovation>>, EstimateError> {
         self.check(values)?;
         let of_run = |run| {
-            let pass = self.pass(run, values, false)?;
+            let pass = self.pass(run, values, false, &[])?;
             Ok(pass
                 .samples
                 .iter()
@@ -184,17 +193,19 @@ impl<'a> Estimation<'a> {
         in_parallel(runs, of).into_iter().collect()
     }
 
-    /// The filter along a run.
+    /// The filter along a run; without `most_steps` in any number of steps.
     pub(super) fn pass<'b>(
         &'b self,
         run: usize,
         values: &'b [f64],
         keeps: bool,
+        most_steps: &[usize],
     ) -> Result<Pass<'b>, EstimateError> {
-        let recording = &self.recordings[run];
         let actions = self.actions(run, values);
         let tape = keeps.then(|| self.blank_tape());
-        Pass::over(self.system(run), values, run, recording, &actions, tape)
+        let mut pass = self.fresh(run, values, &actions, tape, most_steps);
+        pass.over(&self.recordings[run], &actions)?;
+        Ok(pass)
     }
 
     /// The tapes; a poisoned lock is ignored, as no code panics while holding it.
@@ -216,9 +227,12 @@ impl<'a> Estimation<'a> {
         values: &'b [f64],
         actions: &[Action],
         tape: Option<Vec<f64>>,
+        most_steps: &[usize],
     ) -> Pass<'b> {
         let recording = &self.recordings[run];
-        Pass::new(self.system(run), values, run, recording, actions, tape)
+        let mut pass = Pass::new(self.system(run), values, run, recording, actions, tape);
+        pass.most_steps = most_steps.get(run).copied().unwrap_or(usize::MAX);
+        pass
     }
 
     /// Steps, changes of inputs and samples of a run.

@@ -12,6 +12,8 @@ use crate::gradient::kept::Kept;
 const REACH: f64 = 3.0;
 /// Sufficient decrease: least part of the predicted gain at which a step is accepted.
 pub(super) const SUFFICIENT_DECREASE: f64 = 0.05;
+/// Largest factor of the number of steps of the motion between two points of a search.
+const STIFFER: usize = 4;
 /// Rounding of a log-likelihood, relative to its magnitude.
 const ROUNDING: f64 = 1e-12;
 
@@ -39,6 +41,8 @@ pub(crate) struct Point {
     pub(crate) is_held: Vec<bool>,
     /// Fisher information of the coordinates that affect means, if it was computed with the gradient.
     pub(crate) means: Option<DMatrix<f64>>,
+    /// Number of steps of each run, if it was computed with it.
+    pub(crate) steps: Vec<usize>,
 }
 
 impl Posterior<'_, '_> {
@@ -54,7 +58,7 @@ impl Posterior<'_, '_> {
         let (values, coordinates) = self.clamped(values)?;
         let kept = self
             .estimation
-            .kept(&values, &self.selection.directions())?;
+            .kept(&values, &self.selection.directions(), &[])?;
         Ok(self.kept_point(&values, coordinates, kept))
     }
 
@@ -65,17 +69,33 @@ impl Posterior<'_, '_> {
         Ok(self.point(values, coordinates, log_likelihood, &slopes))
     }
 
-    /// The same with the information of the means, if the objective rises by more than `gain`; most other steps are
-    /// rejected before their gradient is computed.
-    pub(crate) fn bettered(&self, point: &Point, step: &DVector<f64>, gain: f64) -> Option<Point> {
+    /// The same with the information of the means, if the objective rises by more than `gain`, without many more steps of
+    /// the motion. Most other points are rejected before their gradient is computed, and where that `is_likely`, before
+    /// their information is.
+    pub(crate) fn bettered(
+        &self,
+        point: &Point,
+        step: &DVector<f64>,
+        gain: f64,
+        is_likely: bool,
+    ) -> Option<Point> {
         let (values, coordinates) = self.stepped(point, step);
         let (prior, _) = self.selection.prior(&coordinates);
         let may_be = |likelihood: f64| {
             let rise = likelihood + prior - point.objective;
             rise > gain || point.is_rounding(rise)
         };
+        let most_steps: Vec<usize> = point.steps.iter().map(|steps| STIFFER * steps).collect();
+        if is_likely {
+            let estimation = self.estimation;
+            let likelihood = estimation.log_likelihood_within(&values, &most_steps);
+            likelihood.ok().filter(|&likelihood| may_be(likelihood))?;
+        }
         let directions = self.selection.directions();
-        let kept = self.estimation.kept(&values, &directions).ok()?;
+        let kept = self
+            .estimation
+            .kept(&values, &directions, &most_steps)
+            .ok()?;
         let next =
             may_be(kept.log_likelihood()).then(|| self.kept_point(&values, coordinates, kept))?;
         (next.objective.is_finite() && point.is_worse_than(&next, gain)).then_some(next)
@@ -83,10 +103,11 @@ impl Posterior<'_, '_> {
 
     /// The point of a pass that is kept.
     fn kept_point(&self, values: &[f64], coordinates: DVector<f64>, kept: Kept<'_, '_>) -> Point {
-        let likelihood = kept.log_likelihood();
+        let (likelihood, steps) = (kept.log_likelihood(), kept.steps());
         let slopes = kept.slopes();
         Point {
             means: Some(self.selection.stretched(slopes.means, values)),
+            steps,
             ..self.point(values.to_vec(), coordinates, likelihood, &slopes.gradient)
         }
     }
@@ -128,6 +149,7 @@ impl Posterior<'_, '_> {
         Point {
             is_held: is_held.collect(),
             means: None,
+            steps: Vec::new(),
             objective: log_likelihood + prior,
             log_likelihood,
             gradient,

@@ -26,16 +26,20 @@ pub(crate) struct Slopes {
 }
 
 impl<'a> Estimation<'a> {
-    /// The pass at some values; with directions it takes three times as long.
+    /// The pass at some values, with a largest number of steps for each run; with directions it takes three times as long.
     pub(crate) fn kept<'e>(
         &'e self,
         values: &'e [f64],
         directions: &[Direction],
+        most_steps: &[usize],
     ) -> Result<Kept<'e, 'a>, EstimateError> {
         self.check(values)?;
         let of_run = |run| match directions {
-            [] => Ok((self.pass(run, values, true)?, DMatrix::zeros(0, 0))),
-            some => self.with_information(run, values, some),
+            [] => Ok((
+                self.pass(run, values, true, most_steps)?,
+                DMatrix::zeros(0, 0),
+            )),
+            some => self.with_information(run, values, some, most_steps),
         };
         let (passes, means): (_, Vec<_>) = self.over_runs(of_run)?.into_iter().unzip();
         Ok(Kept {
@@ -51,9 +55,10 @@ impl<'a> Estimation<'a> {
         run: usize,
         values: &'e [f64],
         directions: &[Direction],
+        most_steps: &[usize],
     ) -> Result<(Pass<'e>, DMatrix<f64>), EstimateError> {
         let actions = self.actions(run, values);
-        let pass = self.fresh(run, values, &actions, Some(self.blank_tape()));
+        let pass = self.fresh(run, values, &actions, Some(self.blank_tape()), most_steps);
         let columns = directions.len();
         let mut forward = Forward::new(self, pass, directions, None, columns);
         forward.over(&actions)?;
@@ -66,6 +71,11 @@ impl<'a> Estimation<'a> {
 impl Kept<'_, '_> {
     pub(crate) fn log_likelihood(&self) -> f64 {
         self.passes.iter().map(Pass::log_likelihood).sum()
+    }
+
+    /// Number of steps of each run.
+    pub(crate) fn steps(&self) -> Vec<usize> {
+        self.passes.iter().map(|pass| pass.steps).collect()
     }
 
     /// Its derivatives, by a reverse sweep that takes twice as long as a filter alone.

@@ -25,7 +25,7 @@ pub(crate) fn information(
 ) -> Result<DMatrix<f64>, EstimateError> {
     let count = levels.len();
     let actions = estimation.actions(run, values);
-    let pass = estimation.fresh(run, values, &actions, None);
+    let pass = estimation.fresh(run, values, &actions, None, &[]);
     let n = pass.sizes.n;
     let zeros = |len| vec![0.0; len];
     let mut forward = Forward {

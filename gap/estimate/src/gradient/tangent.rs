@@ -97,19 +97,20 @@ impl Estimation<'_> {
         let columns = directions.len() + candidates;
         let runs = self.over_runs(|run| {
             let actions = self.actions(run, values);
-            let mut pass = self.fresh(run, values, &actions, None);
+            let mut pass = self.fresh(run, values, &actions, None, &[]);
             pass.is_disturbed |= shapes.is_some_and(|own| own.along == Along::Disturbances);
             let mut forward = Forward::new(self, pass, directions, shapes, columns);
             forward.over(&actions)?;
             Ok((forward.pass.samples, forward.rows, forward.added_squares))
         })?;
-        let mut samples: Vec<(usize, Innovation)> = Vec::new();
-        let mut rows: Vec<f64> = Vec::new();
         let mut added_squares = vec![0.0; candidates];
-        for (run, (own, mut own_rows, squares)) in runs.into_iter().enumerate() {
-            samples.extend(own.iter().map(|sample| (run, sample.innovation)));
-            rows.append(&mut own_rows);
-            add_scaled(1.0, &squares, &mut added_squares);
+        let mut samples: Vec<(usize, Innovation, &[f64])> = Vec::new();
+        for (run, (own, rows, squares)) in runs.iter().enumerate() {
+            samples.extend(own.iter().enumerate().map(|(row, sample)| {
+                let slopes = &rows[row * columns..(row + 1) * columns];
+                (run, sample.innovation, slopes)
+            }));
+            add_scaled(1.0, squares, &mut added_squares);
         }
         let steps: usize = (self.recordings().iter())
             .map(|recording| recording.times().len() - 1)
@@ -117,28 +118,27 @@ impl Estimation<'_> {
         for square in &mut added_squares {
             *square /= steps.max(1) as f64;
         }
-        let mut order: Vec<usize> = (0..samples.len()).collect();
-        order.sort_by_key(|&place| {
-            let (run, sample) = &samples[place];
-            (*run, sample.row, sample.channel)
-        });
+        samples.sort_by_key(|(run, sample, _)| (*run, sample.row, sample.channel));
+        let rows: Vec<&[f64]> = samples.iter().map(|(.., slopes)| *slopes).collect();
         Ok(Tangent {
-            samples: order.iter().map(|&place| samples[place]).collect(),
-            slopes: by_columns(&rows, columns, &order),
+            samples: (samples.iter())
+                .map(|(run, sample, _)| (*run, *sample))
+                .collect(),
+            slopes: by_columns(&rows, columns),
             added_squares,
         })
     }
 }
 
-/// Rows in a certain order as a matrix: block by block, since it lies in memory by columns.
-fn by_columns(rows: &[f64], columns: usize, order: &[usize]) -> DMatrix<f64> {
+/// Rows as a matrix: block by block, since it lies in memory by columns.
+fn by_columns(rows: &[&[f64]], columns: usize) -> DMatrix<f64> {
     const BLOCK: usize = 32;
-    let mut matrix = DMatrix::zeros(order.len(), columns);
-    for (block, order) in order.chunks(BLOCK).enumerate() {
+    let mut matrix = DMatrix::zeros(rows.len(), columns);
+    for (block, rows) in rows.chunks(BLOCK).enumerate() {
         for column in 0..columns {
-            let mut entries = matrix.view_mut((block * BLOCK, column), (order.len(), 1));
-            for (entry, &row) in entries.iter_mut().zip(order) {
-                *entry = rows[row * columns + column];
+            let mut entries = matrix.view_mut((block * BLOCK, column), (rows.len(), 1));
+            for (entry, row) in entries.iter_mut().zip(rows) {
+                *entry = row[column];
             }
         }
     }

@@ -78,6 +78,9 @@ pub(crate) struct Pass<'a> {
     pub(crate) sizes: Sizes,
     /// Whether the tape keeps the whole pass, not only the last action.
     keeps: bool,
+    /// Number of steps so far, those included that were cut into parts, and the largest one.
+    pub(crate) steps: usize,
+    pub(crate) most_steps: usize,
     /// Whether the tape has the directions of the disturbances: without process noise they do not matter.
     pub(crate) is_disturbed: bool,
     pub(crate) tape: Vec<f64>,
@@ -97,23 +100,16 @@ pub(crate) struct Pass<'a> {
 }
 
 impl<'a> Pass<'a> {
-    /// Filters a recording. Without an empty `tape` to keep it on only the innovations remain.
+    /// Filters a recording.
     pub(crate) fn over(
-        system: StateSpace<'a>,
-        values: &'a [f64],
-        run: usize,
+        &mut self,
         recording: &Recording,
         actions: &[Action],
-        tape: Option<Vec<f64>>,
-    ) -> Result<Self, EstimateError> {
-        let mut pass = Self::new(system, values, run, recording, actions, tape);
-        for &action in actions {
-            pass.act(recording, action)?;
-        }
-        Ok(pass)
+    ) -> Result<(), EstimateError> {
+        (actions.iter()).try_for_each(|&action| self.act(recording, action))
     }
 
-    /// Before the first action.
+    /// Before the first action. Without an empty `tape` to keep it on only the innovations remain.
     pub(crate) fn new(
         system: StateSpace<'a>,
         values: &'a [f64],
@@ -164,6 +160,8 @@ impl<'a> Pass<'a> {
             run,
             sizes,
             keeps: false,
+            steps: 0,
+            most_steps: usize::MAX,
             is_disturbed: levels.iter().any(|&level| level != 0.0),
             tape: Vec::new(),
             records: Vec::new(),
@@ -248,6 +246,13 @@ impl<'a> Pass<'a> {
 
     /// Advances by a step, one of `of` parts of a whole one, or by parts of it if it is too long.
     fn advance(&mut self, advance: Advance, of: u32) -> Result<(), EstimateError> {
+        self.steps += 1;
+        if self.steps > self.most_steps {
+            return Err(EstimateError::Diverged {
+                run: self.run,
+                t: advance.t,
+            });
+        }
         let tape = self.record(self.sizes.step_len());
         self.records.push(Record::Advance { advance, tape });
         let (n, d) = (self.sizes.n, self.sizes.disturbances);

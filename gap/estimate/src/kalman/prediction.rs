@@ -43,7 +43,7 @@ impl Estimation<'_> {
         self.layout().place(Unknown::Initial { run, state: 0 })?;
         let recording = &self.recordings()[run];
         let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions, None);
+        let mut pass = self.fresh(run, values, &actions, None, &[]);
         let mut walk = Walk::new(&pass, recording);
         let mut predicted = Vec::new();
         for (index, &action) in actions.iter().enumerate() {
@@ -73,7 +73,7 @@ impl Estimation<'_> {
         self.layout().place(Unknown::Initial { run, state: 0 })?;
         let recording = &self.recordings()[run];
         let actions = self.actions(run, values);
-        let mut pass = self.fresh(run, values, &actions, None);
+        let mut pass = self.fresh(run, values, &actions, None, &[]);
         let mut expected = Vec::new();
         for (index, &action) in actions.iter().enumerate() {
             pass.act(recording, action)?;
@@ -83,7 +83,7 @@ impl Estimation<'_> {
             if origins.binary_search(&row).is_err() {
                 continue;
             }
-            let mut ahead = self.fresh(run, values, &actions, None);
+            let mut ahead = self.fresh(run, values, &actions, None, &[]);
             ahead.z.copy_from_slice(&pass.z);
             ahead.root.copy_from_slice(&pass.root);
             ahead.held.copy_from_slice(&pass.held);

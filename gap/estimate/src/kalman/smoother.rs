@@ -49,7 +49,7 @@ impl Estimation<'_> {
     pub fn smoothed(&self, values: &[f64], run: usize) -> Result<Vec<Smoothed>, EstimateError> {
         self.check(values)?;
         self.layout().place(Unknown::Initial { run, state: 0 })?;
-        let mut pass = self.pass(run, values, true)?;
+        let mut pass = self.pass(run, values, true, &[])?;
         let mut tape = std::mem::take(&mut pass.tape);
         let mut last = Smoothed {
             t: 0.0,
